@@ -1,0 +1,43 @@
+"""The one exception tree of the bench; the command line turns it into one line and an exit status."""
+
+
+class BenchError(Exception):
+    """Anything the bench refuses. `exit_status` is what the command line returns for it."""
+
+    exit_status = 2
+
+
+class InputError(BenchError):
+    """Bad input or bad arguments: names the place, what was found there and what is allowed.
+
+    Args:
+        where: file, and line, column or key within it.
+        found: what stands there.
+        allowed: what may stand there, or what to do.
+    """
+
+    def __init__(self, where: object, found: str, allowed: str):
+        self.where, self.found, self.allowed = str(where), found, allowed
+        super().__init__(f"{where}: {found}; {allowed}")
+
+
+class UndeterminedError(BenchError):
+    """The recording is sound but cannot answer: names the quantity, why, and what to record instead.
+
+    Args:
+        quantity: the physical quantity that stays undetermined.
+        reason: what the recording lacks.
+        record: the recording that would determine it.
+    """
+
+    exit_status = 1
+
+    def __init__(self, quantity: str, reason: str, record: str):
+        self.quantity, self.reason, self.record = quantity, reason, record
+        super().__init__(f"{quantity} cannot be determined: {reason}; record instead: {record}")
+
+
+class SimulationError(BenchError):
+    """A simulation diverged or was asked for something its model cannot do; never read as "does not fit"."""
+
+    exit_status = 1

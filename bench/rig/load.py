@@ -1,0 +1,65 @@
+"""Load of the axis: theoretical moment of inertia of the disk from its geometry, and what a gear reflects."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from bench.rig.values import Density, Inertia, Length, Mass, Table
+
+
+class Load(Table):
+    """A flat disk or ring on the shaft, and the gear between it and the motor.
+
+    Attributes:
+        outer_diameter, inner_diameter, thickness: geometry of the disk - m.
+        density: of its material - kg/m**3; or `mass`: of the whole disk - kg. One of the two.
+        gear_ratio: motor turns per turn of the load; 1 without a gear.
+        gear_inertia: moment of inertia of the gear, on the motor's side - kg*m**2.
+    """
+
+    outer_diameter: Length | None = None
+    inner_diameter: Length | None = None
+    thickness: Length | None = None
+    density: Density | None = None
+    mass: Mass | None = None
+    gear_ratio: Annotated[float, Field(gt=0.0)] = 1.0
+    gear_inertia: Inertia | None = None
+
+    @model_validator(mode="after")
+    def _one_disk(self) -> Load:
+        if self.outer_diameter is not None:
+            if (self.mass is None) == (self.density is None):
+                raise ValueError("a disk takes either mass or density, and density takes thickness")
+            if self.mass is None and self.thickness is None:
+                raise ValueError("a disk given by its density needs its thickness")
+            if self.inner_diameter is not None and self.inner_diameter >= self.outer_diameter:
+                raise ValueError("inner_diameter must be smaller than outer_diameter")
+        return self
+
+    @property
+    def disk_mass(self) -> float | None:
+        """m = rho*pi/4*(D**2 - d**2)*h - kg; None without geometry."""
+        if self.mass is not None or self.outer_diameter is None:
+            return self.mass
+        assert self.density is not None and self.thickness is not None
+        area = math.pi / 4.0 * (self.outer_diameter**2 - (self.inner_diameter or 0.0) ** 2)
+        return self.density * area * self.thickness
+
+    @property
+    def disk_inertia(self) -> float | None:
+        """J = m/8*(D**2 + d**2) about the shaft - kg*m**2; None without geometry."""
+        mass = self.disk_mass
+        if mass is None or self.outer_diameter is None:
+            return None
+        return mass / 8.0 * (self.outer_diameter**2 + (self.inner_diameter or 0.0) ** 2)
+
+    def reflected(self, inertia: float) -> float:
+        """Inertia on the load's side as the motor feels it, J/i**2 - kg*m**2."""
+        return inertia / self.gear_ratio**2
+
+    def behind_gear(self, inertia: float) -> float:
+        """Inertia on the motor's side beyond rotor and gear, as it is on the load's side, J*i**2 - kg*m**2."""
+        return inertia * self.gear_ratio**2

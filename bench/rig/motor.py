@@ -1,0 +1,88 @@
+"""Motor of the axis: what turns the recorded current, voltage or relative torque into torque."""
+
+from __future__ import annotations
+
+from pydantic import model_validator
+
+from bench.rig.torque_constant import TorqueConstant
+from bench.rig.values import (
+    BackEmf,
+    Current,
+    Force,
+    ForcePerAmpere,
+    ForcePerVolt,
+    Inductance,
+    Inertia,
+    Mass,
+    Resistance,
+    Speed,
+    Table,
+    Temperature,
+    Torque,
+    TorquePerAmpere,
+    TorquePerVolt,
+    Voltage,
+)
+
+DATASHEET = ("continuous_stall_torque", "continuous_stall_current", "peak_torque", "peak_current")
+
+
+class Motor(Table):
+    """Rotary or linear motor; all values optional, as a recording of torque needs none of them.
+
+    Attributes:
+        model: name it carries in the motor catalogue.
+        rotor_inertia: of the rotor alone - kg*m**2; on a linear axis `moving_mass` - kg.
+        torque_constant: constant torque per ampere - N*m/A; or the four datasheet values, from which kT(Iq) follows;
+            on a linear axis `force_constant` - N/A.
+        torque_per_volt, force_per_volt: gain of a torque-controlled amplifier from its set-point voltage - N*m/V, N/V.
+        rated_torque: what 100 % of a relative torque means - N*m; on a linear axis `rated_force` - N.
+        resistance, inductance, back_emf_constant: winding - ohm, H, V*s/rad (V*s/m).
+        temperature: of the winding that `resistance` holds for - K.
+    """
+
+    model: str | None = None
+    rotor_inertia: Inertia | None = None
+    moving_mass: Mass | None = None
+    torque_constant: TorquePerAmpere | None = None
+    force_constant: ForcePerAmpere | None = None
+    continuous_stall_torque: Torque | None = None
+    continuous_stall_current: Current | None = None
+    peak_torque: Torque | None = None
+    peak_current: Current | None = None
+    torque_per_volt: TorquePerVolt | None = None
+    force_per_volt: ForcePerVolt | None = None
+    rated_torque: Torque | None = None
+    rated_force: Force | None = None
+    rated_speed: Speed | None = None
+    maximum_speed: Speed | None = None
+    resistance: Resistance | None = None
+    inductance: Inductance | None = None
+    back_emf_constant: BackEmf | None = None
+    supply_voltage: Voltage | None = None
+    temperature: Temperature | None = None
+
+    @model_validator(mode="after")
+    def _datasheet_is_consistent(self) -> Motor:
+        if self.continuous_stall_torque is not None:
+            missing = [name for name in DATASHEET if getattr(self, name) is None]
+            if missing:
+                raise ValueError(f"kT(Iq) takes the four datasheet values; missing {', '.join(missing)}")
+            stall, i0, peak, imax = (getattr(self, name) for name in DATASHEET)
+            if imax <= i0:
+                raise ValueError("peak_current must exceed continuous_stall_current")
+            if peak / imax > stall / i0:
+                raise ValueError("torque per ampere must not rise from stall to peak")
+            if 3.0 * (peak / imax - stall / i0) / (imax**2 - i0**2) * imax**2 + stall / i0 <= 0.0:
+                raise ValueError("torque must still rise with current at peak_current")
+        return self
+
+    @property
+    def torque_per_ampere(self) -> TorqueConstant | None:
+        """kT(Iq) - N*m/A (N/A on a linear axis); None when the rig does not tell."""
+        constant = self.torque_constant or self.force_constant
+        if constant is not None:
+            return TorqueConstant(constant)
+        if self.continuous_stall_torque is None:
+            return None
+        return TorqueConstant.from_datasheet(*(getattr(self, name) for name in DATASHEET))

@@ -1,0 +1,170 @@
+"""Rig: what is known about an axis before anyone identifies it, read from a TOML file."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, ValidationError, model_validator
+
+from bench.errors import InputError
+from bench.rig.catalogue import catalogue_motor
+from bench.rig.drive import Drive
+from bench.rig.load import Load
+from bench.rig.motor import Motor
+from bench.rig.simulation import Simulation
+from bench.rig.values import Table
+from bench.trace.trace import Trace
+from bench.units import nearest
+
+
+class TraceNotes(Table):
+    """`[trace]`: how foreign recordings of this axis are to be read.
+
+    Attributes:
+        columns: signal name -> column name with unit, e.g. `velocity = "Axis1.ActVel [mm/s]"`; a leading `-` turns
+            the sign.
+    """
+
+    columns: dict[str, str] = {}
+
+
+class Rig(Table):
+    """One axis as its rig file describes it, in SI units.
+
+    Attributes:
+        name: of the axis.
+        kind: `rotary` or `linear`.
+        offset: whether identification fits a constant torque (force) too, for axes known to have one.
+    """
+
+    name: str
+    kind: Literal["rotary", "linear"]
+    offset: bool = False
+    motor: Motor = Motor()
+    load: Load | None = None
+    drive: Drive | None = None
+    trace: TraceNotes = TraceNotes()
+    simulation: Simulation | None = None
+    source: Annotated[str, Field(exclude=True)] = "rig"
+
+    @model_validator(mode="after")
+    def _values_fit_the_kind(self) -> Rig:
+        wrong = ("moving_mass", "force_constant", "force_per_volt", "rated_force")
+        if self.kind == "linear":
+            wrong = ("rotor_inertia", "torque_constant", "torque_per_volt", "rated_torque", "continuous_stall_torque")
+        for name in wrong:
+            if getattr(self.motor, name) is not None:
+                raise ValueError(f"motor.{name} does not belong to a {self.kind} axis")
+        return self
+
+    @property
+    def linear(self) -> bool:
+        """Whether the axis moves in metres."""
+        return self.kind == "linear"
+
+    def effort(self, trace: Trace) -> tuple[NDArray[np.float64], str]:
+        """What drives the axis in a trace, and its unit: motor torque - N*m (force - N) wherever the rig tells how.
+
+        Taken from the first that is recorded: torque or force, current, voltage. Torque from current is kT(Iq)*Iq; from
+        voltage it is either the amplifier's gain times voltage or, with a winding, kT*(U - Ke*w)/R (quasi-static
+        circuit U = R*I + Ke*w). Where the rig knows no constant, the effort stays in A, V or share of rated torque.
+
+        Raises:
+            InputError: the trace holds none of the signals, or motor and trace disagree on the kind of axis.
+        """
+        if trace.linear != self.linear and ("velocity" in trace or "position" in trace):
+            other = "linear" if trace.linear else "rotary"
+            raise InputError(
+                trace.origin, f"found a {other} axis", f"allowed: a {self.kind} one, as {self.source} says"
+            )
+        direct = "force" if self.linear else "torque"
+        if direct in trace:
+            rated = self.motor.rated_force if self.linear else self.motor.rated_torque
+            if trace.units[direct] == "dimensionless" and rated is not None:
+                return trace[direct] * rated, self.effort_unit
+            return trace[direct], trace.units[direct]
+        if "current" in trace:
+            constant = self.motor.torque_per_ampere
+            return (
+                (trace["current"], "A") if constant is None else (constant.torque(trace["current"]), self.effort_unit)
+            )
+        if "voltage" in trace:
+            return self._effort_of_voltage(trace)
+        raise InputError(trace.origin, "holds no current, torque, force or voltage", "identification needs one of them")
+
+    def _effort_of_voltage(self, trace: Trace) -> tuple[NDArray[np.float64], str]:
+        gain = self.motor.force_per_volt or self.motor.torque_per_volt
+        if gain is not None:
+            return trace["voltage"] * gain, self.effort_unit
+        constant, resistance = self.motor.torque_per_ampere, self.motor.resistance
+        if constant is not None and resistance is not None:
+            back_emf = self.motor.back_emf_constant or constant.constant
+            current = (trace["voltage"] - back_emf * trace["velocity"]) / resistance
+            return constant.torque(current), self.effort_unit
+        return trace["voltage"], "V"
+
+    @property
+    def effort_unit(self) -> str:
+        """Unit of the motor's effort: N*m, or N on a linear axis."""
+        return "N" if self.linear else "N*m"
+
+
+def load_rig(path: str | Path) -> Rig:
+    """Read and check a rig file.
+
+    Raises:
+        InputError: no such file, no TOML, an unknown or missing key, a value of the wrong dimension or out of bounds.
+    """
+    path = Path(path)
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise InputError(path, "no such file", "give the path of a rig file (TOML)") from error
+    except IsADirectoryError as error:
+        raise InputError(path, "found a folder", "give the path of a rig file (TOML)") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(path, f"not TOML ({error})", "allowed: a rig file in UTF-8 TOML") from error
+    motor = table.get("motor")
+    if isinstance(motor, dict) and "model" in motor:
+        table["motor"] = {**catalogue_motor(motor["model"], f"{path}: motor.model"), **motor}
+    try:
+        return Rig.model_validate({**table, "source": str(path)})
+    except ValidationError as error:
+        raise _input_error(path, error) from error
+
+
+def _input_error(path: Path, error: ValidationError) -> InputError:
+    """The first complaint of pydantic as one line naming file, key, found and allowed."""
+    detail = error.errors()[0]
+    keys = [str(key) for key in detail["loc"]]
+    where = f"{path}: {'.'.join(keys) or 'rig'}"
+    context: dict[str, Any] = detail.get("ctx", {})
+    if detail["type"] == "unit":
+        return InputError(where, context["found"], context["allowed"])
+    if detail["type"] == "extra_forbidden":
+        known = _known_keys(keys[:-1])
+        return InputError(where, f"unknown key{nearest(keys[-1], known)}", f"allowed: {', '.join(known)}")
+    if detail["type"] == "missing":
+        return InputError(where, "missing", "this key is required")
+    message = detail["msg"].removeprefix("Value error, ")
+    return InputError(
+        where, f"found {detail['input']!r}" if keys else "inconsistent", f"allowed: {message[0].lower()}{message[1:]}"
+    )
+
+
+def _known_keys(keys: list[str]) -> list[str]:
+    table: type[Table] = Rig
+    tables: dict[str, type[Table]] = {
+        "motor": Motor,
+        "load": Load,
+        "drive": Drive,
+        "trace": TraceNotes,
+        "simulation": Simulation,
+    }
+    for key in keys:
+        table = tables.get(key, table)
+    return [name for name in table.model_fields if name != "source"]

@@ -1,0 +1,125 @@
+"""A trace: one recording of one axis, in SI units, on one regular time base between holes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.errors import InputError
+
+#: A step this many sample periods long is a hole, not jitter: no signal of a servo is known inside it.
+HOLE = 1.5
+
+
+@dataclass(frozen=True)
+class TimeBase:
+    """What a reader found about the sample times before it brought them to a regular base.
+
+    Attributes:
+        sample_period: median step - s.
+        jitter: largest deviation of a step (holes aside) from the sample period - share of the period.
+        holes: (start, duration) of each stretch without samples - s.
+        duplicates: samples dropped because their time stood already in the recording.
+        interpolated: samples placed between measured ones, inside steps too short to be a hole.
+        resampled: whether signals were interpolated onto the regular base.
+    """
+
+    sample_period: float
+    jitter: float = 0.0
+    holes: tuple[tuple[float, float], ...] = ()
+    duplicates: int = 0
+    interpolated: int = 0
+    resampled: bool = False
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One recording of one axis. Synthetic and measured ones are the same type and take the same way.
+
+    Attributes:
+        time: sample times, increasing, regular within each segment - s - (n,).
+        signals: value of each signal by its name (see `bench.trace.signals`) - SI - (n,) each.
+        units: SI unit of each signal.
+        origin: file or simulation it came from.
+        metadata: what the source said about itself.
+        time_base: what was found about the sample times, where a reader found something.
+
+    Raises:
+        InputError: fewer than two samples, a signal of another length, a value that is not finite, or time that
+            does not increase.
+    """
+
+    time: NDArray[np.float64]
+    signals: Mapping[str, NDArray[np.float64]]
+    units: Mapping[str, str]
+    origin: str
+    metadata: Mapping[str, str] = field(default_factory=dict)
+    time_base: TimeBase | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("signals", "units", "metadata"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+        if self.time.size < 2:
+            raise InputError(self.origin, f"found {self.time.size} samples", "allowed: at least two")
+        for name, values in {"time": self.time, **self.signals}.items():
+            if values.shape != self.time.shape:
+                raise InputError(
+                    f"{self.origin}: {name}", f"found shape {values.shape}", f"allowed: {self.time.shape} as time has"
+                )
+            if not np.isfinite(values).all():
+                first = int(np.argmin(np.isfinite(values)))
+                raise InputError(
+                    f"{self.origin}: {name}", f"found {values[first]} at sample {first}", "allowed: finite numbers"
+                )
+        if not (np.diff(self.time) > 0).all():
+            first = int(np.argmax(np.diff(self.time) <= 0)) + 1
+            raise InputError(
+                f"{self.origin}: time",
+                f"does not increase at sample {first} ({self.time[first - 1]:g} s, then {self.time[first]:g} s)",
+                "allowed: increasing times",
+            )
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        """Values of a signal; InputError naming it when the trace does not hold it."""
+        if name not in self.signals:
+            raise InputError(self.origin, f"holds no {name}", f"found: {', '.join(self.signals) or 'no signal'}")
+        return self.signals[name]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.signals
+
+    def __len__(self) -> int:
+        return self.time.size
+
+    @cached_property
+    def sample_period(self) -> float:
+        """Median time step - s."""
+        return float(np.median(np.diff(self.time)))
+
+    @cached_property
+    def segments(self) -> tuple[slice, ...]:
+        """Stretches without a hole, in order, as slices into `time` and every signal."""
+        breaks = np.flatnonzero(np.diff(self.time) > HOLE * self.sample_period) + 1
+        edges = [0, *breaks.tolist(), self.time.size]
+        return tuple(slice(start, stop) for start, stop in zip(edges, edges[1:], strict=False))
+
+    @property
+    def linear(self) -> bool:
+        """Whether the axis moves in metres rather than radians."""
+        return any(self.units.get(name) in ("m", "m/s") for name in ("position", "velocity"))
+
+    def with_signals(self, signals: Mapping[str, NDArray[np.float64]], units: Mapping[str, str]) -> Trace:
+        """The same recording with signals added or replaced."""
+        return replace(self, signals={**self.signals, **signals}, units={**self.units, **units})
+
+    def between(self, start: float, stop: float) -> Trace:
+        """The part with start <= time < stop - s."""
+        first, last = np.searchsorted(self.time, [start, stop])
+        return replace(
+            self, time=self.time[first:last], signals={name: v[first:last] for name, v in self.signals.items()}
+        )

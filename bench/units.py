@@ -1,0 +1,108 @@
+"""Units: SI inside, pint at the edges only (files and command line)."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import pint
+from numpy.typing import NDArray
+
+from bench.errors import InputError
+
+_VALUE = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A physical quantity: what it is called, its SI unit and what values physics allows.
+
+    Attributes:
+        name: the field's term, e.g. `moment_of_inertia`.
+        symbol: its letter in equations, e.g. `J`.
+        unit: SI unit as pint reads it, e.g. `kg*m**2`.
+        lower, upper: closed bounds in that unit.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    lower: float = -math.inf
+    upper: float = math.inf
+
+
+@cache
+def _registry() -> pint.UnitRegistry:
+    registry = pint.UnitRegistry(cache_folder=None)
+    registry.define("rpm = revolution / minute")
+    return registry
+
+
+@cache
+def _unit(unit: str) -> pint.Unit:
+    return _registry().Unit(unit)
+
+
+@cache
+def dimensionality(unit: str) -> str:
+    """Dimension of a unit, e.g. `[length] / [time]`; ValueError if `unit` is no unit.
+
+    pint counts angles as dimensionless; the bench follows it, so rad/s and 1/s are one dimension.
+    """
+    try:
+        return str(_unit(unit).dimensionality)
+    except (pint.errors.PintError, AttributeError, TypeError, ValueError, AssertionError) as error:
+        raise ValueError(f"'{unit}' is not a unit") from error
+
+
+def same_dimension(unit: str, other: str) -> bool:
+    """Whether two units measure the same kind of quantity."""
+    return dimensionality(unit) == dimensionality(other)
+
+
+@cache
+def _affine(unit: str, to: str) -> tuple[float, float]:
+    """Factor and offset that turn a number in `unit` into a number in `to`."""
+    registry = _registry()
+    zero = registry.Quantity(0.0, _unit(unit)).to(_unit(to)).magnitude
+    one = registry.Quantity(1.0, _unit(unit)).to(_unit(to)).magnitude
+    return float(one - zero), float(zero)
+
+
+def convert(values: NDArray[np.float64], unit: str, to: str) -> NDArray[np.float64]:
+    """Values of any shape from `unit` to `to` (same dimension); the same array when nothing changes."""
+    factor, offset = _affine(unit, to)
+    if factor == 1.0 and offset == 0.0:
+        return values
+    return values * factor + offset
+
+
+def parse(text: object, unit: str, where: object) -> float:
+    """A value such as `"22.4 kg*cm**2"` in `unit`.
+
+    Raises:
+        InputError: no finite number with a unit, or of another dimension; names `where`.
+    """
+    allowed = f'allowed: a number with a unit of the dimension of {unit}, e.g. "1.5 {unit}"'
+    match = _VALUE.fullmatch(text.strip()) if isinstance(text, str) else None
+    if match is None:
+        raise InputError(where, f"found {text!r}", allowed)
+    number, given = match.groups()
+    try:
+        matches = same_dimension(given, unit)
+    except ValueError as error:
+        raise InputError(where, f"found {text!r}", allowed) from error
+    value = float(number) * _affine(given, unit)[0] + _affine(given, unit)[1] if matches else math.inf
+    if not math.isfinite(value):
+        raise InputError(where, f"found {text!r}", allowed)
+    return value
+
+
+def nearest(name: str, names: list[str]) -> str:
+    """`, did you mean ...?` for a mistyped name, or nothing when no known name is near."""
+    match = difflib.get_close_matches(name, names, n=1)
+    return f", did you mean '{match[0]}'?" if match else ""
