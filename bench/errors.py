@@ -16,7 +16,7 @@ class InputError(BenchError):
         allowed: what may stand there, or what to do.
     """
 
-    def __init__(self, where: object, found: str, allowed: str):
+    def __init__(self, where: object, found: str, allowed: str) -> None:
         self.where, self.found, self.allowed = str(where), found, allowed
         super().__init__(f"{where}: {found}; {allowed}")
 
@@ -32,7 +32,7 @@ class UndeterminedError(BenchError):
 
     exit_status = 1
 
-    def __init__(self, quantity: str, reason: str, record: str):
+    def __init__(self, quantity: str, reason: str, record: str) -> None:
         self.quantity, self.reason, self.record = quantity, reason, record
         super().__init__(f"{quantity} cannot be determined: {reason}; record instead: {record}")
 

@@ -1,0 +1,1 @@
+"""Identification: inertia and friction from a motion, with honest uncertainty."""

@@ -1,0 +1,1 @@
+"""Rigs: what is known about an axis before anyone identifies it."""

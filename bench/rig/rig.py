@@ -29,7 +29,7 @@ class TraceNotes(Table):
             the sign.
     """
 
-    columns: dict[str, str] = {}
+    columns: dict[str, str] = Field(default_factory=dict)
 
 
 class Rig(Table):
@@ -132,7 +132,7 @@ def load_rig(path: str | Path) -> Rig:
     if isinstance(motor, dict) and "model" in motor:
         table["motor"] = {**catalogue_motor(motor["model"], f"{path}: motor.model"), **motor}
     try:
-        return Rig.model_validate({**table, "source": str(path)})
+        return Rig.model_validate({**table, "source": str(path)}, context={"linear": table.get("kind") == "linear"})
     except ValidationError as error:
         raise _input_error(path, error) from error
 

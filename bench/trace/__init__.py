@@ -1,0 +1,1 @@
+"""Traces: one recording of one axis, its formats, and the motion filtered from it."""

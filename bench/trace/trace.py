@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from types import MappingProxyType
 
 import numpy as np
@@ -106,7 +107,7 @@ class Trace:
         """Stretches without a hole, in order, as slices into `time` and every signal."""
         breaks = np.flatnonzero(np.diff(self.time) > HOLE * self.sample_period) + 1
         edges = [0, *breaks.tolist(), self.time.size]
-        return tuple(slice(start, stop) for start, stop in zip(edges, edges[1:], strict=False))
+        return tuple(slice(start, stop) for start, stop in pairwise(edges))
 
     @property
     def linear(self) -> bool:
