@@ -1,0 +1,132 @@
+"""The default estimator: least squares on consistently filtered columns, with honest intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from itertools import chain
+
+import numpy as np
+from scipy import stats
+
+from bench.identify.covariance import long_run_covariance
+from bench.identify.determined import require_coherent, require_determined
+from bench.identify.estimate import Estimate, Parameter, Residual
+from bench.identify.names import parameter_name, parameter_unit
+from bench.identify.normal_equations import NormalEquations, join, normal_equations
+from bench.identify.regressors import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, regressors
+from bench.rig.rig import Rig
+from bench.trace.conditioning import Conditioning, condition
+from bench.trace.motion import motion
+from bench.trace.trace import Trace
+
+#: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
+BLOCK_WIDTHS = 8.0
+#: Blocks that the covariance needs at most.
+BLOCKS = 4096
+
+
+def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = None) -> Estimate:
+    """Inertia, viscous and Coulomb friction (and offset, if the rig asks for it) of a recording.
+
+    Args:
+        trace: the recording, or its consecutive parts for one that does not fit into memory; the first part decides
+            how all are filtered.
+        rig: what is known about the axis.
+        cutoff: half-power frequency of the filter instead of the one chosen from the data - Hz.
+
+    Raises:
+        UndeterminedError: the recording does not determine one of them.
+        InputError: a signal is missing, or rig and trace do not fit together.
+    """
+    parts = iter([trace] if isinstance(trace, Trace) else trace)
+    first = next(parts)
+    effort, effort_unit = rig.effort(first)
+    conditioning = condition(first, effort, cutoff)
+    require_coherent(conditioning.coherence, rig.linear)
+    read, gathered = 0, []
+    for part in chain([first], parts):
+        read += len(part)
+        columns = regressors(motion(part, rig.effort(part)[0], conditioning))
+        gathered.append(normal_equations(columns, BLOCK_WIDTHS * conditioning.filter.width))
+    return solve(join(gathered).coarsened(BLOCKS), rig, conditioning, effort_unit, read)
+
+
+def solve(
+    equations: NormalEquations, rig: Rig, conditioning: Conditioning, effort_unit: str, samples_read: int
+) -> Estimate:
+    """Estimate from normal equations, refusing what they do not determine."""
+    require_determined(equations, rig.linear)
+    columns = [INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else []), MISALIGNMENT]
+    chosen = equations.select(columns)
+    inverse = np.linalg.inv(chosen.matrix)
+    theta = inverse @ chosen.moment.sum(axis=0)
+    middle, bandwidth = long_run_covariance(chosen.scores(theta))
+    std_error = np.sqrt(np.diag(inverse @ middle @ inverse))
+    degrees = max(chosen.rows.size / bandwidth - len(columns), 1.0)
+    reach = stats.t.ppf(0.975, degrees) * std_error
+    parameters = {
+        parameter_name(column, rig.linear): Parameter(
+            float(value),
+            parameter_unit(column, rig.linear, effort_unit),
+            float(error),
+            (float(value - r), float(value + r)),
+        )
+        for column, value, error, r in zip(columns, theta, std_error, reach, strict=True)
+    }
+    parameters |= load_inertia(parameters, rig)
+    power = max(chosen.residual_power(theta), 0.0)
+    residual = Residual(
+        rms=math.sqrt(power / chosen.count),
+        noise_floor=_noise_floor(dict(zip(columns, theta, strict=True)), conditioning),
+        relative=math.sqrt(power / chosen.power.sum()),
+        unit=effort_unit,
+    )
+    return Estimate(
+        estimator="regression",
+        parameters=parameters,
+        residual=residual,
+        samples_read=samples_read,
+        samples_used=chosen.count * conditioning.filter.stride,
+        cutoff=conditioning.filter.cutoff,
+        source=conditioning.source,
+        warnings=tuple(_warnings(parameters, rig, conditioning)),
+    )
+
+
+def load_inertia(parameters: dict[str, Parameter], rig: Rig) -> dict[str, Parameter]:
+    """J_load = J - J_motor (- J_gear, times i**2 behind a gear), where the rig knows the motor and J is in kg*m**2."""
+    inertia = parameters.get("moment_of_inertia")
+    rotor = rig.motor.rotor_inertia
+    if inertia is None or rotor is None or inertia.unit != "kg*m**2":
+        return {}
+    own = rotor + ((rig.load.gear_inertia or 0.0) if rig.load else 0.0)
+    square = rig.load.gear_ratio**2 if rig.load else 1.0
+    low, high = ((bound - own) * square for bound in inertia.ci95)
+    value = Parameter((inertia.value - own) * square, inertia.unit, inertia.std_error * square, (low, high))
+    return {"load_moment_of_inertia": value}
+
+
+def _noise_floor(theta: dict[str, float], conditioning: Conditioning) -> float:
+    """What white sensor noise leaves in the residual: effort noise, and speed noise through J and K_w."""
+    return math.sqrt(
+        (conditioning.effort_noise * conditioning.filter.noise_gain(0)) ** 2
+        + (theta[INERTIA] * conditioning.acceleration_noise) ** 2
+        + (theta[VISCOUS] * conditioning.velocity_noise) ** 2
+        + (theta[MISALIGNMENT] * conditioning.effort_noise * conditioning.filter.noise_gain(1)) ** 2
+    )
+
+
+def _warnings(parameters: dict[str, Parameter], rig: Rig, conditioning: Conditioning) -> Iterator[str]:
+    shift, period = parameters["misalignment"], conditioning.filter.sample_period
+    if abs(shift.value) > period and abs(shift.value) > 3.0 * shift.std_error:
+        yield (
+            f"current and speed are {shift.value * 1e3:.3g} ms apart, more than a sample ({period * 1e3:.3g} ms): "
+            "a lag in the drive or its filters, which bench diagnose can tell"
+        )
+    for column in (INERTIA, VISCOUS, COULOMB):
+        name = parameter_name(column, rig.linear)
+        found = parameters[name]
+        if found.ci95[1] < 0.0:
+            value = f"{found.value:.3g} {found.unit}"
+            yield f"{name} is negative ({value}): a sign of current or speed is turned, or the model lacks an effect"

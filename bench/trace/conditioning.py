@@ -1,0 +1,118 @@
+"""How a recording is to be filtered, read from the recording itself: source of speed, noise, cut-off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+from bench.errors import InputError, UndeterminedError
+from bench.trace.filter import LEAST_WIDTH, GaussianFilter
+from bench.trace.noise import white_noise
+from bench.trace.trace import Trace
+
+#: Where effort and acceleration share half of their power, signal and noise are equal.
+COHERENCE = 0.5
+#: Speeds this many standard deviations of the noise from zero have a known sign.
+SIGN_CONFIDENCE = 4.0
+#: More samples than this tell nothing new about noise and spectrum.
+ENOUGH = 2**17
+
+
+@dataclass(frozen=True)
+class Conditioning:
+    """What one recording asks of its filter.
+
+    Attributes:
+        filter: the one filter of every column.
+        source: signal that speed and acceleration come from, `velocity` or `position`.
+        source_noise: white noise of that signal - its SI unit.
+        effort_noise: white noise of torque or force - the effort's unit.
+        speed_noise: of the raw speed whose sign is taken (central difference of a position) - rad/s (m/s).
+        coherence: highest coherence of effort and acceleration over frequency.
+    """
+
+    filter: GaussianFilter
+    source: str
+    source_noise: float
+    effort_noise: float
+    speed_noise: float
+    coherence: float
+
+    @property
+    def order(self) -> int:
+        """Derivative of the source that is speed: 0 for velocity, 1 for position."""
+        return 1 if self.source == "position" else 0
+
+    @property
+    def sign_threshold(self) -> float:
+        """Speed below which noise may have made the sign - rad/s (m/s)."""
+        return SIGN_CONFIDENCE * self.speed_noise
+
+    @property
+    def velocity_noise(self) -> float:
+        """Standard deviation of noise in the filtered speed - rad/s (m/s)."""
+        return self.source_noise * self.filter.noise_gain(self.order)
+
+    @property
+    def acceleration_noise(self) -> float:
+        """Standard deviation of noise in the filtered acceleration - rad/s**2 (m/s**2)."""
+        return self.source_noise * self.filter.noise_gain(self.order + 1)
+
+
+def condition(trace: Trace, effort: NDArray[np.float64], cutoff: float | None = None) -> Conditioning:
+    """Choose source, filter and thresholds for a recording.
+
+    The cut-off is the frequency up to which effort and acceleration are coherent above one half; beyond it they no
+    longer tell the same story, be it for noise or for dynamics that a rigid axis does not have. Of velocity and
+    position, the one whose noise makes less of the acceleration is taken.
+
+    Args:
+        trace: the recording.
+        effort: (n,) torque or force over it.
+        cutoff: half-power frequency to take instead of the chosen one - Hz.
+
+    Raises:
+        InputError: neither velocity nor position.
+        UndeterminedError: the recording is too short, or effort and acceleration share nothing.
+    """
+    longest = max(trace.segments, key=lambda part: part.stop - part.start)
+    part = slice(longest.start, min(longest.stop, longest.start + ENOUGH))
+    least = GaussianFilter(LEAST_WIDTH * trace.sample_period, trace.sample_period)
+    if part.stop - part.start < 8 * least.margin:
+        raise UndeterminedError(
+            "moment of inertia" if not trace.linear else "moving mass",
+            f"the longest stretch without a hole has {part.stop - part.start} samples",
+            f"at least {8 * least.margin} samples without a hole",
+        )
+    noise = {name: white_noise(trace[name][part]) for name in ("velocity", "position") if name in trace}
+    if not noise:
+        raise InputError(trace.origin, "holds neither velocity nor position", "identification needs one of them")
+    rank = {name: noise[name] * least.noise_gain(2 if name == "position" else 1) for name in noise}
+    source = min(rank, key=lambda name: rank[name])
+    frequency, coherence = _coherence(
+        trace[source][part], effort[part], trace.sample_period, 2 - (source != "position")
+    )
+    peak = int(np.argmax(coherence))
+    if cutoff is None:
+        below = np.flatnonzero(coherence[peak:] < COHERENCE)
+        cutoff = float(frequency[peak + below[0]]) if below.size else float(frequency[-1])
+    chosen = GaussianFilter.from_cutoff(cutoff, trace.sample_period)
+    speed_noise = noise[source] / (np.sqrt(2.0) * trace.sample_period) if source == "position" else noise[source]
+    return Conditioning(chosen, source, noise[source], white_noise(effort[part]), speed_noise, float(coherence[peak]))
+
+
+def _coherence(
+    source: NDArray[np.float64], effort: NDArray[np.float64], sample_period: float, order: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Magnitude-squared coherence of effort and the source's derivative over frequency - Hz, Welch's estimate.
+
+    At least sixteen half-overlapping windows, as the estimate's bias is about one over their number.
+    """
+    length = int(np.clip(2 ** int(np.log2(effort.size / 8)), 16, 1024))
+    frequency, coherence = scipy.signal.coherence(
+        np.diff(source, order), effort[order:], fs=1.0 / sample_period, nperseg=length
+    )
+    return frequency[1:-1], np.nan_to_num(coherence[1:-1])

@@ -1,0 +1,75 @@
+"""Motion: angle, speed, acceleration and effort of a recording, all through one zero-phase filter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.trace.conditioning import Conditioning
+from bench.trace.trace import Trace
+
+#: Samples filtered at once: long enough that the margins cost nothing, short enough for the cache.
+BLOCK = 2**16
+#: A filtered sign further than this from +-1 has seen speeds of the other sign, or of none.
+ONE_SIGN = 1e-3
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Filtered columns of one recording, rows without a hole in reach of the filter; all arrays (m,).
+
+    Attributes:
+        time: s.
+        velocity: omega - rad/s (m/s).
+        acceleration: alpha - rad/s**2 (m/s**2).
+        effort: motor torque M - N*m (force - N, or what the rig allows).
+        effort_rate: dM/dt - effort's unit per s.
+        direction: +1 or -1 where every raw sample in the filter's reach moves that way, 0 where the sign is in doubt.
+        conditioning: how it was filtered.
+    """
+
+    time: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    acceleration: NDArray[np.float64]
+    effort: NDArray[np.float64]
+    effort_rate: NDArray[np.float64]
+    direction: NDArray[np.float64]
+    conditioning: Conditioning
+
+    def __len__(self) -> int:
+        return self.time.size
+
+
+def motion(trace: Trace, effort: NDArray[np.float64], conditioning: Conditioning) -> Motion:
+    """Filter a recording; stretches shorter than the filter's two margins are left out."""
+    parts = [_filtered(trace, effort, conditioning, block) for block in _blocks(trace, conditioning)]
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)] if parts else [np.empty(0)] * 6
+    return Motion(*columns, conditioning=conditioning)
+
+
+def _blocks(trace: Trace, conditioning: Conditioning) -> Iterator[slice]:
+    """Blocks of each segment, overlapping by two margins so that their rows join without a gap."""
+    margin = conditioning.filter.margin
+    step = BLOCK - BLOCK % conditioning.filter.stride
+    for segment in trace.segments:
+        for start in range(segment.start, segment.stop - 2 * margin, step):
+            yield slice(start, min(start + step + 2 * margin, segment.stop))
+
+
+def _filtered(
+    trace: Trace, effort: NDArray[np.float64], conditioning: Conditioning, block: slice
+) -> tuple[NDArray[np.float64], ...]:
+    """Columns of one block: products and signs are formed on raw samples and filtered afterwards."""
+    smooth, order = conditioning.filter, conditioning.order
+    source = trace[conditioning.source][block]
+    velocity, acceleration = smooth(source, order, order + 1)
+    torque, rate = smooth(effort[block], 0, 1)
+    speed = source if order == 0 else np.gradient(source, trace.sample_period)
+    sign = np.where(np.abs(speed) > conditioning.sign_threshold, np.sign(speed), 0.0)
+    (direction,) = smooth(sign, 0)
+    direction = np.where(np.abs(direction) > 1.0 - ONE_SIGN, np.sign(direction), 0.0)
+    time = trace.time[block][smooth.margin : (block.stop - block.start) - smooth.margin : smooth.stride]
+    return time, velocity, acceleration, torque, rate, direction
