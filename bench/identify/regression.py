@@ -12,6 +12,7 @@ from scipy import stats
 from bench.identify.covariance import long_run_covariance
 from bench.identify.determined import require_coherent, require_determined
 from bench.identify.estimate import Estimate, Parameter, Residual
+from bench.identify.load_inertia import load_inertia
 from bench.identify.names import parameter_name, parameter_unit
 from bench.identify.normal_equations import NormalEquations, join, normal_equations
 from bench.identify.regressors import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, regressors
@@ -92,19 +93,6 @@ def solve(
         source=conditioning.source,
         warnings=tuple(_warnings(parameters, rig, conditioning)),
     )
-
-
-def load_inertia(parameters: dict[str, Parameter], rig: Rig) -> dict[str, Parameter]:
-    """J_load = J - J_motor (- J_gear, times i**2 behind a gear), where the rig knows the motor and J is in kg*m**2."""
-    inertia = parameters.get("moment_of_inertia")
-    rotor = rig.motor.rotor_inertia
-    if inertia is None or rotor is None or inertia.unit != "kg*m**2":
-        return {}
-    own = rotor + ((rig.load.gear_inertia or 0.0) if rig.load else 0.0)
-    square = rig.load.gear_ratio**2 if rig.load else 1.0
-    low, high = ((bound - own) * square for bound in inertia.ci95)
-    value = Parameter((inertia.value - own) * square, inertia.unit, inertia.std_error * square, (low, high))
-    return {"load_moment_of_inertia": value}
 
 
 def _noise_floor(theta: dict[str, float], conditioning: Conditioning) -> float:

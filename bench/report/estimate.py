@@ -1,0 +1,86 @@
+"""An estimate as JSON (contract `bench.identify/1`) and as a table for a person."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from rich import box
+from rich.table import Table
+
+from bench.identify.estimate import Estimate, Parameter
+
+SCHEMA = "bench.identify/1"
+
+
+def _number(value: float) -> float | None:
+    """JSON has no nan: what is not known is null."""
+    return value if math.isfinite(value) else None
+
+
+def parameters_json(parameters: Mapping[str, Parameter]) -> dict[str, Any]:
+    """Parameters with unit, standard error and interval."""
+    return {
+        name: {
+            "value": found.value,
+            "unit": found.unit,
+            "std_error": _number(found.std_error),
+            "ci95": [_number(bound) for bound in found.ci95],
+        }
+        for name, found in parameters.items()
+    }
+
+
+def estimate_json(estimate: Estimate) -> str:
+    """The estimate as the contract's JSON."""
+    residual = estimate.residual
+    return json.dumps(
+        {
+            "schema": SCHEMA,
+            "estimator": estimate.estimator,
+            "parameters": parameters_json(estimate.parameters),
+            "residual": {
+                "rms": residual.rms,
+                "noise_floor": _number(residual.noise_floor),
+                "unit": residual.unit,
+                "relative": residual.relative,
+            },
+            "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
+            "filter": {"cutoff": _number(estimate.cutoff), "unit": "Hz", "source": estimate.source},
+            "warnings": list(estimate.warnings),
+        },
+        indent=2,
+    )
+
+
+def estimate_table(estimate: Estimate, title: str, truth: Mapping[str, float] | None = None) -> Table:
+    """Parameters with their 95 % intervals; beside the truth and the error where it is known.
+
+    Args:
+        estimate: what was identified.
+        title: of the table.
+        truth: true values by the parameters' names, in their units.
+    """
+    residual = estimate.residual
+    floor = f", noise floor {residual.noise_floor:.3g}" if math.isfinite(residual.noise_floor) else ""
+    cutoff = (
+        f"; cut-off {estimate.cutoff:.3g} Hz, speed from {estimate.source}" if math.isfinite(estimate.cutoff) else ""
+    )
+    caption = (
+        f"residual {residual.rms:.3g} {residual.unit} ({residual.relative:.2%} of the effort{floor})\n"
+        f"{estimate.samples_used} of {estimate.samples_read} samples{cutoff}"
+    )
+    table = Table(title=title, caption=caption, title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD)
+    table.add_column("quantity", no_wrap=True)
+    for heading in ("estimate", "± (95 %)", *(("truth", "error") if truth else ())):
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for name, found in estimate.parameters.items():
+        known = truth.get(name) if truth else None
+        compared = (f"{known:.5g}", f"{found.value / known - 1.0:+.3%}") if known else ("", "")
+        reach = f"{0.5 * (found.ci95[1] - found.ci95[0]):.2g}"
+        row = [name.replace("_", " "), f"{found.value:.5g}", reach, *(compared if truth else ()), found.unit]
+        table.add_row(*row)
+    return table

@@ -1,0 +1,51 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bench.errors import InputError
+from bench.units import convert, dimensionality, nearest, parse
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("22.4 kg*cm**2", "kg*m**2", 22.4e-4),
+        ("3000 rpm", "rad/s", 100.0 * math.pi),
+        ("180 deg/s", "rad/s", math.pi),
+        ("9.84 mN*m", "N*m", 9.84e-3),
+        ("20 degC", "K", 293.15),
+        ("-.5e-3kg", "kg", -0.5e-3),
+        ("250 us", "s", 250e-6),
+    ],
+)
+def test_a_value_with_its_unit_becomes_si(text, unit, value):
+    assert parse(text, unit, "rig.toml: key") == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ["", "5", "kg", "1,2 kg", "[1] kg", "5 m", "1e999 kg", "nan kg", "5 bananas", 5, None])
+def test_a_value_that_is_none_is_refused_with_its_place(text):
+    with pytest.raises(InputError, match=r"rig\.toml: key: found .*; allowed: a number with a unit .* kg"):
+        parse(text, "kg", "rig.toml: key")
+
+
+@given(st.floats(-1e12, 1e12))
+def test_conversion_there_and_back_is_the_identity(value):
+    values = np.array([value])
+    assert convert(convert(values, "deg/s", "rad/s"), "rad/s", "deg/s") == pytest.approx(values, rel=1e-12)
+
+
+def test_conversion_to_the_same_unit_copies_nothing():
+    values = np.arange(3.0)
+    assert convert(values, "A", "A") is values
+
+
+def test_angles_count_as_numbers():
+    assert dimensionality("deg/s") == dimensionality("1/s")
+
+
+def test_a_mistyped_name_gets_its_neighbour():
+    assert nearest("torque_constnt", ["torque_constant", "resistance"]) == ", did you mean 'torque_constant'?"
+    assert nearest("xyz", ["torque_constant"]) == ""
