@@ -20,8 +20,9 @@ def test_events_do_not_pass_for_noise():
 
 
 def test_quantisation_counts_as_white_noise():
-    motion = 2000.0 * np.sin(np.arange(50_000) * 1.7e-3)
-    assert white_noise(np.round(motion)) == pytest.approx(1.0 / math.sqrt(12.0), rel=0.1)
+    dither = np.random.default_rng(2).normal(scale=0.3, size=50_000)
+    motion = 2000.0 * np.sin(np.arange(50_000) * 1.7e-3) + dither
+    assert white_noise(np.round(motion)) == pytest.approx(math.hypot(1.0 / math.sqrt(12.0), 0.3), rel=0.05)
 
 
 def test_a_signal_shorter_than_a_window_has_no_known_noise():
