@@ -1,0 +1,64 @@
+"""Effects of the independent axis: the contract's catalogue and some physics outside it."""
+
+from tests.independent.effects.effect import Effect, stack
+from tests.independent.effects.friction import (
+    DirectionDependentFriction,
+    FrictionWarmup,
+    LoadDependentFriction,
+    PositionDependentFriction,
+    PreslidingFriction,
+    QuadraticDrag,
+    StribeckFriction,
+)
+from tests.independent.effects.load import (
+    LoadTorqueEvent,
+    PositionDependentInertia,
+    TorqueOffset,
+    TorsionSpring,
+    Unbalance,
+)
+from tests.independent.effects.motor import (
+    CoggingTorque,
+    CurrentLoopLag,
+    TorqueConstantSaturation,
+    TorqueRipple,
+    VoltageLimit,
+)
+from tests.independent.effects.outside import PositionNotch, RestHardening, SlowMemoryFriction, Vibration
+from tests.independent.effects.sensing import EncoderEccentricity, VelocityFilterLag
+from tests.independent.effects.transmission import Backlash, ElasticCoupling
+
+KINDS: dict[str, type[Effect]] = {
+    kind.name: kind
+    for kind in (
+        StribeckFriction,
+        PreslidingFriction,
+        DirectionDependentFriction,
+        QuadraticDrag,
+        LoadDependentFriction,
+        PositionDependentFriction,
+        FrictionWarmup,
+        TorqueOffset,
+        Unbalance,
+        TorsionSpring,
+        PositionDependentInertia,
+        ElasticCoupling,
+        Backlash,
+        LoadTorqueEvent,
+        CoggingTorque,
+        TorqueRipple,
+        TorqueConstantSaturation,
+        VoltageLimit,
+        CurrentLoopLag,
+        VelocityFilterLag,
+        EncoderEccentricity,
+        SlowMemoryFriction,
+        PositionNotch,
+        Vibration,
+        RestHardening,
+    )
+}
+CATALOGUE = {name: kind for name, kind in KINDS.items() if not kind.outside_catalogue}
+OUTSIDE = {name: kind for name, kind in KINDS.items() if kind.outside_catalogue}
+
+__all__ = ["CATALOGUE", "KINDS", "OUTSIDE", "Effect", "stack", *sorted(kind.__name__ for kind in KINDS.values())]
