@@ -59,6 +59,18 @@ def dimensionality(unit: str) -> str:
         raise ValueError(f"'{unit}' is not a unit") from error
 
 
+@cache
+def base_units(unit: str) -> frozenset[str]:
+    """Names of the units that `unit` is made of, without prefixes, e.g. {degree, second} for `mdeg/s`."""
+    dimensionality(unit)
+    registry = _registry()
+    return frozenset(
+        name
+        for full, _ in _registry().Quantity(1.0, _unit(unit)).unit_items()
+        for _, name, _ in registry.parse_unit_name(full)
+    )
+
+
 def same_dimension(unit: str, other: str) -> bool:
     """Whether two units measure the same kind of quantity."""
     return dimensionality(unit) == dimensionality(other)

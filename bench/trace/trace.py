@@ -49,6 +49,8 @@ class Trace:
         origin: file or simulation it came from.
         metadata: what the source said about itself.
         time_base: what was found about the sample times, where a reader found something.
+        notes: what a reader did, assumed or left out that the user should know.
+        continues: whether it follows the trace before it, of the same recording, without a hole.
 
     Raises:
         InputError: fewer than two samples, a signal of another length, a value that is not finite, or time that
@@ -61,6 +63,8 @@ class Trace:
     origin: str
     metadata: Mapping[str, str] = field(default_factory=dict)
     time_base: TimeBase | None = None
+    notes: tuple[str, ...] = ()
+    continues: bool = False
 
     def __post_init__(self) -> None:
         for name in ("signals", "units", "metadata"):
@@ -72,12 +76,13 @@ class Trace:
                 raise InputError(
                     f"{self.origin}: {name}", f"found shape {values.shape}", f"allowed: {self.time.shape} as time has"
                 )
-            if not np.isfinite(values).all():
+            # a sum is finite only if every term is, and costs no temporary array; it may overflow, hence the look again
+            if not np.isfinite(values.sum()) and not np.isfinite(values).all():
                 first = int(np.argmin(np.isfinite(values)))
                 raise InputError(
                     f"{self.origin}: {name}", f"found {values[first]} at sample {first}", "allowed: finite numbers"
                 )
-        if not (np.diff(self.time) > 0).all():
+        if not (self.time[1:] > self.time[:-1]).all():
             first = int(np.argmax(np.diff(self.time) <= 0)) + 1
             raise InputError(
                 f"{self.origin}: time",

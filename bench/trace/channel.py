@@ -1,0 +1,103 @@
+"""What a reader returns: the channels of a recording as they stand in the file, before any mapping to signals."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.errors import InputError
+
+_NAME_UNIT = re.compile(r"(.*?)(?:\s*\[([^\[\]]*)\])?\s*", re.DOTALL)
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """One column of numbers in a recording.
+
+    Attributes:
+        name: as in the file, without its unit.
+        unit: as in the file; None where the file tells none.
+        values: in that unit - (n,).
+        origin: file it stands in.
+        time: channel with its sample times; None in a table, whose time is one of its columns. Channels sampled
+            together share the same object.
+        line: line of the file that holds the first value, where one line holds one sample.
+        defect: why the values cannot be read; raised only where a trace needs them.
+    """
+
+    name: str
+    unit: str | None
+    values: NDArray[np.float64]
+    origin: str
+    time: Channel | None = None
+    line: int | None = None
+    defect: InputError | None = None
+
+    @property
+    def label(self) -> str:
+        """Name with unit, as in a column's head."""
+        return self.name if self.unit is None else f"{self.name} [{self.unit}]"
+
+    def place(self, sample: int | None = None) -> str:
+        """Where a value stands, for messages: file, line (or sample, counted from 0) and column."""
+        if sample is None:
+            return f"{self.origin}: column '{self.label}'"
+        row = f"sample {sample}" if self.line is None else f"line {self.line + sample}"
+        return f"{self.origin}: {row}, column '{self.label}'"
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """What one file holds.
+
+    Attributes:
+        channels: in the file's order.
+        format: the file's format in words.
+        origin: the file.
+        metadata: what the file says about itself.
+        notes: what the reader did or left out that the user should know.
+        usual_units: units of well-known signals in files of this kind, which carry none; used as a reported
+            assumption.
+    """
+
+    channels: tuple[Channel, ...]
+    format: str
+    origin: str
+    metadata: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    usual_units: Mapping[str, str] = field(default_factory=dict)
+
+
+def split_label(label: str) -> tuple[str, str | None]:
+    """Name and unit of a column head `name [unit]`; no unit gives None."""
+    match = _NAME_UNIT.fullmatch(label.strip())
+    assert match is not None  # the pattern takes any text
+    return match[1].strip(), (match[2] or "").strip() or None
+
+
+def float_values(texts: Iterable[str], place: Callable[[int], str]) -> NDArray[np.float64]:
+    """Numbers from their texts (TRUE and FALSE as 1 and 0) - (n,).
+
+    Raises:
+        InputError: a text that is no number; `place` names where a sample stands.
+    """
+    texts = list(texts)
+    try:
+        return np.array(texts, dtype=np.float64)
+    except ValueError:
+        return np.array([_number(text, place, sample) for sample, text in enumerate(texts)], dtype=np.float64)
+
+
+def _number(text: str, place: Callable[[int], str], sample: int) -> float:
+    word = text.strip().lower()
+    if word in ("true", "false"):
+        return float(word == "true")
+    try:
+        return float(word)
+    except ValueError as error:
+        found = f"found {text.strip()!r}" if word else "found an empty cell"
+        raise InputError(place(sample), found, "allowed: a number") from error

@@ -1,0 +1,28 @@
+"""Readers: one file per format. `READERS` lists them, the surest to tell first; the plain table comes last."""
+
+from __future__ import annotations
+
+from types import ModuleType
+
+from bench.errors import InputError
+from bench.trace.readers import table
+from bench.trace.source import Source
+
+READERS: tuple[ModuleType, ...] = (table,)
+
+
+def reader_of(source: Source) -> ModuleType:
+    """The reader whose format the content shows; failing that, the one that the file's ending names.
+
+    Raises:
+        InputError: neither tells.
+    """
+    for reader in READERS:
+        if reader.recognises(source):
+            return reader
+    if "\0" not in source.head:
+        for reader in READERS:
+            if source.ending in reader.ENDINGS:
+                return reader
+    formats = ", ".join(reader.FORMAT for reader in READERS)
+    raise InputError(source.path, "not a trace in any format the bench reads", f"allowed: {formats}")

@@ -1,0 +1,106 @@
+"""A file to be read as a trace: its content, out of gzip if need be, and its text whatever Unicode it is in."""
+
+from __future__ import annotations
+
+import codecs
+import gzip
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+
+from bench.errors import InputError
+
+_GZIP = b"\x1f\x8b"
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+_HEAD = 65536
+
+
+@dataclass(frozen=True)
+class Source:
+    """Content of a file.
+
+    Attributes:
+        path: of the file.
+        content: its bytes; decompressed if the file is gzip, and UTF-8 if it begins with the byte order mark of
+            another Unicode encoding.
+        ending: of the file's name in lower case, without `.gz`.
+    """
+
+    path: str
+    content: bytes
+    ending: str
+
+    @property
+    def head(self) -> str:
+        """First 64 KiB as text, for telling formats apart; undecodable bytes replaced."""
+        return self.content[:_HEAD].decode("utf-8", errors="replace")
+
+    def text(self) -> str:
+        """The whole content as text.
+
+        Raises:
+            InputError: neither UTF-8 nor Unicode with a byte order mark.
+        """
+        return decode(self.content, self.path)
+
+
+def decode(content: bytes, path: str) -> str:
+    """UTF-8 bytes as text; InputError naming file and line of the first byte that is not UTF-8."""
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(
+            f"{path}: line {line}",
+            f"found byte 0x{content[error.start]:02x}, which is not UTF-8",
+            "allowed: UTF-8, or UTF-16 with a byte order mark; save the file as UTF-8",
+        ) from error
+
+
+def open_source(path: str | Path) -> Source:
+    """Read a file.
+
+    Raises:
+        InputError: not there, not a file, not readable, empty, or a damaged gzip.
+    """
+    path = Path(path)
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError as error:
+        raise InputError(path, "no such file", "give the path of a trace") from error
+    except IsADirectoryError as error:
+        raise InputError(path, "found a folder", "give the path of a trace") from error
+    except (OSError, ValueError) as error:
+        raise InputError(path, f"cannot be read ({error})", "give the path of a trace") from error
+    name = path.name.lower()
+    if content.startswith(_GZIP):
+        content = _decompress(content, path)
+    if not content.strip():
+        raise InputError(path, "the file is empty", "allowed: a trace with a header and samples")
+    return Source(str(path), _as_utf8(content, path), Path(name.removesuffix(".gz")).suffix)
+
+
+def _decompress(content: bytes, path: Path) -> bytes:
+    try:
+        return gzip.decompress(content)
+    except (EOFError, OSError, zlib.error) as error:
+        raise InputError(path, f"the gzip is truncated or damaged ({error})", "allowed: a complete gzip") from error
+
+
+def _as_utf8(content: bytes, path: Path) -> bytes:
+    for mark, encoding in _BOMS:
+        if content.startswith(mark):
+            if encoding == "utf-8":
+                return content[len(mark) :]
+            try:
+                return content[len(mark) :].decode(encoding).encode()
+            except UnicodeDecodeError as error:
+                raise InputError(
+                    path, f"the {encoding.upper()} text is truncated or damaged ({error.reason})", "allowed: whole text"
+                ) from error
+    return content
