@@ -27,12 +27,12 @@ class Simulation(Table):
         viscous_friction_coefficient: K_w - N*m*s/rad (N*s/m).
         coulomb_friction: K_0 - N*m (N).
         friction: `mechanics` puts it into the joint, `drive` lets the drive's software apply it as the lab does.
-        load_torque: constant torque that resists positive motion - N*m (N).
+        load_torque: constant torque on the load (behind any gear) that resists positive motion - N*m (N).
         encoder_resolution: angle (length) of one count - rad (m); 0 is ideal.
         velocity_noise: standard deviation of the reported speed - rad/s (m/s).
         current_noise: standard deviation of the reported current - A.
         sample_period: of the recording - s.
-        timestep: of the integration - s.
+        timestep: of the integration - s; the drive's control period if not given.
     """
 
     moment_of_inertia: Inertia | None = None
@@ -45,4 +45,4 @@ class Simulation(Table):
     velocity_noise: VelocityNoise = 0.0
     current_noise: CurrentNoise = 0.0
     sample_period: Time = 1e-3
-    timestep: Time = 250e-6
+    timestep: Time | None = None

@@ -1,0 +1,196 @@
+"""The drive: a cascade of a position P controller and a velocity PI controller with inertia feed-forward.
+
+    torque = K_v*e_v + K_i*integral(e_v dt) + J_ff*acceleration_reference,        |torque| <= torque_limit
+    e_v = velocity_reference + K_p*(position_reference - position) - velocity
+
+It exists twice and both agree (tests/plant/test_drive.py prints by how much): `CascadeDrive`, ticked in Python on
+arrays of axes, holds its integrator while the torque is limited; `add_pid` is the same law as MuJoCo's own actuator,
+which does not hold, and serves wherever the limit is not reached.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.errors import InputError
+from bench.plant.model import DRIVE
+from bench.plant.references import References
+from bench.rig.rig import Rig
+
+Array = NDArray[np.float64]
+Values = float | Array
+
+
+@dataclass(frozen=True)
+class Cascade:
+    """Gains and limit of a cascade: numbers, or arrays of shape (axes,).
+
+    Attributes:
+        position_gain: K_p - 1/s.
+        velocity_gain: K_v - N*m*s/rad (N*s/m on a linear axis).
+        integral_gain: K_i - N*m/rad (N/m).
+        inertia_feedforward: J_ff - kg*m**2 (kg).
+        torque_limit: torque at peak current - N*m (N); infinite without one.
+        control_period: of the loop - s; one for all axes.
+    """
+
+    position_gain: Values
+    velocity_gain: Values
+    integral_gain: Values
+    inertia_feedforward: Values
+    torque_limit: Values
+    control_period: float
+
+    @classmethod
+    def from_rig(cls, rig: Rig) -> Cascade:
+        """The drive of a rig.
+
+        Raises:
+            InputError: the rig has no drive.
+        """
+        drive = rig.drive
+        if drive is None:
+            raise InputError(f"{rig.source}: drive", "missing", "the closed loop needs a table [drive]")
+        return cls(
+            position_gain=drive.position_gain,
+            velocity_gain=drive.velocity_gain,
+            integral_gain=drive.integral_gain,
+            inertia_feedforward=drive.inertia_feedforward,
+            torque_limit=peak_torque(rig),
+            control_period=drive.control_period,
+        )
+
+
+@dataclass(frozen=True)
+class FrictionEmulation:
+    """Friction that the drive's software makes, as in the lab; numbers, or arrays of shape (axes,).
+
+    Attributes:
+        viscous_friction_coefficient: K_w - N*m*s/rad (N*s/m on a linear axis).
+        coulomb_friction: K_0 - N*m (N).
+        inertia: what the drive takes the axis' inertia to be - kg*m**2 (kg).
+    """
+
+    viscous_friction_coefficient: Values
+    coulomb_friction: Values
+    inertia: Values
+
+
+class Torque(NamedTuple):
+    """Torque of one tick - N*m (N), (axes,): what the cascade set, and what the motor makes.
+
+    They differ by the emulated friction. `setpoint` is what the drive reports as current: the torque that moves the
+    axis against its friction, whether that friction sits in the mechanics or in the software.
+    """
+
+    setpoint: Array
+    motor: Array
+
+
+def peak_torque(rig: Rig) -> float:
+    """Torque at the motor's peak current - N*m (N on a linear axis); infinite where the rig states none."""
+    constant, current = rig.motor.torque_per_ampere, rig.motor.peak_current
+    if constant is None or current is None:
+        return rig.motor.peak_torque or np.inf
+    return float(constant.torque(np.asarray(current)))
+
+
+class CascadeDrive:
+    """The cascade ticked in software, for any number of axes at once. It starts at rest on its references.
+
+    Args:
+        cascade: gains.
+        references: what the axes follow, signals of shape (ticks, axes).
+        emulation: friction made in software, or None.
+    """
+
+    def __init__(self, cascade: Cascade, references: References, emulation: FrictionEmulation | None = None) -> None:
+        period = cascade.control_period
+        self._position_gain = np.asarray(cascade.position_gain)
+        # The velocity error is integrated by the trapezoidal rule: half of this tick's error, all of those before.
+        self._gain = np.asarray(cascade.velocity_gain) + np.asarray(cascade.integral_gain) * (period / 2.0)
+        self._integral_step = np.asarray(cascade.integral_gain) * period
+        self._upper = np.asarray(cascade.torque_limit)
+        self._lower = -self._upper
+        self._speed_demand = references.velocity + self._position_gain * references.position
+        self._feedforward = np.asarray(cascade.inertia_feedforward) * references.acceleration
+        self._integral = np.zeros(references.velocity.shape[1:])
+        self._friction = None if emulation is None else _EmulatedFriction(emulation, period)
+
+    def tick(self, k: int, position: Array, velocity: Array) -> Torque:
+        """Torque from tick k to the next at a measured position - rad (m) - and velocity - rad/s (m/s), (axes,)."""
+        error = self._speed_demand[k] - self._position_gain * position - velocity
+        wanted = self._gain * error + self._integral + self._feedforward[k]
+        setpoint = motor = self._limited(wanted)
+        free = motor == wanted
+        if self._friction is not None:
+            friction = self._friction.torque(setpoint, velocity)
+            asked = setpoint - friction
+            motor = self._limited(asked)
+            free &= motor == asked
+            setpoint = motor + friction
+            self._friction.applied = motor
+        self._integral = self._integral + self._integral_step * error * free
+        return Torque(setpoint, motor)
+
+    def _limited(self, torque: Array) -> Array:
+        return np.maximum(np.minimum(torque, self._upper), self._lower)
+
+
+class _EmulatedFriction:
+    """Friction torque by software: full friction while moving; at standstill whatever holds the axis, up to K_0.
+
+    Friction that would stop the axis within this tick is M_set - M_load + J*w/T; beyond K_0 it slips. The load torque
+    comes from the last tick's change of speed.
+    """
+
+    def __init__(self, emulation: FrictionEmulation, period: float) -> None:
+        self._viscous = np.asarray(emulation.viscous_friction_coefficient)
+        self._coulomb = np.asarray(emulation.coulomb_friction)
+        self._stopping = np.asarray(emulation.inertia) / period
+        self._last_velocity: Array | None = None
+        self.applied: Array = np.zeros(1)
+
+    def torque(self, setpoint: Array, velocity: Array) -> Array:
+        """Friction torque - N*m (N), (axes,), to be taken off the set-point."""
+        load = 0.0
+        if self._last_velocity is not None:
+            load = self.applied - self._stopping * (velocity - self._last_velocity)
+        self._last_velocity = velocity.copy()
+        viscous = self._viscous * velocity
+        holding = setpoint - viscous - load + self._stopping * velocity
+        return viscous + np.maximum(np.minimum(holding, self._coulomb), -self._coulomb)
+
+
+def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
+    """Turn the actuator `drive` into the cascade of one axis, for a model whose timestep is the control period.
+
+    With e_v integrated, K_i*integral(e_v) = K_i*(r - q) + K_i*K_p*integral(r - q), so MuJoCo's gains are
+    kp = K_v*K_p + K_i, ki = K_i*K_p, kv = K_v. MuJoCo's position leads by half a step (see `bench.plant.model`), which
+    takes kp*T/2 off kv; `pid_controls` sends the position reference ahead alike.
+    """
+    actuator = spec.actuator(DRIVE)
+    kp, kv = _pid_gains(cascade)
+    ki = float(cascade.integral_gain * cascade.position_gain)
+    inputs = mujoco.mjtCtrlInput.mjINPUT_POS | mujoco.mjtCtrlInput.mjINPUT_VEL | mujoco.mjtCtrlInput.mjINPUT_FF
+    actuator.set_to_pid(kp=kp, kv=kv, ki=ki if ki > 0.0 else -1.0, ctrlspec=int(inputs))
+    if np.isfinite(cascade.torque_limit):
+        actuator.forcerange = [-float(cascade.torque_limit), float(cascade.torque_limit)]
+        actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
+
+
+def pid_controls(cascade: Cascade, references: References) -> Array:
+    """Inputs pos, vel, ff of the actuator that `add_pid` makes, for one axis: (ticks, 3)."""
+    lead = cascade.control_period / 2.0 * references.velocity
+    feedforward = cascade.inertia_feedforward * references.acceleration
+    return np.stack([references.position + lead, references.velocity, feedforward], axis=-1)
+
+
+def _pid_gains(cascade: Cascade) -> tuple[float, float]:
+    kp = float(cascade.velocity_gain * cascade.position_gain + cascade.integral_gain)
+    return kp, float(cascade.velocity_gain) - kp * cascade.control_period / 2.0

@@ -1,0 +1,49 @@
+"""References: what a drive is told to follow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class References:
+    """A motion at the drive's ticks. Signals have shape (ticks,), or (ticks, axes) for axes side by side.
+
+    Attributes:
+        time: of the ticks, from zero - s - (ticks,).
+        position: rad (m on a linear axis).
+        velocity: rad/s (m/s).
+        acceleration: rad/s**2 (m/s**2).
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+
+    @property
+    def period(self) -> float:
+        """Time between ticks - s."""
+        return float(self.time[1] - self.time[0])
+
+    def then(self, other: References) -> References:
+        """This motion, then another one that starts a tick later from where this one ends, both at rest there."""
+        time = np.concatenate([self.time, self.time[-1] + self.period + other.time])
+        position = np.concatenate([self.position, self.position[-1] - other.position[0] + other.position])
+        velocity = np.concatenate([self.velocity, other.velocity])
+        return References(time, position, velocity, np.concatenate([self.acceleration, other.acceleration]))
+
+
+def side_by_side(references: list[References]) -> References:
+    """Motions of several axes over one time, as one of shape (ticks, axes)."""
+    return References(
+        references[0].time,
+        np.stack([r.position for r in references], axis=1),
+        np.stack([r.velocity for r in references], axis=1),
+        np.stack([r.acceleration for r in references], axis=1),
+    )

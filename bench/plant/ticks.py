@@ -1,0 +1,76 @@
+"""Axes side by side on a batch, their drives ticked in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import mujoco
+import numpy as np
+from mujoco.batch import MODEL_FIELDS, Batch
+
+from bench.errors import SimulationError
+from bench.plant.drive import Cascade, CascadeDrive, FrictionEmulation
+from bench.plant.model import AXIS, DRIVE
+from bench.plant.plant import Plant
+from bench.plant.references import References, side_by_side
+from bench.plant.states import DIVERGED, States
+
+Progress = Callable[[float], None]
+
+#: Ticks between two reports of progress.
+REPORT_EVERY = 1000
+
+
+def run_ticks(plants: Sequence[Plant], references: Sequence[References], progress: Progress | None = None) -> States:
+    """Axes side by side, their drives ticked in Python; the same arithmetic for one axis and a thousand."""
+    batch = batch_of([plant.spec().compile() for plant in plants])
+    joint = batch.model.joint(AXIS)
+    position = batch.bind("qpos")[:, joint.qposadr[0]]
+    velocity = batch.bind("qvel")[:, joint.dofadr[0]]
+    torque_input = batch.bind("ctrl")[:, batch.model.actuator_ctrladr[batch.model.actuator(DRIVE).id]]
+    motion, substeps, half = side_by_side(list(references)), plants[0].substeps, plants[0].timestep / 2.0
+    drive = CascadeDrive(_cascades(plants), motion, _emulations(plants))
+    velocity[:] = motion.velocity[0]
+    position[:] = motion.position[0] + half * velocity
+    record = States(motion.time, *(np.zeros_like(motion.velocity) for _ in range(4)))
+    for k in range(len(motion.time)):
+        record.position[k] = measured = position - half * velocity
+        record.velocity[k] = velocity
+        record.torque[k], torque_input[:] = drive.tick(k, measured, velocity)
+        record.motor_torque[k] = torque_input
+        batch.step(nstep=substeps)
+        if progress is not None and k % REPORT_EVERY == 0:
+            progress(k / len(motion.time))
+    if batch.warning.any():
+        raise SimulationError(DIVERGED)
+    return record
+
+
+def batch_of(models: Sequence[mujoco.MjModel]) -> Batch:
+    """A batch with one simulation per model; fields in which the models differ become per-simulation ones."""
+    batch = Batch(models[0], len(models))
+    for name in sorted(MODEL_FIELDS):
+        if name.startswith("opt.") or all(model is models[0] for model in models):
+            continue
+        first = getattr(models[0], name)
+        if any(not np.array_equal(getattr(model, name), first) for model in models):
+            batch.expand(name)[:] = np.stack([getattr(model, name) for model in models])
+    return batch
+
+
+def _cascades(plants: Sequence[Plant]) -> Cascade:
+    names = ("position_gain", "velocity_gain", "integral_gain", "inertia_feedforward", "torque_limit")
+    gains = {name: np.array([float(getattr(plant.cascade, name)) for plant in plants]) for name in names}
+    return Cascade(**gains, control_period=plants[0].cascade.control_period)
+
+
+def _emulations(plants: Sequence[Plant]) -> FrictionEmulation | None:
+    """Friction made in software, null on axes that have theirs in the mechanics; None if all of them do."""
+    if not any(plant.emulated for plant in plants):
+        return None
+    made = [plant.parameters if plant.emulated else plant.parameters.frictionless for plant in plants]
+    return FrictionEmulation(
+        np.array([parameters.viscous_friction_coefficient for parameters in made]),
+        np.array([parameters.coulomb_friction for parameters in made]),
+        np.array([parameters.inertia for parameters in made]),
+    )
