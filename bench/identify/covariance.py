@@ -5,6 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+#: Andrews' bandwidth minimises the error of the covariance, not of an interval's coverage: on 400 recordings of 6 s
+#: with first-order residuals (0.9 a ms) nominal 95 % intervals covered .958/.923/.903 with it, .963/.935/.908 half again
+#: as wide, and .963/.933/.918 more than twice as wide (J, viscous, Coulomb; tests/identify/test_coverage.py).
+WIDENED = 1.5
+
 
 def long_run_covariance(scores: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
     """Covariance of the sum of a correlated sequence, by the quadratic spectral kernel.
@@ -30,7 +35,7 @@ def long_run_covariance(scores: NDArray[np.float64]) -> tuple[NDArray[np.float64
 
 
 def _bandwidth(scores: NDArray[np.float64]) -> float:
-    """1.3221*(a*b)**(1/5), a from first-order fits; between one lag and a quarter of the sequence."""
+    """WIDENED*1.3221*(a*n)**(1/5), a from first-order fits; between one lag and a quarter of the sequence."""
     now, before = scores[1:], scores[:-1]
     power = np.sum(before**2, axis=0)
     rho = np.clip(np.sum(now * before, axis=0) / np.where(power > 0.0, power, 1.0), -0.97, 0.97)
@@ -38,7 +43,7 @@ def _bandwidth(scores: NDArray[np.float64]) -> float:
     scale = np.where(power > 0.0, power, 1.0)
     relative = (variance / scale) ** 2
     ratio = np.sum(4.0 * rho**2 * relative / (1.0 - rho) ** 8) / max(np.sum(relative / (1.0 - rho) ** 4), 1e-300)
-    return float(np.clip(1.3221 * (ratio * scores.shape[0]) ** 0.2, 1.0, max(1.0, scores.shape[0] / 4.0)))
+    return float(np.clip(WIDENED * 1.3221 * (ratio * scores.shape[0]) ** 0.2, 1.0, max(1.0, scores.shape[0] / 4.0)))
 
 
 def _quadratic_spectral(lag: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -56,15 +56,22 @@ def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = No
 def solve(
     equations: NormalEquations, rig: Rig, conditioning: Conditioning, effort_unit: str, samples_read: int
 ) -> Estimate:
-    """Estimate from normal equations, refusing what they do not determine."""
+    """Estimate from normal equations, refusing what they do not determine.
+
+    Intervals come from the residuals' own correlation, never narrower than the effort's white noise alone makes them,
+    with Student's t at as many degrees of freedom as there are independent stretches.
+    """
     require_determined(equations, rig.linear)
     columns = [INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else []), MISALIGNMENT]
     chosen = equations.select(columns)
     inverse = np.linalg.inv(chosen.matrix)
     theta = inverse @ chosen.moment.sum(axis=0)
     middle, bandwidth = long_run_covariance(chosen.scores(theta))
-    std_error = np.sqrt(np.diag(inverse @ middle @ inverse))
-    degrees = max(chosen.rows.size / bandwidth - len(columns), 1.0)
+    independent = chosen.rows.size / bandwidth
+    degrees = max(independent - len(columns), 1.0)
+    correlated = np.diag(inverse @ middle @ inverse) * independent / degrees
+    least = conditioning.effort_noise**2 / conditioning.filter.stride * np.diag(inverse)
+    std_error = np.sqrt(np.maximum(correlated, least))
     reach = stats.t.ppf(0.975, degrees) * std_error
     parameters = {
         parameter_name(column, rig.linear): Parameter(

@@ -17,6 +17,10 @@ from bench.trace.trace import Trace
 COHERENCE = 0.5
 #: Speeds this many standard deviations of the noise from zero have a known sign.
 SIGN_CONFIDENCE = 4.0
+#: Share of the rows that a narrow filter would keep and the chosen one must keep too.
+KEPT = 0.9
+#: Widths from a reversal at which the filtered sign is within 1e-3 of one: 1 - erf(3.1/sqrt(2)) = 2e-3.
+SIGN_REACH = 3.1
 #: More samples than this tell nothing new about noise and spectrum.
 ENOUGH = 2**17
 
@@ -66,8 +70,9 @@ def condition(trace: Trace, effort: NDArray[np.float64], cutoff: float | None = 
     """Choose source, filter and thresholds for a recording.
 
     The cut-off is the frequency up to which effort and acceleration are coherent above one half; beyond it they no
-    longer tell the same story, be it for noise or for dynamics that a rigid axis does not have. Of velocity and
-    position, the one whose noise makes less of the acceleration is taken.
+    longer tell the same story, be it for noise or for dynamics that a rigid axis does not have. It is raised where the
+    filter's reach around reversals would cost more than a tenth of the rows. Of velocity and position, the one whose
+    noise makes less of the acceleration is taken.
 
     Args:
         trace: the recording.
@@ -96,12 +101,39 @@ def condition(trace: Trace, effort: NDArray[np.float64], cutoff: float | None = 
         trace[source][part], effort[part], trace.sample_period, 2 - (source != "position")
     )
     peak = int(np.argmax(coherence))
+    speed_noise = noise[source] / (np.sqrt(2.0) * trace.sample_period) if source == "position" else noise[source]
     if cutoff is None:
         below = np.flatnonzero(coherence[peak:] < COHERENCE)
-        cutoff = float(frequency[peak + below[0]]) if below.size else float(frequency[-1])
+        coherent = float(frequency[peak + below[0]]) if below.size else float(frequency[-1])
+        speed = raw_speed(trace[source][part], source, trace.sample_period)
+        sign = known_sign(speed, SIGN_CONFIDENCE * speed_noise)
+        cutoff = max(coherent, _least_cutoff(sign, trace.sample_period))
     chosen = GaussianFilter.from_cutoff(cutoff, trace.sample_period)
-    speed_noise = noise[source] / (np.sqrt(2.0) * trace.sample_period) if source == "position" else noise[source]
     return Conditioning(chosen, source, noise[source], white_noise(effort[part]), speed_noise, float(coherence[peak]))
+
+
+def raw_speed(values: NDArray[np.float64], source: str, sample_period: float) -> NDArray[np.float64]:
+    """Unfiltered speed (n,) of a source (n,): itself, or the central difference of a position - rad/s (m/s)."""
+    return np.gradient(values, sample_period) if source == "position" else values
+
+
+def known_sign(speed: NDArray[np.float64], threshold: float) -> NDArray[np.float64]:
+    """Sign of a speed (n,), 0 where it is within `threshold` of zero - rad/s (m/s)."""
+    return np.sign(speed) * (np.abs(speed) > threshold)
+
+
+def _least_cutoff(sign: NDArray[np.float64], sample_period: float) -> float:
+    """Lowest cut-off that still leaves KEPT of the rows - Hz.
+
+    A filter of width s loses 3.1*s at both ends of each run of one sign, where its reach spans a reversal.
+    """
+    edges = np.flatnonzero(np.diff(sign) != 0.0) + 1
+    starts = np.r_[0, edges]
+    runs = np.diff(np.r_[starts, sign.size])[sign[starts] != 0.0] * sample_period
+    widths = LEAST_WIDTH * sample_period * 1.1 ** np.arange(80)
+    kept = np.array([np.sum(np.maximum(runs - 2.0 * SIGN_REACH * width, 0.0)) for width in widths])
+    widest = widths[np.flatnonzero(kept >= KEPT * kept[0])[-1]]
+    return GaussianFilter(widest, sample_period).cutoff
 
 
 def _coherence(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.trace.conditioning import Conditioning
+from bench.trace.conditioning import Conditioning, known_sign, raw_speed
 from bench.trace.trace import Trace
 
 #: Samples filtered at once: long enough that the margins cost nothing, short enough for the cache.
@@ -27,7 +27,7 @@ class Motion:
         acceleration: alpha - rad/s**2 (m/s**2).
         effort: motor torque M - N*m (force - N, or what the rig allows).
         effort_rate: dM/dt - effort's unit per s.
-        direction: +1 or -1 where every raw sample in the filter's reach moves that way, 0 where the sign is in doubt.
+        direction: filtered sgn(omega), within ONE_SIGN of +-1; 0 where the filter's reach holds both signs or none.
         conditioning: how it was filtered.
     """
 
@@ -67,9 +67,8 @@ def _filtered(
     source = trace[conditioning.source][block]
     velocity, acceleration = smooth(source, order, order + 1)
     torque, rate = smooth(effort[block], 0, 1)
-    speed = source if order == 0 else np.gradient(source, trace.sample_period)
-    sign = np.where(np.abs(speed) > conditioning.sign_threshold, np.sign(speed), 0.0)
-    (direction,) = smooth(sign, 0)
-    direction = np.where(np.abs(direction) > 1.0 - ONE_SIGN, np.sign(direction), 0.0)
+    speed = raw_speed(source, conditioning.source, trace.sample_period)
+    (direction,) = smooth(known_sign(speed, conditioning.sign_threshold), 0)
+    direction[np.abs(direction) < 1.0 - ONE_SIGN] = 0.0
     time = trace.time[block][smooth.margin : (block.stop - block.start) - smooth.margin : smooth.stride]
     return time, velocity, acceleration, torque, rate, direction
