@@ -12,7 +12,7 @@ from tests.independent.rig import Axis
 class Drive:
     """torque = K_v*e_v + K_i*integral(e_v dt) + J_ff*alpha_ref, e_v = w_ref + K_p*(q_ref - q) - w.
 
-    Current is limited to its peak, the integrator held while limited; one command each control period, the same for all.
+    Current is limited to its peak, the integrator held while limited; one command each control period.
     """
 
     def __init__(self, axes: Sequence[Axis], control_period: float):

@@ -11,29 +11,40 @@ from tests.independent.rig import Axis
 
 
 class Ramps:
-    """Speed through given points, linear between them (or with smooth joints, s-curve of 3s**2 - 2s**3).
+    """Speed through given points, linear between them, averaged over `jerk_time`: acceleration has no jumps.
+
+    A drive's own generator limits jerk too; and a jump of current between two samples could not be recorded.
 
     Args:
-        points: (time - s, speed - rad/s), the first at time 0.
+        points: (time - s, speed - rad/s), the first at time 0, at rest at both ends.
+        jerk_time: in which acceleration goes from one value to the next - s.
     """
 
-    def __init__(self, points: Sequence[tuple[float, float]], *, smooth: bool = False):
+    def __init__(self, points: Sequence[tuple[float, float]], jerk_time: float):
         self._time, self._speed = (np.array(column, dtype=float) for column in zip(*points, strict=True))
-        self._smooth = smooth
-        gone = 0.5 * (self._speed[1:] + self._speed[:-1]) * np.diff(self._time)
+        length, rise = np.diff(self._time), np.diff(self._speed)
+        gone = self._speed[:-1] * length + rise * length / 2.0
         self._gone = np.concatenate([[0.0], np.cumsum(gone)])
-        self.duration, self.distance = float(self._time[-1]), float(self._gone[-1])
+        area = self._gone[:-1] * length + self._speed[:-1] * length**2 / 2.0 + rise * length**2 / 6.0
+        self._area = np.concatenate([[0.0], np.cumsum(area)])
+        self._jerk_time = jerk_time
+        self.duration, self.distance = float(self._time[-1]) + jerk_time, float(self._gone[-1])
 
-    def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
-        piece = np.clip(np.searchsorted(self._time, time, side="right") - 1, 0, self._time.size - 2)
+    def _sharp(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Integral of position, position, and speed before averaging."""
+        inside = np.clip(time, 0.0, self._time[-1])
+        piece = np.clip(np.searchsorted(self._time, inside, side="right") - 1, 0, self._time.size - 2)
         length, rise = np.diff(self._time)[piece], np.diff(self._speed)[piece]
-        s = (time - self._time[piece]) / length
-        shape, area, slope = (
-            (3 * s**2 - 2 * s**3, s**3 - s**4 / 2, 6 * s * (1 - s)) if self._smooth else (s, s**2 / 2, 1.0)
-        )
-        start = self._speed[piece]
-        return self._gone[piece] + length * (start * s + rise * area), start + rise * shape, rise / length * slope
+        x, speed, gone = inside - self._time[piece], self._speed[piece], self._gone[piece]
+        slope = rise / length
+        area = self._area[piece] + gone * x + speed * x**2 / 2.0 + slope * x**3 / 6.0
+        beyond = np.maximum(time - self._time[-1], 0.0)
+        return area + beyond * self.distance, gone + speed * x + slope * x**2 / 2.0, speed + slope * x
+
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
+        ends = zip(self._sharp(time), self._sharp(time - self._jerk_time), strict=True)
+        return tuple((now - then) / self._jerk_time for now, then in ends)
 
 
 class Multisine:
@@ -115,36 +126,33 @@ class Motion:
         return reference
 
 
-def run_up_and_down(
-    speed: float, acceleration: float, dwell: float, repeats: int = 2, *, smooth: bool = False
-) -> Ramps:
+def run_up_and_down(speed: float, acceleration: float, dwell: float, repeats: int, jerk_time: float) -> Ramps:
     """Fast trapezoids to both sides, as the lab's accelerate and decelerate run."""
-    points = [(0.0, 0.0)]
-    for target in [speed, -speed] * repeats + [0.0]:
-        time, now = points[-1]
-        time += abs(target - now) / acceleration * (1.5 if smooth else 1.0)
-        points += [(time, target), (time + dwell, target)]
-    return Ramps(points, smooth=smooth)
+    return _through([speed, -speed] * repeats + [0.0], acceleration, dwell, jerk_time)
 
 
-def staircase(top: float, steps: int, acceleration: float, dwell: float) -> Ramps:
+def staircase(top: float, steps: int, acceleration: float, dwell: float, jerk_time: float) -> Ramps:
     """Speeds in geometric steps up to `top`, held, then the same in the other direction."""
     levels = top * np.geomspace(0.02, 1.0, steps)
+    return _through([*levels, 0.0, *-levels, 0.0], acceleration, dwell, jerk_time)
+
+
+def _through(speeds: Sequence[float], acceleration: float, dwell: float, jerk_time: float) -> Ramps:
     points = [(0.0, 0.0)]
-    for level in [*levels, 0.0, *-levels, 0.0]:
+    for speed in speeds:
         time, now = points[-1]
-        time += abs(level - now) / acceleration
-        points += [(time, float(level)), (time + dwell, float(level))]
-    return Ramps(points)
+        time += abs(speed - now) / acceleration
+        points += [(time, float(speed)), (time + dwell, float(speed))]
+    return Ramps(points, jerk_time)
 
 
-def slow_reversals(speeds: Sequence[float], half_period: float) -> Ramps:
+def slow_reversals(speeds: Sequence[float], half_period: float, jerk_time: float) -> Ramps:
     """Triangles of speed through zero, one for each given amplitude."""
     points = [(0.0, 0.0)]
     for speed in speeds:
         time = points[-1][0]
         points += [(time + half_period * share, speed * sign) for share, sign in ((0.5, 1), (1.5, -1), (2.0, 0))]
-    return Ramps(points)
+    return Ramps(points, jerk_time)
 
 
 def multisine(speed: float, acceleration: float, duration: float, rng: np.random.Generator) -> Multisine:
@@ -161,16 +169,17 @@ def random_motion(axis: Axis, rng: np.random.Generator, duration: float = 8.0) -
     top = axis.top_speed * rng.uniform(0.85, 1.0)
     peak = axis.peak_torque / axis.inertia
     acceleration = min(rng.uniform(0.35, 0.6) * peak, top / 0.03)
-    smooth = bool(rng.random() < 0.3)
-    ramp = top / acceleration * (1.5 if smooth else 1.0)
+    jerk_time = float(np.exp(rng.uniform(np.log(0.01), np.log(0.06))))
+    ramp = top / acceleration + jerk_time
     repeats = 2 if 12 * ramp < 0.3 * duration else 1
     run_dwell = max((0.3 * duration - 4 * repeats * ramp) / (2 * repeats + 1), 0.05)
     stair_top = top * rng.uniform(0.7, 1.0)
     stair_dwell = max((0.3 * duration - 4 * stair_top / acceleration) / 18, 0.05)
+    slow = axis.top_speed * rng.uniform(0.02, 0.08, 4) * rng.choice([-1, 1])
     phases: list[Phase] = [
-        run_up_and_down(top, acceleration, run_dwell, repeats, smooth=smooth),
-        staircase(stair_top, 8, acceleration, stair_dwell),
-        slow_reversals(axis.top_speed * rng.uniform(0.02, 0.08, 4) * rng.choice([-1, 1]), 0.2 * duration / 8),
+        run_up_and_down(top, acceleration, run_dwell, repeats, jerk_time),
+        staircase(stair_top, 8, acceleration, stair_dwell, jerk_time),
+        slow_reversals(slow, 0.2 * duration / 8, jerk_time),
     ]
     if rng.random() < 0.6:
         phases.append(multisine(0.3 * top, 0.4 * peak, 0.2 * duration, rng))
@@ -178,5 +187,5 @@ def random_motion(axis: Axis, rng: np.random.Generator, duration: float = 8.0) -
         highest = rng.uniform(8.0, 16.0)
         phases.append(Chirp(0.2 * duration, 0.3 * peak / (2.0 * np.pi * highest) ** 2, 1.0, highest))
     order = rng.permutation(len(phases))
-    rest = Ramps([(0.0, 0.0), (float(rng.uniform(0.02, 0.1)), 0.0)])
+    rest = Ramps([(0.0, 0.0), (float(rng.uniform(0.02, 0.1)), 0.0)], jerk_time)
     return Motion((rest, *(phases[i] for i in order), rest))

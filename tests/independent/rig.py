@@ -54,7 +54,7 @@ class Axis:
 
 
 def random_rig(rng: np.random.Generator, name: str = "axis", *, linear: bool = False) -> Axis:
-    """An axis drawn at random: J over two decades, any kT, friction of 0.8 to 3 % of peak torque, drive of 10 to 50 Hz."""
+    """An axis drawn at random: J over two decades, any kT, friction 0.8 to 3 % of peak torque, drive of 10 to 50 Hz."""
 
     def spread(low: float, high: float) -> float:
         return float(np.exp(rng.uniform(np.log(low), np.log(high))))

@@ -85,7 +85,7 @@ class Sensors:
 
 
 def random_sensors(axis: Axis, rng: np.random.Generator, level: float = 1.0) -> Sensors:
-    """Electronics drawn at random: white, coloured, humming or coarse, sampled every 0.5 to 4 ms; `level` scales noise."""
+    """Electronics drawn at random: white, coloured, humming or coarse, 0.5 to 4 ms; `level` scales noise."""
     speed_noise = level * axis.top_speed * np.exp(rng.uniform(np.log(5e-5), np.log(3e-4)))
     current_noise = level * axis.peak_current * np.exp(rng.uniform(np.log(1e-3), np.log(4e-3)))
     counts = float(2 ** rng.integers(14, 21))

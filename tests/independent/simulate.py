@@ -141,7 +141,13 @@ class _Batch:
             del reported["position"], reported["position_reference"]
         length = "m" if axis.linear else "rad"
         units = {name: "A" if name == "current" else length + "/s" * name.startswith("velocity") for name in reported}
-        true = dict(position=position, velocity=velocity, motor_torque=torque, measured_velocity=clean, current=current)
+        true = {
+            "position": position,
+            "velocity": velocity,
+            "motor_torque": torque,
+            "measured_velocity": clean,
+            "current": current,
+        }
         trace = Trace(time, reported, units, f"independent {axis.name}")
         return Recorded(trace, axis, motion, self.effects[k], sensor, true)
 

@@ -61,4 +61,35 @@ KINDS: dict[str, type[Effect]] = {
 CATALOGUE = {name: kind for name, kind in KINDS.items() if not kind.outside_catalogue}
 OUTSIDE = {name: kind for name, kind in KINDS.items() if kind.outside_catalogue}
 
-__all__ = ["CATALOGUE", "KINDS", "OUTSIDE", "Effect", "stack", *sorted(kind.__name__ for kind in KINDS.values())]
+__all__ = [
+    "CATALOGUE",
+    "KINDS",
+    "OUTSIDE",
+    "Backlash",
+    "CoggingTorque",
+    "CurrentLoopLag",
+    "DirectionDependentFriction",
+    "Effect",
+    "ElasticCoupling",
+    "EncoderEccentricity",
+    "FrictionWarmup",
+    "LoadDependentFriction",
+    "LoadTorqueEvent",
+    "PositionDependentFriction",
+    "PositionDependentInertia",
+    "PositionNotch",
+    "PreslidingFriction",
+    "QuadraticDrag",
+    "RestHardening",
+    "SlowMemoryFriction",
+    "StribeckFriction",
+    "TorqueConstantSaturation",
+    "TorqueOffset",
+    "TorqueRipple",
+    "TorsionSpring",
+    "Unbalance",
+    "VelocityFilterLag",
+    "Vibration",
+    "VoltageLimit",
+    "stack",
+]

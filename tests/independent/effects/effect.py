@@ -1,6 +1,6 @@
 """What a physical effect may do to an axis. One frozen dataclass an effect, its parameters named as in truth.json.
 
-The same object serves one axis (fields are numbers) and many (fields are arrays): `stack` makes the second of the first.
+The same object serves one axis (fields are numbers) and many (fields are arrays); `stack` makes the latter.
 """
 
 from __future__ import annotations

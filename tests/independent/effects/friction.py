@@ -128,7 +128,7 @@ class PositionDependentFriction(Effect):
 
 @dataclass(frozen=True)
 class FrictionWarmup(Effect):
-    """Level K_0*(1 + A*exp(-t/T)); A relative_amplitude, T time_constant - s. A share of it may act on viscous friction."""
+    """Level K_0*(1 + A*exp(-t/T)); A relative_amplitude, T time_constant - s; a share of it on K_w too."""
 
     name: ClassVar[str] = "friction_warmup"
     relative_amplitude: float
