@@ -84,7 +84,7 @@ def choose(recording: Recording, columns: Mapping[str, str]) -> tuple[dict[str, 
         if found.unit is None and usual is not None:
             found = replace(found, unit=usual)
             notes.append(f"{signal} taken as {usual}, as the file tells no unit")
-        elif signal in columns and found.unit != unit_of(found.channel.unit) and found.channel.unit is not None:
+        elif signal in columns and unit_of(found.channel.unit) not in (None, found.unit):
             notes.append(f"{signal} read in {found.unit}, as the rig says, where the file says {found.channel.unit}")
         chosen[signal] = found
     return chosen, tuple(notes)

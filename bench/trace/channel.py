@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +70,20 @@ class Recording:
     metadata: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     usual_units: Mapping[str, str] = field(default_factory=dict)
+
+
+def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:
+    """The same channels, those whose sample times are equal sharing one time channel."""
+    times: list[Channel] = []
+    shared: list[Channel] = []
+    for channel in channels:
+        assert channel.time is not None
+        own = channel.time.values
+        time = next((known for known in times if np.array_equal(known.values, own)), None)
+        if time is None:
+            times.append(time := channel.time)
+        shared.append(replace(channel, time=time))
+    return tuple(shared)
 
 
 def split_label(label: str) -> tuple[str, str | None]:

@@ -11,11 +11,14 @@ from pathlib import Path
 from bench.errors import InputError
 
 _GZIP = b"\x1f\x8b"
-_BOMS = (
+#: Byte order marks, and how XML without one begins in UTF-16 (XML 1.0, appendix F).
+_MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
+    (b"<\0?\0", "utf-16-le"),
+    (b"\0<\0?", "utf-16-be"),
 )
 _HEAD = 65536
 
@@ -93,12 +96,10 @@ def _decompress(content: bytes, path: Path) -> bytes:
 
 
 def _as_utf8(content: bytes, path: Path) -> bytes:
-    for mark, encoding in _BOMS:
+    for mark, encoding in _MARKS:
         if content.startswith(mark):
-            if encoding == "utf-8":
-                return content[len(mark) :]
             try:
-                return content[len(mark) :].decode(encoding).encode()
+                return content.decode(encoding).removeprefix("\ufeff").encode()
             except UnicodeDecodeError as error:
                 raise InputError(
                     path, f"the {encoding.upper()} text is truncated or damaged ({error.reason})", "allowed: whole text"

@@ -35,6 +35,10 @@ MOST_DUPLICATES = 0.01
 #: Signals whose clock makes the time base, best first.
 LEADING = ("velocity", "position", "current", "torque", "force", "voltage")
 
+#: Rounded times q apart leave q/sqrt(12) of noise, which tilts a line fitted to n of them: their peak-to-peak deviation
+#: exceeds q by up to 2*3 standard deviations at its ends, 6*q*sqrt(3/(12*n)) = 3*q/sqrt(n).
+_SLOPE = 3.0
+
 Array = NDArray[np.float64]
 
 
@@ -112,7 +116,7 @@ def regular(signals: Mapping[str, Sampled]) -> Regular:
             valid &= known
         notes.append(_foreign_note(list(others), leader, base, find_base(other, 0)))
     if not valid.all():
-        notes.append(f"{int((~valid).sum())} samples left out where not every signal is known")
+        notes.append(f"{counted(int((~valid).sum()), 'sample')} left out where not every signal is known")
         time, placed = time[valid], {name: array[valid] for name, array in placed.items()}
     if time.size < 2:
         raise InputError(clock.place(None), f"found {time.size} samples common to all signals", "allowed: at least two")
@@ -164,7 +168,7 @@ def find_base(clock: Clock, duplicates: int) -> Base:
     segments = np.split(np.arange(time.size), edges) if edges.size else [np.arange(time.size)]
     mean = float(contiguous.mean())
     line = _line(time, segments, [np.arange(s.size, dtype=float) for s in segments], mean)
-    tolerance = max(clock.quantum * (1.0 + 1e-3), 2.0 * STEADY * mean)
+    tolerance = max(clock.quantum * (1.0 + _SLOPE / np.sqrt(time.size)), 2.0 * STEADY * mean)
     if line.spread > tolerance:
         counts = [np.concatenate([[0.0], np.cumsum(np.maximum(np.rint(step[s[:-1]] / period), 1.0))]) for s in segments]
         line = _line(time, segments, counts, period)
@@ -281,15 +285,20 @@ def _notes(base: Base, clock: Clock) -> list[str]:
     elif base.time is not clock.time and clock.quantum > 2.0 * STEADY * found.sample_period:
         notes.append(f"times are rounded to {clock.quantum:g} s; replaced by the line through them")
     if found.interpolated:
-        notes.append(f"{found.interpolated} missing samples interpolated")
+        notes.append(f"{counted(found.interpolated, 'missing sample')} interpolated")
     if found.holes:
         longest = max(duration for _, duration in found.holes)
-        notes.append(f"{len(found.holes)} holes, the longest {longest:g} s; nothing is placed inside them")
+        notes.append(f"{counted(len(found.holes), 'hole')}, the longest {longest:.3g} s; nothing is placed inside")
     if found.duplicates:
-        notes.append(f"{found.duplicates} samples dropped, their times stood already in the recording")
+        notes.append(f"{counted(found.duplicates, 'sample')} dropped at times that stood already in the recording")
     if clock.time.size < 10:
         notes.append(f"only {clock.time.size} samples")
     return notes
+
+
+def counted(count: int, what: str) -> str:
+    """`1 hole`, `2 holes`."""
+    return f"{count} {what}{'s' * (count != 1)}"
 
 
 def _foreign_note(names: list[str], leader: str, base: Base, other: Base) -> str:

@@ -5,10 +5,32 @@ from __future__ import annotations
 from types import ModuleType
 
 from bench.errors import InputError
-from bench.trace.readers import table
+from bench.trace.readers import (
+    bam,
+    codesys_csv,
+    codesys_text,
+    codesys_xml,
+    epos,
+    mat,
+    parquet,
+    sinumerik,
+    table,
+    twincat,
+)
 from bench.trace.source import Source
 
-READERS: tuple[ModuleType, ...] = (table,)
+READERS: tuple[ModuleType, ...] = (
+    parquet,
+    mat,
+    codesys_xml,
+    sinumerik,
+    codesys_csv,
+    codesys_text,
+    twincat,
+    epos,
+    bam,
+    table,
+)
 
 
 def reader_of(source: Source) -> ModuleType:

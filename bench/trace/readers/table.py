@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pyarrow as pa
-from pyarrow import csv
 
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, float_values, split_label
+from bench.trace.readers.columns import parse_columns
 from bench.trace.source import Source, decode
 
 FORMAT = "CSV table"
@@ -78,6 +78,10 @@ def _layout(source: Source) -> Layout:
     header = decode(source.content[start:end], source.path).strip("\r\n")
     separator = max(_SEPARATORS, key=header.count)
     labels = tuple(label.strip().strip('"').strip() for label in header.split(separator))
+    if len(labels) == 1:
+        raise InputError(
+            f"{source.path}: line {line}", "found one column", "allowed: a first line 'time [unit],name [unit],...'"
+        )
     if all(_NUMBER.fullmatch(label) for label in labels):
         raise InputError(
             f"{source.path}: line {line}", "found numbers, no header", "allowed: a first line 'name [unit],...'"
@@ -96,24 +100,13 @@ def numbers(body: bytes, layout: Layout, path: str) -> pa.Table:
     Raises:
         InputError: a line with too few or too many cells.
     """
-    keys = [str(number) for number in range(len(layout.labels))]
+    count = len(layout.labels)
     try:
-        return _parse(body, layout, dict.fromkeys(keys, pa.float64()))
+        return parse_columns(body, count, layout.separator, layout.decimal)
     except pa.ArrowInvalid:
         _check_widths(body, layout, path)
     decode(body, path)
-    return _parse(body, layout, dict.fromkeys(keys, pa.string()))
-
-
-def _parse(body: bytes, layout: Layout, types: dict[str, pa.DataType]) -> pa.Table:
-    return csv.read_csv(
-        pa.py_buffer(body),
-        read_options=csv.ReadOptions(column_names=list(types)),
-        parse_options=csv.ParseOptions(delimiter=layout.separator, quote_char='"'),
-        convert_options=csv.ConvertOptions(
-            column_types=types, null_values=[], strings_can_be_null=False, decimal_point=layout.decimal
-        ),
-    )
+    return parse_columns(body, count, layout.separator, layout.decimal, pa.string())
 
 
 def _check_widths(body: bytes, layout: Layout, path: str) -> None:

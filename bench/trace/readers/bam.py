@@ -1,0 +1,70 @@
+"""Reader of recordings of small servos by the BAM project: JSON with `entries` of position, speed, load and voltage.
+
+`load` is the share of the supply that the bridge applies, as a signed 16-bit number with 885 for full; so the motor's
+voltage is load/885 * input_volts (Robotis XL330 manual, present PWM; github.com/Rhoban/bam).
+"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.errors import InputError
+from bench.trace.channel import Channel, Recording
+from bench.trace.source import Source
+
+FORMAT = "BAM servo JSON"
+ENDINGS = (".json",)
+
+_FULL_LOAD = 885.0
+_KEYS = ("timestamp", "position", "speed", "load", "input_volts", "temp", "goal_position")
+
+
+def recognises(source: Source) -> bool:
+    """Whether the head is JSON with entries that tell a servo's load."""
+    head = source.head.lstrip()
+    return head.startswith("{") and '"entries"' in head and '"input_volts"' in head
+
+
+def read(source: Source) -> Recording:
+    """Recording of a BAM file; scalars beside the entries (mass, length, kp, ...) become metadata.
+
+    Raises:
+        InputError: not JSON, no entries, or an entry without one of the keys or with text in a number.
+    """
+    try:
+        content = json.loads(source.text())
+    except json.JSONDecodeError as error:
+        raise InputError(
+            f"{source.path}: line {error.lineno}",
+            f"the JSON is truncated or damaged ({error.msg})",
+            "allowed: whole JSON",
+        ) from error
+    entries = content.get("entries") if isinstance(content, dict) else None
+    if not isinstance(entries, list) or not entries:
+        raise InputError(f"{source.path}: entries", "found none", "allowed: a list of samples")
+    raw = {key: _numbers(entries, key, source.path) for key in _KEYS}
+    load = raw["load"].astype(np.int64).astype(np.uint16).view(np.int16)
+    time = Channel("time", "s", raw["timestamp"], source.path)
+    columns = {
+        "position": ("rad", raw["position"]),
+        "velocity": ("rad/s", raw["speed"]),
+        "voltage": ("V", load / _FULL_LOAD * raw["input_volts"]),
+        "temperature": ("degC", raw["temp"]),
+        "position_reference": ("rad", raw["goal_position"]),
+    }
+    channels = tuple(Channel(name, unit, values, source.path, time=time) for name, (unit, values) in columns.items())
+    metadata = {key: str(value) for key, value in content.items() if isinstance(value, str | int | float)}
+    off = sum(entry.get("torque_enable") is False for entry in entries)
+    notes = (f"the motor is switched off in {off} of {len(entries)} samples",) if off else ()
+    return Recording(channels, FORMAT, source.path, metadata, notes)
+
+
+def _numbers(entries: list, key: str, path: str) -> NDArray[np.float64]:
+    values = [entry.get(key) if isinstance(entry, dict) else None for entry in entries]
+    for sample, value in enumerate(values):
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise InputError(f"{path}: entries[{sample}].{key}", f"found {value!r}", "allowed: a number")
+    return np.array(values, dtype=np.float64)

@@ -1,0 +1,62 @@
+"""Reader of MATLAB files up to version 7: every numeric vector a channel, scalars as metadata. They carry no units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import BytesIO
+
+import numpy as np
+from scipy.io import loadmat
+
+from bench.errors import InputError
+from bench.trace.channel import Channel, Recording
+from bench.trace.source import Source
+
+FORMAT = "MAT"
+ENDINGS = (".mat",)
+
+
+def recognises(source: Source) -> bool:
+    """Whether the file begins as MAT files of version 5 and later do."""
+    return source.content.startswith(b"MATLAB ")
+
+
+def read(source: Source) -> Recording:
+    """Recording of a MAT file; fields of a struct are named `struct.field`, columns of a matrix `name(:,1)`.
+
+    Raises:
+        InputError: version 7.3 (HDF5), truncated, damaged, or without a numeric vector.
+    """
+    if source.content.startswith(b"MATLAB 7.3") or source.content.startswith(b"\x89HDF"):
+        raise InputError(source.path, "found MAT version 7.3 (HDF5)", "allowed: version 7 or older; save with '-v7'")
+    try:
+        content = loadmat(BytesIO(source.content), simplify_cells=True)
+    except Exception as error:  # scipy raises nearly any exception on a damaged file
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise InputError(
+            source.path, f"the MAT file is truncated or damaged ({reason})", "allowed: a complete MAT file"
+        ) from error
+    channels, metadata = [], {}
+    for name, value in _variables(content):
+        if isinstance(value, np.ndarray) and value.dtype.kind in "fiub" and value.size > 1 and value.ndim <= 2:
+            channels.extend(_channels(name, value, source.path))
+        elif np.isscalar(value) or (isinstance(value, np.ndarray) and value.size == 1):
+            metadata[name] = str(value)
+    if not channels:
+        raise InputError(source.path, "holds no numeric vector", "allowed: vectors of samples, one of them the time")
+    return Recording(tuple(channels), FORMAT, source.path, metadata)
+
+
+def _variables(content: dict, prefix: str = "") -> Iterator[tuple[str, object]]:
+    for name, value in content.items():
+        if isinstance(value, dict):
+            yield from _variables(value, f"{prefix}{name}.")
+        elif not name.startswith("__"):
+            yield prefix + name, value
+
+
+def _channels(name: str, value: np.ndarray, path: str) -> Iterator[Channel]:
+    columns = value.reshape(-1, 1) if 1 in value.shape or value.ndim == 1 else value
+    for number, column in enumerate(columns.T, 1):
+        label = name if columns.shape[1] == 1 else f"{name}(:,{number})"
+        yield Channel(label, None, np.ascontiguousarray(column, dtype=np.float64), path)

@@ -1,0 +1,82 @@
+"""Reader of Parquet: unit in the column's name `velocity [deg/s]` or in its field metadata under `unit`."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from bench.errors import InputError
+from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.source import Source
+
+FORMAT = "Parquet"
+ENDINGS = (".parquet", ".pq")
+
+MAGIC = b"PAR1"
+
+
+def recognises(source: Source) -> bool:
+    """Whether the file begins as Parquet does."""
+    return source.content.startswith(MAGIC)
+
+
+def read(source: Source) -> Recording:
+    """Recording of a Parquet file.
+
+    Raises:
+        InputError: truncated, damaged, or without rows.
+    """
+    try:
+        table = pq.read_table(pa.BufferReader(source.content))
+    except (pa.ArrowException, OSError, ValueError) as error:
+        raise damaged(source.path, error) from error
+    if not table.num_rows:
+        raise InputError(source.path, "found columns and no rows", "allowed: at least two samples")
+    channels = tuple(
+        channel_of(field, column, source.path) for field, column in zip(table.schema, table.columns, strict=True)
+    )
+    return Recording(channels, FORMAT, source.path)
+
+
+def damaged(path: str, error: Exception) -> InputError:
+    """What to say about a file that Arrow cannot read."""
+    reason = str(error).splitlines()[0]
+    return InputError(path, f"the Parquet file is truncated or damaged ({reason})", "allowed: a complete Parquet file")
+
+
+def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str) -> Channel:
+    """Channel of a column; with a defect where it holds anything but numbers."""
+    name, unit = split_label(field.name)
+    if unit is None and field.metadata and b"unit" in field.metadata:
+        unit = field.metadata[b"unit"].decode("utf-8", errors="replace")
+    kind = column.type
+    if pa.types.is_timestamp(kind) or pa.types.is_duration(kind):
+        unit = kind.unit
+    channel = Channel(name, unit, np.empty(0), path)
+    if column.null_count:
+        sample = column.is_null().to_numpy(zero_copy_only=False).argmax()
+        defect = InputError(channel.place(int(sample)), "found an empty cell", "allowed: a number")
+        return Channel(name, unit, np.empty(0), path, defect=defect)
+    values = _numbers(column)
+    if values is None:
+        return Channel(
+            name, unit, np.empty(0), path, defect=InputError(channel.place(), f"found {kind}", "allowed: numbers")
+        )
+    return Channel(name, unit, values, path)
+
+
+def _numbers(column: pa.ChunkedArray | pa.Array) -> NDArray[np.float64] | None:
+    """Values as float64, without a copy where they are float64 in one piece; None for what is not a number."""
+    kind = column.type
+    if pa.types.is_timestamp(kind) or pa.types.is_duration(kind):
+        ticks = column.cast(pa.int64()).to_numpy()
+        return (ticks - ticks[0]).astype(np.float64)  # from the first sample: an epoch would cost the last digits
+    if pa.types.is_boolean(kind) or pa.types.is_decimal(kind):
+        column = column.cast(pa.float64())
+    elif not (pa.types.is_integer(kind) or pa.types.is_floating(kind)):
+        return None
+    array = column if isinstance(column, pa.Array) else column.combine_chunks()
+    array = array.chunk(0) if isinstance(array, pa.ChunkedArray) else array
+    return array.to_numpy(zero_copy_only=False).astype(np.float64, copy=False)
