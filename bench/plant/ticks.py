@@ -23,7 +23,8 @@ REPORT_EVERY = 1000
 
 def run_ticks(plants: Sequence[Plant], references: Sequence[References], progress: Progress | None = None) -> States:
     """Axes side by side, their drives ticked in Python; the same arithmetic for one axis and a thousand."""
-    batch = batch_of([plant.spec().compile() for plant in plants])
+    compiled = {plant: plant.spec().compile() for plant in set(plants)}
+    batch = batch_of([compiled[plant] for plant in plants])
     joint = batch.model.joint(AXIS)
     position = batch.bind("qpos")[:, joint.qposadr[0]]
     velocity = batch.bind("qvel")[:, joint.dofadr[0]]
@@ -49,12 +50,12 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
 def batch_of(models: Sequence[mujoco.MjModel]) -> Batch:
     """A batch with one simulation per model; fields in which the models differ become per-simulation ones."""
     batch = Batch(models[0], len(models))
+    distinct = list({id(model): model for model in models}.values())
     for name in sorted(MODEL_FIELDS):
-        if name.startswith("opt.") or all(model is models[0] for model in models):
-            continue
-        first = getattr(models[0], name)
-        if any(not np.array_equal(getattr(model, name), first) for model in models):
-            batch.expand(name)[:] = np.stack([getattr(model, name) for model in models])
+        if len(distinct) > 1 and not name.startswith("opt."):
+            values = {id(model): getattr(model, name) for model in distinct}
+            if any(not np.array_equal(value, values[id(models[0])]) for value in values.values()):
+                batch.expand(name)[:] = np.stack([values[id(model)] for model in models])
     return batch
 
 

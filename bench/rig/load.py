@@ -18,6 +18,7 @@ class Load(Table):
         density: of its material - kg/m**3; or `mass`: of the whole disk - kg. One of the two.
         gear_ratio: motor turns per turn of the load; 1 without a gear.
         gear_inertia: moment of inertia of the gear, on the motor's side - kg*m**2.
+        stroke: of a linear axis, from one end to the other; planned motions stay within it - m.
     """
 
     outer_diameter: Length | None = None
@@ -27,6 +28,7 @@ class Load(Table):
     mass: Mass | None = None
     gear_ratio: Annotated[float, Field(gt=0.0)] = 1.0
     gear_inertia: Inertia | None = None
+    stroke: Length | None = None
 
     @model_validator(mode="after")
     def _one_disk(self) -> Load:

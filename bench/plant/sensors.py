@@ -1,0 +1,110 @@
+"""Sensors: what a drive reports of a motion, sampled into a trace."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.errors import InputError
+from bench.plant.references import References
+from bench.plant.states import States
+from bench.rig.rig import Rig
+from bench.rig.torque_constant import TorqueConstant
+from bench.trace.signals import SI_UNITS
+from bench.trace.trace import Trace
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """Encoder, current measurement and recorder of a drive.
+
+    Attributes:
+        sample_period: of the recording, a multiple of the drive's control period - s.
+        encoder_resolution: angle (length) of one count - rad (m); 0 is ideal.
+        velocity_noise: standard deviation of the reported speed - rad/s (m/s), white.
+        current_noise: standard deviation of the reported current - A (torque - N*m, N - without `torque_constant`).
+        torque_constant: turns torque into the current reported; None reports torque (force).
+        linear: whether the axis moves in metres.
+    """
+
+    sample_period: float
+    encoder_resolution: float = 0.0
+    velocity_noise: float = 0.0
+    current_noise: float = 0.0
+    torque_constant: TorqueConstant | None = None
+    linear: bool = False
+
+    @classmethod
+    def from_rig(cls, rig: Rig) -> Sensors:
+        """The sensors of a rig's `[simulation]`.
+
+        Raises:
+            InputError: the rig has none.
+        """
+        if rig.simulation is None:
+            raise InputError(f"{rig.source}: simulation", "missing", "a simulated axis needs a table [simulation]")
+        return cls(
+            sample_period=rig.simulation.sample_period,
+            encoder_resolution=rig.simulation.encoder_resolution,
+            velocity_noise=rig.simulation.velocity_noise,
+            current_noise=rig.simulation.current_noise,
+            torque_constant=rig.motor.torque_per_ampere,
+            linear=rig.linear,
+        )
+
+    def stride(self, period: float) -> int:
+        """Ticks of a drive with this period - s - from one sample to the next.
+
+        Raises:
+            InputError: the sample period is no multiple of it.
+        """
+        stride = max(1, round(self.sample_period / period))
+        if abs(stride * period / self.sample_period - 1.0) > 1e-9:
+            raise InputError(
+                "simulation.sample_period",
+                f"found {self.sample_period:g} s",
+                f"allowed: a multiple of the control period of {period:g} s",
+            )
+        return stride
+
+    def record(self, states: States, references: References, random: np.random.Generator, origin: str) -> Trace:
+        """Trace of one axis' motion, position, velocity and current of a row simultaneous.
+
+        Position is rounded to counts. Velocity is the drive's own, true speed with noise. Current steps at every tick
+        of the drive; the current of a row is its mean over the control period around the sample.
+
+        Args:
+            states: of one axis.
+            references: it followed, signals of shape (ticks,).
+            random: source of the noise.
+            origin: name the trace carries.
+        """
+        rows = slice(None, None, self.stride(references.period))
+        position, velocity, effort = (s[:, 0] for s in (states.position, states.velocity, self._effort(states)))
+        noise = random.standard_normal((2, len(states.time[rows])))
+        signals = {
+            "position": _counted(position[rows], self.encoder_resolution),
+            "velocity": velocity[rows] + self.velocity_noise * noise[0],
+            self._effort_name: effort[rows] + self.current_noise * noise[1],
+            "position_reference": references.position[rows],
+            "velocity_reference": references.velocity[rows],
+        }
+        units = {name: SI_UNITS[name][int(self.linear)] for name in signals}
+        return Trace(states.time[rows], signals, units, origin)
+
+    @property
+    def _effort_name(self) -> str:
+        return "current" if self.torque_constant is not None else "force" if self.linear else "torque"
+
+    def _effort(self, states: States) -> Array:
+        """Mean current (torque) over the control period around each tick, (ticks, axes)."""
+        held = states.torque if self.torque_constant is None else self.torque_constant.current(states.torque)
+        return (np.concatenate([held[:1], held[:-1]]) + held) / 2.0
+
+
+def _counted(position: Array, resolution: float) -> Array:
+    return np.round(position / resolution) * resolution if resolution > 0.0 else position

@@ -1,0 +1,103 @@
+"""Hold a model softly to a recording: what it does differently is the velocity gap.
+
+The recorded effort drives the model as feed-forward; measured position and velocity are set-points of one weak
+cascade, which keeps the model near the recording where integration alone would drift away. It needs no references and
+no drive data. Its bandwidth decides what is seen: a difference in torque of frequency well above it shows in full, one
+well below it is held down. State it beside every velocity gap.
+"""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.plant.drive import Cascade, add_pid
+from bench.plant.model import DRIVE
+from bench.plant.native import run_controls
+from bench.trace.trace import Trace
+
+Array = NDArray[np.float64]
+
+#: Bandwidth of the cascade that holds the model - rad/s.
+BANDWIDTH = 10.0
+#: Longest step of the integration - s.
+LONGEST_STEP = 0.5e-3
+
+
+def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDTH) -> Cascade:
+    """Cascade of a bandwidth w - rad/s - for an inertia J - kg*m**2 (kg): K_v = J*w, K_i = J*w**2/6, K_p = w/5.
+
+    With them the loop J*s + K_v + K_i/s has its zero a sixth, its position loop a fifth of the bandwidth below it.
+    """
+    return Cascade(
+        position_gain=bandwidth / 5.0,
+        velocity_gain=inertia * bandwidth,
+        integral_gain=inertia * bandwidth**2 / 6.0,
+        inertia_feedforward=0.0,
+        torque_limit=math.inf,
+        control_period=timestep,
+    )
+
+
+def step_of(trace: Trace) -> tuple[float, int]:
+    """Timestep - s - that divides the sample period and is at most LONGEST_STEP, and how many make a period."""
+    substeps = math.ceil(trace.sample_period / LONGEST_STEP * (1.0 - 1e-9))
+    return trace.sample_period / substeps, substeps
+
+
+def holding_model(spec: mujoco.MjSpec, cascade: Cascade) -> mujoco.MjModel:
+    """Compiled model whose actuator `drive` is the cascade with effort as feed-forward."""
+    add_pid(spec, cascade)
+    spec.add_sensor(
+        name="torque", type=mujoco.mjtSensor.mjSENS_ACTUATORFRC, objtype=mujoco.mjtObj.mjOBJ_ACTUATOR, objname=DRIVE
+    )
+    return spec.compile()
+
+
+def track(model: mujoco.MjModel, trace: Trace, effort: Array, misalignment: float = 0.0) -> Array:
+    """Velocity of a model held to a recording - rad/s (m/s) - (n,), each stretch started from the recording.
+
+    Args:
+        model: of `holding_model`, its timestep from `step_of`.
+        trace: the recording, with velocity or position.
+        effort: (n,) torque - N*m (force - N) over it.
+        misalignment: by how much the effort is reported late - s.
+
+    Raises:
+        SimulationError: the model diverged.
+    """
+    velocity = measured_velocity(trace)
+    simulated = np.empty_like(velocity)
+    for part in trace.segments:
+        position = trace["position"][part] if "position" in trace else _integral(velocity[part], trace.sample_period)
+        simulated[part] = _track_stretch(model, trace.time[part], position, velocity[part], effort[part], misalignment)
+    return simulated
+
+
+def measured_velocity(trace: Trace) -> Array:
+    """Reported velocity, or the central difference of a reported position - rad/s (m/s) - (n,)."""
+    if "velocity" in trace:
+        return trace["velocity"]
+    parts = [np.gradient(trace["position"][part], trace.sample_period) for part in trace.segments]
+    return np.concatenate(parts)
+
+
+def _integral(velocity: Array, sample_period: float) -> Array:
+    return np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2.0) * sample_period])
+
+
+def _track_stretch(
+    model: mujoco.MjModel, time: Array, position: Array, velocity: Array, effort: Array, misalignment: float
+) -> Array:
+    timestep = model.opt.timestep
+    substeps = round((time[1] - time[0]) / timestep) if time.size > 1 else 1
+    ticks = time[0] + np.arange((time.size - 1) * substeps + 1) * timestep
+    wanted = np.interp(ticks, time, velocity)
+    # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts.
+    lead = np.interp(ticks, time, position) + timestep / 2.0 * wanted
+    feedforward = np.interp(ticks + timestep / 2.0 + misalignment, time, effort)
+    states = run_controls(model, np.stack([lead, wanted, feedforward], axis=-1), position[0], velocity[0])
+    return states.velocity[::substeps, 0]

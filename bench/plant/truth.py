@@ -1,0 +1,88 @@
+"""Truth of a simulated trace, written beside it: what an identification of the trace should find."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from bench.files import write_text
+from bench.plant.model import AxisParameters
+from bench.plant.sensors import Sensors
+
+SCHEMA = "bench.truth/1"
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What a trace was simulated from.
+
+    Attributes:
+        rig: name of the axis.
+        parameters: of its equation of motion.
+        friction: `mechanics`, or `drive` where the drive's software makes it.
+        sensors: that recorded it.
+        profile: name of the motion.
+        seed: of the sensors' noise.
+    """
+
+    rig: str
+    parameters: AxisParameters
+    friction: str
+    sensors: Sensors
+    profile: str
+    seed: int
+
+    def as_json(self) -> str:
+        """Truth as text, quantities under the names that `bench identify --json` gives them."""
+        linear = self.parameters.linear
+        inertia, kilograms = ("moving_mass", "kg") if linear else ("moment_of_inertia", "kg*m**2")
+        effort, newton = ("force", "N") if linear else ("torque", "N*m")
+        speed, angle = ("m/s", "m") if linear else ("rad/s", "rad")
+        parameters = {
+            inertia: (self.parameters.inertia, kilograms),
+            "viscous_friction_coefficient": (
+                self.parameters.viscous_friction_coefficient,
+                "N*s/m" if linear else "N*m*s/rad",
+            ),
+            f"coulomb_friction_{effort}": (self.parameters.coulomb_friction, newton),
+            f"load_{effort}": (self.parameters.load_torque, newton),
+            f"motor_{inertia}": (self.parameters.motor_inertia, kilograms),
+        }
+        sensors = {
+            "sample_period": (self.sensors.sample_period, "s"),
+            "encoder_resolution": (self.sensors.encoder_resolution, angle),
+            "velocity_noise": (self.sensors.velocity_noise, speed),
+            "current_noise": (self.sensors.current_noise, "A" if self.sensors.torque_constant else newton),
+        }
+        content = {
+            "schema": SCHEMA,
+            "rig": self.rig,
+            "kind": "linear" if linear else "rotary",
+            "profile": self.profile,
+            "seed": self.seed,
+            "friction": self.friction,
+            "parameters": _with_units(parameters),
+            "sensors": _with_units(sensors),
+        }
+        return json.dumps(content, indent=2) + "\n"
+
+
+def _with_units(values: dict[str, tuple[float, str]]) -> dict[str, dict[str, float | str]]:
+    return {name: {"value": value, "unit": unit} for name, (value, unit) in values.items()}
+
+
+def truth_path(trace: str | Path) -> Path:
+    """Where the truth of a trace lies: `run.csv.gz` has `run.csv.gz.truth.json`."""
+    return Path(f"{trace}.truth.json")
+
+
+def write_truth(trace: str | Path, truth: Truth) -> Path:
+    """Write the truth beside a trace, whole or not at all; returns its path.
+
+    Raises:
+        InputError: the folder cannot be written to.
+    """
+    path = truth_path(trace)
+    write_text(path, truth.as_json())
+    return path
