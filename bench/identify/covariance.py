@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 #: Andrews' bandwidth minimises the error of the covariance, not of an interval's coverage: on 400 recordings of 6 s
-#: with first-order residuals (0.9 a ms) nominal 95 % intervals covered .958/.923/.903 with it, .963/.935/.908 half again
-#: as wide, and .963/.933/.918 more than twice as wide (J, viscous, Coulomb; tests/identify/test_coverage.py).
+#: with first-order residuals (0.9 a ms) nominal 95 % intervals covered .958/.923/.903 with it, .963/.935/.908 half
+#: again as wide, .963/.933/.918 more than twice as wide (J, viscous, Coulomb; tests/identify/test_coverage.py).
 WIDENED = 1.5
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from bench.errors import UndeterminedError
+from bench.identify.estimate import Parameter
 from bench.identify.names import parameter_name
 from bench.identify.normal_equations import NormalEquations
 from bench.identify.regressors import COULOMB, INERTIA, OFFSET, VISCOUS
-from bench.trace.conditioning import COHERENCE
 
 #: Rows that the regression must have for each of its columns.
 ROWS_PER_COLUMN = 20
@@ -25,14 +25,6 @@ RECORD = {
 }
 
 
-def require_coherent(coherence: float, linear: bool) -> None:
-    """UndeterminedError unless effort and acceleration share at least half of their power at some frequency."""
-    if coherence < COHERENCE:
-        name = parameter_name(INERTIA, linear).replace("_", " ")
-        reason = f"acceleration and effort have nothing in common (coherence at most {coherence:.2f})"
-        raise UndeterminedError(name, reason, RECORD[INERTIA])
-
-
 def require_determined(equations: NormalEquations, linear: bool) -> None:
     """UndeterminedError naming the first quantity that the rows leave open.
 
@@ -44,8 +36,10 @@ def require_determined(equations: NormalEquations, linear: bool) -> None:
     if equations.count < least:
         reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
         raise UndeterminedError(parameter_name(INERTIA, linear).replace("_", " "), reason, RECORD[INERTIA])
+    _require_excited(equations, INERTIA, linear)
     _require_directions(equations, linear)
-    _require_excited(equations, linear)
+    for column in (VISCOUS, COULOMB):
+        _require_excited(equations, column, linear)
 
 
 def _require_directions(equations: NormalEquations, linear: bool) -> None:
@@ -58,16 +52,21 @@ def _require_directions(equations: NormalEquations, linear: bool) -> None:
         raise UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
 
 
-def _require_excited(equations: NormalEquations, linear: bool) -> None:
-    """Each column must keep power above its noise, and enough of it beside the others."""
-    kept = [name for name in (INERTIA, VISCOUS, COULOMB) if name in equations.names]
-    chosen = equations.select(kept)
-    scale = np.sqrt(np.diag(chosen.gram.sum(axis=0)))
+def _require_excited(equations: NormalEquations, column: str, linear: bool) -> None:
+    """A column must keep power above its noise, and enough of it beside the others."""
+    chosen = equations.select([column, *(name for name in (INERTIA, VISCOUS, COULOMB) if name != column)])
+    power = np.diag(chosen.gram.sum(axis=0))
+    scale = np.sqrt(np.where(power > 0.0, power, 1.0))
     matrix = chosen.matrix / np.outer(scale, scale)
-    for index, name in enumerate(kept):
-        others = np.delete(np.arange(len(kept)), index)
-        inner, cross = matrix[np.ix_(others, others)], matrix[others, index]
-        share = matrix[index, index] - cross @ np.linalg.lstsq(inner, cross, rcond=1e-9)[0]
-        if not share >= INDEPENDENT_SHARE:
-            reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
-            raise UndeterminedError(parameter_name(name, linear).replace("_", " "), reason, RECORD[name])
+    share = matrix[0, 0] - matrix[0, 1:] @ np.linalg.lstsq(matrix[1:, 1:], matrix[1:, 0], rcond=1e-9)[0]
+    if not share >= INDEPENDENT_SHARE:
+        reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
+        raise UndeterminedError(parameter_name(column, linear).replace("_", " "), reason, RECORD[column])
+
+
+def require_significant(inertia: Parameter, linear: bool) -> None:
+    """UndeterminedError unless the interval of the inertia lies away from zero; the effort may be anything's then."""
+    low, high = inertia.ci95
+    if low <= 0.0 <= high:
+        reason = f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero"
+        raise UndeterminedError(parameter_name(INERTIA, linear).replace("_", " "), reason, RECORD[INERTIA])

@@ -100,7 +100,7 @@ def identify_as_in_the_lab(trace: Trace, rig: Rig) -> Estimate:
     """
     if rig.linear:
         raise InputError(rig.source, "found a linear axis", "allowed: rotary; the course's thresholds are in rad/s")
-    torque, unit = rig.effort(trace)
+    torque, unit = rig.net_effort(trace)
     velocity = trace["velocity"]
     acceleration = np.concatenate([backward_difference(velocity[part], trace.sample_period) for part in trace.segments])
     fast = np.abs(velocity) >= LEAST_SPEED

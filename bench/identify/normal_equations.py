@@ -40,6 +40,8 @@ class NormalEquations:
 
     def coarsened(self, limit: int) -> NormalEquations:
         """The same equations with neighbouring blocks joined until there are at most `limit`."""
+        if self.rows.size <= limit:
+            return self
         starts = np.arange(0, self.rows.size, -(-self.rows.size // limit))
         sums = {name: np.add.reduceat(getattr(self, name), starts) for name in ("gram", "moment", "power", "rows")}
         return replace(self, **sums)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import stats
 
 from bench.identify.covariance import long_run_covariance
-from bench.identify.determined import require_coherent, require_determined
+from bench.identify.determined import require_determined, require_significant
 from bench.identify.estimate import Estimate, Parameter, Residual
 from bench.identify.load_inertia import load_inertia
 from bench.identify.names import parameter_name, parameter_unit
@@ -42,13 +42,12 @@ def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = No
     """
     parts = iter([trace] if isinstance(trace, Trace) else trace)
     first = next(parts)
-    effort, effort_unit = rig.effort(first)
+    effort, effort_unit = rig.net_effort(first)
     conditioning = condition(first, effort, cutoff)
-    require_coherent(conditioning.coherence, rig.linear)
     read, gathered = 0, []
     for part in chain([first], parts):
         read += len(part)
-        columns = regressors(motion(part, rig.effort(part)[0], conditioning))
+        columns = regressors(motion(part, rig.net_effort(part)[0], conditioning))
         gathered.append(normal_equations(columns, BLOCK_WIDTHS * conditioning.filter.width))
     return solve(join(gathered).coarsened(BLOCKS), rig, conditioning, effort_unit, read)
 
@@ -82,6 +81,7 @@ def solve(
         )
         for column, value, error, r in zip(columns, theta, std_error, reach, strict=True)
     }
+    require_significant(parameters[parameter_name(INERTIA, rig.linear)], rig.linear)
     parameters |= load_inertia(parameters, rig)
     power = max(chosen.residual_power(theta), 0.0)
     residual = Residual(

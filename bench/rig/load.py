@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
+from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812
 
-from bench.rig.values import Density, Inertia, Length, Mass, Table
+from bench.rig.values import Angle, Density, Inertia, Length, Mass, Table
 
 
 class Load(Table):
@@ -19,6 +22,8 @@ class Load(Table):
         gear_ratio: motor turns per turn of the load; 1 without a gear.
         gear_inertia: moment of inertia of the gear, on the motor's side - kg*m**2.
         stroke: of a linear axis, from one end to the other; planned motions stay within it - m.
+        eccentric_mass: of a pendulum on the load's shaft, known to pull by gravity - kg; with it `eccentric_radius`,
+            of its centre from the shaft - m, and `hanging_position`, the load's angle at which it hangs - rad.
     """
 
     outer_diameter: Length | None = None
@@ -29,6 +34,9 @@ class Load(Table):
     gear_ratio: Annotated[float, Field(gt=0.0)] = 1.0
     gear_inertia: Inertia | None = None
     stroke: Length | None = None
+    eccentric_mass: Mass | None = None
+    eccentric_radius: Length | None = None
+    hanging_position: Angle = 0.0
 
     @model_validator(mode="after")
     def _one_disk(self) -> Load:
@@ -39,6 +47,8 @@ class Load(Table):
                 raise ValueError("a disk given by its density needs its thickness")
             if self.inner_diameter is not None and self.inner_diameter >= self.outer_diameter:
                 raise ValueError("inner_diameter must be smaller than outer_diameter")
+        if (self.eccentric_mass is None) != (self.eccentric_radius is None):
+            raise ValueError("eccentric_mass and eccentric_radius go together")
         return self
 
     @property
@@ -57,6 +67,13 @@ class Load(Table):
         if mass is None or self.outer_diameter is None:
             return None
         return mass / 8.0 * (self.outer_diameter**2 + (self.inner_diameter or 0.0) ** 2)
+
+    def gravity_torque(self, position: NDArray[np.float64]) -> NDArray[np.float64] | None:
+        """M_load = m*g*r*sin(q/i - q_0)/i at motor angles q - rad - (n,), at the motor - N*m; None without."""
+        if self.eccentric_mass is None or self.eccentric_radius is None:
+            return None
+        moment = self.eccentric_mass * STANDARD_GRAVITY * self.eccentric_radius
+        return moment * np.sin(position / self.gear_ratio - self.hanging_position) / self.gear_ratio
 
     def reflected(self, inertia: float) -> float:
         """Inertia on the load's side as the motor feels it, J/i**2 - kg*m**2."""

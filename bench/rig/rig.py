@@ -96,6 +96,20 @@ class Rig(Table):
             return self._effort_of_voltage(trace)
         raise InputError(trace.origin, "holds no current, torque, force or voltage", "identification needs one of them")
 
+    def net_effort(self, trace: Trace) -> tuple[NDArray[np.float64], str]:
+        """The effort less the load torque that the rig knows (an eccentric mass under gravity), and its unit.
+
+        Raises:
+            InputError: as `effort`; or the known load needs a position, or torque, that the recording does not give.
+        """
+        effort, unit = self.effort(trace)
+        if self.load is None or self.load.eccentric_mass is None:
+            return effort, unit
+        if unit != "N*m":
+            raise InputError(f"{self.source}: load.eccentric_mass", f"found an effort in {unit}", "allowed: N*m")
+        gravity = self.load.gravity_torque(trace["position"])
+        return (effort, unit) if gravity is None else (effort - gravity, unit)
+
     def _effort_of_voltage(self, trace: Trace) -> tuple[NDArray[np.float64], str]:
         gain = self.motor.force_per_volt or self.motor.torque_per_volt
         if gain is not None:

@@ -81,7 +81,7 @@ def condition(trace: Trace, effort: NDArray[np.float64], cutoff: float | None = 
 
     Raises:
         InputError: neither velocity nor position.
-        UndeterminedError: the recording is too short, or effort and acceleration share nothing.
+        UndeterminedError: the recording is too short.
     """
     longest = max(trace.segments, key=lambda part: part.stop - part.start)
     part = slice(longest.start, min(longest.stop, longest.start + ENOUGH))
@@ -103,8 +103,8 @@ def condition(trace: Trace, effort: NDArray[np.float64], cutoff: float | None = 
     peak = int(np.argmax(coherence))
     speed_noise = noise[source] / (np.sqrt(2.0) * trace.sample_period) if source == "position" else noise[source]
     if cutoff is None:
-        below = np.flatnonzero(coherence[peak:] < COHERENCE)
-        coherent = float(frequency[peak + below[0]]) if below.size else float(frequency[-1])
+        below = np.flatnonzero(np.append(coherence[peak:], 0.0) < COHERENCE)[0]
+        coherent = float(frequency[min(peak + below, frequency.size - 1)])
         speed = raw_speed(trace[source][part], source, trace.sample_period)
         sign = known_sign(speed, SIGN_CONFIDENCE * speed_noise)
         cutoff = max(coherent, _least_cutoff(sign, trace.sample_period))

@@ -1,0 +1,104 @@
+"""Published values and known truths of other people's recordings."""
+
+import numpy as np
+import pytest
+
+from bench.identify.names import parameter_name
+from bench.identify.regression import identify
+from bench.identify.regressors import regressors
+from bench.rig.rig import Rig, load_rig
+from bench.trace.conditioning import condition
+from bench.trace.motion import motion
+from bench.trace.read import read
+from tests.identify.motions import NAMES
+from tests.shared import SHARED, needs_shared, null_cases
+
+pytestmark = needs_shared
+
+LIMITS = (1e-3, 1.5e-2, 5e-3)
+
+EMPS = Rig.model_validate(
+    {
+        "name": "EMPS",
+        "kind": "linear",
+        "offset": True,
+        "motor": {"force_per_volt": "35.15065188248547 N/V"},
+        "trace": {"columns": {"time": "t [s]", "position": "qm [m]", "voltage": "vir [V]"}},
+    },
+    context={"linear": True},
+)
+#: Value and three standard deviations, A. Janot, M. Gautier, M. Brunot, NSIB workshop 2019.
+PUBLISHED = {
+    "moving_mass": (95.1089, 3 * 0.1085),
+    "viscous_friction_coefficient": (203.5034, 3 * 1.146),
+    "coulomb_friction_force": (20.3935, 3 * 0.101),
+    "force_offset": (-3.1648, 3 * 0.044),
+}
+
+
+@pytest.mark.parametrize("name", sorted(null_cases()))
+def test_a_case_with_nothing_hidden_gives_its_truth(name):
+    folder, truth = SHARED / "cases" / name, null_cases()[name]
+    found = identify(read(folder / "run1.csv.gz"), load_rig(folder / "rig.toml"))
+    for parameter, key, limit in zip(NAMES, ("inertia", "viscous_friction", "coulomb_friction"), LIMITS, strict=True):
+        value, (low, high) = found[parameter].value, found[parameter].ci95
+        error, deviation = value / truth[key] - 1.0, (value - truth[key]) / found[parameter].std_error
+        inside = "inside" if low <= truth[key] <= high else "outside"
+        print(
+            f"\n{name} {parameter}: {error:+.4%}, {deviation:+.2f} standard errors, {inside} its 95 % interval", end=""
+        )
+        assert abs(error) < limit
+        assert abs(deviation) < 3.0
+
+
+def test_emps_gives_the_published_values():
+    found = identify(read(SHARED / "data/emps/DATA_EMPS.mat", EMPS.trace.columns), EMPS)
+    print(f"\nEMPS force error {found.residual.relative:.4%} (published 4.0834 %)")
+    for name, (published, reach) in PUBLISHED.items():
+        print(f"{name} {found[name].value:.5g} ({published} +- {reach:.3g})")
+        assert abs(found[name].value - published) < reach
+    assert found.residual.relative <= 0.0405
+
+
+def test_pulses_are_explained_by_the_parameters_of_emps():
+    found = identify(read(SHARED / "data/emps/DATA_EMPS.mat", EMPS.trace.columns), EMPS)
+    trace = read(SHARED / "data/emps/DATA_EMPS_PULSES.mat", EMPS.trace.columns)
+    effort, _ = EMPS.effort(trace)
+    rows = regressors(motion(trace, effort, condition(trace, effort)))
+    theta = np.array([found[parameter_name(column, linear=True)].value for column in rows.names])
+    residual = rows.effort - rows.columns @ theta
+    relative = np.linalg.norm(residual) / np.linalg.norm(rows.effort)
+    print(f"\nPULSES force error with the parameters of EMPS {relative:.4%} (published 5.9824 %)")
+    assert relative <= 0.0598
+
+
+def test_an_axis_of_unknown_torque_constant_is_identified_in_amperes():
+    columns = {
+        "time": "Time [s]",
+        "position": "Position [rad]",
+        "velocity": "Velocity [rad/s]",
+        "current": "Iq [A]",
+        "voltage": "Uq [V]",
+    }
+    rig = Rig.model_validate(
+        {"name": "LAAS", "kind": "rotary", "trace": {"columns": columns}}, context={"linear": False}
+    )
+    trace = read(SHARED / "data/laas_anticogging/acc_current.txt", columns)
+    assert trace.time_base is not None
+    found = identify(trace, rig)
+    print(f"\nLAAS {[(name, p.value, p.unit) for name, p in found.parameters.items()]}; {trace.time_base}")
+    assert found["moment_of_inertia"].unit == "A*s**2/rad"
+    assert found["moment_of_inertia"].ci95[0] > 0.0
+    assert found["coulomb_friction_torque"].value > 0.0
+
+
+def test_a_servo_that_reports_its_duty_is_identified_through_its_winding():
+    motor = {"torque_constant": "0.387 N*m/A", "resistance": "4.02 ohm"}
+    pendulum = {"eccentric_mass": "0.49 kg", "eccentric_radius": "0.1 m"}
+    table = {"name": "XL330", "kind": "rotary", "motor": motor, "load": pendulum}
+    rig = Rig.model_validate(table, context={"linear": False})
+    trace = read(SHARED / "data/bam_xl330/2026-01-15_10h29m37.json")
+    found = identify(trace, rig)
+    print(f"\nXL330 {[(name, p.value, p.unit) for name, p in found.parameters.items()]}; {trace.time_base}")
+    assert found["moment_of_inertia"].unit == "kg*m**2"
+    assert found["moment_of_inertia"].value == pytest.approx(6.7e-3, rel=0.25)
