@@ -88,8 +88,8 @@ def _affine(unit: str, to: str) -> tuple[float, float]:
 def convert(values: NDArray[np.float64], unit: str, to: str) -> NDArray[np.float64]:
     """Values of any shape from `unit` to `to` (same dimension); the same array when nothing changes."""
     factor, offset = _affine(unit, to)
-    if factor == 1.0 and offset == 0.0:
-        return values
+    if offset == 0.0:
+        return values if factor == 1.0 else values * factor
     return values * factor + offset
 
 

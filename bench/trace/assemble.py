@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.clock import Clock, Sampled
 from bench.trace.known_names import checked_si_unit, signal_of, unit_of
 from bench.trace.signals import SI_UNITS
-from bench.trace.time_base import Clock, Sampled, regular
-from bench.trace.trace import Trace
+from bench.trace.time_base import regular
+from bench.trace.trace import Trace, all_finite
 from bench.units import convert, nearest
 
 
@@ -186,7 +187,7 @@ def _one_kind_of_axis(units: Mapping[str, str], recording: Recording) -> None:
 def _clock(time: Chosen, recording: Recording) -> Clock:
     unit = _si_unit("time", time, recording)
     raw = time.channel
-    return Clock(_values(time, unit), _quantum(raw.values) * _scale(time.unit or unit), raw.place)
+    return Clock(_values(time, unit), raw.values, _scale(time.unit or unit), raw.place)
 
 
 def _scale(unit: str) -> float:
@@ -197,21 +198,8 @@ def _values(choice: Chosen, unit: str) -> NDArray[np.float64]:
     channel = choice.channel
     if channel.defect is not None:
         raise channel.defect
-    if not np.isfinite(channel.values).all():
+    if not all_finite(channel.values):
         first = int(np.argmin(np.isfinite(channel.values)))
         raise InputError(channel.place(first), f"found {channel.values[first]}", "allowed: a finite number")
     values = convert(channel.values, choice.unit or unit, unit)
     return values if choice.sign > 0 else -values
-
-
-def _quantum(times: NDArray[np.float64]) -> float:
-    """Step of the decimal grid that all times stand on, in their own unit; 0 when they stand on none.
-
-    Times printed with k decimals stand on the grid 10**-k. A grid counts only if it is much coarser than the
-    rounding of a float.
-    """
-    for decimals in range(7):
-        scaled = times * 10.0**decimals
-        if np.abs(scaled - np.rint(scaled)).max() <= max(1e-6, 4.0 * np.spacing(np.abs(scaled).max())):
-            return 10.0**-decimals
-    return 0.0

@@ -26,6 +26,7 @@ class Channel:
         time: channel with its sample times; None in a table, whose time is one of its columns. Channels sampled
             together share the same object.
         line: line of the file that holds the first value, where one line holds one sample.
+        start: number of the first value among the file's samples.
         defect: why the values cannot be read; raised only where a trace needs them.
     """
 
@@ -35,6 +36,7 @@ class Channel:
     origin: str
     time: Channel | None = None
     line: int | None = None
+    start: int = 0
     defect: InputError | None = None
 
     @property
@@ -46,7 +48,7 @@ class Channel:
         """Where a value stands, for messages: file, line (or sample, counted from 0) and column."""
         if sample is None:
             return f"{self.origin}: column '{self.label}'"
-        row = f"sample {sample}" if self.line is None else f"line {self.line + sample}"
+        row = f"sample {self.start + sample}" if self.line is None else f"line {self.line + sample}"
         return f"{self.origin}: {row}, column '{self.label}'"
 
 

@@ -17,6 +17,13 @@ from bench.errors import InputError
 HOLE = 1.5
 
 
+def all_finite(values: NDArray[np.float64]) -> bool:
+    """Whether no value is infinite or nan; costs no temporary array where none is."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        # a sum is finite only if every term is; that of large finite ones may overflow, hence the second look
+        return bool(np.isfinite(values.sum()) or np.isfinite(values).all())
+
+
 @dataclass(frozen=True)
 class TimeBase:
     """What a reader found about the sample times before it brought them to a regular base.
@@ -76,8 +83,7 @@ class Trace:
                 raise InputError(
                     f"{self.origin}: {name}", f"found shape {values.shape}", f"allowed: {self.time.shape} as time has"
                 )
-            # a sum is finite only if every term is, and costs no temporary array; it may overflow, hence the look again
-            if not np.isfinite(values.sum()) and not np.isfinite(values).all():
+            if not all_finite(values):
                 first = int(np.argmin(np.isfinite(values)))
                 raise InputError(
                     f"{self.origin}: {name}", f"found {values[first]} at sample {first}", "allowed: finite numbers"
@@ -104,12 +110,14 @@ class Trace:
 
     @cached_property
     def sample_period(self) -> float:
-        """Median time step - s."""
-        return float(np.median(np.diff(self.time)))
+        """Of the time base, else the median time step - s."""
+        return self.time_base.sample_period if self.time_base else float(np.median(np.diff(self.time)))
 
     @cached_property
     def segments(self) -> tuple[slice, ...]:
         """Stretches without a hole, in order, as slices into `time` and every signal."""
+        if self.time[-1] - self.time[0] < (len(self) - 1 + HOLE - 1.0) * self.sample_period:
+            return (slice(0, len(self)),)  # a regular trace with a hole would last longer
         breaks = np.flatnonzero(np.diff(self.time) > HOLE * self.sample_period) + 1
         edges = [0, *breaks.tolist(), self.time.size]
         return tuple(slice(start, stop) for start, stop in pairwise(edges))

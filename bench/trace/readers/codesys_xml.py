@@ -2,8 +2,8 @@
 
 `<Trace><TraceConfiguration>...<Single Name="MicroSeconds" Type="bool">False</Single>...</TraceConfiguration>
 <TraceData><TraceRecord><TraceVariable VarName="PLC_PRG.x"><Values>1,2</Values><Timestamps>18,48</Timestamps>...`: one
-time vector per variable, in ms or us from the trace's start. The format has no units; the bench's own files tell them in
-the trace's comment, as `units: velocity [deg/s], current [mA]`.
+time vector per variable, in ms or us from the trace's start. The format has no units; the bench's own files tell them
+in the trace's comment, as `units: velocity [deg/s], current [mA]`.
 """
 
 from __future__ import annotations

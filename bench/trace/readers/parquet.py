@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -46,33 +48,37 @@ def damaged(path: str, error: Exception) -> InputError:
     return InputError(path, f"the Parquet file is truncated or damaged ({reason})", "allowed: a complete Parquet file")
 
 
-def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str) -> Channel:
-    """Channel of a column; with a defect where it holds anything but numbers."""
+def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, start: int = 0) -> Channel:
+    """Channel of a column, or of a piece of it from sample `start` on; a defect where it holds anything but numbers."""
     name, unit = split_label(field.name)
     if unit is None and field.metadata and b"unit" in field.metadata:
         unit = field.metadata[b"unit"].decode("utf-8", errors="replace")
     kind = column.type
-    if pa.types.is_timestamp(kind) or pa.types.is_duration(kind):
+    if is_moment(kind):
         unit = kind.unit
-    channel = Channel(name, unit, np.empty(0), path)
+    channel = Channel(name, unit, np.empty(0), path, start=start)
     if column.null_count:
         sample = column.is_null().to_numpy(zero_copy_only=False).argmax()
-        defect = InputError(channel.place(int(sample)), "found an empty cell", "allowed: a number")
-        return Channel(name, unit, np.empty(0), path, defect=defect)
+        return replace(
+            channel, defect=InputError(channel.place(int(sample)), "found an empty cell", "allowed: a number")
+        )
     values = _numbers(column)
     if values is None:
-        return Channel(
-            name, unit, np.empty(0), path, defect=InputError(channel.place(), f"found {kind}", "allowed: numbers")
-        )
-    return Channel(name, unit, values, path)
+        return replace(channel, defect=InputError(channel.place(), f"found {kind}", "allowed: numbers"))
+    return replace(channel, values=values)
+
+
+def is_moment(kind: pa.DataType) -> bool:
+    """Whether a column holds moments, read as times from the first of them."""
+    return pa.types.is_timestamp(kind) or pa.types.is_duration(kind)
 
 
 def _numbers(column: pa.ChunkedArray | pa.Array) -> NDArray[np.float64] | None:
     """Values as float64, without a copy where they are float64 in one piece; None for what is not a number."""
     kind = column.type
-    if pa.types.is_timestamp(kind) or pa.types.is_duration(kind):
+    if is_moment(kind):
         ticks = column.cast(pa.int64()).to_numpy()
-        return (ticks - ticks[0]).astype(np.float64)  # from the first sample: an epoch would cost the last digits
+        return (ticks - ticks[:1]).astype(np.float64)  # from the first sample: an epoch would cost the last digits
     if pa.types.is_boolean(kind) or pa.types.is_decimal(kind):
         column = column.cast(pa.float64())
     elif not (pa.types.is_integer(kind) or pa.types.is_floating(kind)):

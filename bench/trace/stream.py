@@ -1,0 +1,144 @@
+"""A long recording in chunks: Parquet in bounded memory, at about the speed at which Arrow reads it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from bench.errors import InputError
+from bench.trace.assemble import Chosen, choose, in_si
+from bench.trace.channel import Recording
+from bench.trace.read import read
+from bench.trace.readers.parquet import FORMAT, MAGIC, channel_of, damaged, is_moment
+from bench.trace.time_base import regular
+from bench.trace.trace import Trace
+
+#: Samples a chunk: small enough for the processor's cache, large enough to forget Python's share of the work.
+CHUNK = 1 << 17
+#: Deviation of the step from one chunk to the next, as share of the sample period, within which the second continues
+#: the first.
+JOINT = 0.01
+
+
+def stream(
+    path: str | Path,
+    columns: Mapping[str, str] | None = None,
+    signals: Collection[str] | None = None,
+    chunk: int = CHUNK,
+) -> Iterator[Trace]:
+    """Consecutive traces of at most `chunk` samples (one more at the end), which together are the recording.
+
+    They do not overlap; `Trace.continues` says whether one follows the last without a hole. Parquet is read as it is
+    needed, columns of other signals not at all; other formats are read whole and cut. In Parquet the time base is found
+    chunk by chunk, so a recording with jitter is interpolated onto a regular base in each.
+
+    Args:
+        path: file of any format.
+        columns: signal -> column name with unit, as for `read`.
+        signals: the ones wanted, those of them that the file holds; None: all.
+        chunk: samples, at least 2.
+
+    Raises:
+        InputError: as `read` does, while iterating.
+    """
+    try:
+        with Path(path).open("rb") as file:
+            is_parquet = file.read(len(MAGIC)) == MAGIC
+    except (OSError, ValueError):
+        is_parquet = False  # `read` says what is wrong with it
+    if is_parquet and not _counts_from_first_moment(str(path)):
+        return _joined(_parquet(str(path), columns or {}, signals, chunk))
+    return _joined(_cut(read(path, columns), signals, chunk))
+
+
+def _counts_from_first_moment(path: str) -> bool:
+    """Whether a Parquet file holds moments, which are read as times from the first one: no chunk knows it."""
+    try:
+        return any(is_moment(field.type) for field in pq.read_schema(path))
+    except (pa.ArrowException, OSError):
+        return True  # `read` says what is wrong with it
+
+
+def _joined(parts: Iterator[Trace]) -> Iterator[Trace]:
+    """The traces with `continues` set.
+
+    Raises:
+        InputError: one begins before the last has ended.
+    """
+    last: Trace | None = None
+    for part in parts:
+        if last is not None:
+            step = part.time[0] - last.time[-1]
+            if step <= 0.0:
+                raise InputError(
+                    f"{part.origin}: time",
+                    f"runs backwards ({last.time[-1]:g} s, then {part.time[0]:g} s)",
+                    "allowed: increasing times",
+                )
+            if abs(step - part.sample_period) <= JOINT * part.sample_period:
+                part = replace(part, continues=True)
+        last = part
+        yield part
+
+
+def _cut(trace: Trace, signals: Collection[str] | None, chunk: int) -> Iterator[Trace]:
+    wanted = {name: values for name, values in trace.signals.items() if signals is None or name in signals}
+    start = 0
+    while start < len(trace):
+        stop = start + chunk if len(trace) - start > chunk + 1 else len(trace)
+        part = {name: values[start:stop] for name, values in wanted.items()}
+        yield replace(
+            trace, time=trace.time[start:stop], signals=part, units={name: trace.units[name] for name in wanted}
+        )
+        start = stop
+
+
+def _parquet(path: str, columns: Mapping[str, str], signals: Collection[str] | None, chunk: int) -> Iterator[Trace]:
+    try:
+        with pq.ParquetFile(path, memory_map=True) as file:
+            fields = list(file.schema_arrow)
+            empty = Recording(tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), FORMAT, path)
+            chosen, notes = choose(empty, columns)
+            chosen = {name: it for name, it in chosen.items() if signals is None or name == "time" or name in signals}
+            field_of = {name: fields[empty.channels.index(choice.channel)] for name, choice in chosen.items()}
+            start = 0
+            for batch in _batches(file, [field.name for field in field_of.values()], chunk):
+                pieces = {
+                    name: replace(choice, channel=channel_of(field_of[name], batch[field_of[name].name], path, start))
+                    for name, choice in chosen.items()
+                }
+                yield _trace(pieces, empty, notes)
+                start += batch.num_rows
+    except (pa.ArrowException, OSError) as error:
+        raise damaged(path, error) from error
+
+
+def _trace(pieces: Mapping[str, Chosen], recording: Recording, notes: tuple[str, ...]) -> Trace:
+    sampled, units = in_si(pieces, recording)
+    base = regular(sampled)
+    return Trace(
+        time=base.time,
+        signals=base.signals,
+        units=units,
+        origin=recording.origin,
+        metadata={"format": FORMAT},
+        time_base=base.time_base,
+        notes=(*notes, *base.notes),
+    )
+
+
+def _batches(file: pq.ParquetFile, names: list[str], chunk: int) -> Iterator[pa.RecordBatch]:
+    """Batches of at least two rows: the last one takes a single row that would be left over."""
+    held: pa.RecordBatch | None = None
+    for batch in file.iter_batches(chunk, columns=names):
+        if held is not None and batch.num_rows > 1:
+            yield held
+            held = batch
+        else:
+            held = batch if held is None else pa.concat_batches([held, batch])
+    if held is not None:
+        yield held
