@@ -1,0 +1,96 @@
+"""Write a trace: canonical CSV, Parquet, or a Machine Expert trace; whole or not at all."""
+
+from __future__ import annotations
+
+import gzip
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+from pyarrow import csv
+
+from bench.errors import InputError
+from bench.files import whole
+from bench.trace.known_names import checked_si_unit, unit_of
+from bench.trace.readers.lab_units import LAB_UNITS
+from bench.trace.trace import Trace
+from bench.trace.write_machine_expert import machine_expert_trace
+from bench.units import convert, same_dimension
+
+
+def write(trace: Trace, path: str | Path, units: Mapping[str, str] | None = None) -> None:
+    """Write a trace in the format its file's ending names: `.csv`, `.csv.gz`, `.parquet`, `.trace`.
+
+    Reading it back gives the same floats where `units` leaves SI units as they are. A Machine Expert trace keeps times
+    to the microsecond and, as the lab does, angles in degrees and currents in mA.
+
+    Args:
+        trace: what to write.
+        path: file to write or replace.
+        units: unit of a signal, or of `time`, in the file; SI where none is given.
+
+    Raises:
+        InputError: another ending, a unit of the wrong dimension, or a place that cannot be written to.
+    """
+    path = Path(path)
+    ending = "".join(path.suffixes[-2:]).lower() if path.suffix.lower() == ".gz" else path.suffix.lower()
+    if ending not in WRITERS:
+        raise InputError(path, f"found the ending '{ending}'", f"allowed: {', '.join(WRITERS)}")
+    defaults = {name: LAB_UNITS[name] for name in trace.signals if name in LAB_UNITS} if ending == ".trace" else {}
+    labels = {"time": "s", **trace.units}
+    labels |= {name: unit for name, unit in defaults.items() if same_dimension(unit, labels[name]) and not trace.linear}
+    labels |= _checked(units or {}, labels, path)
+    columns = {f"time [{labels['time']}]": convert(trace.time, "s", labels["time"])}
+    for name, values in trace.signals.items():
+        columns[f"{name} [{labels[name]}]"] = convert(values, trace.units[name], labels[name])
+    with whole(path) as temporary:
+        WRITERS[ending](pa.table(columns), temporary)
+
+
+def _checked(units: Mapping[str, str], labels: Mapping[str, str], path: Path) -> dict[str, str]:
+    checked = {}
+    for name, unit in units.items():
+        if name not in labels:
+            raise InputError(
+                f"{path}: unit of {name}", "the trace holds no such signal", f"allowed: {', '.join(labels)}"
+            )
+        plain = unit_of(unit) or ""
+        checked_si_unit(name, plain, f"{path}: unit of {name}")
+        if not same_dimension(plain, labels[name]):
+            raise InputError(f"{path}: unit of {name}", f"found '{unit}'", f"allowed: a unit of {labels[name]}")
+        checked[name] = plain
+    return checked
+
+
+def _csv(table: pa.Table, path: Path) -> None:
+    with path.open("wb") as file:
+        file.write(_header(table))
+        csv.write_csv(table, file, csv.WriteOptions(include_header=False))
+
+
+def _csv_gz(table: pa.Table, path: Path) -> None:
+    # no name and no time inside, so that the same trace gives the same bytes
+    with path.open("wb") as raw, gzip.GzipFile("", "wb", fileobj=raw, mtime=0) as file:
+        file.write(_header(table))
+        csv.write_csv(table, file, csv.WriteOptions(include_header=False))
+
+
+def _header(table: pa.Table) -> bytes:
+    return (",".join(table.column_names) + "\n").encode()
+
+
+def _parquet(table: pa.Table, path: Path) -> None:
+    pq.write_table(table, path)
+
+
+def _machine_expert(table: pa.Table, path: Path) -> None:
+    path.write_bytes(machine_expert_trace(table))
+
+
+WRITERS: dict[str, Callable[[pa.Table, Path], None]] = {
+    ".csv": _csv,
+    ".csv.gz": _csv_gz,
+    ".parquet": _parquet,
+    ".trace": _machine_expert,
+}
