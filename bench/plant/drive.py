@@ -120,7 +120,7 @@ class CascadeDrive:
         self._speed_demand = references.velocity + self._position_gain * references.position
         self._feedforward = np.asarray(cascade.inertia_feedforward) * references.acceleration
         self._integral = np.zeros(references.velocity.shape[1:])
-        self._friction = None if emulation is None else _EmulatedFriction(emulation, period)
+        self._friction = None if emulation is None else _EmulatedFriction(emulation, period, references.velocity[0])
 
     def tick(self, k: int, position: Array, velocity: Array) -> Torque:
         """Torque from tick k to the next at a measured position - rad (m) - and velocity - rad/s (m/s), (axes,)."""
@@ -145,26 +145,25 @@ class CascadeDrive:
 class _EmulatedFriction:
     """Friction torque by software: full friction while moving; at standstill whatever holds the axis, up to K_0.
 
-    Friction that would stop the axis within this tick is M_set - M_load + J*w/T; beyond K_0 it slips. The load torque
-    comes from the last tick's change of speed.
+    Friction that stops the axis within this tick of length T is M_set - K_w*w - M_load + J*w/T; beyond K_0 it slips.
+    The load torque is what the last tick's change of speed tells: M_load = M_motor - J*(w - w_last)/T.
     """
 
-    def __init__(self, emulation: FrictionEmulation, period: float) -> None:
+    def __init__(self, emulation: FrictionEmulation, period: float, velocity: Array) -> None:
         self._viscous = np.asarray(emulation.viscous_friction_coefficient)
-        self._coulomb = np.asarray(emulation.coulomb_friction)
+        self._upper = np.asarray(emulation.coulomb_friction)
+        self._lower = -self._upper
         self._stopping = np.asarray(emulation.inertia) / period
-        self._last_velocity: Array | None = None
-        self.applied: Array = np.zeros(1)
+        self._stop_last = self._stopping * velocity
+        self.applied: Array = np.zeros_like(velocity)
 
     def torque(self, setpoint: Array, velocity: Array) -> Array:
         """Friction torque - N*m (N), (axes,), to be taken off the set-point."""
-        load = 0.0
-        if self._last_velocity is not None:
-            load = self.applied - self._stopping * (velocity - self._last_velocity)
-        self._last_velocity = velocity.copy()
-        viscous = self._viscous * velocity
-        holding = setpoint - viscous - load + self._stopping * velocity
-        return viscous + np.maximum(np.minimum(holding, self._coulomb), -self._coulomb)
+        viscous, stop = self._viscous * velocity, self._stopping * velocity
+        load = self.applied - (stop - self._stop_last)
+        self._stop_last = stop
+        holding = setpoint - viscous - load + stop
+        return viscous + np.maximum(np.minimum(holding, self._upper), self._lower)
 
 
 def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:

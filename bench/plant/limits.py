@@ -14,8 +14,9 @@ from bench.rig.rig import Rig
 
 #: Without a stated speed, profiles run up to the speed that full torque reaches in this time - s.
 RUN_UP = 0.1
-#: Share of the no-load speed, supply voltage over back-EMF constant, that a motion may reach.
-VOLTAGE_SHARE = 0.8
+#: Share of the motor's stated speed, or of its no-load speed (supply voltage over back-EMF constant), that a motion
+#: asks for; the rest is for overshoot.
+SPEED_SHARE = 0.8
 #: Share of peak torque that friction and load may take at top speed; the rest accelerates.
 RESISTING_SHARE = 0.5
 #: Share of the torque left for acceleration that a motion asks for; the rest is for the controller.
@@ -85,5 +86,5 @@ def _stated_speed(rig: Rig) -> float | None:
     motor = rig.motor
     speeds = [speed for speed in (motor.maximum_speed or motor.rated_speed,) if speed is not None]
     if motor.supply_voltage is not None and motor.back_emf_constant is not None:
-        speeds.append(VOLTAGE_SHARE * motor.supply_voltage / motor.back_emf_constant)
-    return min(speeds, default=None)
+        speeds.append(motor.supply_voltage / motor.back_emf_constant)
+    return SPEED_SHARE * min(speeds) if speeds else None

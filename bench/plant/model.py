@@ -114,8 +114,7 @@ def build_spec(parameters: AxisParameters, timestep: float, load: Load | None = 
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
     _set_inertia(spec, parameters)
     _set_friction(spec.joint(AXIS), parameters, timestep)
-    if parameters.load_torque:
-        _add_constant_torque(spec, -parameters.load_torque)
+    spec.actuator(LOAD_TORQUE).biasprm[0] = -parameters.load_torque
     if load is not None and not parameters.linear:
         _draw_disk(spec, load)
     return spec
@@ -143,13 +142,6 @@ def _set_friction(joint: mujoco.MjsJoint, parameters: AxisParameters, timestep: 
     joint.frictionloss = parameters.coulomb_friction
     joint.solimp_friction = STICKING_IMPEDANCE
     joint.solref_friction = [2.0 * timestep, 1.0]
-
-
-def _add_constant_torque(spec: mujoco.MjSpec, torque: float) -> None:
-    actuator = spec.add_actuator(name=LOAD_TORQUE, target=AXIS, trntype=mujoco.mjtTrn.mjTRN_JOINT)
-    actuator.gainprm[0] = 0.0
-    actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
-    actuator.biasprm[0] = torque
 
 
 def _draw_disk(spec: mujoco.MjSpec, load: Load) -> None:

@@ -11,6 +11,7 @@ from bench.errors import SimulationError
 from bench.plant.drive import add_pid, pid_controls
 from bench.plant.model import AXIS, DRIVE
 from bench.plant.plant import Plant
+from bench.plant.quiet import quiet
 from bench.plant.references import References
 from bench.plant.states import DIVERGED, States
 
@@ -21,11 +22,15 @@ def run_native(plant: Plant, references: References) -> States:
     """One axis with its drive as MuJoCo's `pid`, in one rollout; its integrator does not hold while limited."""
     spec = plant.spec()
     add_pid(spec, plant.cascade)
-    spec.add_sensor(
-        name="torque", type=mujoco.mjtSensor.mjSENS_ACTUATORFRC, objtype=mujoco.mjtObj.mjOBJ_ACTUATOR, objname=DRIVE
-    )
+    sense_torque(spec)
     controls = pid_controls(plant.cascade, references)
     return run_controls(spec.compile(), controls, references.position[0], references.velocity[0])
+
+
+def sense_torque(spec: mujoco.MjSpec) -> None:
+    """Let a model report the torque of its drive, as the sensor `torque`."""
+    kind, actuator = mujoco.mjtSensor.mjSENS_ACTUATORFRC, mujoco.mjtObj.mjOBJ_ACTUATOR
+    spec.add_sensor(name="torque", type=kind, objtype=actuator, objname=DRIVE)
 
 
 def run_controls(model: mujoco.MjModel, controls: Array, position: float, velocity: float) -> States:
@@ -46,7 +51,8 @@ def run_controls(model: mujoco.MjModel, controls: Array, position: float, veloci
     inputs[:, first : first + controls.shape[1]] = controls
     start = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS))
     mujoco.mj_getState(model, data, start, mujoco.mjtState.mjSTATE_FULLPHYSICS)
-    after, sensors = rollout.rollout(model, data, start, inputs)
+    with quiet():
+        after, sensors = rollout.rollout(model, data, start, inputs)
     before = np.concatenate([start[None], after[0, :-1]])
     if after[0, -1, 0] < (steps - 0.5) * model.opt.timestep:
         raise SimulationError(DIVERGED)

@@ -57,7 +57,7 @@ def multisine(limits: MotionLimits) -> References:
 
     Source: M. R. Schroeder, IEEE Trans. Inf. Theory 16 (1970) 85-89.
     """
-    time = np.arange(round(MULTISINE_DURATION / limits.period) + 1) * limits.period
+    time = limits.period * np.arange(round(MULTISINE_DURATION / limits.period) + 1, dtype=np.float64)
     order = np.asarray(HARMONICS)[:, None]
     frequency = 2.0 * np.pi * order / MULTISINE_DURATION
     phase = frequency * time - np.pi * (np.arange(len(HARMONICS)) ** 2 / len(HARMONICS))[:, None]

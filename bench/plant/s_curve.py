@@ -36,7 +36,7 @@ def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: 
     position = np.append(0.0, np.cumsum(moved)[:-1])
     knots = np.append(0.0, np.cumsum(length)[:-1])
 
-    time = np.arange(int(np.ceil(knots[-1] / period - 1e-9)) + 1) * period
+    time = period * np.arange(int(np.ceil(knots[-1] / period - 1e-9)) + 1, dtype=np.float64)
     piece = np.searchsorted(knots, time, side="right") - 1
     t, a0, d, scale = time - knots[piece], start[piece], rise[piece], length[piece] / np.pi
     phase = t / scale

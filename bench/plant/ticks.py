@@ -12,6 +12,7 @@ from bench.errors import SimulationError
 from bench.plant.drive import Cascade, CascadeDrive, FrictionEmulation
 from bench.plant.model import AXIS, DRIVE
 from bench.plant.plant import Plant
+from bench.plant.quiet import quiet
 from bench.plant.references import References, side_by_side
 from bench.plant.states import DIVERGED, States
 
@@ -34,14 +35,15 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
     velocity[:] = motion.velocity[0]
     position[:] = motion.position[0] + half * velocity
     record = States(motion.time, *(np.zeros_like(motion.velocity) for _ in range(4)))
-    for k in range(len(motion.time)):
-        record.position[k] = measured = position - half * velocity
-        record.velocity[k] = velocity
-        record.torque[k], torque_input[:] = drive.tick(k, measured, velocity)
-        record.motor_torque[k] = torque_input
-        batch.step(nstep=substeps)
-        if progress is not None and k % REPORT_EVERY == 0:
-            progress(k / len(motion.time))
+    with quiet():
+        for k in range(len(motion.time)):
+            record.position[k] = measured = position - half * velocity
+            record.velocity[k] = velocity
+            record.torque[k], torque_input[:] = drive.tick(k, measured, velocity)
+            record.motor_torque[k] = torque_input
+            batch.step(nstep=substeps)
+            if progress is not None and k % REPORT_EVERY == 0:
+                progress(k / len(motion.time))
     if batch.warning.any():
         raise SimulationError(DIVERGED)
     return record
