@@ -11,7 +11,6 @@ which does not hold, and serves wherever the limit is not reached.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -81,17 +80,6 @@ class FrictionEmulation:
     inertia: Values
 
 
-class Torque(NamedTuple):
-    """Torque of one tick - N*m (N), (axes,): what the cascade set, and what the motor makes.
-
-    They differ by the emulated friction. `setpoint` is what the drive reports as current: the torque that moves the
-    axis against its friction, whether that friction sits in the mechanics or in the software.
-    """
-
-    setpoint: Array
-    motor: Array
-
-
 def peak_torque(rig: Rig) -> float:
     """Torque at the motor's peak current - N*m (N on a linear axis); infinite where the rig states none."""
     constant, current = rig.motor.torque_per_ampere, rig.motor.peak_current
@@ -122,21 +110,25 @@ class CascadeDrive:
         self._integral = np.zeros(references.velocity.shape[1:])
         self._friction = None if emulation is None else _EmulatedFriction(emulation, period, references.velocity[0])
 
-    def tick(self, k: int, position: Array, velocity: Array) -> Torque:
-        """Torque from tick k to the next at a measured position - rad (m) - and velocity - rad/s (m/s), (axes,)."""
+    def tick(self, k: int, position: Array, velocity: Array) -> tuple[Array, Array]:
+        """Torque from tick k to the next, (axes,) each - N*m (N): the set-point, and what the motor makes.
+
+        They differ by the emulated friction. The set-point is what the drive reports as current: the torque that moves
+        the axis against its friction, whether that sits in the mechanics or in the software.
+
+        Args:
+            k: number of the tick.
+            position, velocity: measured at it - rad (m), rad/s (m/s) - (axes,).
+        """
         error = self._speed_demand[k] - self._position_gain * position - velocity
         wanted = self._gain * error + self._integral + self._feedforward[k]
         setpoint = motor = self._limited(wanted)
-        free = motor == wanted
         if self._friction is not None:
-            friction = self._friction.torque(setpoint, velocity)
-            asked = setpoint - friction
-            motor = self._limited(asked)
-            free &= motor == asked
-            setpoint = motor + friction
-            self._friction.applied = motor
-        self._integral = self._integral + self._integral_step * error * free
-        return Torque(setpoint, motor)
+            asked = setpoint - self._friction.torque(setpoint, velocity)
+            self._friction.applied = motor = self._limited(asked)
+            setpoint = setpoint + (motor - asked)
+        self._integral = self._integral + self._integral_step * error * (setpoint == wanted)
+        return setpoint, motor
 
     def _limited(self, torque: Array) -> Array:
         return np.maximum(np.minimum(torque, self._upper), self._lower)
@@ -160,10 +152,10 @@ class _EmulatedFriction:
     def torque(self, setpoint: Array, velocity: Array) -> Array:
         """Friction torque - N*m (N), (axes,), to be taken off the set-point."""
         viscous, stop = self._viscous * velocity, self._stopping * velocity
-        load = self.applied - (stop - self._stop_last)
+        load = self.applied + self._stop_last - stop
         self._stop_last = stop
-        holding = setpoint - viscous - load + stop
-        return viscous + np.maximum(np.minimum(holding, self._upper), self._lower)
+        holding = setpoint - load - viscous + stop
+        return np.maximum(np.minimum(holding, self._upper), self._lower) + viscous
 
 
 def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:

@@ -30,7 +30,8 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
     position = batch.bind("qpos")[:, joint.qposadr[0]]
     velocity = batch.bind("qvel")[:, joint.dofadr[0]]
     torque_input = batch.bind("ctrl")[:, batch.model.actuator_ctrladr[batch.model.actuator(DRIVE).id]]
-    motion, substeps, half = side_by_side(list(references)), plants[0].substeps, plants[0].timestep / 2.0
+    motion, substeps = side_by_side(list(references)), plants[0].substeps
+    half = np.asarray(plants[0].timestep / 2.0)
     drive = CascadeDrive(_cascades(plants), motion, _emulations(plants))
     velocity[:] = motion.velocity[0]
     position[:] = motion.position[0] + half * velocity

@@ -160,8 +160,8 @@ def test_cascade_terms_one_by_one():
     ones = np.ones((2, 1))
     drive = CascadeDrive(cascade, References(np.array([0.0, 1e-3]), 3.0 * ones, 4.0 * ones, 5.0 * ones))
     error = 4.0 + 10.0 * (3.0 - 2.5) - 1.0
-    first = drive.tick(0, np.array([2.5]), np.array([1.0])).setpoint[0]
-    second = drive.tick(1, np.array([2.5]), np.array([1.0])).setpoint[0]
+    first = drive.tick(0, np.array([2.5]), np.array([1.0]))[0][0]
+    second = drive.tick(1, np.array([2.5]), np.array([1.0]))[0][0]
     assert first == pytest.approx(2.0 * error + 0.5 * 5.0 + 30.0 * error * 0.5e-3)
     assert second - first == pytest.approx(30.0 * error * 1e-3)
 
@@ -199,6 +199,6 @@ def test_emulation_values_are_what_it_takes():
         ),
         emulation,
     )
-    torque = drive.tick(0, np.zeros(1), np.array([5.0]))
-    assert torque.motor[0] == pytest.approx(-0.3)
-    assert torque.setpoint[0] == pytest.approx(0.0)
+    setpoint, motor = drive.tick(0, np.zeros(1), np.array([5.0]))
+    assert motor[0] == pytest.approx(-0.3)
+    assert setpoint[0] == pytest.approx(0.0)
