@@ -127,9 +127,9 @@ class Plant:
             self.current[i] = rows.effect.driven_current(rows, demand[i], before[i], step)
             middle[i] = 0.5 * (before[i] + self.current[i])
         for rows in lagging:
-            measured = middle[rows.index]
-            middle[rows.index] = rows.effect.acting_current(measured, rows.memory, step / 2.0)
-            rows.memory = rows.effect.acting_current(measured, rows.memory, step)
+            measured, start = middle[rows.index].copy(), rows.memory
+            middle[rows.index] = rows.effect.acting_current(measured, start, step / 2.0)
+            rows.memory = rows.effect.acting_current(measured, start, step)
         return middle
 
     def _friction_levels(self) -> tuple[np.ndarray, np.ndarray]:

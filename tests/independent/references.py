@@ -64,9 +64,10 @@ class Multisine:
     def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
         angle = np.outer(time, self._omega) + self._phases
-        x = np.sin(angle) @ self._amplitudes
-        dx = np.cos(angle) @ (self._amplitudes * self._omega)
-        ddx = -np.sin(angle) @ (self._amplitudes * self._omega**2)
+        # summed by rows: a matrix product rounds differently with the number of times asked for
+        x = np.sum(np.sin(angle) * self._amplitudes, axis=1)
+        dx = np.sum(np.cos(angle) * self._amplitudes * self._omega, axis=1)
+        ddx = -np.sum(np.sin(angle) * self._amplitudes * self._omega**2, axis=1)
         return _faded(time, self.duration, x, dx, ddx)
 
 
@@ -168,17 +169,18 @@ def random_motion(axis: Axis, rng: np.random.Generator, duration: float = 8.0) -
     """A mixed recording in random order: fast runs both ways, staircase, slow reversals, and a multisine or a chirp."""
     top = axis.top_speed * rng.uniform(0.85, 1.0)
     peak = axis.peak_torque / axis.inertia
-    acceleration = min(rng.uniform(0.35, 0.6) * peak, top / 0.03)
+    acceleration = min(rng.uniform(0.45, 0.75) * peak, top / 0.03)
+    gentle = acceleration * rng.uniform(0.4, 0.9)
     jerk_time = float(np.exp(rng.uniform(np.log(0.01), np.log(0.06))))
     ramp = top / acceleration + jerk_time
     repeats = 2 if 12 * ramp < 0.3 * duration else 1
-    run_dwell = max((0.3 * duration - 4 * repeats * ramp) / (2 * repeats + 1), 0.05)
+    run_dwell = max((0.3 * duration - 4 * repeats * ramp) / (2 * repeats + 1), 0.006 * duration)
     stair_top = top * rng.uniform(0.7, 1.0)
-    stair_dwell = max((0.3 * duration - 4 * stair_top / acceleration) / 18, 0.05)
+    stair_dwell = max((0.3 * duration - 4 * stair_top / gentle) / 18, 0.006 * duration)
     slow = axis.top_speed * rng.uniform(0.02, 0.08, 4) * rng.choice([-1, 1])
     phases: list[Phase] = [
         run_up_and_down(top, acceleration, run_dwell, repeats, jerk_time),
-        staircase(stair_top, 8, acceleration, stair_dwell, jerk_time),
+        staircase(stair_top, 8, gentle, stair_dwell, jerk_time),
         slow_reversals(slow, 0.2 * duration / 8, jerk_time),
     ]
     if rng.random() < 0.6:

@@ -34,17 +34,18 @@ class NoiseStream:
     """Noise of one signal, drawn block by block at a constant period."""
 
     def __init__(self, noise: Noise, period: float, rng: np.random.Generator):
-        self._noise, self._rng = noise, rng
+        # one source each, so that the lengths of blocks do not matter
+        self._noise, (self._white, self._drive) = noise, rng.spawn(2)
         self._pole = float(np.exp(-period / noise.correlation_time))
-        self._state = np.array([self._pole * rng.standard_normal()])
+        self._state = np.array([self._pole * self._drive.standard_normal()])
 
     def at(self, time: np.ndarray) -> np.ndarray:
         """Noise at the next times, which follow the block before."""
         noise, total = self._noise, np.zeros(time.size)
         if noise.white:
-            total += noise.white * self._rng.standard_normal(time.size)
+            total += noise.white * self._white.standard_normal(time.size)
         if noise.coloured:
-            drive = np.sqrt(1.0 - self._pole**2) * self._rng.standard_normal(time.size)
+            drive = np.sqrt(1.0 - self._pole**2) * self._drive.standard_normal(time.size)
             markov, self._state = lfilter([1.0], [1.0, -self._pole], drive, zi=self._state)
             total += noise.coloured * markov
         if noise.hum:

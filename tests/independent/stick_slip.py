@@ -12,8 +12,6 @@ def speed_weight(rate: Array, time: Array) -> Array:
     """phi(t) = (1 - exp(-k*t))/k - s; t for k = 0. rate k = K_w/J - 1/s."""
     x = rate * time
     series = time * (1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0))))
-    if np.max(x) < 1e-3:
-        return series
     return np.where(x < 1e-3, series, -np.expm1(-x) / np.where(rate > 0.0, rate, 1.0))
 
 
@@ -21,8 +19,6 @@ def distance_weight(rate: Array, time: Array) -> Array:
     """psi(t) = (t - phi(t))/k, the integral of phi - s**2; t**2/2 for k = 0."""
     x = rate * time
     series = time**2 / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0))))
-    if np.max(x) < 1e-3:
-        return series
     return np.where(x < 1e-3, series, (time - speed_weight(rate, time)) / np.where(rate > 0.0, rate, 1.0))
 
 
@@ -31,8 +27,6 @@ def stopping_time(rate: Array, speed: Array, acceleration: Array) -> Array:
     weight = -speed / acceleration
     x = rate * weight
     series = weight * (1.0 + x / 2.0 + x**2 / 3.0 + x**3 / 4.0 + x**4 / 5.0)
-    if np.max(np.abs(x)) < 1e-3:
-        return series
     return np.where(np.abs(x) < 1e-3, series, -np.log1p(-x) / np.where(rate > 0.0, rate, 1.0))
 
 

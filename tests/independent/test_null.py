@@ -1,0 +1,95 @@
+"""An effect at its null value is exactly absent, bit for bit."""
+
+import numpy as np
+
+from tests.independent.axes import PLAIN, run
+from tests.independent.effects import (
+    KINDS,
+    CoggingTorque,
+    CurrentLoopLag,
+    DirectionDependentFriction,
+    EncoderEccentricity,
+    FrictionWarmup,
+    LoadDependentFriction,
+    LoadTorqueEvent,
+    PositionDependentFriction,
+    PositionDependentInertia,
+    PositionNotch,
+    QuadraticDrag,
+    RestHardening,
+    SlowMemoryFriction,
+    StribeckFriction,
+    TorqueConstantSaturation,
+    TorqueOffset,
+    TorqueRipple,
+    TorsionSpring,
+    Unbalance,
+    VelocityFilterLag,
+    Vibration,
+    VoltageLimit,
+)
+from tests.independent.plant import Plant
+
+NULL = [
+    StribeckFriction(PLAIN.coulomb, 1.0),
+    DirectionDependentFriction(0.0, 1.0),
+    QuadraticDrag(0.0),
+    LoadDependentFriction(0.0),
+    PositionDependentFriction(0.0, 1.0),
+    FrictionWarmup(0.0, 1.0, 1.0),
+    TorqueOffset(0.0),
+    Unbalance(0.0, 1.0),
+    TorsionSpring(0.0),
+    PositionDependentInertia(0.0, 2.0, 1.0),
+    LoadTorqueEvent(0.01, 0.02, 0.0),
+    CoggingTorque(0.0, 6.0, 1.0),
+    TorqueRipple(0.0, 6.0, 1.0),
+    TorqueConstantSaturation(0.0),
+    VoltageLimit(1e6),
+    CurrentLoopLag(1e-12),
+    VelocityFilterLag(1e-12),
+    EncoderEccentricity(0.0, 1.0),
+    SlowMemoryFriction(0.0, 1.0, 1.0),
+    PositionNotch(0.0, 1.0, 0.1),
+    Vibration(0.0, 20.0, 1.0),
+    RestHardening(0.0, 1.0, 1.0),
+]
+#: These have no null value but a limit: rigid bristles, a rigid coupling.
+LIMITS = {"presliding_friction", "elastic_coupling", "backlash"}
+
+
+def test_every_effect_is_listed_here():
+    assert {effect.name for effect in NULL} | LIMITS == set(KINDS)
+
+
+def test_null_is_the_bare_axis():
+    def push(time):
+        return 0.8 if time < 0.02 else -0.5
+
+    states = run(Plant([PLAIN] * (len(NULL) + 1), [[], *([effect] for effect in NULL)]), push, 0.06)
+    for k, effect in enumerate(NULL, start=1):
+        # a voltage limit far away drives the current by its inductance, which rounds and acts half a step later; a
+        # filter of 1e-12 s rounds
+        allowed = {"voltage_limit": 1e-2, "velocity_filter_lag": 1e-9}.get(effect.name, 0.0)
+        for name in ("position", "velocity", "measured_position", "measured_velocity", "current"):
+            assert np.abs(states[name][:, k] - states[name][:, 0]).max() <= allowed, (effect.name, name)
+
+
+def _push(time):
+    return 6.0 * np.sin(120.0 * time)
+
+
+def test_effects_act_alike_alone_and_among_neighbours_whom_they_leave_alone():
+    strong = [kind.draw(PLAIN, 0.6, np.random.default_rng(4), 0.04) for kind in KINDS.values()]
+    bare = run(Plant([PLAIN], [[]]), _push, 0.04)
+    side_by_side = [effects for effect in strong for effects in ([], [effect])]
+    both = run(Plant([PLAIN] * len(side_by_side), side_by_side), _push, 0.04)
+    for k, effect in enumerate(strong):
+        alone = run(Plant([PLAIN], [[effect]]), _push, 0.04)
+        for name in ("position", "velocity", "measured_velocity"):
+            assert (both[name][:, 2 * k] == bare[name][:, 0]).all(), effect.name
+            # vectorised sine and exponential may round differently
+            away = np.abs(both[name][:, 2 * k + 1] - alone[name][:, 0]).max()
+            assert away < 1e-9 * (1.0 + np.abs(alone[name]).max()), effect.name
+        heard = [np.abs(alone[name] - bare[name]).max() for name in ("velocity", "measured_velocity")]
+        assert max(heard) > 1e-6, effect.name
