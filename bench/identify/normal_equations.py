@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,22 +73,33 @@ class NormalEquations:
         return float(self.power.sum() - 2.0 * estimate @ moment + estimate @ gram @ estimate)
 
 
-def normal_equations(regressors: Regressors, block: float) -> NormalEquations:
-    """Gather rows into blocks of `block` seconds of time each; blocks without rows do not appear."""
-    index = np.floor((regressors.time - regressors.time[0]) / block) if regressors.time.size else np.empty(0)
-    starts = np.flatnonzero(np.r_[True, np.diff(index) > 0]) if index.size else np.empty(0, dtype=int)
-    columns, effort = regressors.columns, regressors.effort
-    size = columns.shape[1]
-    products = np.empty((effort.size, size * (size + 1) // 2 + size + 1))
-    upper = np.triu_indices(size)
-    np.multiply(columns[:, upper[0]], columns[:, upper[1]], out=products[:, : upper[0].size])
-    np.multiply(columns, effort[:, None], out=products[:, upper[0].size : -1])
-    np.multiply(effort, effort, out=products[:, -1])
-    sums = np.add.reduceat(products, starts, axis=0) if starts.size else np.empty((0, products.shape[1]))
-    gram = np.zeros((starts.size, size, size))
-    gram[:, upper[0], upper[1]] = gram[:, upper[1], upper[0]] = sums[:, : upper[0].size]
-    rows = np.diff(np.r_[starts, effort.size])
-    return NormalEquations(regressors.names, gram, sums[:, upper[0].size : -1], sums[:, -1], rows, regressors.noise)
+def normal_equations(regressors: Regressors, block: float, most: int) -> NormalEquations:
+    """Gather rows into blocks of time; blocks without rows do not appear.
+
+    Args:
+        regressors: columns of one stretch.
+        block: duration of a block - s; longer where there would be more than `most` of them.
+        most: number of blocks.
+    """
+    table = np.column_stack([regressors.columns, regressors.effort])
+    time = regressors.time
+    edges = np.empty(0, dtype=np.int64)
+    if time.size:
+        count = int(np.clip((time[-1] - time[0]) / block, 1, most))
+        borders = np.linspace(time[0], time[-1], count + 1)[1:-1]
+        edges = np.unique(np.concatenate([[0], np.searchsorted(time, borders), [time.size]]))
+    products = np.zeros((max(edges.size - 1, 0), table.shape[1], table.shape[1]))
+    for index, (start, stop) in enumerate(pairwise(edges.tolist())):
+        rows = table[start:stop]
+        np.matmul(rows.T, rows, out=products[index])
+    return NormalEquations(
+        names=regressors.names,
+        gram=products[:, :-1, :-1],
+        moment=products[:, :-1, -1],
+        power=products[:, -1, -1],
+        rows=np.diff(edges),
+        noise=regressors.noise,
+    )
 
 
 def join(parts: Sequence[NormalEquations]) -> NormalEquations:

@@ -6,6 +6,7 @@ the figures), from the regression's estimate it converges in a few steps.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -47,7 +48,9 @@ class Refinement:
     bandwidth: float = BANDWIDTH
 
 
-def refine(trace: Trace, rig: Rig, start: Estimate) -> tuple[Estimate, Refinement]:
+def refine(
+    trace: Trace, rig: Rig, start: Estimate, progress: Callable[[float], None] = lambda share: None
+) -> tuple[Estimate, Refinement]:
     """Polish inertia and friction (and offset) of an estimate by the velocity gap of the simulated axis.
 
     Minimises sum((omega_simulated - omega_measured)**2). Whether that helps is tried first: regression and polish on
@@ -57,6 +60,7 @@ def refine(trace: Trace, rig: Rig, start: Estimate) -> tuple[Estimate, Refinemen
         trace: the recording the estimate came from.
         rig: of the axis.
         start: regression's estimate.
+        progress: called with the share done.
 
     Raises:
         InputError: the rig gives no torque or force.
@@ -70,11 +74,13 @@ def refine(trace: Trace, rig: Rig, start: Estimate) -> tuple[Estimate, Refinemen
     split = trace.time[0] + (1.0 - HELD_OUT) * (trace.time[-1] - trace.time[0])
     seen, unseen = (_Tracking(trace.between(*span), rig) for span in ((trace.time[0], split), (split, np.inf)))
     trial = identify(seen.trace, rig)
+    progress(0.1)
     held_out = unseen.gap(trial), unseen.gap(seen.polished(trial))
     if held_out[1] > held_out[0]:
         note = "polishing by simulation made held-out motion worse, so the regression's estimate stands"
         gap = _Tracking(trace, rig).gap(start)
         return replace(start, warnings=(*start.warnings, note)), Refinement((gap, gap), held_out, accepted=False)
+    progress(0.5)
     whole = _Tracking(trace, rig)
     polished = whole.polished(start)
     return polished, Refinement((whole.gap(start), whole.gap(polished)), held_out, accepted=True)

@@ -15,6 +15,7 @@ from bench.identify.estimate import Estimate, Parameter, Residual
 from bench.identify.load_inertia import load_inertia
 from bench.identify.names import parameter_name, parameter_unit
 from bench.identify.normal_equations import NormalEquations, join, normal_equations
+from bench.identify.parallel import in_parallel
 from bench.identify.regressors import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, regressors
 from bench.rig.rig import Rig
 from bench.trace.conditioning import Conditioning, condition
@@ -23,8 +24,8 @@ from bench.trace.trace import Trace
 
 #: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
 BLOCK_WIDTHS = 8.0
-#: Blocks that the covariance needs at most.
-BLOCKS = 4096
+#: Blocks that the covariance needs at most, of a recording and of each of its parts.
+BLOCKS = 512
 
 
 def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = None) -> Estimate:
@@ -44,12 +45,13 @@ def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = No
     first = next(parts)
     effort, effort_unit = rig.net_effort(first)
     conditioning = condition(first, effort, cutoff)
-    read, gathered = 0, []
-    for part in chain([first], parts):
-        read += len(part)
+
+    def gathered(part: Trace) -> tuple[NormalEquations, int]:
         columns = regressors(motion(part, rig.net_effort(part)[0], conditioning))
-        gathered.append(normal_equations(columns, BLOCK_WIDTHS * conditioning.filter.width))
-    return solve(join(gathered).coarsened(BLOCKS), rig, conditioning, effort_unit, read)
+        return normal_equations(columns, BLOCK_WIDTHS * conditioning.filter.width, BLOCKS), len(part)
+
+    equations, read = zip(*in_parallel(gathered, chain([first], parts)), strict=True)
+    return solve(join(equations).coarsened(BLOCKS), rig, conditioning, effort_unit, sum(read))
 
 
 def solve(

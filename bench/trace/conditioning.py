@@ -132,7 +132,7 @@ def _least_cutoff(sign: NDArray[np.float64], sample_period: float) -> float:
     runs = np.diff(np.r_[starts, sign.size])[sign[starts] != 0.0] * sample_period
     widths = LEAST_WIDTH * sample_period * 1.1 ** np.arange(80)
     kept = np.array([np.sum(np.maximum(runs - 2.0 * SIGN_REACH * width, 0.0)) for width in widths])
-    widest = widths[np.flatnonzero(kept >= KEPT * kept[0])[-1]]
+    widest = float(widths[np.flatnonzero(kept >= KEPT * kept[0])[-1]])
     return GaussianFilter(widest, sample_period).cutoff
 
 

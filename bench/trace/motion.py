@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from bench.trace.conditioning import Conditioning, known_sign, raw_speed
 from bench.trace.trace import Trace
 
-#: Samples filtered at once: long enough that the margins cost nothing, short enough for the cache.
-BLOCK = 2**16
+#: Samples filtered at once, margins included: long enough that these cost little, short enough for the cache.
+BLOCK = 2**15
 #: A filtered sign further than this from +-1 has seen speeds of the other sign, or of none.
 ONE_SIGN = 1e-3
 
@@ -53,7 +53,7 @@ def motion(trace: Trace, effort: NDArray[np.float64], conditioning: Conditioning
 def _blocks(trace: Trace, conditioning: Conditioning) -> Iterator[slice]:
     """Blocks of each segment, overlapping by two margins so that their rows join without a gap."""
     margin = conditioning.filter.margin
-    step = BLOCK - BLOCK % conditioning.filter.stride
+    step = BLOCK - 2 * margin if 4 * margin < BLOCK else BLOCK
     for segment in trace.segments:
         for start in range(segment.start, segment.stop - 2 * margin, step):
             yield slice(start, min(start + step + 2 * margin, segment.stop))
@@ -65,10 +65,10 @@ def _filtered(
     """Columns of one block: products and signs are formed on raw samples and filtered afterwards."""
     smooth, order = conditioning.filter, conditioning.order
     source = trace[conditioning.source][block]
-    velocity, acceleration = smooth(source, order, order + 1)
-    torque, rate = smooth(effort[block], 0, 1)
     speed = raw_speed(source, conditioning.source, trace.sample_period)
-    (direction,) = smooth(known_sign(speed, conditioning.sign_threshold), 0)
+    sign = known_sign(speed, conditioning.sign_threshold)
+    rows = smooth.columns(np.stack([source, effort[block], sign]), (0, order), (0, order + 1), (1, 0), (1, 1), (2, 0))
+    velocity, acceleration, torque, rate, direction = rows
     direction[np.abs(direction) < 1.0 - ONE_SIGN] = 0.0
     time = trace.time[block][smooth.margin : (block.stop - block.start) - smooth.margin : smooth.stride]
     return time, velocity, acceleration, torque, rate, direction

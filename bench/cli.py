@@ -1,0 +1,190 @@
+"""The command line: every command is thin, one verb of the bench and what a person wants to see of it."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from typer.exceptions import TyperException
+
+from bench import __version__
+from bench.demo import demo as run_demo
+from bench.errors import BenchError, InputError
+from bench.files import write_text
+from bench.identify.estimate import Estimate
+from bench.identify.lab import identify_as_in_the_lab
+from bench.identify.refine import refine as polish
+from bench.identify.regression import identify as regress
+from bench.plant.profiles import DEFAULT, PROFILES
+from bench.plant.simulate import simulate as run_simulation
+from bench.plant.truth import write_truth
+from bench.report.estimate import estimate_json, estimate_table
+from bench.report.identification import write_identification
+from bench.report.progress import progress
+from bench.rig.rig import Rig, load_rig
+from bench.trace.inspect import inspect as look
+from bench.trace.inspect import table as inspection_table
+from bench.trace.inspect import to_json as inspection_json
+from bench.trace.read import read
+from bench.trace.stream import stream
+from bench.trace.write import write
+
+app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None)
+
+RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
+JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
+
+
+class Estimator(StrEnum):
+    """Ways to identify."""
+
+    REGRESSION = "regression"
+    LAB = "lab"
+
+
+@app.callback(invoke_without_command=True)
+def bench(version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False) -> None:
+    """Test bench for a servo axis: simulate it in MuJoCo, identify it, find what the model misses."""
+    if version:
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.command()
+def demo(
+    out: Annotated[Path, typer.Option("--out", help="Folder for trace, truth and figures.")] = Path("bench_demo"),
+) -> None:
+    """Simulate the embedded rig, identify it, and set truth beside estimate."""
+    with progress("demo") as done:
+        result = run_demo(out, done)
+    _console().print(estimate_table(result.estimate, result.title, result.truth))
+    _tell_warnings(result.estimate)
+    _tell_files(result.files)
+
+
+@app.command()
+def simulate(
+    rig: Annotated[Path, typer.Argument(help="Rig file with [drive] and [simulation].")],
+    out: Annotated[Path, typer.Option("--out", help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
+    profile: Annotated[str, typer.Option("--profile", help=f"Motion: {', '.join(PROFILES)}.")] = DEFAULT,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of the sensors' noise.", min=0)] = 0,
+) -> None:
+    """Simulate the axis of a rig in MuJoCo; write its trace and, beside it, the truth."""
+    axis = load_rig(rig)
+    with progress(f"simulating {axis.name}") as done:
+        simulated = run_simulation(axis, profile, seed, progress=done)
+    write(simulated.trace, out)
+    _tell_files([out, write_truth(out, simulated.truth)])
+
+
+@app.command()
+def inspect(
+    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    rig: Annotated[Path | None, typer.Option("--rig", help="Rig file whose [trace.columns] names the signals.")] = None,
+    json: JsonOption = None,
+) -> None:
+    """Say what a recording holds: rate, jitter, holes, signals with their range and resolution."""
+    found = look(trace, load_rig(rig).trace.columns if rig else None)
+    if json is not None:
+        _write_json(json, inspection_json(found))
+    else:
+        _console().print(inspection_table(found))
+
+
+@app.command()
+def identify(
+    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    rig: RigOption,
+    json: JsonOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for figures and JSON.")] = None,
+    estimator: Annotated[
+        Estimator, typer.Option("--estimator", help="lab: as the course does.")
+    ] = Estimator.REGRESSION,
+    refine: Annotated[bool, typer.Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
+    offset: Annotated[bool, typer.Option("--offset", help="Fit a constant torque (force) too.")] = False,
+    cutoff: Annotated[
+        float | None, typer.Option("--cutoff", help="Filter's half-power frequency in Hz.", min=1e-6)
+    ] = None,
+) -> None:
+    """Identify inertia, viscous and Coulomb friction of a recording, with 95 % intervals."""
+    axis = load_rig(rig)
+    axis = axis.model_copy(update={"offset": axis.offset or offset})
+    if estimator is Estimator.LAB and (refine or offset or cutoff):
+        raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
+    estimate, note = _estimate(trace, axis, estimator, refine, cutoff)
+    if json is not None:
+        _write_json(json, estimate_json(estimate))
+    files = write_identification(out, trace, axis, estimate) if out is not None else []
+    if json != Path("-"):
+        _console().print(estimate_table(estimate, f"{axis.name}: {trace.name}"))
+        if note:
+            typer.echo(note)
+        _tell_files(files)
+    _tell_warnings(estimate)
+
+
+def _estimate(trace: Path, rig: Rig, estimator: Estimator, refine: bool, cutoff: float | None) -> tuple[Estimate, str]:
+    """Estimate by the method asked for, and a line about its refinement."""
+    columns = rig.trace.columns
+    if estimator is Estimator.LAB:
+        return identify_as_in_the_lab(read(trace, columns), rig), ""
+    with progress(f"identifying {trace.name}") as done:
+        if not refine:
+            return regress(stream(trace, columns), rig, cutoff), ""
+        recording = read(trace, columns)
+        start = regress(recording, rig, cutoff)
+        done(0.1)
+        polished, refinement = polish(recording, rig, start, done)
+    unit = "m/s" if rig.linear else "rad/s"
+    before, after = refinement.held_out
+    return polished, (
+        f"simulation error on held-out motion {before:.4g} -> {after:.4g} {unit} "
+        f"(held at {refinement.bandwidth:g} rad/s), {'kept' if refinement.accepted else 'not kept'}"
+    )
+
+
+def _write_json(path: Path, text: str) -> None:
+    if path == Path("-"):
+        typer.echo(text)
+    else:
+        write_text(path, text + "\n")
+
+
+def _console() -> Console:
+    """Console no narrower than the bench's tables, so that a log shows them whole."""
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=110)
+
+
+def _tell_warnings(estimate: Estimate) -> None:
+    for warning in estimate.warnings:
+        typer.echo(f"warning: {warning}", err=True)
+
+
+def _tell_files(files: list[Path]) -> None:
+    for path in files:
+        typer.echo(f"wrote {path}")
+
+
+def main() -> None:
+    """Entry point of `bench`: errors become one line on standard error and an exit status."""
+    try:
+        status = app(standalone_mode=False)
+    except BenchError as error:
+        sys.exit(_failed(str(error), error.exit_status))
+    except TyperException as error:
+        sys.exit(_failed(error.format_message(), 2))
+    except (KeyboardInterrupt, typer.Abort):
+        sys.exit(_failed("interrupted", 130))
+    sys.exit(status if isinstance(status, int) else 0)
+
+
+def _failed(message: str, status: int) -> int:
+    line = " ".join(message.split())
+    if line:
+        typer.echo(f"bench: {line}", err=True)
+    return status

@@ -1,0 +1,70 @@
+"""How fast: printed and never asserted. `pytest tests/test_speed.py -m '' --benchmark-only -s` shows all of it."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from bench.identify.regression import identify
+from tests.identify.motions import RIG, recording
+
+SAMPLES = 10_000_000
+
+STREAMED = """
+import re, sys, time
+from pathlib import Path
+from bench.identify.regression import identify
+from bench.trace.stream import stream
+from tests.identify.motions import RIG
+began = time.perf_counter()
+found = identify(stream(sys.argv[1]), RIG)
+seconds = time.perf_counter() - began
+peak = re.search(r"VmHWM:\\s+(\\d+)", Path("/proc/self/status").read_text())
+print(seconds, int(peak.group(1)) / 1024, found["moment_of_inertia"].value)
+"""
+
+READ = """
+import sys, time
+import pyarrow.parquet as pq
+began = time.perf_counter()
+pq.read_table(sys.argv[1])
+print(time.perf_counter() - began)
+"""
+
+
+def test_identify_two_seconds_at_a_kilohertz_in_memory(benchmark):
+    trace = recording(np.random.default_rng(0), duration=2.0)
+    assert benchmark(identify, trace, RIG).samples_read == 2000
+
+
+@pytest.fixture(scope="module")
+def long_recording(tmp_path_factory):
+    path = tmp_path_factory.mktemp("long") / "long.parquet"
+    trace = recording(np.random.default_rng(1), duration=SAMPLES * 1e-3)
+    columns = {"time [s]": trace.time, "velocity [rad/s]": trace["velocity"], "current [A]": trace["current"]}
+    pq.write_table(pa.table(columns), path)
+    return path
+
+
+@pytest.mark.slow
+def test_ten_million_samples_are_streamed_in_bounded_memory(long_recording):
+    def run(script):
+        command = [sys.executable, "-c", script, str(long_recording)]
+        return [
+            float(word) for word in subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+        ]
+
+    run(READ)  # so that both find the file in the page cache
+    ratios = []
+    for _ in range(3):
+        (reading,) = run(READ)
+        seconds, megabytes, inertia = run(STREAMED)
+        ratios.append(seconds / reading)
+        print(
+            f"\nread {reading:.2f} s, identified {seconds:.2f} s ({ratios[-1]:.2f} times), {megabytes:.0f} MB", end=""
+        )
+    assert inertia == pytest.approx(1.5e-3, rel=1e-3)
+    assert megabytes < 1024
