@@ -169,7 +169,7 @@ def _si_unit(name: str, choice: Chosen, recording: Recording) -> str:
     if choice.unit is None:
         raise InputError(
             choice.channel.place(),
-            "has no unit",
+            choice.channel.open_unit or "has no unit",
             f'allowed: a unit in the file, or {name} = "{choice.channel.name} [unit]" in the rig\'s [trace.columns]',
         )
     return checked_si_unit(name, choice.unit, f"{recording.origin}: column '{choice.channel.label}'")

@@ -28,6 +28,7 @@ class Channel:
         line: line of the file that holds the first value, where one line holds one sample.
         start: number of the first value among the file's samples.
         defect: why the values cannot be read; raised only where a trace needs them.
+        open_unit: why the file leaves the unit open though it names one.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Channel:
     line: int | None = None
     start: int = 0
     defect: InputError | None = None
+    open_unit: str | None = None
 
     @property
     def label(self) -> str:

@@ -7,14 +7,14 @@ from pyarrow import csv
 
 
 def parse_columns(
-    body: bytes, count: int, separator: str, decimal: str, kind: pa.DataType | None = None, nulls: tuple[str, ...] = ()
+    body: bytes, kinds: list[pa.DataType], separator: str, decimal: str, nulls: tuple[str, ...] = ()
 ) -> pa.Table:
-    """Lines of `count` cells each as columns named 0, 1, ... of type `kind` (float64 unless given).
+    """Lines of cells as columns named 0, 1, ... of the types given.
 
     Raises:
         pa.ArrowInvalid: a line with another count of cells, or a cell that is not of that type.
     """
-    types = dict.fromkeys([str(number) for number in range(count)], kind or pa.float64())
+    types = {str(number): kind for number, kind in enumerate(kinds)}
     return csv.read_csv(
         pa.py_buffer(body),
         read_options=csv.ReadOptions(column_names=list(types)),

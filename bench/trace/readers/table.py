@@ -102,11 +102,11 @@ def numbers(body: bytes, layout: Layout, path: str) -> pa.Table:
     """
     count = len(layout.labels)
     try:
-        return parse_columns(body, count, layout.separator, layout.decimal)
+        return parse_columns(body, [pa.float64()] * count, layout.separator, layout.decimal)
     except pa.ArrowInvalid:
         _check_widths(body, layout, path)
     decode(body, path)
-    return parse_columns(body, count, layout.separator, layout.decimal, pa.string())
+    return parse_columns(body, [pa.string()] * count, layout.separator, layout.decimal)
 
 
 def _check_widths(body: bytes, layout: Layout, path: str) -> None:

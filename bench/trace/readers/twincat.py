@@ -1,8 +1,10 @@
-"""Reader of TwinCAT Scope CSV: a header table keyed by its first cell, one column per channel, times in ms.
+"""Reader of TwinCAT Scope CSV: a header table keyed by its first cell, then columns of times and values.
 
 The row of names tells the layout: each cell `Name` stands over a time column, and the cells up to the next one over the
-channels sampled by it. Separator (tab, semicolon, comma) and decimal mark depend on the export's settings. Channels
-end at different rows; `EOF` may close the file. Values are already scaled to the unit the header names.
+channels sampled by it. Times are ms from the start, or Windows FILETIME. Separator (tab, semicolon, comma) and decimal
+mark depend on the export's settings. Channels end at different rows, and cells may be empty where a channel is sampled
+more slowly; `EOF` may close the file. An option of the export scales values before it, and the file does not tell
+whether that was done: where the header names a scaling, the unit is open (Beckhoff TE13xx, Export in csv).
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import NDArray
 
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
@@ -24,7 +27,9 @@ ENDINGS = ()
 
 _HEAD = re.compile(r"\AName[\t;,].*^(Starttime of export|Data-Type|SymbolName)[\t;,]", re.DOTALL | re.MULTILINE)
 _NUMBER = re.compile(r"\s*[+-]?\d")
+_FILETIME = re.compile(rb"\s*\d{17,19}\D")
 _EMPTY = ("", " ")
+_NO_SCALING = {"Offset": "0", "ScaleFactor": "1", "Unit Offset": "0", "Unit ScaleFactor": "1"}
 
 
 def recognises(source: Source) -> bool:
@@ -41,18 +46,17 @@ def read(source: Source) -> Recording:
     separator = source.head[len("Name")]
     header, body, line = _split(source, separator)
     names = _names(header, source)
-    units = next((cells for cells in header if cells[0] == "Unit"), [])
-    units += ["(None)"] * (len(names) - len(units))
-    table = _table(body, len(names), separator, line, source)
-    time: Channel | None = None
+    table = _table(body, names, separator, line, source)
+    start = min((_first(column) for column in table.columns if column.type == pa.int64()), default=0)
+    time = np.empty(0)
     channels: list[Channel] = []
     for number, name in enumerate(names):
-        channel = Channel(name, units[number], np.empty(0), source.path, line=line)
-        channel = _filled(channel, table.column(number))
+        column = table.column(number)
         if name == "Name":
-            time = replace(channel, name="time", unit="ms")
-        elif time is not None:
-            channels.append(_with_time(channel, time))
+            time = _times(column, start)
+        elif number > 0:
+            channel = replace(_described(name, number, header, source), line=line)
+            channels.append(_sampled(channel, time, column.to_numpy()))
     return Recording(with_shared_times(channels), FORMAT, source.path, _metadata(header))
 
 
@@ -85,14 +89,16 @@ def _names(header: list[list[str]], source: Source) -> list[str]:
     return names
 
 
-def _table(body: bytes, width: int, separator: str, line: int, source: Source) -> pa.Table:
+def _table(body: bytes, names: list[str], separator: str, line: int, source: Source) -> pa.Table:
     decimal = "," if separator != "," and re.search(rb"\d,\d", body) else "."
-    mark = separator.encode()
+    mark, width = separator.encode(), len(names)
     rows = [row.rstrip(b"\r") for row in body.split(b"\n")]
     # rows end with the last channel that still has samples: fill them up
     full = [row + mark * (width - 1 - row.count(mark)) for row in rows if row.strip() and row.strip() != b"EOF"]
+    moments = _FILETIME.match(rows[0]) is not None
+    kinds = [pa.int64() if moments and name == "Name" else pa.float64() for name in names]
     try:
-        return parse_columns(b"\n".join(full), width, separator, decimal, nulls=_EMPTY)
+        return parse_columns(b"\n".join(full), kinds, separator, decimal, nulls=_EMPTY)
     except pa.ArrowInvalid as error:
         raise _first_fault(rows, width, separator, decimal, line, source) from error
 
@@ -112,25 +118,49 @@ def _first_fault(rows: list[bytes], width: int, separator: str, decimal: str, li
     return InputError(source.path, "found cells that are no numbers", "allowed: numbers")
 
 
-def _filled(channel: Channel, column: pa.ChunkedArray) -> Channel:
-    """The channel with its values up to its last; an empty cell before that is a defect."""
-    array = column.to_numpy()
-    present = np.flatnonzero(~np.isnan(array))
-    first, stop = (int(present[0]), int(present[-1]) + 1) if present.size else (0, 0)
-    line = (channel.line or 0) + first
-    if present.size != stop - first:
-        hole = first + int(np.argmax(np.isnan(array[first:stop])))
-        defect = InputError(channel.place(hole), "found an empty cell", "allowed: a number")
-        return replace(channel, line=line, defect=defect)
-    return replace(channel, values=array[first:stop], line=line)
+def _first(column: pa.ChunkedArray) -> int:
+    present = column.drop_null()
+    return present[0].as_py() if len(present) else 0
 
 
-def _with_time(channel: Channel, time: Channel) -> Channel:
-    defect = channel.defect or time.defect
-    if defect is None and (channel.values.size != time.values.size or channel.line != time.line):
-        found = f"found {channel.values.size} values and {time.values.size} times"
-        defect = InputError(channel.place(), found, "allowed: as many of both; the file may be truncated")
-    return replace(channel, time=time, defect=defect)
+def _times(column: pa.ChunkedArray, start: int) -> NDArray[np.float64]:
+    """Times in ms, nan where the cell is empty; FILETIME, in steps of 100 ns, counts from `start`."""
+    if column.type != pa.int64():
+        return column.to_numpy()
+    ticks = column.fill_null(start).to_numpy() - start
+    return np.where(column.is_null().to_numpy(), np.nan, ticks / 1e4)
+
+
+def _described(name: str, number: int, header: list[list[str]], source: Source) -> Channel:
+    """The channel without its samples; its unit is open where the header names a scaling."""
+    column = {cells[0]: cells[number] for cells in header if len(cells) > number}
+    unit = column.get("Unit", "(None)")
+    scaling = [
+        f"{key} {column[key]}" for key, plain in _NO_SCALING.items() if column.get(key, plain) not in (plain, "")
+    ]
+    channel = Channel(name, unit, np.empty(0), source.path)
+    if not scaling:
+        return channel
+    reason = f"has an open unit: the header names '{unit}' and {', '.join(scaling)}, not whether values are scaled"
+    return replace(channel, unit=None, open_unit=reason)
+
+
+def _sampled(channel: Channel, time: NDArray[np.float64], values: NDArray[np.float64]) -> Channel:
+    """The channel with samples where both time and value stand; one without the other is a defect."""
+    present = ~np.isnan(time)
+    rows = np.flatnonzero(present)
+    first = channel.line or 0
+    gapless = rows.size > 0 and rows[-1] - rows[0] == rows.size - 1
+    line = first + int(rows[0]) if gapless else None
+    clock = Channel("time", "ms", time[present], channel.origin, line=line)
+    sampled = replace(channel, values=values[present], line=line, time=clock)
+    lonely = present != ~np.isnan(values)
+    if not lonely.any():
+        return sampled
+    place = channel.place(int(np.argmax(lonely)))
+    return replace(
+        sampled, defect=InputError(place, "found a time or a value alone", "allowed: both; the file may be truncated")
+    )
 
 
 def _metadata(header: list[list[str]]) -> dict[str, str]:

@@ -1,0 +1,148 @@
+import json
+
+import numpy as np
+import pytest
+from scipy.io import loadmat, savemat
+
+from bench.errors import InputError
+from bench.trace.read import read, read_recording
+from tests.trace.recordings import shared
+
+TWINCAT = (
+    "tc3_default.csv",
+    "tc3_ContainEOF_true.csv",
+    "tc3_DecimalMark_,.csv",
+    "tc3_Seperator_3.csv",
+    "tc3_ExcludeDoubleTimestamp_true-SortChannels_false.csv",
+)
+
+
+@pytest.mark.parametrize("name", TWINCAT)
+def test_every_twincat_dialect_holds_the_same_recording(name):
+    recording = read_recording(shared("formats", name))
+    channels = {channel.name: channel for channel in recording.channels}
+    assert len(channels) == 21
+    counter = np.arange(1000.0)
+    for plain in ("var_INT16", "var_UINT64", "var_REAL32", "var_REAL64", "test space", "test_special([{äöü!?ß$²}])"):
+        assert np.array_equal(channels[plain].values, counter), plain
+    assert channels["func_units_unscaled"].unit == "V (Voltage)"
+    # the default export does not scale values, the others do; the header is the same, so the unit is open
+    scaled = name != "tc3_default.csv"
+    assert channels["func_units_scaled"].unit is None
+    assert np.array_equal(channels["func_units_scaled"].values, 10.0 - 10.0 * counter if scaled else counter)
+    assert np.array_equal(channels["func_scaled"].values, 1.0 - counter if scaled else counter)
+    fast, free = channels["func_OS"], channels["func_freesample"]
+    assert fast.time is not None and free.time is not None
+    np.testing.assert_allclose(fast.time.values, 0.2 * np.arange(fast.values.size), atol=1e-9)
+    assert free.time.values[:2].tolist() == [-3.0, 2.0] and free.values[:2].tolist() == [997.0, 2.0]
+    assert channels["var_INT16"].time is channels["var_REAL64"].time
+    assert recording.metadata["starttime of export"].startswith("2022-05-02T13:56:24.376")
+
+
+def test_twincat_trace_takes_the_unit_of_the_file():
+    columns = {"voltage": "func_units_unscaled", "velocity": "var_REAL64 [deg/s]", "current": "func_OS [mA]"}
+    trace = read(shared("formats", "tc3_default.csv"), columns)
+    assert np.array_equal(trace["voltage"], np.arange(1000.0))
+    np.testing.assert_allclose(trace["current"], np.arange(1000) * 1e-3, atol=1e-12)  # 5 times oversampled ramp
+    with pytest.raises(InputError, match=r"column 'var_INT16.*has no unit"):
+        read(shared("formats", "tc3_default.csv"), {"velocity": "var_INT16"})
+    with pytest.raises(InputError, match=r"open unit: the header names 'dV .Voltage.' and Unit Offset 10"):
+        read(shared("formats", "tc3_default.csv"), {"voltage": "func_units_scaled"})
+    stated = read(shared("formats", "tc3_default.csv"), {"voltage": "func_units_scaled [mV]"})
+    np.testing.assert_allclose(stated["voltage"], np.arange(1000) * 1e-3)
+
+
+def test_twincat_full_time_stamps_and_cells_left_empty_by_a_slower_channel(tmp_path):
+    start = 132959733843760000  # too large for a float to tell 100 ns
+    rows = [
+        f"{start + 10_000 * k + 1}\t{k}\t" + (f"{start + 10_000 * k + 1}\t{k}" if k % 5 == 0 else "\t")
+        for k in range(50)
+    ]
+    head = "Name\tproject\nStarttime of export\t1\n\nName\tvelocity\tName\tcurrent\nUnit\trad/s\tUnit\tA\n\n"
+    (tmp_path / "run.csv").write_text(head + "\n".join(rows))
+    trace = read(tmp_path / "run.csv")
+    assert trace.sample_period == pytest.approx(1e-3, rel=1e-12)
+    np.testing.assert_allclose(trace["current"], np.arange(46), atol=1e-9)
+
+
+def test_twincat_with_commas_and_a_truncated_end(tmp_path):
+    text = "Name,project\nStarttime of export,132959733843760000\n\nName,velocity,torque\nUnit,rad/s,Nm\n\n"
+    text += "0,1.5,2\n1,2.5,3\n2,3.5,4\n"
+    path = tmp_path / "run.csv"
+    path.write_text(text)
+    assert read(path)["torque"].tolist() == [2, 3, 4]
+    path.write_text(text[: text.rindex(",")])
+    with pytest.raises(InputError, match="truncated"):
+        read(path)
+
+
+def test_emps_in_the_units_the_rig_gives():
+    path = shared("emps", "DATA_EMPS.mat")
+    raw = loadmat(path)
+    columns = {"time": "t [s]", "position": "qm [m]", "position_reference": "qg [m]", "voltage": "vir [V]"}
+    trace = read(path, columns)
+    assert trace.linear and len(trace) == 24841 and len(trace.segments) == 1
+    assert trace.sample_period == pytest.approx(1e-3, rel=1e-9)
+    assert trace.time_base is not None and not trace.time_base.resampled
+    assert np.array_equal(trace["position"], raw["qm"][:, 0])
+    assert np.array_equal(trace["voltage"], raw["vir"][:, 0])
+    assert float(trace.metadata["gtau"]) == pytest.approx(35.15065188248547)
+    with pytest.raises(InputError, match="'t': has no unit"):
+        read(path)
+
+
+def test_emps_pulses_are_numbers_before_arithmetic():
+    path = shared("emps", "DATA_EMPS_PULSES.mat")
+    columns = {"time": "t [s]", "position": "qm [m]", "force": "-pulses_N [N]"}
+    assert set(np.unique(read(path, columns)["force"]).tolist()) == {-5.0, 0.0}
+
+
+def test_mat_structs_and_matrices(tmp_path):
+    time = np.arange(100) * 1e-3
+    savemat(tmp_path / "run.mat", {"log": {"t": time, "both": np.column_stack([time, 2 * time])}, "name": "axis"})
+    trace = read(tmp_path / "run.mat", {"time": "log.t [s]", "velocity": "log.both(:,2) [rad/s]"})
+    assert np.array_equal(trace["velocity"], 2 * time)
+    assert trace.metadata["name"] == "axis"
+
+
+def test_epos_example():
+    trace = read(shared("formats", "epos_recorder_example.csv"))
+    assert dict(trace.units) == {"velocity": "rad/s", "torque": "dimensionless"}
+    assert trace.sample_period == pytest.approx(0.040) and len(trace) == 500
+
+
+@pytest.mark.parametrize(("name", "remark"), [("1.csv", "was -8.9"), ("2.csv", "was -11.1"), ("n1.csv", "was 22.1")])
+def test_epos_samples_changed_by_hand_are_left_out_and_reported(name, remark):
+    trace = read(shared("tro2021_screw", "driveNo3", "steady_state", "0.096kg", name))
+    assert len(trace) == 499
+    assert any(remark in note and "line 15 left out" in note for note in trace.notes)
+    assert np.abs(trace["torque"]).max() < 1.0
+
+
+def test_every_epos_recording_is_read():
+    files = sorted(shared("tro2021_screw").rglob("*.csv"))
+    assert len(files) == 114
+    for path in files:
+        trace = read(path, {"torque": "-Torque actual value averaged [%]"})
+        assert len(trace) >= 499 and len(trace.segments) == 1
+
+
+def test_bam_recording():
+    path = shared("bam_xl330", "2026-01-15_10h28m10.json")
+    content = json.loads(path.read_text())
+    trace = read(path)
+    recording = {channel.name: channel.values for channel in read_recording(path).channels}
+    loads = np.array([e["load"] - 65536 if e["load"] > 32767 else e["load"] for e in content["entries"]])
+    volts = np.array([e["input_volts"] for e in content["entries"]])
+    assert loads.min() < 0 < loads.max()
+    np.testing.assert_allclose(recording["voltage"], loads / 885 * volts, rtol=1e-12)
+    assert np.abs(trace["voltage"]).max() <= volts.max() * 1.001
+    assert 290 < trace["temperature"].min() < 330
+    assert trace.metadata["mass"] == "0.49" and trace.metadata["kp"] == "100"
+    assert 150 < 1 / trace.sample_period < 300
+    assert trace.time_base is not None and trace.time_base.resampled
+
+
+def test_frequency_response_is_refused():
+    with pytest.raises(InputError, match="frequency-response measurement, which holds no motion"):
+        read(shared("formats", "freq_trace.XML"))

@@ -1,0 +1,162 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+from bench.errors import InputError
+from bench.trace.clock import Clock, Sampled
+from bench.trace.time_base import interpolate, regular
+
+
+def clock(time, tick=1.0):
+    """Sample times given in units of `tick` seconds."""
+    recorded = np.asarray(time, dtype=float)
+    return Clock(recorded * tick, recorded, tick, lambda sample: f"file: sample {sample}")
+
+
+def one(time, tick=1.0, values=None):
+    """A velocity alone on a clock."""
+    return {"velocity": Sampled(clock(time, tick), np.arange(len(time), dtype=float) if values is None else values)}
+
+
+def test_a_regular_recording_passes_untouched():
+    time, values = np.arange(1000) * 250e-6 + 17.0, np.random.default_rng(0).normal(size=1000)
+    signals = one(time, values=values)
+    found = regular(signals)
+    assert found.time is signals["velocity"].clock.time
+    assert found.signals["velocity"] is values
+    assert not found.time_base.resampled and found.notes == ()
+
+
+def test_a_regular_recording_with_holes_passes_untouched():
+    time = np.concatenate([np.arange(500) * 1e-3, 0.7004 + np.arange(300) * 1e-3, 3.0001 + np.arange(200) * 1e-3])
+    signals = one(time)
+    found = regular(signals)
+    assert found.time is signals["velocity"].clock.time
+    assert found.signals["velocity"] is signals["velocity"].values
+    assert [start for start, _ in found.time_base.holes] == pytest.approx([0.499, 0.9994])
+
+
+@pytest.mark.parametrize(("period", "tick"), [(1 / 3, 1e-3), (1.5, 1e-3), (16.0 / 3.0, 1e-3), (62.5, 1e-6)])
+def test_times_rounded_to_the_files_digits_are_the_line_they_were_rounded_from(period, tick):
+    """A period of a third of a ms printed as 0.333, 0.667, 1.000, or of 1.5 ms printed as 0, 2, 3, 4, 6 ms."""
+    decimals = 3 if period < 1 else 0
+    stamps = np.round(period * np.arange(4000), decimals)
+    found = regular(one(stamps, tick))
+    assert not found.time_base.resampled and found.time_base.interpolated == 0
+    assert found.time_base.sample_period == pytest.approx(period * tick, rel=1e-6)
+    np.testing.assert_allclose(np.diff(found.time), period * tick, rtol=1e-6)
+    assert np.array_equal(found.signals["velocity"], np.arange(4000))
+
+
+def test_missing_samples_are_interpolated_and_counted_and_measured_ones_stay():
+    every = np.arange(2000)
+    kept = np.delete(every, [100, 700, 1500])
+    found = regular(one(kept, 1e-3, np.sin(kept / 50.0)))
+    assert found.time_base.interpolated == 3 and found.time_base.holes == ()
+    assert not found.time_base.resampled
+    assert np.array_equal(found.signals["velocity"][kept], np.sin(kept / 50.0))
+    np.testing.assert_allclose(found.signals["velocity"], np.sin(every / 50.0), atol=2e-4)
+
+
+def test_a_hole_is_kept_and_nothing_placed_inside():
+    stamps = np.delete(np.arange(1000), np.arange(400, 403))
+    found = regular(one(stamps, 1e-3))
+    assert found.time_base.interpolated == 0
+    assert found.time_base.holes == (pytest.approx((0.399, 0.004)),)
+    assert found.time.size == stamps.size
+
+
+def test_jitter_is_told_and_resampled_onto_a_regular_base():
+    rng = np.random.default_rng(1)
+    time = np.sort(np.arange(3000) * 1e-3 + rng.uniform(-0.3e-3, 0.3e-3, 3000))
+    found = regular(one(time, values=np.sin(2 * np.pi * 5.0 * time)))
+    assert found.time_base.resampled
+    assert found.time_base.jitter == pytest.approx(np.abs(np.diff(time) / np.median(np.diff(time)) - 1).max(), abs=0.01)
+    np.testing.assert_allclose(np.diff(found.time), found.time_base.sample_period, rtol=1e-9)
+    np.testing.assert_allclose(found.signals["velocity"], np.sin(2 * np.pi * 5.0 * found.time), atol=3e-4)
+    assert any("jitter" in note for note in found.notes)
+
+
+def test_duplicates_are_dropped_and_counted():
+    time = np.repeat(np.arange(300), 2)[:400] * 1e-3
+    found = regular(one(time, values=np.repeat(np.arange(300.0), 2)[:400]))
+    assert found.time_base.duplicates == 200
+    assert np.array_equal(found.signals["velocity"], np.arange(200.0))
+    assert found.notes == ("200 samples dropped at times that stood already in the recording",)
+
+
+def test_few_duplicates_with_other_values_keep_the_first():
+    time = np.insert(np.arange(500), 250, 249) * 1e-3
+    found = regular(one(time))
+    assert found.time_base.duplicates == 1
+    assert found.signals["velocity"][248:252].tolist() == [248.0, 249.0, 251.0, 252.0]
+
+
+def test_many_duplicates_with_other_values_are_refused():
+    with pytest.raises(InputError, match=r"sample 1: 50 of 100 samples stand at a time already taken"):
+        regular(one(np.repeat(np.arange(50), 2) * 1e-3))
+
+
+def test_time_running_backwards_is_refused():
+    time = np.arange(100) * 1e-3
+    time[60] = 0.01
+    with pytest.raises(InputError, match=r"sample 60: time runs backwards \(0.059 s, then 0.01 s\)"):
+        regular(one(time))
+
+
+def test_a_faster_signal_is_taken_at_the_velocitys_times():
+    slow, fast = clock(np.arange(200) * 1e-3), clock(np.arange(800) * 0.25e-3)
+    found = regular(
+        {"current": Sampled(fast, np.sin(20.0 * fast.time)), "velocity": Sampled(slow, np.cos(20.0 * slow.time))}
+    )
+    assert found.time is slow.time
+    assert list(found.signals) == ["current", "velocity"]
+    np.testing.assert_allclose(found.signals["current"], np.sin(20.0 * found.time), atol=1e-6)
+
+
+@given(
+    st.integers(2, 200),
+    st.floats(1e-5, 10.0),
+    st.floats(-1e3, 1e3),
+    st.lists(st.tuples(st.integers(0, 200), st.floats(3.0, 50.0)), max_size=3),
+)
+def test_regular_segments_pass_whatever_their_holes(count, period, start, holes):
+    time = start + period * np.arange(count)
+    for after, length in holes:
+        time[min(after, count) :] += length * period
+    steps = np.diff(time)
+    found = regular(one(time))
+    if np.median(steps) < 1.5 * period:  # with holes in the majority there is no telling them from the rate
+        assert found.signals["velocity"].size >= count
+        assert not found.time_base.resampled
+        assert found.time_base.sample_period == pytest.approx(period, rel=1e-6)
+        assert len(found.time_base.holes) == int((steps > 2.5 * period).sum())
+    assert (np.diff(found.time) > 0).all()
+
+
+def test_why_interpolation_is_by_akima():
+    """RMS error on a smooth run, noise kept, and overshoot at a current step, from 1 kHz samples jittering by 30 %."""
+    rng = np.random.default_rng(5)
+    time = np.sort(np.arange(4000) * 1e-3 + rng.uniform(-0.3e-3, 0.3e-3, 4000))
+    at, noise = np.arange(10, 3990) * 1e-3, rng.normal(size=4000)
+    methods = {
+        "linear": lambda values: np.interp(at, time, values),
+        "pchip": lambda values: PchipInterpolator(time, values)(at),
+        "akima": lambda values: interpolate(at, time, values),
+        "cubic spline": lambda values: CubicSpline(time, values)(at),
+    }
+    error, kept, overshoot = {}, {}, {}
+    for name, method in methods.items():
+        error[name] = float(np.sqrt(np.mean((method(_speed(time)) - _speed(at)) ** 2)))
+        kept[name] = float(method(noise).std() / noise.std())
+        overshoot[name] = float(np.abs(method(np.sign(_speed(time)))).max() - 1.0)
+        print(f"{name}: error {error[name]:.1e} rad/s, noise {kept[name]:.3f}, overshoot {overshoot[name]:.1%}")
+    assert error["akima"] < error["pchip"] < 0.5 * error["linear"]
+    assert overshoot["akima"] < 1e-9 < 0.05 < overshoot["cubic spline"]
+    assert abs(kept["akima"] - 1.0) < abs(kept["pchip"] - 1.0) < abs(kept["linear"] - 1.0)
+
+
+def _speed(time):
+    return 100.0 * np.sin(2 * np.pi * 3.0 * time) + 5.0 * np.sin(2 * np.pi * 40.0 * time)
