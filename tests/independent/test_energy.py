@@ -66,7 +66,7 @@ PASSIVE = [
 
 @pytest.mark.parametrize("start", [20.0, -20.0])
 def test_friction_only_dissipates_and_ends_in_rest(start):
-    states = run(Plant([PLAIN] * len(PASSIVE), [[effect] for effect in PASSIVE], velocity=start), 0.0, 0.7, 80e-6)
+    states = run(Plant([PLAIN] * len(PASSIVE), [[effect] for effect in PASSIVE], velocity=start), 0.0, 0.7, 100e-6)
     for effect, speed in zip(PASSIVE, np.abs(states["velocity"]).T, strict=True):
         if effect.name == "presliding_friction":  # bristles give back what they stored
             stored = PLAIN.coulomb**2 / (2 * effect.bristle_stiffness)

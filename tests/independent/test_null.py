@@ -80,12 +80,12 @@ def _push(time):
 
 
 def test_effects_act_alike_alone_and_among_neighbours_whom_they_leave_alone():
-    strong = [kind.draw(PLAIN, 0.6, np.random.default_rng(4), 0.04) for kind in KINDS.values()]
-    bare = run(Plant([PLAIN], [[]]), _push, 0.04)
+    strong = [kind.draw(PLAIN, 0.6, np.random.default_rng(4), 0.03) for kind in KINDS.values()]
+    bare = run(Plant([PLAIN], [[]]), _push, 0.03)
     side_by_side = [effects for effect in strong for effects in ([], [effect])]
-    both = run(Plant([PLAIN] * len(side_by_side), side_by_side), _push, 0.04)
+    both = run(Plant([PLAIN] * len(side_by_side), side_by_side), _push, 0.03)
     for k, effect in enumerate(strong):
-        alone = run(Plant([PLAIN], [[effect]]), _push, 0.04)
+        alone = run(Plant([PLAIN], [[effect]]), _push, 0.03)
         for name in ("position", "velocity", "measured_velocity"):
             assert (both[name][:, 2 * k] == bare[name][:, 0]).all(), effect.name
             # vectorised sine and exponential may round differently

@@ -25,7 +25,7 @@ from tests.independent.effects import (
 from tests.independent.plant import Plant
 
 J, KW, K0, KT = PLAIN.inertia, PLAIN.viscous, PLAIN.coulomb, PLAIN.torque_constant
-STEP = 10e-6
+STEP = 20e-6
 
 #: Effect, and its torque at (time, angle, speed, acceleration, current) as its definition says.
 EQUATIONS = [
@@ -63,7 +63,7 @@ def _push(time):
 
 @pytest.fixture(scope="module")
 def motion():
-    return run(Plant([PLAIN] * len(EQUATIONS), [[effect] for effect, _ in EQUATIONS]), _push, 0.1, STEP)
+    return run(Plant([PLAIN] * len(EQUATIONS), [[effect] for effect, _ in EQUATIONS]), _push, 0.085, STEP)
 
 
 @pytest.mark.parametrize("k", range(len(EQUATIONS)), ids=[effect.name for effect, _ in EQUATIONS])

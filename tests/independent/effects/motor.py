@@ -73,7 +73,8 @@ class VoltageLimit(Effect):
 
     @classmethod
     def draw(cls, axis, severity, rng, duration):
-        return cls(axis.back_emf_constant * axis.top_speed * (1.1 - 0.45 * min(about(severity, rng), 1.0)))
+        # motions reach 0.85 of top speed or more, which a weak limit must still cut off
+        return cls(axis.back_emf_constant * axis.top_speed * (0.93 - 0.35 * min(about(severity, rng), 1.0)))
 
     def driven_current(self, rows, demand, current, step):
         decay = -np.expm1(-rows.resistance / rows.inductance * step)
