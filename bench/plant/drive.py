@@ -137,25 +137,32 @@ class CascadeDrive:
 class _EmulatedFriction:
     """Friction torque by software: full friction while moving; at standstill whatever holds the axis, up to K_0.
 
-    Friction that stops the axis within this tick of length T is M_set - K_w*w - M_load + J*w/T; beyond K_0 it slips.
-    The load torque is what the last tick's change of speed tells: M_load = M_motor - J*(w - w_last)/T.
+    A tick of length T begins at speed w and accelerates by alpha = (M_net - friction)/J, M_net being set-point less
+    load. Viscous friction is that of the speed in its middle, w + alpha*T/2, as the torque is held over the tick. Dry
+    friction is what stops the axis within the tick, M_net + J*w/T - K_w*w/2, as far as K_0 allows; beyond that it
+    slips. The load is what the last tick's change of speed tells: M_load = M_motor - J*(w - w_last)/T.
     """
 
     def __init__(self, emulation: FrictionEmulation, period: float, velocity: Array) -> None:
-        self._viscous = np.asarray(emulation.viscous_friction_coefficient)
+        viscous = np.asarray(emulation.viscous_friction_coefficient)
+        inertia = np.asarray(emulation.inertia)
         self._upper = np.asarray(emulation.coulomb_friction)
         self._lower = -self._upper
-        self._stopping = np.asarray(emulation.inertia) / period
-        self._stop_last = self._stopping * velocity
+        self._momentum_rate = inertia / period
+        self._stopping = inertia / period - viscous / 2.0
+        # friction = dry + K_w*(w + alpha*T/2), solved for friction
+        self._share = inertia / (inertia + viscous * period / 2.0)
+        self._viscous = self._share * viscous
+        self._last = self._momentum_rate * velocity
         self.applied: Array = np.zeros_like(velocity)
 
     def torque(self, setpoint: Array, velocity: Array) -> Array:
         """Friction torque - N*m (N), (axes,), to be taken off the set-point."""
-        viscous, stop = self._viscous * velocity, self._stopping * velocity
-        load = self.applied + self._stop_last - stop
-        self._stop_last = stop
-        holding = setpoint - load - viscous + stop
-        return np.maximum(np.minimum(holding, self._upper), self._lower) + viscous
+        now = self._momentum_rate * velocity
+        net = setpoint - self.applied + (now - self._last)
+        self._last = now
+        dry = np.maximum(np.minimum(net + self._stopping * velocity, self._upper), self._lower)
+        return net + self._share * (dry - net) + self._viscous * velocity
 
 
 def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 
 from bench.errors import InputError
 from bench.plant.references import References
@@ -74,8 +75,9 @@ class Sensors:
     def record(self, states: States, references: References, random: np.random.Generator, origin: str) -> Trace:
         """Trace of one axis' motion, position, velocity and current of a row simultaneous.
 
-        Position is rounded to counts. Velocity is the drive's own, true speed with noise. Current steps at every tick
-        of the drive; the current of a row is its mean over the control period around the sample.
+        Position is rounded to counts. Velocity is the drive's own, true speed with noise. The drive holds its current
+        over each tick; the current of a row is interpolated between the middles of the ticks around it, by a cubic
+        that keeps their shape (Fritsch, Carlson, SIAM J. Numer. Anal. 17, 1980, 238-246), so it never exceeds the peak.
 
         Args:
             states: of one axis.
@@ -84,26 +86,28 @@ class Sensors:
             origin: name the trace carries.
         """
         rows = slice(None, None, self.stride(references.period))
-        position, velocity, effort = (s[:, 0] for s in (states.position, states.velocity, self._effort(states)))
-        noise = random.standard_normal((2, len(states.time[rows])))
+        time, position, velocity = states.time[rows], states.position[rows, 0], states.velocity[rows, 0]
+        noise = random.standard_normal((2, len(time)))
         signals = {
-            "position": _counted(position[rows], self.encoder_resolution),
-            "velocity": velocity[rows] + self.velocity_noise * noise[0],
-            self._effort_name: effort[rows] + self.current_noise * noise[1],
+            "position": _counted(position, self.encoder_resolution),
+            "velocity": velocity + self.velocity_noise * noise[0],
+            self._effort_name: self._effort(states, time) + self.current_noise * noise[1],
             "position_reference": references.position[rows],
             "velocity_reference": references.velocity[rows],
         }
         units = {name: SI_UNITS[name][int(self.linear)] for name in signals}
-        return Trace(states.time[rows], signals, units, origin)
+        return Trace(time, signals, units, origin)
 
     @property
     def _effort_name(self) -> str:
         return "current" if self.torque_constant is not None else "force" if self.linear else "torque"
 
-    def _effort(self, states: States) -> Array:
-        """Mean current (torque) over the control period around each tick, (ticks, axes)."""
-        held = states.torque if self.torque_constant is None else self.torque_constant.current(states.torque)
-        return (np.concatenate([held[:1], held[:-1]]) + held) / 2.0
+    def _effort(self, states: States, time: Array) -> Array:
+        """Current (torque) of one axis at some times - (n,)."""
+        torque = states.torque[:, 0]
+        held = torque if self.torque_constant is None else self.torque_constant.current(torque)
+        middles = states.time + (states.time[1] - states.time[0]) / 2.0
+        return PchipInterpolator(middles, held)(np.maximum(time, middles[0]))
 
 
 def _counted(position: Array, resolution: float) -> Array:

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
+from bench.plant.model import AxisParameters, build_spec
+from bench.plant.native import run_controls, sense_torque
 from bench.plant.sensors import Sensors
 from bench.plant.states import States
 from bench.rig.torque_constant import TorqueConstant
@@ -39,15 +41,13 @@ def test_position_comes_in_counts():
 
 
 def test_noise_has_the_stated_size_and_no_bias():
-    states, trace = record(
-        Sensors(250e-6, velocity_noise=0.03, current_noise=0.005, torque_constant=TorqueConstant(0.7))
-    )
-    for error, size in (
-        (trace["velocity"] - states.velocity[:, 0], 0.03),
-        (trace["current"] - np.convolve(states.torque[:, 0] / 0.7, [0.5, 0.5])[:-1], 0.005),
-    ):
-        assert error[1:].std() == pytest.approx(size, rel=0.03)
-        assert abs(error[1:].mean()) < 4.0 * size / np.sqrt(len(error))
+    constant = TorqueConstant(0.7)
+    _, quiet = record(Sensors(250e-6, torque_constant=constant))
+    _, trace = record(Sensors(250e-6, velocity_noise=0.03, current_noise=0.005, torque_constant=constant))
+    for name, size in (("velocity", 0.03), ("current", 0.005)):
+        error = trace[name] - quiet[name]
+        assert error.std() == pytest.approx(size, rel=0.03)
+        assert abs(error.mean()) < 4.0 * size / np.sqrt(len(error))
 
 
 def test_seed_alone_decides_the_noise():
@@ -63,10 +63,43 @@ def test_current_inverts_the_saturating_torque_constant():
 
 
 def test_current_belongs_to_the_instant_of_the_row():
-    """Torque is held between ticks; the row's current is its mean around the row, neither early nor late."""
-    states, trace = record(Sensors(250e-6), torque=np.arange(8000.0))
-    np.testing.assert_allclose(trace["torque"][1:], np.arange(1, 8000) - 0.5)
-    assert len(states.time) == len(trace)
+    """Torque is held over each tick at the value of a smooth signal in its middle: a row shows that signal."""
+    period = 250e-6
+    middles = (np.arange(8000) + 0.5) * period
+    states, trace = record(Sensors(1e-3), torque=np.sin(60.0 * middles))
+    error = trace["torque"] - np.sin(60.0 * states.time[::4])
+    assert np.abs(error[1:]).max() < 2e-4
+    assert abs(np.mean(error[1:] * np.cos(60.0 * states.time[4::4]))) < 1e-7  # neither early nor late
+
+
+def test_current_never_exceeds_what_the_drive_set():
+    torque = np.where(np.arange(8000) % 400 < 200, 3.5, -3.5)
+    _, trace = record(Sensors(250e-6), torque=torque)
+    assert np.abs(trace["torque"]).max() <= 3.5
+
+
+def test_apparent_inertia_differs_from_the_true_one_only_by_the_hold():
+    """|M|/(omega*|w|) of a sine: J*(1 - (omega*T)**2/24), as sampling a held torque has it; a plain mean loses more."""
+    inertia, omega, period = 2.2e-3, 600.0, 250e-6
+    parameters = AxisParameters(inertia)
+    spec = build_spec(parameters, period)
+    sense_torque(spec)
+    time = np.arange(8000) * period
+    states = run_controls(spec.compile(), np.sin(omega * time)[:, None], 0.0, 0.0)
+    trace = Sensors(1e-3).record(states, motion()[1], np.random.default_rng(0), "test")
+    mean = (states.torque[3:-1:4, 0] + states.torque[4::4, 0]) / 2.0
+
+    def amplitude(signal, at):
+        columns = np.stack([np.sin(omega * at), np.cos(omega * at), np.ones_like(at)], axis=1)
+        return np.hypot(*np.linalg.lstsq(columns, signal)[0][:2])
+
+    rows = trace.time[1:]
+    speed = omega * amplitude(trace["velocity"][1:], rows) * inertia
+    apparent, of_mean = amplitude(trace["torque"][1:], rows) / speed - 1.0, amplitude(mean, rows) / speed - 1.0
+    hold = (omega * period) ** 2 / 24.0
+    print(f"apparent inertia at {omega:g} rad/s: {apparent:+.2e}, by the mean {of_mean:+.2e}, hold alone {-hold:+.2e}")
+    assert abs(apparent) < 1.6 * hold
+    assert abs(of_mean) > 3.0 * hold
 
 
 def test_linear_axes_record_force_in_newton():

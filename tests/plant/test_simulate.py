@@ -11,6 +11,7 @@ from bench.plant.profiles import PROFILES
 from bench.plant.simulate import simulate
 from bench.plant.truth import truth_path, write_truth
 from bench.rig.load import Load
+from bench.rig.rig import load_rig
 
 
 def torque_error(simulated):
@@ -82,6 +83,39 @@ def test_gear_reflects_inertia_and_load_torque(rig_of):
     assert parameters.load_torque == pytest.approx(0.1)
     assert parameters.motor_inertia == pytest.approx(0.35e-4)
     assert parameters.inertia == pytest.approx(0.35e-4 + 4.0 * 0.2**2 / 8.0 / 25.0)
+
+
+def test_linear_axis_runs_within_its_stroke(tmp_path):
+    path = tmp_path / "linear.toml"
+    path.write_text(LINEAR, encoding="utf-8")
+    simulated = simulate(load_rig(path))
+    assert simulated.trace.linear
+    assert 0.05 < np.ptp(simulated.trace["position"]) < 0.21
+    assert torque_error(simulated)[0] < 1e-4
+    truth = json.loads(simulated.truth.as_json())
+    assert truth["parameters"]["moving_mass"] == {"value": 95.0, "unit": "kg"}
+    assert truth["parameters"]["coulomb_friction_force"]["unit"] == "N"
+
+
+LINEAR = """
+name = "slide"
+kind = "linear"
+[motor]
+force_constant = "35 N/A"
+peak_current = "10 A"
+[load]
+stroke = "20 cm"
+[drive]
+position_gain = "40 1/s"
+velocity_gain = "15000 N*s/m"
+integral_gain = "200000 N/m"
+inertia_feedforward = "90 kg"
+[simulation]
+moving_mass = "95 kg"
+viscous_friction_coefficient = "200 N*s/m"
+coulomb_friction = "20 N"
+encoder_resolution = "1 um"
+"""
 
 
 def test_truth_stands_beside_the_trace(rig_of, tmp_path):
