@@ -20,8 +20,8 @@ def test_in_the_gap_the_motor_moves_alone():
 
 
 def test_engaged_both_move_as_one():
-    states = run(Plant([PLAIN], [[Backlash(0.02, 2000.0, 1.0)]]), 0.5, 0.3)
-    late = states["time"] > 0.25
+    states = run(Plant([PLAIN], [[Backlash(0.02, 2000.0, 1.0)]]), 0.5, 0.2)
+    late = states["time"] > 0.15
     torque = 0.5 * PLAIN.torque_constant - PLAIN.coulomb
     acceleration = (torque - PLAIN.viscous * states["velocity"][late, 0]) / PLAIN.inertia
     seen = np.gradient(states["velocity"][late, 0], states["time"][late])

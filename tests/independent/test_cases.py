@@ -20,7 +20,7 @@ SHARED = Path(__file__).parents[3] / "shared" / "cases"
 
 def _case(name, effects, seed, linear=False):
     case = hidden(name, effects, (0.5, 0.6), np.random.default_rng(seed), duration=0.4, linear=linear)
-    axis = replace(case.axis, control_period=250e-6)
+    axis = replace(case.axis, control_period=250e-6, top_speed=0.25 * case.axis.top_speed)  # short ramps, short tests
     return replace(case, axis=axis, sensors=replace(case.sensors, sample_period=1e-3))
 
 

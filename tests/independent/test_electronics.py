@@ -50,7 +50,7 @@ def test_filtered_speed_lags_a_ramp_by_its_time_constant():
 
 
 def test_eccentric_encoder_errs_once_a_turn_and_its_speed_is_the_derivative():
-    states = run(Plant([FREE], [[EncoderEccentricity(0.05, 0.4)]], velocity=40.0), 0.3, 0.3)
+    states = run(Plant([FREE], [[EncoderEccentricity(0.05, 0.4)]], velocity=40.0), 0.3, 0.2)
     q, seen = states["position"][:, 0], states["measured_position"][:, 0]
     assert np.abs(seen - q - 0.05 * np.sin(q + 0.4)).max() < 1e-12
     slope = np.gradient(seen, states["time"])[1:-1]
@@ -59,7 +59,7 @@ def test_eccentric_encoder_errs_once_a_turn_and_its_speed_is_the_derivative():
 
 def test_lag_and_eccentricity_compose_as_sensor_then_filter():
     effects = [VelocityFilterLag(2e-3), EncoderEccentricity(0.05, 0.4)]
-    states = run(Plant([FREE], [effects], velocity=40.0), 0.0, 0.3)
+    states = run(Plant([FREE], [effects], velocity=40.0), 0.0, 0.2)
     t = states["time"]
     late = t > 0.05
     angle = 40.0 * t + 0.4

@@ -35,7 +35,7 @@ def test_a_spring_swings_for_ever_at_its_frequency():
 
 def test_varying_inertia_conserves_kinetic_energy():
     effect = PositionDependentInertia(0.2, 3.0, 0.4)
-    states = run(Plant([FREE], [[effect]], velocity=60.0), 0.0, 0.2)
+    states = run(Plant([FREE], [[effect]], velocity=60.0), 0.0, 0.12)
     inertia = FREE.inertia * (1.0 + 0.2 * np.sin(3.0 * states["position"] + 0.4))
     energy = inertia * states["velocity"] ** 2 / 2
     assert np.ptp(energy) < 2e-4 * energy.mean()
@@ -66,7 +66,7 @@ PASSIVE = [
 
 @pytest.mark.parametrize("start", [20.0, -20.0])
 def test_friction_only_dissipates_and_ends_in_rest(start):
-    states = run(Plant([PLAIN] * len(PASSIVE), [[effect] for effect in PASSIVE], velocity=start), 0.0, 0.7, 100e-6)
+    states = run(Plant([PLAIN] * len(PASSIVE), [[effect] for effect in PASSIVE], velocity=start), 0.0, 0.7, 140e-6)
     for effect, speed in zip(PASSIVE, np.abs(states["velocity"]).T, strict=True):
         if effect.name == "presliding_friction":  # bristles give back what they stored
             stored = PLAIN.coulomb**2 / (2 * effect.bristle_stiffness)
@@ -80,7 +80,7 @@ def test_friction_only_dissipates_and_ends_in_rest(start):
 def test_a_coupling_with_damping_only_dissipates(coupling):
     plant = Plant([FREE], [[coupling]], velocity=10.0)
     plant.load_velocity[:] = -5.0
-    states = run(plant, 0.0, 0.3)
+    states = run(plant, 0.0, 0.15)
     rotor, load = FREE.rotor_inertia, FREE.inertia - FREE.rotor_inertia
     momentum = rotor * states["velocity"] + load * states["load_velocity"]
     assert np.abs(momentum - momentum[0]).max() < 1e-12 * np.abs(rotor * 10.0)
@@ -93,6 +93,6 @@ def test_a_coupling_with_damping_only_dissipates(coupling):
 
 def test_gravity_conserves_energy_of_a_pendulum():
     axis = replace(FREE, inertia=2e-3)
-    states = run(Plant([axis], [[Unbalance(0.3)]], velocity=12.0), 0.0, 0.4)
+    states = run(Plant([axis], [[Unbalance(0.3)]], velocity=12.0), 0.0, 0.25)
     energy = axis.inertia * states["velocity"] ** 2 / 2 + 0.3 * (1 - np.cos(states["position"]))
     assert np.ptp(energy) < 1e-6 * energy[0]

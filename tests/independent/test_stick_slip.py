@@ -22,7 +22,7 @@ def _move(w, torque, step, *, forward=0.05, backward=0.08, inertia=1e-3, viscous
 
 @pytest.mark.parametrize("viscous", [0.0, 1e-7, 8e-4, 0.05])
 def test_coast_down_stops_at_the_exact_time_and_angle(viscous, capsys):
-    axis, start = replace(PLAIN, viscous=viscous), 20.0
+    axis, start = replace(PLAIN, viscous=viscous), 10.0
     j, k, c = axis.inertia, viscous, axis.coulomb
     if viscous == 0.0:
         stop, way = j * start / c, j * start**2 / (2 * c)

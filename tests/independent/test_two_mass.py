@@ -15,7 +15,7 @@ def test_motor_and_load_swing_at_the_natural_frequency_and_decay():
     stiffness, damping = 45.0, 0.004
     plant = Plant([FREE], [[ElasticCoupling(stiffness, damping)]])
     plant.velocity[:], plant.load_velocity[:] = 3.0, -3.0 * ROTOR / LOAD
-    states = run(plant, 0.0, 0.2)
+    states = run(plant, 0.0, 0.12)
     relative = (states["velocity"] - states["load_velocity"])[:, 0]
     omega, decay = np.sqrt(stiffness / REDUCED), damping / (2.0 * REDUCED)
     swing = np.sqrt(omega**2 - decay**2)
