@@ -17,12 +17,13 @@ from bench.errors import BenchError, InputError
 from bench.files import write_text
 from bench.identify.estimate import Estimate
 from bench.identify.lab import identify_as_in_the_lab
+from bench.identify.refine import Refinement
 from bench.identify.refine import refine as polish
 from bench.identify.regression import identify as regress
 from bench.plant.profiles import DEFAULT, PROFILES
 from bench.plant.simulate import simulate as run_simulation
 from bench.plant.truth import write_truth
-from bench.report.estimate import estimate_json, estimate_table
+from bench.report.estimate import estimate_json, estimate_table, refinement_line
 from bench.report.identification import write_identification
 from bench.report.progress import progress
 from bench.rig.rig import Rig, load_rig
@@ -33,7 +34,7 @@ from bench.trace.read import read
 from bench.trace.stream import stream
 from bench.trace.write import write
 
-app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None)
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
 
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
@@ -47,11 +48,15 @@ class Estimator(StrEnum):
 
 
 @app.callback(invoke_without_command=True)
-def bench(version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False) -> None:
-    """Test bench for a servo axis: simulate it in MuJoCo, identify it, find what the model misses."""
+def bench(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+) -> None:
+    """Test bench for a servo axis: simulate it in MuJoCo, and identify simulated and real ones alike."""
     if version:
         typer.echo(__version__)
-        raise typer.Exit
+    elif context.invoked_subcommand is None:
+        typer.echo(context.get_help())
 
 
 @app.command()
@@ -115,36 +120,30 @@ def identify(
     axis = axis.model_copy(update={"offset": axis.offset or offset})
     if estimator is Estimator.LAB and (refine or offset or cutoff):
         raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
-    estimate, note = _estimate(trace, axis, estimator, refine, cutoff)
+    estimate, refinement = _estimate(trace, axis, estimator, refine, cutoff)
     if json is not None:
-        _write_json(json, estimate_json(estimate))
-    files = write_identification(out, trace, axis, estimate) if out is not None else []
+        _write_json(json, estimate_json(estimate, refinement))
+    files = write_identification(out, trace, axis, estimate, refinement) if out is not None else []
     if json != Path("-"):
         _console().print(estimate_table(estimate, f"{axis.name}: {trace.name}"))
-        if note:
-            typer.echo(note)
+        if refinement is not None:
+            typer.echo(refinement_line(refinement, axis.linear))
         _tell_files(files)
     _tell_warnings(estimate)
 
 
-def _estimate(trace: Path, rig: Rig, estimator: Estimator, refine: bool, cutoff: float | None) -> tuple[Estimate, str]:
-    """Estimate by the method asked for, and a line about its refinement."""
+def _estimate(
+    trace: Path, rig: Rig, estimator: Estimator, refine: bool, cutoff: float | None
+) -> tuple[Estimate, Refinement | None]:
+    """Estimate by the method asked for, and what polishing did to it."""
     columns = rig.trace.columns
     if estimator is Estimator.LAB:
-        return identify_as_in_the_lab(read(trace, columns), rig), ""
+        return identify_as_in_the_lab(read(trace, columns), rig), None
     with progress(f"identifying {trace.name}") as done:
         if not refine:
-            return regress(stream(trace, columns), rig, cutoff), ""
+            return regress(stream(trace, columns), rig, cutoff), None
         recording = read(trace, columns)
-        start = regress(recording, rig, cutoff)
-        done(0.1)
-        polished, refinement = polish(recording, rig, start, done)
-    unit = "m/s" if rig.linear else "rad/s"
-    before, after = refinement.held_out
-    return polished, (
-        f"simulation error on held-out motion {before:.4g} -> {after:.4g} {unit} "
-        f"(held at {refinement.bandwidth:g} rad/s), {'kept' if refinement.accepted else 'not kept'}"
-    )
+        return polish(recording, rig, regress(recording, rig, cutoff), done)
 
 
 def _write_json(path: Path, text: str) -> None:
@@ -184,7 +183,7 @@ def main() -> None:
 
 
 def _failed(message: str, status: int) -> int:
-    line = " ".join(message.split())
+    line = " ".join(message.replace("Value error, ", "").split())
     if line:
         typer.echo(f"bench: {line}", err=True)
     return status

@@ -77,9 +77,8 @@ def refine(
     progress(0.1)
     held_out = unseen.gap(trial), unseen.gap(seen.polished(trial))
     if held_out[1] > held_out[0]:
-        note = "polishing by simulation made held-out motion worse, so the regression's estimate stands"
         gap = _Tracking(trace, rig).gap(start)
-        return replace(start, warnings=(*start.warnings, note)), Refinement((gap, gap), held_out, accepted=False)
+        return start, Refinement((gap, gap), held_out, accepted=False)
     progress(0.5)
     whole = _Tracking(trace, rig)
     polished = whole.polished(start)

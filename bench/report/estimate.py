@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 from collections.abc import Mapping
@@ -11,6 +12,7 @@ from rich import box
 from rich.table import Table
 
 from bench.identify.estimate import Estimate, Parameter
+from bench.identify.refine import Refinement
 
 SCHEMA = "bench.identify/1"
 
@@ -33,9 +35,10 @@ def parameters_json(parameters: Mapping[str, Parameter]) -> dict[str, Any]:
     }
 
 
-def estimate_json(estimate: Estimate) -> str:
-    """The estimate as the contract's JSON."""
+def estimate_json(estimate: Estimate, refinement: Refinement | None = None) -> str:
+    """The estimate as the contract's JSON, with what polishing did where it was asked for."""
     residual = estimate.residual
+    polish = {} if refinement is None else {"refinement": dataclasses.asdict(refinement)}
     return json.dumps(
         {
             "schema": SCHEMA,
@@ -50,8 +53,18 @@ def estimate_json(estimate: Estimate) -> str:
             "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
             "filter": {"cutoff": _number(estimate.cutoff), "unit": "Hz", "source": estimate.source},
             "warnings": list(estimate.warnings),
+            **polish,
         },
         indent=2,
+    )
+
+
+def refinement_line(refinement: Refinement, linear: bool) -> str:
+    """What polishing by simulation did, for a person."""
+    before, after = refinement.held_out
+    return (
+        f"simulation error on held-out motion {before:.4g} -> {after:.4g} {'m/s' if linear else 'rad/s'} "
+        f"(held at {refinement.bandwidth:g} rad/s): {'polish kept' if refinement.accepted else 'polish not kept'}"
     )
 
 

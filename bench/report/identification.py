@@ -6,6 +6,7 @@ from pathlib import Path
 
 from bench.files import write_text
 from bench.identify.estimate import Estimate
+from bench.identify.refine import Refinement
 from bench.report.estimate import estimate_json
 from bench.report.figures import identification_figure, save
 from bench.rig.rig import Rig
@@ -14,7 +15,9 @@ from bench.trace.motion import motion
 from bench.trace.stream import stream
 
 
-def write_identification(out: Path, trace: Path, rig: Rig, estimate: Estimate) -> list[Path]:
+def write_identification(
+    out: Path, trace: Path, rig: Rig, estimate: Estimate, refinement: Refinement | None = None
+) -> list[Path]:
     """Write `identification.png` and `identify.json` into a folder.
 
     Args:
@@ -22,6 +25,7 @@ def write_identification(out: Path, trace: Path, rig: Rig, estimate: Estimate) -
         trace: file the estimate came from; the figure shows its first part where it is very long.
         rig: of the axis.
         estimate: what was identified.
+        refinement: what polishing did, where it was asked for.
 
     Returns:
         Paths written.
@@ -32,5 +36,5 @@ def write_identification(out: Path, trace: Path, rig: Rig, estimate: Estimate) -
     moved = motion(first, effort, condition(first, effort, cutoff))
     figure, text = out / "identification.png", out / "identify.json"
     save(identification_figure(moved, estimate, rig.linear, f"{rig.name}: {trace.name}"), figure)
-    write_text(text, estimate_json(estimate) + "\n")
+    write_text(text, estimate_json(estimate, refinement) + "\n")
     return [figure, text]

@@ -144,7 +144,8 @@ def _coherence(
     At least sixteen half-overlapping windows, as the estimate's bias is about one over their number.
     """
     length = int(np.clip(2 ** int(np.log2(effort.size / 8)), 16, 1024))
-    frequency, coherence = scipy.signal.coherence(
-        np.diff(source, order), effort[order:], fs=1.0 / sample_period, nperseg=length
-    )
+    with np.errstate(divide="ignore", invalid="ignore"):  # a signal that never changes has no power to share
+        frequency, coherence = scipy.signal.coherence(
+            np.diff(source, order), effort[order:], fs=1.0 / sample_period, nperseg=length
+        )
     return frequency[1:-1], np.nan_to_num(coherence[1:-1])

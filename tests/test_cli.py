@@ -1,0 +1,260 @@
+"""The commands as a user meets them: what they print and write, and one line with a status for whatever is wrong."""
+
+import gzip
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from bench.assets import asset
+from bench.cli import main
+from bench.trace.read import read
+from bench.trace.write import write
+from tests.identify.motions import recording
+
+RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nrotor_inertia = "2 kg*cm**2"\n'
+
+
+@pytest.fixture
+def bench(capsys, monkeypatch, tmp_path):
+    """Runs `bench` in a folder of its own and returns status, standard output and standard error."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rig.toml").write_text(RIG, encoding="utf-8")
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["bench", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        printed = capsys.readouterr()
+        return stop.value.code, printed.out, printed.err
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def trace(tmp_path_factory):
+    path = tmp_path_factory.mktemp("trace") / "run.csv.gz"
+    write(recording(np.random.default_rng(0), duration=4.0), path)
+    return path
+
+
+def test_demo_shows_truth_beside_estimate_and_writes_what_it_names(bench, tmp_path):
+    status, out, _ = bench("demo", "--out", "here")
+    assert status == 0
+    assert "truth" in out
+    assert "moment of inertia" in out
+    named = [tmp_path / line.removeprefix("wrote ") for line in out.splitlines() if line.startswith("wrote ")]
+    assert {path.name for path in named} >= {"trace.csv.gz", "identification.png", "identify.json"}
+    assert all(path.stat().st_size > 500 for path in named)
+
+
+def test_simulate_writes_a_trace_and_its_truth(bench, tmp_path):
+    rig = asset("data", "rigs", "sh30701p.toml")
+    status, out, _ = bench("simulate", rig, "--out", "run.parquet", "--profile", "fast_reversals", "--seed", 3)
+    assert status == 0
+    assert "run.parquet.truth.json" in out
+    truth = json.loads((tmp_path / "run.parquet.truth.json").read_text())
+    assert truth["parameters"]["coulomb_friction_torque"] == {"value": 0.085, "unit": "N*m"}
+    assert "velocity" in read(tmp_path / "run.parquet")
+
+
+def test_identify_writes_the_contracts_json(bench, trace, tmp_path):
+    status, out, _ = bench("identify", trace, "--rig", "rig.toml", "--json", "found.json", "--out", "figures")
+    assert status == 0
+    assert "viscous friction coefficient" in out
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert found["schema"] == "bench.identify/1"
+    for name, unit in {
+        "moment_of_inertia": "kg*m**2",
+        "viscous_friction_coefficient": "N*m*s/rad",
+        "coulomb_friction_torque": "N*m",
+        "load_moment_of_inertia": "kg*m**2",
+    }.items():
+        parameter = found["parameters"][name]
+        assert parameter["unit"] == unit
+        assert parameter["ci95"][0] < parameter["value"] < parameter["ci95"][1]
+        assert parameter["std_error"] > 0.0
+    assert set(found["residual"]) == {"rms", "noise_floor", "unit", "relative"}
+    assert found["samples"]["read"] == 4000
+    assert 0 < found["samples"]["used"] <= 4000
+    assert found["warnings"] == []
+    assert (tmp_path / "figures" / "identification.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_json_alone_goes_to_standard_output(bench, trace):
+    status, out, _ = bench("identify", trace, "--rig", "rig.toml", "--json", "-")
+    assert status == 0
+    assert json.loads(out)["schema"] == "bench.identify/1"
+
+
+def test_the_labs_estimator_and_the_polish_answer_too(bench, trace):
+    status, out, err = bench("identify", trace, "--rig", "rig.toml", "--estimator", "lab")
+    assert status == 0
+    assert "moment of inertia" in out
+    assert "too narrow" in err
+    status, out, _ = bench("identify", trace, "--rig", "rig.toml", "--refine")
+    assert status == 0
+    assert "simulation error on held-out motion" in out
+
+
+def test_inspect_says_what_a_trace_holds(bench, trace):
+    status, out, _ = bench("inspect", trace)
+    assert status == 0
+    assert "velocity" in out
+    assert "1000" in out
+    status, out, _ = bench("inspect", trace, "--json", "-")
+    assert status == 0
+    assert json.loads(out)
+
+
+def csv(path, text, encoding="utf-8"):
+    path.write_bytes(text.encode(encoding))
+    return path
+
+
+HEAD = "time [ms],velocity [rad/s],current [A]\n"
+ROWS = [f"{k},{50 * np.sin(k / 80):.6f},{0.3 * np.cos(k / 80):.6f}" for k in range(3000)]
+BODY = HEAD + "\n".join(ROWS) + "\n"
+
+
+def with_row(k, row):
+    return HEAD + "\n".join([*ROWS[:k], row, *ROWS[k + 1 :]]) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (BODY.replace("current [A]", "other [A]", 1), ["current"]),
+        (BODY.replace("velocity [rad/s]", "velocity", 1), ["velocity", "unit"]),
+        (BODY.replace("velocity [rad/s]", "velocity [A]", 1), ["velocity", "A"]),
+        (BODY.replace("velocity [rad/s]", "velocity [bananas]", 1), ["bananas"]),
+        ("", ["empty"]),
+        (HEAD, ["found"]),
+        (with_row(10, "10,fast,0.1"), ["fast"]),
+        (with_row(10, "10,nan,0.1"), ["velocity"]),
+        (with_row(10, "4,1.0,0.1"), ["time"]),
+        (HEAD + "\n".join(f"{k // 2},{k}.5,{k}" for k in range(3000)) + "\n", ["time"]),
+        (HEAD.replace("[ms]", "[kg]") + "\n".join(ROWS), ["time", "kg"]),
+    ],
+    ids=[
+        "missing column",
+        "no unit",
+        "wrong dimension",
+        "unknown unit",
+        "empty file",
+        "header only",
+        "text in a number",
+        "NaN",
+        "time backwards",
+        "duplicate times",
+        "time of another dimension",
+    ],
+)
+def test_bad_input_is_one_line_that_names_the_file_and_status_two(bench, tmp_path, text, words):
+    path = csv(tmp_path / "bad.csv", text)
+    status, out, err = bench("identify", path, "--rig", "rig.toml", "--json", "found.json", "--out", "figures")
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1
+    assert "bad.csv" in err
+    for word in words:
+        assert word in err
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["bad.csv", "rig.toml"]
+
+
+def test_truncated_and_foreign_files_are_refused_in_one_line(bench, tmp_path, trace):
+    whole = trace.read_bytes()
+    write(recording(np.random.default_rng(1), duration=4.0), tmp_path / "whole.parquet")
+    write(recording(np.random.default_rng(1), duration=4.0), tmp_path / "whole.trace")
+    broken = {
+        "cut.csv.gz": whole[: len(whole) // 2],
+        "cut.parquet": (tmp_path / "whole.parquet").read_bytes()[:-2000],
+        "cut.trace": (tmp_path / "whole.trace").read_bytes()[:-2000],
+        "latin.csv": BODY.replace("velocity", "Geschwindigkeit ö").encode("latin-1"),
+        "junk.bin": bytes(range(256)) * 40,
+        "picture.csv": gzip.compress(b"\x89PNG" + bytes(2000)),
+    }
+    for name, content in broken.items():
+        (tmp_path / name).write_bytes(content)
+        status, out, err = bench("identify", name, "--rig", "rig.toml")
+        assert (status, out, err.count("\n")) == (2, "", 1), f"{name}: {status} {err}"
+        assert name in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("identify", "nowhere.csv", "--rig", "rig.toml"), ["nowhere.csv"]),
+        (("identify", ".", "--rig", "rig.toml"), ["folder"]),
+        (("identify", "rig.toml", "--rig", "nowhere.toml"), ["nowhere.toml", "no such file"]),
+        (("identify", "rig.toml"), ["--rig"]),
+        (("simulate", "rig.toml", "--out", "x.csv"), ["rig.toml"]),
+        (("simulate", "rig.toml", "--out", "x.csv", "--seed", "many"), ["--seed", "integer"]),
+        (("nonsense",), ["nonsense"]),
+    ],
+)
+def test_bad_arguments_are_one_line_and_status_two(bench, arguments, words):
+    status, out, err = bench(*arguments)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    for word in words:
+        assert word in err
+
+
+def test_a_rig_with_an_unknown_key_names_it_and_its_neighbour(bench, trace, tmp_path):
+    (tmp_path / "rig.toml").write_text(RIG.replace("torque_constant", "torque_constnt"), encoding="utf-8")
+    status, _, err = bench("identify", trace, "--rig", "rig.toml")
+    assert status == 2
+    assert "torque_constnt" in err
+    assert "torque_constant" in err
+
+
+@pytest.mark.parametrize(
+    ("velocity", "words"),
+    [
+        (lambda t: 50.0 + 0.0 * t, ["moment of inertia", "record instead"]),
+        (lambda t: 100.0 + 50.0 * np.sin(9.0 * t), ["coulomb friction torque", "offset", "both directions"]),
+    ],
+    ids=["constant speed", "one direction"],
+)
+def test_what_the_data_cannot_answer_is_status_one_with_what_to_record(bench, tmp_path, velocity, words):
+    time = np.arange(4000) * 1e-3
+    rng = np.random.default_rng(0)
+    speed = velocity(time)
+    torque = 1.5e-3 * np.gradient(speed, 1e-3) + 8e-4 * speed + 0.06 * np.sign(speed)
+    table = np.column_stack([time * 1e3, speed + rng.normal(scale=0.03, size=4000), torque / 0.8])
+    np.savetxt(tmp_path / "run.csv", table, fmt="%.6f", delimiter=",", header=HEAD.strip(), comments="")
+    status, out, err = bench("identify", "run.csv", "--rig", "rig.toml", "--json", "found.json")
+    assert (status, out, err.count("\n")) == (1, "", 1)
+    for word in words:
+        assert word in err
+    assert not (tmp_path / "found.json").exists()
+
+
+def test_two_samples_are_too_few_and_say_so(bench, tmp_path):
+    csv(tmp_path / "run.csv", HEAD + "\n".join(ROWS[:2]) + "\n")
+    status, _, err = bench("identify", "run.csv", "--rig", "rig.toml")
+    assert status == 1
+    assert "samples" in err
+
+
+def test_a_hole_is_told_and_not_bridged(bench, tmp_path):
+    csv(tmp_path / "run.csv", HEAD + "\n".join([*ROWS[:1000], *ROWS[1200:]]) + "\n")
+    status, out, _ = bench("inspect", "run.csv")
+    assert status == 0
+    assert "2 segments" in out
+    assert len(read(tmp_path / "run.csv").segments) == 2
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_folder_that_cannot_be_written_to_is_named(bench, trace, tmp_path):
+    (tmp_path / "closed").mkdir(mode=0o500)
+    status, _, err = bench("identify", trace, "--rig", "rig.toml", "--json", "closed/found.json")
+    assert status == 2
+    assert "closed" in err
+
+
+def test_the_installed_command_answers():
+    done = subprocess.run([sys.executable, "-m", "bench", "--version"], capture_output=True, text=True, check=True)
+    assert done.stdout.strip()
