@@ -1,0 +1,47 @@
+"""Cogging torque: periodic in position and independent of current, from magnets meeting teeth.
+
+    M = A*sin(n*q + phi)
+
+A - amplitude - N*m; n - harmonic, cycles per revolution, two or more; q - angle - rad.
+Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003, ch. 5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from bench.effects.effect import Base, Column, Effect, Shape, Signals, amplitude_and_phase
+from bench.units import Quantity
+
+
+class CoggingTorque(Effect):
+    """See the module."""
+
+    name = "cogging_torque"
+    summary = "torque periodic in position, independent of current"
+    quantities = (
+        Quantity("amplitude", "A", "N*m", lower=0.0),
+        Quantity("harmonic", "n", "dimensionless", lower=2.0),
+        Quantity("phase", "phi", "rad"),
+    )
+    shapes = (Shape(quantities[1], tuple(float(n) for n in range(2, 41)), whole=True),)
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """sin(n*q) and cos(n*q), nothing where the wave is faster than the samples can follow."""
+        angle, slow = shape[0] * signals.position, followed(signals, shape[0])
+        return [[(np.sin(angle) * slow, 0)], [(np.cos(angle) * slow, 0)]]
+
+    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Amplitude, harmonic and phase."""
+        amplitude, phase = amplitude_and_phase(*strengths)
+        return {"amplitude": amplitude, "harmonic": shape[0], "phase": phase}
+
+
+def followed(signals: Signals, harmonic: float) -> np.ndarray:
+    """1 where a wave of n cycles a revolution stays below 0.8 of the Nyquist frequency, else 0 - (n,)."""
+    return (harmonic * np.abs(signals.velocity) < 0.8 * np.pi / signals.sample_period).astype(float)
+
+
+EFFECT = CoggingTorque()

@@ -1,0 +1,35 @@
+"""Load-dependent friction: dry friction grows with the magnitude of the transmitted torque (a screw, a worm).
+
+    M = (K_0 + mu*|M_motor|)*sgn(omega)
+
+mu - load friction coefficient, not negative; M_motor - motor torque - N*m (N).
+Source: M. Linderoth, A. Stolt, A. Robertsson, R. Johansson, IROS 2013 (load-dependent friction of a gear).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from bench.effects.effect import Base, Column, Effect, Signals
+from bench.units import Quantity
+
+
+class LoadDependentFriction(Effect):
+    """See the module."""
+
+    name = "load_dependent_friction"
+    summary = "friction grows with the magnitude of the transmitted torque"
+    quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0),)
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Magnitude of the torque on the friction level."""
+        return [[(signals.friction * np.abs(signals.effort), 0)]]
+
+    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """The strength itself."""
+        return {"load_friction_coefficient": strengths[0]}
+
+
+EFFECT = LoadDependentFriction()

@@ -1,0 +1,38 @@
+"""Position-dependent friction: the level of dry friction varies once per revolution (a bent screw, a worn spot).
+
+    M = K_0*(1 + A*sin(q + phi))*sgn(omega)
+
+A - relative amplitude; q - angle - rad.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from bench.effects.effect import Base, Column, Effect, Signals, amplitude_and_phase
+from bench.units import Quantity
+
+
+class PositionDependentFriction(Effect):
+    """See the module."""
+
+    name = "position_dependent_friction"
+    summary = "friction level varies with position"
+    quantities = (
+        Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.5),
+        Quantity("phase", "phi", "rad"),
+    )
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """sin(q) and cos(q) of the friction level."""
+        return [[(signals.friction * wave, 0)] for wave in (np.sin(signals.position), np.cos(signals.position))]
+
+    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Amplitude relative to Coulomb friction, and phase."""
+        amplitude, phase = amplitude_and_phase(*strengths)
+        return {"relative_amplitude": amplitude / base.coulomb, "phase": phase}
+
+
+EFFECT = PositionDependentFriction()

@@ -1,0 +1,46 @@
+"""Position-dependent inertia: a linkage or an eccentric disk, with the torque that its change of kinetic energy costs.
+
+    M = J(q)*alpha + J'(q)*omega**2/2, J(q) = J*(1 + A*sin(n*q + phi))
+
+A - relative amplitude; n - harmonic; q - angle - rad. Lagrange's equation of the kinetic energy J(q)*omega**2/2.
+With J*sin(n*q)*alpha = d/dt(J*sin(n*q)*omega) - J*n*cos(n*q)*omega**2, only raw products are differentiated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from bench.effects.effect import Base, Column, Effect, Shape, Signals, amplitude_and_phase
+from bench.units import Quantity
+
+
+class PositionDependentInertia(Effect):
+    """See the module."""
+
+    name = "position_dependent_inertia"
+    summary = "inertia varies with position, with its velocity-squared torque"
+    quantities = (
+        Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.0),
+        Quantity("harmonic", "n", "dimensionless", lower=1.0),
+        Quantity("phase", "phi", "rad"),
+    )
+    shapes = (Shape(quantities[1], (1.0, 2.0, 3.0, 4.0), whole=True),)
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Sine and cosine variation."""
+        angle, omega = shape[0] * signals.position, signals.velocity
+        half = 0.5 * shape[0] * omega**2
+        return [
+            [(omega * np.sin(angle), 1), (-half * np.cos(angle), 0)],
+            [(omega * np.cos(angle), 1), (half * np.sin(angle), 0)],
+        ]
+
+    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Amplitude relative to the mean inertia, and phase."""
+        amplitude, phase = amplitude_and_phase(*strengths)
+        return {"relative_amplitude": amplitude / base.inertia, "harmonic": shape[0], "phase": phase}
+
+
+EFFECT = PositionDependentInertia()

@@ -1,0 +1,63 @@
+"""Presliding: friction builds up over a small displacement after each reversal (Dahl's bristles, LuGre's at low speed).
+
+    dz/dt = omega*(1 - sigma*z*sgn(omega)/K_0), M = sigma*z
+
+so between reversals f = M/K_0 approaches sgn(omega) as exp(-sigma*|x|/K_0) over the displacement x.
+sigma - bristle stiffness - N*m/rad (N/m); K_0 - Coulomb friction - N*m (N).
+Source: P. R. Dahl, AIAA Journal 14(12), 1976, 1675-1682; C. Canudas de Wit et al., IEEE TAC 40(3), 1995, eqs. 1-4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from bench.effects.effect import Base, Column, Effect, Shape, Signals
+from bench.units import Quantity
+
+
+class PreslidingFriction(Effect):
+    """See the module."""
+
+    name = "presliding_friction"
+    summary = "bristle-like hysteresis before breakaway and after reversal (Dahl, LuGre)"
+    quantities = (Quantity("bristle_stiffness", "sigma", "N*m/rad", lower=0.0),)
+    shapes = (Shape(Quantity("bristle_rate", "sigma/K_0", "1/rad", lower=0.0), (3.0, 8.0, 20.0, 50.0, 130.0, 350.0)),)
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """What the bristles lack of full friction, f - sgn(omega)."""
+        return [[(bristles(signals.position, signals.sign, shape[0]) - signals.sign, 0)]]
+
+    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """sigma is its rate over displacement times Coulomb friction."""
+        return {"bristle_stiffness": shape[0] * base.coulomb}
+
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+        """The bristles carry Coulomb friction itself, no more and no less within a factor of two."""
+        return base.coulomb > 0.0 and 0.5 * base.coulomb < strengths[0] < 2.0 * base.coulomb
+
+
+def bristles(position: np.ndarray, sign: np.ndarray, rate: float) -> np.ndarray:
+    """Share f of full friction that the bristles carry, -1 to 1, along a motion.
+
+    Args:
+        position: (n,) - rad (m).
+        sign: (n,) of speed, 0 where unknown: the last known one holds.
+        rate: sigma/K_0 - 1/rad (1/m).
+    """
+    known = np.flatnonzero(sign)
+    if known.size == 0:
+        return np.zeros_like(position)
+    held = sign[known[np.maximum(np.searchsorted(known, np.arange(sign.size), side="right") - 1, 0)]]
+    turns = np.concatenate([[0], np.flatnonzero(np.diff(held)) + 1, [sign.size]])
+    share, carried = np.empty_like(position), 0.0
+    for start, stop in pairwise(turns):
+        travel = np.abs(position[start:stop] - position[start])
+        share[start:stop] = held[start] + (carried - held[start]) * np.exp(-rate * np.maximum.accumulate(travel))
+        carried = share[stop - 1]
+    return share
+
+
+EFFECT = PreslidingFriction()

@@ -1,0 +1,43 @@
+"""Stribeck friction: dry friction rises as speed falls towards zero.
+
+    M = K_0*sgn(omega) + (M_s - K_0)*exp(-(omega/omega_s)**2)*sgn(omega)
+
+M_s - static friction - N*m (N); omega_s - Stribeck velocity - rad/s (m/s); K_0 - Coulomb friction.
+Source: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, Automatica 30(7), 1994, eq. 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from bench.effects.effect import Base, Column, Effect, Shape, Signals
+from bench.units import Quantity
+
+
+class StribeckFriction(Effect):
+    """See the module."""
+
+    name = "stribeck_friction"
+    summary = "friction rises as speed falls towards zero"
+    quantities = (
+        Quantity("static_friction", "M_s", "N*m", lower=0.0),
+        Quantity("stribeck_velocity", "omega_s", "rad/s", lower=0.0),
+    )
+    shapes = (Shape(quantities[1], (0.3, 0.6, 1.2, 2.5, 5.0, 10.0, 20.0)),)
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """exp(-(omega/omega_s)**2) of the friction level."""
+        return [[(signals.friction * np.exp(-((signals.velocity / shape[0]) ** 2)), 0)]]
+
+    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Static friction is Coulomb friction plus the rise."""
+        return {"static_friction": base.coulomb + strengths[0], "stribeck_velocity": shape[0]}
+
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+        """Friction rises, and dry friction stays positive."""
+        return strengths[0] > 0.0 and base.coulomb > 0.0
+
+
+EFFECT = StribeckFriction()
