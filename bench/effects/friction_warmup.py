@@ -2,7 +2,8 @@
 
     M = (K_0*sgn(omega) + K_w*omega)*(1 + A*exp(-t/T))
 
-A - relative amplitude of the dry part, the viscous part may decay by another; T - time constant - s; t - time since the recording's start - s.
+A - relative amplitude of the dry part, the viscous part may decay by another; T - time constant - s; t - time since the
+recording's start - s.
 """
 
 from __future__ import annotations
