@@ -7,6 +7,7 @@ import math
 import re
 from dataclasses import dataclass
 from functools import cache
+from tokenize import TokenError
 
 import numpy as np
 import pint
@@ -14,6 +15,16 @@ from numpy.typing import NDArray
 
 from bench.errors import InputError
 
+#: What pint raises on texts that are no unit.
+_NO_UNIT = (
+    pint.errors.PintError,
+    AttributeError,
+    TypeError,
+    ValueError,
+    AssertionError,
+    ArithmeticError,
+    TokenError,
+)
 _VALUE = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
 
 
@@ -55,7 +66,7 @@ def dimensionality(unit: str) -> str:
     """
     try:
         return str(_unit(unit).dimensionality)
-    except (pint.errors.PintError, AttributeError, TypeError, ValueError, AssertionError) as error:
+    except _NO_UNIT as error:
         raise ValueError(f"'{unit}' is not a unit") from error
 
 

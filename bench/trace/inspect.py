@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rich import box
 from rich.console import Group
 from rich.table import Table
+from rich.text import Text
 
 from bench.trace.assemble import assemble, choose, in_si
 from bench.trace.read import read_recording
@@ -121,7 +122,8 @@ def _summary(
 ) -> SignalSummary:
     steps = np.abs(np.diff(recorded))
     steps = steps[steps > 0.0]
-    rms = float(np.sqrt(np.mean(values**2)))
+    largest = float(np.abs(values).max())
+    rms = largest * float(np.sqrt(np.mean((values / largest) ** 2))) if largest > 0.0 else 0.0
     resolution = float(steps.min()) if steps.size else None
     return SignalSummary(name, unit, column, float(values.min()), float(values.max()), rms, resolution)
 
@@ -135,7 +137,7 @@ def table(inspection: Inspection) -> Group:
     """The inspection for a person."""
     facts = Table(box=None, show_header=False, pad_edge=False)
     for name, value in _facts(inspection):
-        facts.add_row(name, value)
+        facts.add_row(name, Text(value))
     signals = Table(box=box.SIMPLE_HEAD)
     signals.add_column("signal")
     signals.add_column("column")
@@ -145,8 +147,8 @@ def table(inspection: Inspection) -> Group:
     for signal in inspection.signals:
         numbers = (signal.minimum, signal.maximum, signal.rms, signal.resolution)
         texts = ("constant" if number is None else f"{number:.5g}" for number in numbers)
-        signals.add_row(signal.name, signal.column, signal.unit, *texts)
-    return Group(facts, signals, *(f"note: {note}" for note in inspection.notes))
+        signals.add_row(signal.name, Text(signal.column), signal.unit, *texts)
+    return Group(facts, signals, *(Text(f"note: {note}") for note in inspection.notes))
 
 
 def _facts(inspection: Inspection) -> list[tuple[str, str]]:

@@ -42,9 +42,9 @@ def reader_of(source: Source) -> ModuleType:
     for reader in READERS:
         if reader.recognises(source):
             return reader
-    if "\0" not in source.head:
-        for reader in READERS:
-            if source.ending in reader.ENDINGS:
-                return reader
+    marked_up = source.head.lstrip().startswith(("<", "{"))
+    for reader in READERS if "\0" not in source.head else ():
+        if source.ending in reader.ENDINGS and not (reader is table and marked_up):
+            return reader
     formats = ", ".join(reader.FORMAT for reader in READERS)
     raise InputError(source.path, "not a trace in any format the bench reads", f"allowed: {formats}")

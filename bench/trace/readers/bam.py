@@ -19,6 +19,7 @@ FORMAT = "BAM servo JSON"
 ENDINGS = (".json",)
 
 _FULL_LOAD = 885.0
+_LARGEST_LOAD = 65535
 _KEYS = ("timestamp", "position", "speed", "load", "input_volts", "temp", "goal_position")
 
 
@@ -46,6 +47,11 @@ def read(source: Source) -> Recording:
     if not isinstance(entries, list) or not entries:
         raise InputError(f"{source.path}: entries", "found none", "allowed: a list of samples")
     raw = {key: _numbers(entries, key, source.path) for key in _KEYS}
+    if np.abs(raw["load"]).max() > _LARGEST_LOAD:
+        sample = int(np.abs(raw["load"]).argmax())
+        raise InputError(
+            f"{source.path}: entries[{sample}].load", f"found {raw['load'][sample]:g}", "allowed: a number of 16 bits"
+        )
     load = raw["load"].astype(np.int64).astype(np.uint16).view(np.int16)
     time = Channel("time", "s", raw["timestamp"], source.path)
     columns = {

@@ -10,15 +10,18 @@ from scipy.io import loadmat
 
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording
+from bench.trace.readers.mat_structure import check_structure
 from bench.trace.source import Source
 
 FORMAT = "MAT"
 ENDINGS = (".mat",)
 
+_MAGIC = b"MATLAB "
+
 
 def recognises(source: Source) -> bool:
     """Whether the file begins as MAT files of version 5 and later do."""
-    return source.content.startswith(b"MATLAB ")
+    return source.content.startswith(_MAGIC)
 
 
 def read(source: Source) -> Recording:
@@ -30,6 +33,8 @@ def read(source: Source) -> Recording:
     if source.content.startswith(b"MATLAB 7.3") or source.content.startswith(b"\x89HDF"):
         raise InputError(source.path, "found MAT version 7.3 (HDF5)", "allowed: version 7 or older; save with '-v7'")
     try:
+        if source.content.startswith(_MAGIC):
+            check_structure(source.content)
         content = loadmat(BytesIO(source.content), simplify_cells=True)
     except Exception as error:  # scipy raises nearly any exception on a damaged file
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__

@@ -17,6 +17,8 @@ FORMAT = "Parquet"
 ENDINGS = (".parquet", ".pq")
 
 MAGIC = b"PAR1"
+#: What Arrow raises on a damaged file.
+DAMAGE = (pa.ArrowException, OSError, UnicodeDecodeError)
 
 
 def recognises(source: Source) -> bool:
@@ -32,19 +34,18 @@ def read(source: Source) -> Recording:
     """
     try:
         table = pq.read_table(pa.BufferReader(source.content))
-    except (pa.ArrowException, OSError, ValueError) as error:
+        fields = list(zip(table.schema, table.columns, strict=True))
+    except DAMAGE as error:
         raise damaged(source.path, error) from error
     if not table.num_rows:
         raise InputError(source.path, "found columns and no rows", "allowed: at least two samples")
-    channels = tuple(
-        channel_of(field, column, source.path) for field, column in zip(table.schema, table.columns, strict=True)
-    )
+    channels = tuple(channel_of(field, column, source.path) for field, column in fields)
     return Recording(channels, FORMAT, source.path)
 
 
 def damaged(path: str, error: Exception) -> InputError:
     """What to say about a file that Arrow cannot read."""
-    reason = str(error).splitlines()[0]
+    reason = next(iter(str(error).splitlines()), type(error).__name__)
     return InputError(path, f"the Parquet file is truncated or damaged ({reason})", "allowed: a complete Parquet file")
 
 

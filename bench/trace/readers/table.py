@@ -41,10 +41,9 @@ class Layout:
 
 def recognises(source: Source) -> bool:
     """Whether the first line names several columns, one of them a time or with a unit, and text follows."""
-    head = source.head
-    if "\0" in head or "\ufffd" in head.splitlines()[0]:
+    first = next((line for line in source.head.splitlines() if line.strip()), "")
+    if "\0" in source.head or "\ufffd" in first:
         return False
-    first = next(line for line in head.splitlines() if line.strip())
     cells = re.split("[,;\t]", first)
     named = [cell for cell in cells if cell.strip() and not _NUMBER.fullmatch(cell)]
     return len(cells) > 1 and len(named) >= len(cells) - 1 and first.lstrip()[:1] not in "{[<"
@@ -88,7 +87,7 @@ def _layout(source: Source) -> Layout:
         )
     if not source.content[end:].strip():
         raise InputError(source.path, "found a header and no samples", "allowed: at least two samples")
-    first = source.content[end : end + 4096].decode(errors="replace").lstrip().splitlines()[0]
+    first = next(iter(source.content[end : end + 4096].decode(errors="replace").lstrip().splitlines()), "")
     comma = separator != "," and any(_DECIMAL_COMMA.fullmatch(cell) for cell in first.split(separator))
     labels = tuple(label or f"column {number}" for number, label in enumerate(labels, 1))
     return Layout(labels, separator, "," if comma else ".", end + 1, line + 1)
@@ -106,7 +105,11 @@ def numbers(body: bytes, layout: Layout, path: str) -> pa.Table:
     except pa.ArrowInvalid:
         _check_widths(body, layout, path)
     decode(body, path)
-    return parse_columns(body, [pa.string()] * count, layout.separator, layout.decimal)
+    try:
+        return parse_columns(body, [pa.string()] * count, layout.separator, layout.decimal)
+    except pa.ArrowInvalid as error:
+        quoted = next((n for n, line in enumerate(body.splitlines(), layout.line) if line.count(b'"') % 2), layout.line)
+        raise InputError(f"{path}: line {quoted}", "found a quote that is not closed", "allowed: numbers") from error
 
 
 def _check_widths(body: bytes, layout: Layout, path: str) -> None:

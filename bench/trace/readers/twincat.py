@@ -28,6 +28,7 @@ ENDINGS = ()
 _HEAD = re.compile(r"\AName[\t;,].*^(Starttime of export|Data-Type|SymbolName)[\t;,]", re.DOTALL | re.MULTILINE)
 _NUMBER = re.compile(r"\s*[+-]?\d")
 _FILETIME = re.compile(rb"\s*\d{17,19}\D")
+_LAST_MOMENT = 2.6e17  # us; a date of Python ends with the year 9999
 _EMPTY = ("", " ")
 _NO_SCALING = {"Offset": "0", "ScaleFactor": "1", "Unit Offset": "0", "Unit ScaleFactor": "1"}
 
@@ -168,6 +169,9 @@ def _metadata(header: list[list[str]]) -> dict[str, str]:
     for cells in header:
         if cells[0].endswith("time of export") and len(cells) > 1 and cells[1].isdigit():
             # Windows FILETIME: steps of 100 ns since 1601
-            moment = datetime(1601, 1, 1, tzinfo=UTC) + timedelta(microseconds=int(cells[1]) // 10)
-            metadata[cells[0].lower()] = moment.isoformat()
+            microseconds = int(cells[1]) // 10
+            if microseconds < _LAST_MOMENT:
+                metadata[cells[0].lower()] = (
+                    datetime(1601, 1, 1, tzinfo=UTC) + timedelta(microseconds=microseconds)
+                ).isoformat()
     return metadata

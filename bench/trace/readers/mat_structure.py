@@ -1,0 +1,74 @@
+"""Check of a MAT file's element structure, for scipy trusts its type codes and crashes the process on damaged ones.
+
+MAT-File Format (MathWorks, version 5): after a header of 128 bytes come elements, each a tag of type and length and
+then data; a matrix is an element made of elements: flags, dimensions, name, and data according to its class.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterator
+
+_HEADER = 128
+_MATRIX, _COMPRESSED = 14, 15
+_NUMBERS = frozenset((1, 2, 3, 4, 5, 6, 7, 9, 12, 13))
+_TYPES = _NUMBERS | {_MATRIX, _COMPRESSED, 16, 17, 18}
+_SPARSE, _CHARACTERS = 5, 4
+_COMPLEX = 0x0800
+#: Elements of a matrix of class: flags, dimensions, name, and its data; numeric classes are 6 to 15.
+_PARTS = {_CHARACTERS: 4, _SPARSE: 6, **dict.fromkeys(range(6, 16), 4)}
+
+
+def check_structure(content: bytes) -> None:
+    """Walk through all elements.
+
+    Raises:
+        ValueError: a type that is none, a length beyond the file, or parts missing from a matrix.
+    """
+    if content[126:128] not in (b"IM", b"MI"):
+        raise ValueError("no byte order in the header")
+    _check(content, "<" if content[126:128] == b"IM" else ">", _HEADER)
+
+
+def _check(data: bytes, order: str, start: int) -> None:
+    for kind, begin, end in _elements(data, order, start, len(data)):
+        if kind == _COMPRESSED:
+            _check(zlib.decompress(data[begin:end]), order, 0)
+        elif kind == _MATRIX:
+            _check_matrix(data, order, begin, end)
+
+
+def _elements(data: bytes, order: str, start: int, stop: int) -> Iterator[tuple[int, int, int]]:
+    """Type, begin and end of the data of each element."""
+    while start < stop:
+        if start + 8 > stop:
+            raise ValueError("an element is cut off")
+        kind, size = struct.unpack_from(f"{order}II", data, start)
+        begin = start + 8
+        if kind >> 16:  # a small element: its length in the upper half of the type, its data inside the tag
+            kind, size, begin = kind & 0xFFFF, kind >> 16, start + 4
+        if kind not in _TYPES or begin + size > stop:
+            raise ValueError(f"an element of type {kind} and {size} bytes")
+        yield kind, begin, begin + size
+        padding = 0 if kind == _COMPRESSED else -size % (4 if begin == start + 4 else 8)
+        start = begin + size + padding
+
+
+def _check_matrix(data: bytes, order: str, begin: int, end: int) -> None:
+    parts = list(_elements(data, order, begin, end))
+    if not parts:
+        return  # an empty cell
+    kind, first, last = parts[0]
+    if kind not in _NUMBERS or last - first != 8:
+        raise ValueError("a matrix without flags")
+    (flags,) = struct.unpack_from(f"{order}I", data, first)
+    wanted = _PARTS.get(flags & 0xFF)
+    if wanted is not None and (
+        len(parts) != wanted + bool(flags & _COMPLEX)
+        or any(kind not in _NUMBERS | {16, 17, 18} for kind, _, _ in parts)
+    ):
+        raise ValueError(f"a matrix of {len(parts)} parts")
+    for kind, first, last in parts:
+        if kind == _MATRIX:
+            _check_matrix(data, order, first, last)

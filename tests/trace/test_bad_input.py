@@ -1,0 +1,301 @@
+"""Whatever a file holds, reading it gives a trace or one line naming the place, what was found and what is allowed."""
+
+import gzip
+import json
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+from scipy.io import savemat
+
+from bench.errors import InputError
+from bench.trace.inspect import inspect
+from bench.trace.read import read
+from bench.trace.write import write
+from tests.trace.recordings import csv_text, current, machine_expert_xml, velocity
+
+TIME = np.arange(60) * 1e-3
+HEAD = "time [ms],velocity [deg/s],current [mA]\n"
+ROWS = [f"{k},{10 * k},{k}\n" for k in range(60)]
+GOOD = csv_text(TIME, velocity__deg_s=velocity(TIME), current__mA=current(TIME))
+
+
+def _rows(**changed):
+    """The good rows with `l7="..."` in place of line 7 of the file."""
+    return "".join([HEAD, *(changed.get(f"l{line}", row) for line, row in enumerate(ROWS, 2))])
+
+
+TEXT = {
+    "missing time": ("velocity [deg/s],current [mA]\n1,2\n2,3\n", r"column 'time': not in the file; found: velocity"),
+    "no known signal": ("time [ms],a [V],b [V]\n0,1,1\n1,2,2\n", r"position or velocity: not in the file; found: time"),
+    "unit missing": (
+        "time [ms],velocity,current [mA]\n0,1,1\n1,2,2\n",
+        r"column 'velocity': has no unit; allowed: .*\[tr",
+    ),
+    "time without unit": ("time,velocity [deg/s]\n0,1\n1,2\n", r"column 'time': has no unit"),
+    "empty unit": ("time [ms],velocity []\n0,1\n1,2\n", r"column 'velocity': has no unit"),
+    "wrong dimension": (
+        "time [ms],velocity [V]\n0,1\n1,2\n",
+        r"'velocity \[V\]': found unit 'V'; allowed: .* rad/s or m/s",
+    ),
+    "time in metres": ("time [m],velocity [deg/s]\n0,1\n1,2\n", r"column 'time \[m\]': found unit 'm'; allowed: .* s"),
+    "no unit at all": ("time [ms],velocity [furlong/x]\n0,1\n1,2\n", r"found 'furlong/x', which is not a unit"),
+    "two kinds of axis": (
+        "time [ms],position [m],velocity [deg/s]\n0,1,1\n1,2,2\n",
+        r"position in m, velocity in rad/s",
+    ),
+    "twice the same column": ("time [ms],velocity [V],velocity [V]\n0,1,1\n1,2,2\n", r"several columns"),
+    "header only": (HEAD, r"found a header and no samples; allowed: at least two samples"),
+    "header without newline": (HEAD.strip(), r"found a header and no samples"),
+    "no header": ("0,1,2\n1,2,3\n", r"line 1: found numbers, no header"),
+    "one column": ("velocity [deg/s]\n1\n2\n", r"line 1: found one column"),
+    "one sample": (HEAD + ROWS[0], r"found 1 samples; allowed: at least two"),
+    "text in a number": (
+        _rows(l8="6,6O,6\n"),
+        r"run.csv: line 8, column 'velocity \[deg/s\]': found '6O'; allowed: a number",
+    ),
+    "nan": (_rows(l8="6,nan,6\n"), r"line 8, column 'velocity \[deg/s\]': found nan; allowed: a finite number"),
+    "infinite": (_rows(l8="6,6,-inf\n"), r"line 8, column 'current \[mA\]': found -inf"),
+    "nan in time": (_rows(l8="NaN,6,6\n"), r"line 8, column 'time \[ms\]': found nan"),
+    "empty cell": (_rows(l8="6,,6\n"), r"line 8, column 'velocity \[deg/s\]': found an empty cell"),
+    "short line": (_rows(l8="6,6\n"), r"line 8: found 2 cells; allowed: 3, as the header has"),
+    "long line": (_rows(l8="6,6,6,6\n"), r"line 8: found 4 cells"),
+    "time backwards": (
+        _rows(l30="3,6,6\n"),
+        r"line 30, column 'time \[ms\]': time runs backwards \(0.027 s, then 0.003 s\)",
+    ),
+    "duplicate times": (
+        HEAD + "".join(f"{k // 2},{10 * k},{k}\n" for k in range(60)),
+        r"line 3, column 'time \[ms\]': 30 of 60 samples stand at a time already taken",
+    ),
+    "all at one time": (HEAD + "5,1,1\n" * 50, r"found 1 different times"),
+    "cut in the last line": (_rows().rstrip().rpartition(",")[0], r"line 61: found 2 cells"),
+}
+
+
+@pytest.mark.parametrize("case", TEXT)
+def test_bad_tables(tmp_path, case):
+    text, message = TEXT[case]
+    path = tmp_path / "run.csv"
+    path.write_text(text)
+    with pytest.raises(InputError, match=message) as error:
+        read(path)
+    assert "\n" not in str(error.value) and str(error.value).startswith(str(path))
+    assert error.value.exit_status == 2
+
+
+BYTES = {
+    "empty": (b"", r"the file is empty"),
+    "blank": (b"\n  \n", r"the file is empty"),
+    "latin-1 in the header": (GOOD.replace("current", "tempér").encode("latin-1"), r"byte 0xe9, which is not UTF-8"),
+    "latin-1 in the data": (_rows(l8="6,6µ,6\n").encode("latin-1"), r"run.csv: line \d+: found byte 0xb5"),
+    "utf-16 without mark": (GOOD.encode("utf-16-le"), r"not a trace in any format"),
+    "half a utf-16 character": (GOOD.encode("utf-16")[:-1], r"UTF-16-LE text is truncated"),
+    "truncated gz": (gzip.compress(GOOD.encode())[:-40], r"gzip is truncated or damaged"),
+    "damaged gz": (gzip.compress(GOOD.encode())[:30] + b"spam" * 30, r"gzip is truncated or damaged"),
+    "empty gz": (gzip.compress(b""), r"the file is empty"),
+    "binary": (bytes(range(256)) * 30, r"not a trace in any format the bench reads; allowed: Parquet, MAT"),
+    "jpeg-like": (b"\xff\xd8\xff\xe0" + bytes(1000), r"not a trace in any format"),
+    "parquet magic alone": (b"PAR1", r"Parquet file is truncated or damaged"),
+    "html": (b"<!DOCTYPE html><html><body>time,velocity</body></html>", r"not a trace in any format"),
+    "json": (b'{"entries": 3}', r"not a trace in any format"),
+}
+
+
+@pytest.mark.parametrize("case", BYTES)
+def test_bad_bytes(tmp_path, case):
+    content, message = BYTES[case]
+    path = tmp_path / "run.csv"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=message) as error:
+        read(path)
+    assert "\n" not in str(error.value)
+
+
+def test_places_that_are_no_file(tmp_path):
+    with pytest.raises(InputError, match="found a folder"):
+        read(tmp_path)
+    with pytest.raises(InputError, match="no such file"):
+        read(tmp_path / "no.csv")
+    with pytest.raises(InputError):
+        read("a\0b.csv")
+    with pytest.raises(InputError):
+        read("/dev/null")
+
+
+def test_blank_lines_do_not_shift_the_lines_of_messages(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_text("\n\n" + _rows(l8="6,nan,6\n") + "\n\n")
+    with pytest.raises(InputError, match="line 10, column"):
+        read(path)
+    path.write_text(_rows(l5="\n", l8="6,nan,6\n"))
+    with pytest.raises(InputError, match="sample 5, column"):  # a blank line among the samples: lines are unsure
+        read(path)
+
+
+def test_two_samples_are_read_and_told(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_text(HEAD + ROWS[0] + ROWS[1])
+    trace = read(path)
+    assert len(trace) == 2 and trace.notes == ("only 2 samples",)
+    assert inspect(path).notes == trace.notes
+
+
+def test_a_hole_is_told(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_text(HEAD + "".join(ROWS[:20] + ROWS[30:]))
+    trace = read(path)
+    assert trace.notes == ("1 hole, the longest 0.011 s; nothing is placed inside",)
+    assert len(trace.segments) == 2 and len(trace) == 50
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        (
+            {"velocity": "Axis9.Speed [deg/s]", "torque": "T [N*m]"},
+            r"column 'T \[N\*m\]': not in the file; found: time",
+        ),
+        ({"speed": "velocity [deg/s]"}, r"columns: speed: not a signal.*; allowed: time, position"),
+        ({"velocity": "velocity [N]"}, r"found unit 'N'"),
+        ({"time": "time [kg]"}, r"found unit 'kg'"),
+        ({"torque": "-spam"}, r"column 'spam': not in the file"),
+    ],
+)
+def test_bad_columns(tmp_path, columns, message):
+    path = tmp_path / "run.csv"
+    path.write_text(GOOD)
+    with pytest.raises(InputError, match=message):
+        read(path, columns)
+
+
+def test_parquet_without_rows_and_with_gaps(tmp_path):
+    path = tmp_path / "run.parquet"
+    pq.write_table(
+        pa.table({"time [s]": pa.array([], pa.float64()), "velocity [rad/s]": pa.array([], pa.float64())}), path
+    )
+    with pytest.raises(InputError, match="found columns and no rows"):
+        read(path)
+    pq.write_table(pa.table({"time [s]": [0.0, 1.0, 2.0], "velocity [rad/s]": [1.0, None, 2.0]}), path)
+    with pytest.raises(InputError, match=r"sample 1, column 'velocity \[rad/s\]': found an empty cell"):
+        read(path)
+    pq.write_table(pa.table({"time [s]": [0.0, 1.0, 2.0], "velocity [rad/s]": ["a", "b", "c"]}), path)
+    with pytest.raises(InputError, match=r"column 'velocity \[rad/s\]': found string; allowed: numbers"):
+        read(path)
+
+
+def test_mat_of_version_7_3_is_told(tmp_path):
+    path = tmp_path / "run.mat"
+    path.write_bytes(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512) + b"\x89HDF\r\n\x1a\n" + bytes(600))
+    with pytest.raises(InputError, match=r"version 7.3 .HDF5.; allowed: version 7 or older"):
+        read(path)
+
+
+class Samples(dict):
+    """Files by format; hypothesis prints it with every failure, so it prints short."""
+
+    def __repr__(self):
+        return f"Samples({', '.join(self)})"
+
+
+def _samples(folder):
+    """One good file of every format, as bytes."""
+    pq.write_table(pa.table({"time [s]": TIME, "velocity [deg/s]": velocity(TIME)}), folder / "a.parquet")
+    savemat(folder / "a.mat", {"t": TIME, "v": velocity(TIME)})
+    stamps = np.arange(60)
+    entries = [
+        {
+            "timestamp": k / 200,
+            "position": 0.1,
+            "speed": 1.0,
+            "load": 5,
+            "input_volts": 7.0,
+            "temp": 30,
+            "goal_position": 0,
+        }
+        for k in range(60)
+    ]
+    epos = "EPOS Studio Version:;3\r\n;Velocity actual value;Torque actual value\r\nms;rpm;%\r\n"
+    twincat = "Name\tproject\nStarttime of export\t132959733843760000\n\nName\tvelocity\nUnit\trad/s\n\n"
+    codesys = "[key]; [value]\nFlags; 16\n0.Variable; A.Velocity\n0.Data; \n"
+    return {
+        "csv": GOOD.encode(),
+        "gz": gzip.compress(GOOD.encode()),
+        "parquet": (folder / "a.parquet").read_bytes(),
+        "mat": (folder / "a.mat").read_bytes(),
+        "trace": b"\xff\xfe" + machine_expert_xml({"A.Velocity": (stamps, velocity(TIME))}).encode("utf-16-le"),
+        "xml": machine_expert_xml({"A.Velocity": (stamps, velocity(TIME))}).replace("utf-16", "utf-8").encode(),
+        "codesys": (codesys + "".join(f"; {k}; {k * k}\n" for k in stamps)).encode(),
+        "text": ("T\nP\nTimestamp(ms) A.Velocity\n" + "".join(f"{k} {k * k}\n" for k in stamps)).encode(),
+        "twincat": (twincat + "".join(f"{k}\t{k * k}\n" for k in stamps)).encode(),
+        "epos": (epos + "".join(f"{k};{k * k};1,5\r\n" for k in stamps)).encode(),
+        "json": json.dumps({"mass": 1.0, "entries": entries}).encode(),
+    }
+
+
+COLUMNS = {"mat": {"time": "t [s]", "velocity": "v [deg/s]"}}
+FORMATS = ("csv", "gz", "parquet", "mat", "trace", "xml", "codesys", "text", "twincat", "epos", "json")
+
+
+@pytest.fixture(scope="module")
+def samples(tmp_path_factory):
+    return Samples(_samples(tmp_path_factory.mktemp("good")))
+
+
+@pytest.mark.parametrize("kind", FORMATS)
+def test_the_samples_are_good(samples, tmp_path, kind):
+    path = tmp_path / "run"
+    path.write_bytes(samples[kind])
+    assert len(read(path, COLUMNS.get(kind))) == 60
+
+
+@pytest.mark.parametrize("kind", ["gz", "parquet", "trace", "xml", "mat", "json"])
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.95])
+def test_truncated_files_are_told_as_such(samples, tmp_path, kind, share):
+    path = tmp_path / f"run.{kind}"
+    path.write_bytes(samples[kind][: int(share * len(samples[kind]))])
+    with pytest.raises(InputError, match=r"truncated"):
+        read(path, COLUMNS.get(kind))
+
+
+def test_wrong_type_codes_in_a_mat_do_not_crash(tmp_path):
+    """Read by scipy alone, several of these end the process."""
+    savemat(tmp_path / "good.mat", {"t": TIME, "v": velocity(TIME)})
+    good = (tmp_path / "good.mat").read_bytes()
+    path = tmp_path / "bad.mat"
+    columns = {"time": "t [s]", "velocity": "v [deg/s]"}
+    refused = 0
+    for at in [*range(128, 192), *range(660, 728)]:
+        for code in (0, 1, 8, 19, 200):
+            path.write_bytes(good[:at] + bytes([code]) + good[at + 1 :])
+            try:
+                read(path, columns)
+            except InputError:
+                refused += 1
+    assert refused > 100
+
+
+@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    kind=st.sampled_from(FORMATS),
+    cut=st.floats(0.0, 1.0),
+    edits=st.lists(st.tuples(st.floats(0.0, 1.0), st.binary(max_size=4)), max_size=4),
+)
+@example(kind="csv", cut=1.0, edits=[(0.5, b"1e400")])
+@example(kind="csv", cut=1.0, edits=[(0.02, b'"')])
+def test_damage_anywhere_gives_a_trace_or_an_input_error(samples, tmp_path, kind, cut, edits):
+    content = bytearray(samples[kind][: int(cut * len(samples[kind]))])
+    for place, new in edits:
+        at = int(place * len(content))
+        content[at : at + len(new)] = new
+    path = tmp_path / f"run.{kind}"
+    path.write_bytes(content)
+    try:
+        trace = read(path, COLUMNS.get(kind))
+    except InputError as error:
+        assert "\n" not in str(error)
+    else:
+        write(trace, tmp_path / "again.parquet")

@@ -1,0 +1,57 @@
+import json
+from io import StringIO
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from bench.trace.inspect import inspect, table, to_json
+from tests.trace.recordings import csv_text
+
+TIME = np.delete(np.arange(400) * 1e-3, np.arange(100, 140))
+SPEED = np.round(50.0 * np.sin(2 * np.pi * 3.0 * TIME) / 0.25) * 0.25
+
+
+@pytest.fixture
+def inspection(tmp_path):
+    path = tmp_path / "run.csv"
+    text = csv_text(TIME, velocity__rad_s=SPEED, current__mA=np.full(TIME.size, 7.0), spare__deg=TIME)
+    path.write_text(text)
+    return inspect(path)
+
+
+def test_numbers(inspection):
+    assert (inspection.samples, inspection.segments, inspection.duplicates) == (360, 2, 0)
+    assert inspection.rate == pytest.approx(1000.0)
+    assert inspection.duration == pytest.approx(0.399)
+    assert inspection.holes == (pytest.approx((0.099, 0.041)),)
+    assert not inspection.resampled and inspection.jitter < 1e-6
+    assert inspection.dropped == ("spare [deg]",)
+    speed, amps = inspection.signals
+    assert (speed.minimum, speed.maximum) == (SPEED.min(), SPEED.max())
+    assert speed.rms == pytest.approx(np.sqrt(np.mean(SPEED**2)))
+    assert speed.resolution == 0.25
+    assert amps.column == "current [mA]" and amps.rms == pytest.approx(7e-3) and amps.resolution is None
+
+
+def test_json(inspection):
+    told = json.loads(to_json(inspection))
+    assert told["schema"] == "bench.inspect/1"
+    assert told["signals"][0]["resolution"] == 0.25
+    assert told["holes"] == [pytest.approx([0.099, 0.041])]
+
+
+def test_table(inspection):
+    console = Console(width=120, file=StringIO())
+    console.print(table(inspection))
+    text = console.file.getvalue()
+    for word in (
+        "CSV table",
+        "360 in 2 segments",
+        "1000 Hz",
+        "0.041 s at 0.099 s",
+        "spare [deg]",
+        "constant",
+        "note: 1 hole",
+    ):
+        assert word in text
