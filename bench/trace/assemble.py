@@ -75,17 +75,19 @@ def choose(recording: Recording, columns: Mapping[str, str]) -> tuple[dict[str, 
     chosen: dict[str, Chosen] = {}
     notes: list[str] = []
     for signal in ("time", *SI_UNITS):
-        found = _named(recording, signal, columns[signal]) if signal in columns else None
-        found = found or _known(recording, signal)
+        named = _named(recording, signal, columns[signal]) if signal in columns else None
+        found = named or _known(recording, signal)
         if found is None and signal in columns:
             raise _missing(recording, f"column '{columns[signal].strip().lstrip('-')}'")
         if found is None:
             continue
+        if named is None and signal in columns:
+            notes.append(f"{signal} read from '{found.channel.label}', as the file has no '{columns[signal]}'")
         usual = recording.usual_units.get(signal)
         if found.unit is None and usual is not None:
             found = replace(found, unit=usual)
             notes.append(f"{signal} taken as {usual}, as the file tells no unit")
-        elif signal in columns and unit_of(found.channel.unit) not in (None, found.unit):
+        elif named is not None and unit_of(found.channel.unit) not in (None, found.unit):
             notes.append(f"{signal} read in {found.unit}, as the rig says, where the file says {found.channel.unit}")
         chosen[signal] = found
     return chosen, tuple(notes)

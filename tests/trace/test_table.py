@@ -89,7 +89,9 @@ def test_a_unit_the_rig_states_against_the_file_is_reported(tmp_path):
 def test_a_rig_for_foreign_columns_still_reads_canonical_files(tmp_path):
     path = tmp_path / "run.csv"
     path.write_text("time [ms],velocity [rad/s]\n0,1\n1,2\n2,3\n")
-    assert read(path, {"velocity": "Axis1.ActVel [deg/s]"})["velocity"].tolist() == [1, 2, 3]
+    trace = read(path, {"velocity": "Axis1.ActVel [deg/s]"})
+    assert trace["velocity"].tolist() == [1, 2, 3]
+    assert "velocity read from 'velocity [rad/s]', as the file has no 'Axis1.ActVel [deg/s]'" in trace.notes
 
 
 def test_unknown_columns_are_dropped_by_name_even_when_they_hold_text(tmp_path):
