@@ -10,13 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import mujoco
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Shape, Signals, amplitude_and_phase
+from bench.effects.mjcf import add_periodic_torque
+from bench.effects.physics import Axis, Mechanism, Number
 from bench.units import Quantity
 
 
-class CoggingTorque(Effect):
+class CoggingTorque(Mechanism, Effect):
     """See the module."""
 
     name = "cogging_torque"
@@ -37,6 +40,18 @@ class CoggingTorque(Effect):
         """Amplitude, harmonic and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"amplitude": amplitude, "harmonic": shape[0], "phase": phase}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"amplitude": 0.0}
+
+    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+        """A phase of zero."""
+        return {"phase": 0.0}
+
+    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """A passive DC motor that cogs."""
+        add_periodic_torque(spec, name, values["amplitude"], values["harmonic"], values["phase"])
 
 
 def followed(signals: Signals, harmonic: float) -> np.ndarray:

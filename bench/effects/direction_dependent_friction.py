@@ -11,13 +11,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import mujoco
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Signals
+from bench.effects.mjcf import AXIS, add_resisting_torque
+from bench.effects.physics import Axis, Friction, Moment, Number, Values
 from bench.units import Quantity
 
 
-class DirectionDependentFriction(Effect):
+class DirectionDependentFriction(Friction, Effect):
     """See the module."""
 
     name = "direction_dependent_friction"
@@ -34,6 +37,33 @@ class DirectionDependentFriction(Effect):
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Differences forward less backward."""
         return {"coulomb_difference": strengths[0], "viscous_difference": strengths[1]}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"coulomb_difference": 0.0, "viscous_difference": 0.0}
+
+    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+        """No difference of viscous friction."""
+        return {"viscous_difference": 0.0}
+
+    def native(self, values: Mapping[str, float], friction_scaled: bool) -> bool:
+        """Dry friction alone is native: half of the difference is a constant torque, at rest and in motion."""
+        return values["viscous_difference"] == 0.0 and not friction_scaled
+
+    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """Half of what is left of the two levels as friction of the joint, half of their difference as torque."""
+        level, half = float(axis.coulomb), 0.5 * values["coulomb_difference"]
+        forward, backward = max(level + half, 0.0), max(level - half, 0.0)
+        spec.joint(AXIS).frictionloss = 0.5 * (forward + backward)
+        add_resisting_torque(spec, 0.5 * (forward - backward))
+
+    def friction_difference(self, values: Values, axis: Axis) -> Number:
+        """Of the dry part."""
+        return values["coulomb_difference"]
+
+    def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
+        """Of the viscous part."""
+        return 0.5 * values["viscous_difference"] * np.abs(at.velocity)
 
 
 EFFECT = DirectionDependentFriction()

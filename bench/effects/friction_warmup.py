@@ -13,10 +13,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Shape, Signals
+from bench.effects.physics import Axis, Friction, Moment, Number, Values
 from bench.units import Quantity
 
 
-class FrictionWarmup(Effect):
+class FrictionWarmup(Friction, Effect):
     """See the module."""
 
     name = "friction_warmup"
@@ -24,6 +25,7 @@ class FrictionWarmup(Effect):
     quantities = (
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0),
         Quantity("time_constant", "T", "s", lower=0.0),
+        Quantity("viscous_share", "s", "dimensionless", lower=0.0),
     )
     shapes = (Shape(quantities[1], (0.7, 1.5, 3.0, 6.0, 12.0)),)
 
@@ -35,6 +37,27 @@ class FrictionWarmup(Effect):
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude relative to the Coulomb friction of the warm axis."""
         return {"relative_amplitude": strengths[0] / base.coulomb, "time_constant": shape[0]}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"relative_amplitude": 0.0}
+
+    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+        """Viscous friction decays as dry friction does."""
+        return {"viscous_share": 1.0}
+
+    def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
+        """Of the dry part."""
+        return 1.0 + _cold(values, at)
+
+    def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
+        """Of the viscous part."""
+        return values["viscous_share"] * _cold(values, at) * axis.viscous * at.velocity
+
+
+def _cold(values: Values, at: Moment) -> Number:
+    """A*exp(-t/T)."""
+    return values["relative_amplitude"] * np.exp(-at.time / values["time_constant"])
 
 
 EFFECT = FrictionWarmup()

@@ -13,10 +13,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Signals
+from bench.effects.physics import Axis, Friction, Moment, Number, Values
 from bench.units import Quantity
 
 
-class LoadDependentFriction(Effect):
+class LoadDependentFriction(Friction, Effect):
     """See the module."""
 
     name = "load_dependent_friction"
@@ -25,11 +26,19 @@ class LoadDependentFriction(Effect):
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Magnitude of the torque on the friction level."""
-        return [[(signals.friction * np.abs(signals.effort), 0)]]
+        return [[(signals.friction * np.abs(signals.torque), 0)]]
 
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"load_friction_coefficient": strengths[0]}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"load_friction_coefficient": 0.0}
+
+    def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
+        """In proportion to the motor's torque."""
+        return values["load_friction_coefficient"] * np.abs(at.effort)
 
 
 EFFECT = LoadDependentFriction()

@@ -12,10 +12,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Shape, Signals
+from bench.effects.physics import Axis, Mechanism, Moment, Number, Values
 from bench.units import Quantity
 
 
-class LoadTorqueEvent(Effect):
+class LoadTorqueEvent(Mechanism, Effect):
     """See the module."""
 
     name = "load_torque_event"
@@ -39,6 +40,15 @@ class LoadTorqueEvent(Effect):
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """It ends after it starts."""
         return shape[1] > shape[0]
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"torque": 0.0}
+
+    def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
+        """While it acts."""
+        acts = np.asarray((at.time >= values["start"]) & (at.time < values["end"]), dtype=np.float64)
+        return values["torque"] * acts
 
 
 EFFECT = LoadTorqueEvent()

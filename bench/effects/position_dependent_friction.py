@@ -12,10 +12,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Signals, amplitude_and_phase
+from bench.effects.physics import Axis, Friction, Moment, Number, Values
 from bench.units import Quantity
 
 
-class PositionDependentFriction(Effect):
+class PositionDependentFriction(Friction, Effect):
     """See the module."""
 
     name = "position_dependent_friction"
@@ -33,6 +34,18 @@ class PositionDependentFriction(Effect):
         """Amplitude relative to Coulomb friction, and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"relative_amplitude": amplitude / base.coulomb, "phase": phase}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"relative_amplitude": 0.0}
+
+    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+        """A phase of zero."""
+        return {"phase": 0.0}
+
+    def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
+        """Once up and down a revolution."""
+        return 1.0 + values["relative_amplitude"] * np.sin(at.position + values["phase"])
 
 
 EFFECT = PositionDependentFriction()

@@ -13,10 +13,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Shape, Signals, amplitude_and_phase
+from bench.effects.physics import Axis, Mechanism, Moment, Number, Values
 from bench.units import Quantity
 
 
-class PositionDependentInertia(Effect):
+class PositionDependentInertia(Mechanism, Effect):
     """See the module."""
 
     name = "position_dependent_inertia"
@@ -41,6 +42,23 @@ class PositionDependentInertia(Effect):
         """Amplitude relative to the mean inertia, and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"relative_amplitude": amplitude / base.inertia, "harmonic": shape[0], "phase": phase}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"relative_amplitude": 0.0}
+
+    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+        """A phase of zero."""
+        return {"phase": 0.0}
+
+    def added_inertia(self, values: Values, axis: Axis, at: Moment) -> Number:
+        """J(q) - J."""
+        return axis.inertia * values["relative_amplitude"] * np.sin(values["harmonic"] * at.position + values["phase"])
+
+    def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
+        """J'(q)*omega**2/2."""
+        slope = axis.inertia * values["relative_amplitude"] * values["harmonic"]
+        return 0.5 * slope * np.cos(values["harmonic"] * at.position + values["phase"]) * at.velocity**2
 
 
 EFFECT = PositionDependentInertia()

@@ -12,18 +12,24 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
+import mujoco
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Shape, Signals
+from bench.effects.mjcf import AXIS, PRESLIDING, passive_motor
+from bench.effects.physics import Axis, Friction, Number
 from bench.units import Quantity
 
 
-class PreslidingFriction(Effect):
+class PreslidingFriction(Friction, Effect):
     """See the module."""
 
     name = "presliding_friction"
     summary = "bristle-like hysteresis before breakaway and after reversal (Dahl, LuGre)"
-    quantities = (Quantity("bristle_stiffness", "sigma", "N*m/rad", lower=0.0),)
+    quantities = (
+        Quantity("bristle_stiffness", "sigma", "N*m/rad", lower=0.0),
+        Quantity("bristle_damping", "sigma_1", "N*m*s/rad", lower=0.0),
+    )
     shapes = (Shape(Quantity("bristle_rate", "sigma/K_0", "1/rad", lower=0.0), (3.0, 8.0, 20.0, 50.0, 130.0, 350.0)),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
@@ -37,6 +43,21 @@ class PreslidingFriction(Effect):
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """The bristles carry Coulomb friction itself, no more and no less within a factor of two."""
         return base.coulomb > 0.0 and 0.5 * base.coulomb < strengths[0] < 2.0 * base.coulomb
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"bristle_stiffness": np.inf}
+
+    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+        """Bristles without damping (Dahl's)."""
+        return {"bristle_damping": 0.0}
+
+    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """LuGre friction of a passive DC motor in place of the joint's."""
+        joint = spec.joint(AXIS)
+        level, joint.frictionloss = joint.frictionloss, 0.0
+        lugre = (values["bristle_stiffness"], values["bristle_damping"], level, level, 1.0)
+        passive_motor(spec, PRESLIDING, lugre=lugre)
 
 
 def bristles(position: np.ndarray, sign: np.ndarray, rate: float) -> np.ndarray:

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import mujoco
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Signals
+from bench.effects.mjcf import AXIS
+from bench.effects.physics import Axis, Mechanism, Number
 from bench.units import Quantity
 
 
-class QuadraticDrag(Effect):
+class QuadraticDrag(Mechanism, Effect):
     """See the module."""
 
     name = "quadratic_drag"
@@ -29,6 +32,14 @@ class QuadraticDrag(Effect):
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"quadratic_drag": strengths[0]}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"quadratic_drag": 0.0}
+
+    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """Second coefficient of the joint's damping, which grows with speed."""
+        spec.joint(AXIS).damping[1] += values["quadratic_drag"]
 
 
 EFFECT = QuadraticDrag()

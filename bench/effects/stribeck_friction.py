@@ -13,10 +13,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Shape, Signals
+from bench.effects.physics import Axis, Friction, Moment, Number, Values
 from bench.units import Quantity
 
 
-class StribeckFriction(Effect):
+class StribeckFriction(Friction, Effect):
     """See the module."""
 
     name = "stribeck_friction"
@@ -38,6 +39,15 @@ class StribeckFriction(Effect):
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """Friction rises, and dry friction stays positive."""
         return strengths[0] > 0.0 and base.coulomb > 0.0
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"static_friction": axis.coulomb}
+
+    def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
+        """The rise towards standstill."""
+        rise = values["static_friction"] - axis.coulomb
+        return rise * np.exp(-((at.velocity / values["stribeck_velocity"]) ** 2))
 
 
 EFFECT = StribeckFriction()

@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from bench.effects.effect import Base, Column, Effect, Signals
+from bench.effects.physics import Array, Axis, Electronics, Number, Values
 from bench.units import Quantity
 
 
-class TorqueConstantSaturation(Effect):
+class TorqueConstantSaturation(Electronics, Effect):
     """See the module."""
 
     name = "torque_constant_saturation"
@@ -22,11 +23,19 @@ class TorqueConstantSaturation(Effect):
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """M*(M/M_peak)**2: what the rig's constant overstates."""
-        return [[(signals.effort * (signals.effort / signals.peak_effort) ** 2, 0)]]
+        return [[(signals.torque * (signals.torque / signals.peak_effort) ** 2, 0)]]
 
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"drop_at_peak": strengths[0]}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"drop_at_peak": 0.0}
+
+    def delivered(self, values: Values, axis: Axis, effort: Array) -> Array:
+        """What is left of the torque."""
+        return effort * (1.0 - values["drop_at_peak"] * (effort / axis.peak_effort) ** 2)
 
 
 EFFECT = TorqueConstantSaturation()

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import mujoco
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Signals
+from bench.effects.mjcf import add_resisting_torque
+from bench.effects.physics import Axis, Mechanism, Number
 from bench.units import Quantity
 
 
-class TorqueOffset(Effect):
+class TorqueOffset(Mechanism, Effect):
     """See the module."""
 
     name = "torque_offset"
@@ -29,6 +32,14 @@ class TorqueOffset(Effect):
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"torque": strengths[0]}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"torque": 0.0}
+
+    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """Part of the load's constant torque."""
+        add_resisting_torque(spec, values["torque"])
 
 
 EFFECT = TorqueOffset()

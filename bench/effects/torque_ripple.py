@@ -14,10 +14,11 @@ import numpy as np
 
 from bench.effects.cogging_torque import followed
 from bench.effects.effect import Base, Column, Effect, Shape, Signals, amplitude_and_phase
+from bench.effects.physics import Axis, Mechanism, Moment, Number, Values
 from bench.units import Quantity
 
 
-class TorqueRipple(Effect):
+class TorqueRipple(Mechanism, Effect):
     """See the module."""
 
     name = "torque_ripple"
@@ -31,13 +32,25 @@ class TorqueRipple(Effect):
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """M*sin(n*q) and M*cos(n*q), nothing where the wave is faster than the samples can follow."""
-        angle, torque = shape[0] * signals.position, signals.effort * followed(signals, shape[0])
+        angle, torque = shape[0] * signals.position, signals.torque * followed(signals, shape[0])
         return [[(torque * np.sin(angle), 0)], [(torque * np.cos(angle), 0)]]
 
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude, harmonic and phase; what resists is taken off the motor's torque, so the sign turns."""
         amplitude, phase = amplitude_and_phase(-strengths[0], -strengths[1])
         return {"relative_amplitude": amplitude, "harmonic": shape[0], "phase": phase}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"relative_amplitude": 0.0}
+
+    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+        """A phase of zero."""
+        return {"phase": 0.0}
+
+    def torque_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
+        """Of the angle the motor is at."""
+        return 1.0 + values["relative_amplitude"] * np.sin(values["harmonic"] * at.position + values["phase"])
 
 
 EFFECT = TorqueRipple()

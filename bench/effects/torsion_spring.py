@@ -9,11 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import mujoco
+
 from bench.effects.effect import Base, Column, Effect, Signals
+from bench.effects.mjcf import AXIS
+from bench.effects.physics import Axis, Mechanism, Number
 from bench.units import Quantity
 
 
-class TorsionSpring(Effect):
+class TorsionSpring(Mechanism, Effect):
     """See the module."""
 
     name = "torsion_spring"
@@ -27,6 +31,14 @@ class TorsionSpring(Effect):
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"stiffness": strengths[0]}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"stiffness": 0.0}
+
+    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """Stiffness of the joint."""
+        spec.joint(AXIS).stiffness[0] += values["stiffness"]
 
 
 EFFECT = TorsionSpring()

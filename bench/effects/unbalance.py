@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import mujoco
 import numpy as np
 
 from bench.effects.effect import Base, Column, Effect, Signals, amplitude_and_phase
+from bench.effects.mjcf import add_periodic_torque
+from bench.effects.physics import Axis, Mechanism, Number
 from bench.units import Quantity
 
 
-class Unbalance(Effect):
+class Unbalance(Mechanism, Effect):
     """See the module."""
 
     name = "unbalance"
@@ -30,6 +33,18 @@ class Unbalance(Effect):
         """Amplitude and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"amplitude": amplitude, "phase": phase}
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Where the effect is absent."""
+        return {"amplitude": 0.0}
+
+    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+        """A phase of zero."""
+        return {"phase": 0.0}
+
+    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """A torque of one period a revolution: an eccentric body would add inertia that J holds already."""
+        add_periodic_torque(spec, name, values["amplitude"], 1.0, values["phase"])
 
 
 EFFECT = Unbalance()

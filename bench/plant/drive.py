@@ -16,8 +16,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.effects.mjcf import DRIVE
 from bench.errors import InputError
-from bench.plant.model import DRIVE
 from bench.plant.references import References
 from bench.rig.rig import Rig
 

@@ -24,11 +24,11 @@ from dataclasses import dataclass, replace
 import mujoco
 
 from bench.assets import asset
+from bench.effects.mjcf import AXIS, LOAD, LOAD_TORQUE, MOTOR
+from bench.effects.mjcf import DRIVE as DRIVE
 from bench.errors import InputError
 from bench.rig.load import Load
 from bench.rig.rig import Rig
-
-AXIS, MOTOR, LOAD, DRIVE, LOAD_TORQUE = "axis", "motor", "load", "drive", "load torque"
 
 #: Share of the motion that dry friction takes away in one step while it sticks; MuJoCo's default of 0.9 creeps.
 STICKING_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)

@@ -7,9 +7,9 @@ import numpy as np
 from mujoco import rollout
 from numpy.typing import NDArray
 
+from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import SimulationError
 from bench.plant.drive import add_pid, pid_controls
-from bench.plant.model import AXIS, DRIVE
 from bench.plant.plant import Plant
 from bench.plant.quiet import quiet
 from bench.plant.references import References

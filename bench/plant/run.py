@@ -28,13 +28,21 @@ def run(plants: Sequence[Plant], references: Sequence[References], progress: Pro
     states = [run_native(p, r) if p.native else None for p, r in zip(plants, references, strict=True)]
     ticked = [i for i, s in enumerate(states) if s is None or _limited(s, plants[i])]
     columns: list[States | None] = list(states)
-    if ticked:
-        together = run_ticks([plants[i] for i in ticked], [references[i] for i in ticked], progress)
-        for column, i in enumerate(ticked):
+    for alike in _alike(plants, ticked):
+        together = run_ticks([plants[i] for i in alike], [references[i] for i in alike], progress)
+        for column, i in enumerate(alike):
             columns[i] = together.axis(column)
     if progress is not None:
         progress(1.0)
     return abreast([column for column in columns if column is not None])
+
+
+def _alike(plants: Sequence[Plant], indices: Sequence[int]) -> list[list[int]]:
+    """Axes grouped by what is built into their models: only such can run side by side."""
+    groups: dict[tuple[str, ...], list[int]] = {}
+    for i in indices:
+        groups.setdefault(plants[i].model.structure, []).append(i)
+    return list(groups.values())
 
 
 def _check_ticks(plants: Sequence[Plant], references: Sequence[References]) -> None:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from bench.effects.present import Present
 from bench.plant.limits import MotionLimits
 from bench.plant.plant import Plant
 from bench.plant.profiles import DEFAULT, plan
 from bench.plant.references import References
 from bench.plant.run import run
+from bench.plant.sensing import reported_states
 from bench.plant.sensors import Sensors
 from bench.plant.states import States
 from bench.plant.ticks import Progress
@@ -42,6 +45,7 @@ def simulate(
     seed: int = 0,
     references: References | None = None,
     progress: Progress | None = None,
+    effects: Sequence[Present] = (),
 ) -> Simulated:
     """Simulate the axis of a rig.
 
@@ -51,17 +55,18 @@ def simulate(
         seed: of the sensors' noise.
         references: a motion of one's own, signals of shape (ticks,); `profile` then only names it.
         progress: called with the share done.
+        effects: added to it, in any order.
 
     Raises:
         InputError: the rig lacks what the simulation needs, or the profile is unknown.
         SimulationError: the simulation diverged.
     """
-    plant, sensors = Plant.from_rig(rig), Sensors.from_rig(rig)
+    plant, sensors = Plant.from_rig(rig, effects), Sensors.from_rig(rig)
     if references is None:
         references = plan(profile, MotionLimits.from_rig(rig, plant.parameters, plant.cascade.control_period))
     states = run([plant], [references], progress)
     origin = f"simulation of {rig.name}, {profile}, seed {seed}"
-    trace = sensors.record(states, references, np.random.default_rng(seed), origin)
+    trace = sensors.record(reported_states(plant.model, states), references, np.random.default_rng(seed), origin)
     friction = "drive" if plant.emulated else "mechanics"
-    truth = Truth(rig.name, plant.parameters, friction, sensors, profile, seed)
+    truth = Truth(rig.name, plant.parameters, friction, sensors, profile, seed, plant.model.effects)
     return Simulated(trace, truth, states, references)

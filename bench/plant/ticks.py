@@ -8,13 +8,15 @@ import mujoco
 import numpy as np
 from mujoco.batch import MODEL_FIELDS, Batch
 
+from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import SimulationError
 from bench.plant.drive import Cascade, CascadeDrive, FrictionEmulation
-from bench.plant.model import AXIS, DRIVE
 from bench.plant.plant import Plant
 from bench.plant.quiet import quiet
 from bench.plant.references import References, side_by_side
+from bench.plant.sensing import Sensed
 from bench.plant.states import DIVERGED, States
+from bench.plant.ticked import TickedEffects
 
 Progress = Callable[[float], None]
 
@@ -35,14 +37,26 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
     drive = CascadeDrive(_cascades(plants), motion, _emulations(plants))
     velocity[:] = motion.velocity[0]
     position[:] = motion.position[0] + half * velocity
+    models = [plant.model for plant in plants]
+    sensed = Sensed(models, motion.position[0], motion.velocity[0], motion.period)
+    acting = TickedEffects(batch, models, velocity) if any(not model.all_native for model in models) else None
     record = States(motion.time, *(np.zeros_like(motion.velocity) for _ in range(4)))
     with quiet():
         for k in range(len(motion.time)):
-            record.position[k] = measured = position - half * velocity
+            record.position[k] = position - half * velocity
             record.velocity[k] = velocity
-            record.torque[k], torque_input[:] = drive.tick(k, measured, velocity)
-            record.motor_torque[k] = torque_input
-            batch.step(nstep=substeps)
+            setpoint, motor = drive.tick(k, *sensed.see(record.position[k], velocity))
+            if acting is None:
+                record.torque[k], record.motor_torque[k] = setpoint, motor
+                torque_input[:] = motor
+                batch.step(nstep=substeps)
+            else:
+                for substep in range(substeps):
+                    time = motion.time[k] + substep * batch.model.opt.timestep
+                    flowing, torque_input[:] = acting.act(time, position, velocity, motor)
+                    record.torque[k] += (setpoint + (flowing - motor)) / substeps
+                    record.motor_torque[k] += torque_input / substeps
+                    batch.step()
             if progress is not None and k % REPORT_EVERY == 0:
                 progress(k / len(motion.time))
     if batch.warning.any():

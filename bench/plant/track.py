@@ -14,8 +14,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.effects.mjcf import DRIVE
 from bench.plant.drive import Cascade, add_pid
-from bench.plant.model import DRIVE
 from bench.plant.native import run_controls
 from bench.trace.trace import Trace
 

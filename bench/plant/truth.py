@@ -6,6 +6,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from bench.effects.present import Present, unit_of
 from bench.files import write_text
 from bench.plant.model import AxisParameters
 from bench.plant.sensors import Sensors
@@ -24,6 +25,7 @@ class Truth:
         sensors: that recorded it.
         profile: name of the motion.
         seed: of the sensors' noise.
+        effects: beyond the equation of motion.
     """
 
     rig: str
@@ -32,6 +34,7 @@ class Truth:
     sensors: Sensors
     profile: str
     seed: int
+    effects: tuple[Present, ...] = ()
 
     def as_json(self) -> str:
         """Truth as text, quantities under the names that `bench identify --json` gives them."""
@@ -64,8 +67,14 @@ class Truth:
             "friction": self.friction,
             "parameters": _with_units(parameters),
             "sensors": _with_units(sensors),
+            "effects": [{"name": p.name, "parameters": _with_units(_parameters(p, linear))} for p in self.effects],
         }
         return json.dumps(content, indent=2) + "\n"
+
+
+def _parameters(present: Present, linear: bool) -> dict[str, tuple[float, str]]:
+    units = {quantity.name: unit_of(quantity, linear) for quantity in present.effect.quantities}
+    return {key: (value, units[key]) for key, value in present.values}
 
 
 def _with_units(values: dict[str, tuple[float, str]]) -> dict[str, dict[str, float | str]]:

@@ -1,0 +1,139 @@
+"""An effect that is there: its name and the values of its quantities."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from bench.effects.catalogue import physics
+from bench.effects.physics import Axis, Physics
+from bench.errors import InputError
+from bench.units import Quantity, nearest, parse
+
+
+@dataclass(frozen=True)
+class Present:
+    """An effect with values; equal ones compare equal, and they sort by name and values.
+
+    Attributes:
+        name: of the effect.
+        values: quantity and value - SI - in the order of the effect's quantities.
+    """
+
+    name: str
+    values: tuple[tuple[str, float], ...]
+
+    @classmethod
+    def of(cls, name: str, values: Mapping[str, float], where: str = "effect") -> Present:
+        """Checked against the effect's quantities and their bounds.
+
+        Args:
+            name: of the effect.
+            values: by quantity - SI.
+            where: that they come from, for messages.
+
+        Raises:
+            InputError: an unknown effect or quantity, or a value out of bounds.
+        """
+        effect = named(name, where)
+        known = {quantity.name: quantity for quantity in effect.quantities}
+        for key, value in values.items():
+            _check(known_quantity(effect, key, where), value, f"{where}: {name}.{key}")
+        return cls(name, tuple((key, float(values[key])) for key in known if key in values))
+
+    @property
+    def effect(self) -> Physics:
+        """What the catalogue has under the name."""
+        return physics()[self.name]
+
+    def resolved(self, axis: Axis) -> dict[str, float]:
+        """All quantities, those that are not given by their defaults - SI.
+
+        Raises:
+            InputError: one is not given and has no default.
+        """
+        defaults = {key: float(value) for key, value in self.effect.defaults(axis).items()}
+        values = {**defaults, **dict(self.values)}
+        for quantity in self.effect.quantities:
+            if quantity.name not in values:
+                raise InputError(f"effect {self.name}", f"{quantity.name} missing", f"give it in {quantity.unit}")
+        return {quantity.name: values[quantity.name] for quantity in self.effect.quantities}
+
+    def absent(self, axis: Axis) -> bool:
+        """Whether the values are those at which the effect does nothing."""
+        values = self.resolved(axis)
+        return all(values[key] == value for key, value in self.effect.null(axis).items())
+
+
+def named(name: str, where: str = "effect") -> Physics:
+    """The effect of a name.
+
+    Raises:
+        InputError: there is none.
+    """
+    if name not in physics():
+        names = sorted(physics())
+        raise InputError(where, f"found '{name}'{nearest(name, names)}", f"allowed: {', '.join(names)}")
+    return physics()[name]
+
+
+def known_quantity(effect: Physics, key: str, where: str) -> Quantity:
+    """The quantity of an effect under a name.
+
+    Raises:
+        InputError: it has none of that name.
+    """
+    names = [quantity.name for quantity in effect.quantities]
+    if key not in names:
+        raise InputError(
+            f"{where}: {effect.name}", f"found '{key}'{nearest(key, names)}", f"allowed: {', '.join(names)}"
+        )
+    return effect.quantities[names.index(key)]
+
+
+def unit_of(quantity: Quantity, linear: bool) -> str:
+    """Unit on a rotary or linear axis: metres for radians, newtons for newton metres; a phase stays an angle."""
+    if not linear or quantity.name == "phase":
+        return quantity.unit
+    return quantity.unit.replace("N*m", "N").replace("rad", "m")
+
+
+def parse_effect(text: str, linear: bool = False) -> Present:
+    """`NAME:key=value,key=value` as on the command line; a value without a unit is SI.
+
+    Raises:
+        InputError: not of this form, an unknown effect or quantity, or a value that is none or out of bounds.
+    """
+    where = f"--effect {text}"
+    name, _, rest = text.partition(":")
+    effect = named(name.strip(), where)
+    values = {}
+    for part in filter(None, (part.strip() for part in rest.split(","))):
+        key, sign, value = (piece.strip() for piece in part.partition("="))
+        if not sign:
+            raise InputError(where, f"found '{part}'", "allowed: key=value, separated by commas")
+        quantity = known_quantity(effect, key, where)
+        values[key] = parse_value(value.strip("\"'"), unit_of(quantity, linear), f"{where}: {key}")
+    return Present.of(effect.name, values, where)
+
+
+def parse_value(text: str, unit: str, where: str) -> float:
+    """A number in SI, or a number with a unit.
+
+    Raises:
+        InputError: neither.
+    """
+    try:
+        return float(text)
+    except ValueError:
+        return parse(text, unit, where)
+
+
+def _check(quantity: Quantity, value: float, where: str) -> None:
+    if math.isnan(value) or not quantity.lower <= value <= quantity.upper:
+        raise InputError(
+            where,
+            f"found {value:g} {quantity.unit}",
+            f"allowed: {quantity.lower:g} to {quantity.upper:g} {quantity.unit}",
+        )

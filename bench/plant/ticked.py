@@ -1,0 +1,137 @@
+"""Effects that MuJoCo does not make by itself: in every step they set friction, inertia and torque of a batch of axes.
+
+They act as at the middle of the step, which keeps the integration second order: MuJoCo's position is there already (see
+`bench.plant.model`), velocity is extrapolated from the last two steps. Friction levels combine as
+
+    forward, backward = (K_0 + sum of excesses +- sum of differences/2)*product of factors, neither below zero,
+
+of which MuJoCo's dry friction takes the mean, so that sticking stays exact, and a torque half of the difference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from mujoco.batch import Batch
+from numpy.typing import NDArray
+
+from bench.effects.mjcf import AXIS, PRESLIDING
+from bench.effects.physics import Electronics, Friction, Mechanism, Moment
+from bench.plant.axis_model import AxisModel
+from bench.plant.rows import Rows, gather
+
+Array = NDArray[np.float64]
+
+#: Places of the two friction levels among the parameters of a passive motor with bristles.
+BRISTLE_LEVELS = slice(3, 5)
+
+
+class TickedEffects:
+    """Ticked effects of axes side by side.
+
+    Args:
+        batch: that simulates them.
+        models: one for each axis of the batch.
+        velocity: they start with - rad/s (m/s) - (axes,).
+    """
+
+    def __init__(self, batch: Batch, models: Sequence[AxisModel], velocity: Array) -> None:
+        self._step = float(batch.model.opt.timestep)
+        self._mechanisms = gather(models, Mechanism, ticked=True)
+        self._electronics = gather(models, Electronics)
+        self._friction = _FrictionLevels(batch, models)
+        dof = batch.model.joint(AXIS).dofadr[0]
+        self._inertia = _through(self._mechanisms, "added_inertia")
+        self._resisting = _through(self._mechanisms, "resisting_torque")
+        self._factors = _through(self._mechanisms, "torque_factor")
+        if self._inertia:
+            self._armature = batch.expand("dof_armature")[:, dof]
+            self._bare_armature = self._armature.copy()
+        self._applied = batch.bind("qfrc_applied")[:, dof]
+        self._before = velocity.copy()
+
+    def act(self, time: float, position: Array, velocity: Array, demand: Array) -> tuple[Array, Array]:
+        """Set up the batch for the next step; returns the effort that is reported and the motor's torque, (axes,) each.
+
+        Args:
+            time: at the start of the step - s.
+            position: MuJoCo's, half a step on - rad (m) - (axes,).
+            velocity: at the start of the step - rad/s (m/s) - (axes,).
+            demand: effort that the drive asks for - N*m (N) - (axes,).
+        """
+        middle = 1.5 * velocity - 0.5 * self._before
+        self._before = velocity.copy()
+        reported, torque = self._driven(middle, demand)
+        at = Moment(time + 0.5 * self._step, position, middle, torque)
+        if self._factors:
+            torque = torque.copy()
+            for rows in self._factors:
+                torque[rows.index] *= rows.effect.torque_factor(rows.values, rows.axis, rows.moment(at))
+            at = Moment(at.time, position, middle, torque)
+        applied = -self._friction.offset(at)
+        for rows in self._resisting:
+            applied[rows.index] -= rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))
+        self._applied[:] = applied
+        if self._inertia:
+            self._armature[:] = self._bare_armature
+            for rows in self._inertia:
+                self._armature[rows.index] += rows.effect.added_inertia(rows.values, rows.axis, rows.moment(at))
+        return reported, torque
+
+    def _driven(self, velocity: Array, demand: Array) -> tuple[Array, Array]:
+        """Electronics in the order of the signal: what flows of a demand, what of it acts, what torque it makes."""
+        if not self._electronics:
+            return demand, demand
+        reported = demand.copy()
+        for rows in _through(self._electronics, "flowing"):
+            i = rows.index
+            flows = rows.effect.flowing(rows.values, rows.axis, velocity[i], demand[i], rows.memory, self._step)
+            reported[i], rows.memory = flows
+        torque = reported.copy()
+        for rows in _through(self._electronics, "acting"):
+            i = rows.index
+            torque[i], rows.memory = rows.effect.acting(rows.values, torque[i], rows.memory, self._step)
+        for rows in _through(self._electronics, "delivered"):
+            torque[rows.index] = rows.effect.delivered(rows.values, rows.axis, torque[rows.index])
+        return reported, torque
+
+
+class _FrictionLevels:
+    """The level of dry friction, where effects change it in every step."""
+
+    def __init__(self, batch: Batch, models: Sequence[AxisModel]) -> None:
+        mechanisms = gather(models, Friction, ticked=True)
+        self._coulomb = np.array([model.parameters.coulomb_friction for model in models])
+        self._excesses = _through(mechanisms, "friction_excess")
+        self._factors = _through(mechanisms, "friction_factor")
+        self._differences = _through(mechanisms, "friction_difference")
+        self._levels: Array | None = None
+        if self._excesses or self._factors or self._differences:
+            if PRESLIDING in models[0].structure:
+                actuator = batch.model.actuator(PRESLIDING).id
+                self._levels = batch.expand("actuator_biasprm")[:, actuator, BRISTLE_LEVELS]
+            else:
+                dof = batch.model.joint(AXIS).dofadr
+                self._levels = batch.expand("dof_frictionloss")[:, dof[0] : dof[0] + 1]
+
+    def offset(self, at: Moment) -> Array:
+        """Set the level; returns half the difference of the two directions' levels - N*m (N) - (axes,)."""
+        if self._levels is None:
+            return np.zeros_like(self._coulomb)
+        level = self._coulomb.copy()
+        for rows in self._excesses:
+            level[rows.index] += rows.effect.friction_excess(rows.values, rows.axis, rows.moment(at))
+        half = np.zeros_like(level)
+        for rows in self._differences:
+            half[rows.index] += 0.5 * rows.effect.friction_difference(rows.values, rows.axis)
+        factor = np.ones_like(level)
+        for rows in self._factors:
+            factor[rows.index] *= rows.effect.friction_factor(rows.values, rows.axis, rows.moment(at))
+        forward, backward = np.maximum((level + half) * factor, 0.0), np.maximum((level - half) * factor, 0.0)
+        self._levels[:] = (0.5 * (forward + backward))[:, None]
+        return 0.5 * (forward - backward)
+
+
+def _through(rows: Sequence[Rows], hook: str) -> list[Rows]:
+    return [some for some in rows if some.effect.acts_through(hook)]
