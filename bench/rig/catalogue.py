@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from typing import Any
 
 from bench.assets import asset
 from bench.errors import InputError
@@ -14,13 +15,13 @@ def motor_names() -> list[str]:
     return sorted(path.stem for path in asset("data", "motors").glob("*.toml"))
 
 
-def motor_sources(name: str) -> dict[str, tuple[str, str]]:
+def motor_sources(name: str) -> dict[str, tuple[Any, str]]:
     """Value (with unit) and source of every quantity known about a motor; name must be in the catalogue."""
     entry = tomllib.loads(asset("data", "motors", f"{name}.toml").read_text(encoding="utf-8"))
     return {key: (item["value"], item["source"]) for key, item in entry.items()}
 
 
-def catalogue_motor(name: object, where: str) -> dict[str, str]:
+def catalogue_motor(name: object, where: str) -> dict[str, Any]:
     """Motor table of a catalogue entry, as it would stand in a rig file.
 
     Raises:

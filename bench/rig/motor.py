@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from pydantic import model_validator
+from typing import Annotated
 
+from pydantic import Field, model_validator
+
+from bench.rig.peak_curve import PeakCurve
 from bench.rig.torque_constant import TorqueConstant
 from bench.rig.values import (
     BackEmf,
@@ -18,6 +21,7 @@ from bench.rig.values import (
     Speed,
     Table,
     Temperature,
+    Time,
     Torque,
     TorquePerAmpere,
     TorquePerVolt,
@@ -39,6 +43,11 @@ class Motor(Table):
         rated_torque: what 100 % of a relative torque means - N*m; on a linear axis `rated_force` - N.
         resistance, inductance, back_emf_constant: winding - ohm, H, V*s/rad (V*s/m).
         temperature: of the winding that `resistance` holds for - K.
+        peak_curves: peak torque over speed, one for each mains voltage.
+        continuous_torque_loss: share of continuous torque that speed-dependent losses take up to the lowest curve's
+            no-load speed.
+        cold_resistance_share: winding resistance at 20 degC over that at 120 degC.
+        electrical_time_constant: L/R of the winding at 20 degC - s; thermal_time_constant: of its temperature - s.
     """
 
     model: str | None = None
@@ -61,6 +70,11 @@ class Motor(Table):
     back_emf_constant: BackEmf | None = None
     supply_voltage: Voltage | None = None
     temperature: Temperature | None = None
+    peak_curves: tuple[PeakCurve, ...] = ()
+    continuous_torque_loss: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
+    cold_resistance_share: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    electrical_time_constant: Time | None = None
+    thermal_time_constant: Time | None = None
 
     @model_validator(mode="after")
     def _datasheet_is_consistent(self) -> Motor:

@@ -1,0 +1,119 @@
+"""The whole course: every task that the recordings allow, and of the others what is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+
+from bench.errors import BenchError
+from bench.lab import (
+    t01_catapult,
+    t02_difference,
+    t03_torque_constants,
+    t04_torque_constant_curve,
+    t05_run_without_friction,
+    t06_inertia,
+    t07_run_with_friction,
+    t08_fast_samples,
+    t09_least_squares,
+    t10_peak_torque,
+    t11_corner,
+)
+from bench.lab.flights import find_flights, read_flights
+from bench.lab.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION, Recordings, read_truth
+from bench.lab.result import NotDone, Number, Task
+from bench.lab.run import Run
+from bench.plant.model import AxisParameters
+
+Progress = Callable[[float], None]
+
+
+def course(recordings: Recordings, progress: Progress = lambda share: None) -> list[Task | NotDone]:
+    """Do every task in order.
+
+    Args:
+        recordings: a student's, or the synthetic ones.
+        progress: called with the share done.
+    """
+    work = _Course(recordings)
+    done: list[Task | NotDone] = []
+    steps = work.steps()
+    for k, (key, title, step) in enumerate(steps):
+        try:
+            done.append(step())
+        except BenchError as reason:
+            done.append(NotDone(key, title, reason))
+        progress((k + 1) / len(steps))
+    return done
+
+
+class _Course:
+    """Recordings read once, and what later tasks take from earlier ones."""
+
+    def __init__(self, recordings: Recordings) -> None:
+        self.recordings, self.rig = recordings, recordings.rig
+
+    def steps(self) -> list[tuple[str, str, Callable[[], Task]]]:
+        """Number, title and work of every task."""
+        rig = self.rig
+        return [
+            (t01_catapult.KEY, t01_catapult.TITLE, self._catapult),
+            (t02_difference.KEY, t02_difference.TITLE, t02_difference.task),
+            (t03_torque_constants.KEY, t03_torque_constants.TITLE, lambda: t03_torque_constants.task(rig)),
+            (
+                t04_torque_constant_curve.KEY,
+                t04_torque_constant_curve.TITLE,
+                lambda: t04_torque_constant_curve.task(rig),
+            ),
+            (
+                t05_run_without_friction.KEY,
+                t05_run_without_friction.TITLE,
+                lambda: t05_run_without_friction.task(self.without_friction),
+            ),
+            (t06_inertia.KEY, t06_inertia.TITLE, lambda: self.inertia),
+            (
+                t07_run_with_friction.KEY,
+                t07_run_with_friction.TITLE,
+                lambda: t07_run_with_friction.task(self.with_friction),
+            ),
+            (t08_fast_samples.KEY, t08_fast_samples.TITLE, lambda: t08_fast_samples.task(self.with_friction)),
+            (t09_least_squares.KEY, t09_least_squares.TITLE, self._least_squares),
+            (t10_peak_torque.KEY, t10_peak_torque.TITLE, lambda: self.peak_torque),
+            (t11_corner.KEY, t11_corner.TITLE, self._corner),
+        ]
+
+    @cached_property
+    def without_friction(self) -> Run:
+        return self.recordings.run(WITHOUT_FRICTION)
+
+    @cached_property
+    def with_friction(self) -> Run:
+        return self.recordings.run(WITH_FRICTION)
+
+    @cached_property
+    def inertia(self) -> Task:
+        return t06_inertia.task(self.without_friction, self.rig)
+
+    @cached_property
+    def peak_torque(self) -> Task:
+        return t10_peak_torque.task(self.recordings.run(FASTEST), self.rig)
+
+    def _catapult(self) -> Task:
+        path = find_flights(self.recordings.folder)
+        return t01_catapult.task(read_flights(path), read_truth(path / "truth.json"))
+
+    def _least_squares(self) -> Task:
+        return t09_least_squares.task(self.with_friction, self.rig, _number(lambda: self.inertia, "J_load"))
+
+    def _corner(self) -> Task:
+        measured = _number(lambda: self.peak_torque, "measured corner")
+        axis = AxisParameters.from_rig(self.rig)
+        return t11_corner.task(self.rig, axis, measured=measured.value if measured else None)
+
+
+def _number(task: Callable[[], Task], name: str) -> Number | None:
+    """A number of an earlier task; None where that could not be done, which its own place in the course says."""
+    try:
+        return task()[name]
+    except BenchError:
+        return None

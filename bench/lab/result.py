@@ -1,0 +1,89 @@
+"""What a task of the course returns: numbers with units, diagrams as data, and what they say."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.errors import BenchError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Number:
+    """A result.
+
+    Attributes:
+        name: of the quantity.
+        value: in `unit`.
+        unit: as the course writes it.
+        truth: the simulated axis' value in the same unit, where the recording is synthetic.
+    """
+
+    name: str
+    value: float
+    unit: str
+    truth: float | None = None
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Points of a diagram, in the units of its panel's labels: x, y (n,)."""
+
+    x: Array
+    y: Array
+    label: str = ""
+    style: Literal["line", "dashes", "dots", "bold dots"] = "line"
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes, logarithmic where `log`; labels carry the unit, as `speed / (rad/s)`."""
+
+    x_label: str
+    y_label: str
+    curves: tuple[Curve, ...]
+    log: bool = False
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Panels one above the other; those with the same x label share their x axis."""
+
+    title: str
+    panels: tuple[Panel, ...]
+
+
+@dataclass(frozen=True)
+class Task:
+    """A task that was done.
+
+    Attributes:
+        key: number in the course, or a name for what stands around the tasks.
+        title: of the task.
+        says: findings, a paragraph each.
+        numbers: results.
+        charts: diagrams.
+    """
+
+    key: str
+    title: str
+    says: tuple[str, ...] = ()
+    numbers: tuple[Number, ...] = ()
+    charts: tuple[Chart, ...] = ()
+
+    def __getitem__(self, name: str) -> Number:
+        return next(number for number in self.numbers if number.name == name)
+
+
+@dataclass(frozen=True)
+class NotDone:
+    """A task that could not be done: its number, title, and what is missing."""
+
+    key: str
+    title: str
+    reason: BenchError

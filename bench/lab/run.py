@@ -1,0 +1,76 @@
+"""A recording of the lab in SI units: speed and current as recorded, acceleration and torque as the course makes "
+"them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bench.identify.lab import backward_difference
+from bench.lab.result import Array, Chart, Curve, Panel
+from bench.lab.rig import torque_constant
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+
+@dataclass(frozen=True)
+class Run:
+    """One recording, signals (n,).
+
+    Attributes:
+        time: s.
+        velocity: omega - rad/s.
+        current: Iq - A.
+        acceleration: alpha, backward difference of the speed - rad/s**2.
+        torque: kT(Iq)*Iq - N*m.
+        sample_period: s.
+        truth: values of the simulated axis by their names - SI; empty for a real one.
+    """
+
+    time: Array
+    velocity: Array
+    current: Array
+    acceleration: Array
+    torque: Array
+    sample_period: float
+    truth: Mapping[str, float] = field(default_factory=dict)
+
+    def true(self, name: str, factor: float = 1.0) -> float | None:
+        """True value of a quantity times a factor that changes its unit; None on a real axis."""
+        return self.truth[name] * factor if name in self.truth else None
+
+
+def run_of(trace: Trace, rig: Rig, truth: Mapping[str, float] | None = None) -> Run:
+    """Signals of a recording, its longest stretch without a hole.
+
+    Raises:
+        InputError: no velocity or current in it, or no torque constant in the rig.
+    """
+    part = max(trace.segments, key=lambda segment: segment.stop - segment.start)
+    velocity, current = trace["velocity"][part], trace["current"][part]
+    return Run(
+        time=trace.time[part] - trace.time[part.start],
+        velocity=velocity,
+        current=current,
+        acceleration=backward_difference(velocity, trace.sample_period),
+        torque=torque_constant(rig).torque(current),
+        sample_period=trace.sample_period,
+        truth=truth or {},
+    )
+
+
+def signals_chart(run: Run, title: str) -> Chart:
+    """Speed, acceleration and torque one above the other on one time axis."""
+    signals = (
+        ("speed ω / (rad/s)", run.velocity),
+        ("acceleration α / (rad/s²)", run.acceleration),
+        ("torque M / (N·m)", run.torque),
+    )
+    return Chart(title, tuple(Panel("time / s", label, (Curve(run.time, values),)) for label, values in signals))
+
+
+def extent(values: Array) -> float:
+    """Largest magnitude."""
+    return float(np.max(np.abs(values)))

@@ -1,0 +1,61 @@
+"""Task 2: backward difference u'[k] = (u[k] - u[k-1])/T, tried on sin(t) against cos(t); beside it the bench's own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bench.identify.lab import backward_difference
+from bench.lab.result import Chart, Curve, Number, Panel, Task
+from bench.trace.filter import GaussianFilter
+
+KEY, TITLE = "2", "Backward difference"
+
+SAMPLE_PERIOD = 1e-3
+DURATION = 10.0
+#: Width of the bench's filter, as it chooses it for the lab's recordings - s.
+WIDTH = 2.0 * SAMPLE_PERIOD
+
+
+def task() -> Task:
+    """Differentiate sin(t) both ways and compare with cos(t).
+
+    The backward difference belongs half a sample earlier, so it errs by T/2*|u''|: 5e-4 here. The bench's filter is
+    even in time and scales a sine by exp(-(omega*width)**2/2): 2e-6 here; it cannot serve the ends, six widths long.
+    """
+    time = np.arange(0.0, DURATION, SAMPLE_PERIOD)
+    backward = backward_difference(np.sin(time), SAMPLE_PERIOD)
+    smooth = GaussianFilter(WIDTH, SAMPLE_PERIOD)
+    kept = slice(smooth.margin, time.size - smooth.margin)
+    filtered = smooth(np.sin(time), 1)[0]
+    errors = backward - np.cos(time), filtered - np.cos(time[kept])
+    worst = [float(np.max(np.abs(error))) for error in (errors[0][1:], errors[1])]
+    return Task(
+        KEY,
+        TITLE,
+        (
+            f"On sin(t) at {SAMPLE_PERIOD * 1e3:g} ms the backward difference is at most {worst[0]:.2g} away from "
+            "cos(t), "
+            f"half a sample of delay; the bench's own derivative {worst[1]:.2g}. Its first value is 0 by definition.",
+        ),
+        (
+            Number("largest error of the backward difference", worst[0], "1/s", SAMPLE_PERIOD / 2.0),
+            Number("largest error of the bench's derivative", worst[1], "1/s", WIDTH**2 / 2.0),
+        ),
+        (
+            Chart(
+                "Derivative of sin(t) against cos(t)",
+                (
+                    Panel(
+                        "time / s",
+                        "derivative / (1/s)",
+                        (
+                            Curve(time, np.cos(time), "cos(t)"),
+                            Curve(time, backward, "backward difference", "dashes"),
+                        ),
+                    ),
+                    Panel("time / s", "error, backward / (1/s)", (Curve(time[1:], errors[0][1:]),)),
+                    Panel("time / s", "error, bench / (1/s)", (Curve(time[kept], errors[1]),)),
+                ),
+            ),
+        ),
+    )

@@ -1,0 +1,63 @@
+"""Task 4: kT(Iq) = a*Iq**2 + b*Iq + c from three conditions: flat at zero, and both points of the datasheet."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bench.lab.result import Array, Chart, Curve, Number, Panel, Task
+from bench.lab.t03_torque_constants import torque_constants
+from bench.rig.motor import Motor
+from bench.rig.rig import Rig
+
+KEY, TITLE = "4", "Torque constant over current"
+
+
+def coefficients(motor: Motor, where: str) -> Array:
+    """a - N*m/A**3, b - N*m/A**2, c - N*m/A of three linear equations.
+
+    kT'(0) = 0, kT(I0) = M0/I0, kT(Imax) = Mmax/Imax.
+
+    Raises:
+        InputError: the motor lacks one of the four values.
+    """
+    stall, peak = torque_constants(motor, where)
+    low, high = motor.continuous_stall_current or 0.0, motor.peak_current or 0.0
+    conditions = np.array([[0.0, 1.0, 0.0], [low**2, low, 1.0], [high**2, high, 1.0]])
+    return np.linalg.solve(conditions, np.array([0.0, stall, peak]))
+
+
+def task(rig: Rig) -> Task:
+    """Solve for the coefficients, check and draw the curve."""
+    motor = rig.motor
+    a, b, c = coefficients(motor, rig.source)
+    stall, peak = torque_constants(motor, rig.source)
+    currents = np.array([motor.continuous_stall_current or 0.0, motor.peak_current or 0.0])
+    current = np.linspace(0.0, currents[1], 400)
+    curve = a * current**2 + b * current + c
+    met = np.abs(a * currents**2 + b * currents + c - [stall, peak])
+    falls = bool(np.all(np.diff(curve[1:]) < 0.0))
+    return Task(
+        KEY,
+        TITLE,
+        (
+            f"Checked: slope at zero {abs(b):.1g} N·m/A²; "
+            f"{'falls monotonically' if falls else 'does not fall everywhere'} "
+            f"up to {currents[1]:g} A; both points of the datasheet met within {met.max():.1g} N·m/A.",
+        ),
+        (Number("a", a, "N·m/A³"), Number("b", b, "N·m/A²"), Number("c", c, "N·m/A")),
+        (
+            Chart(
+                "kT(Iq)",
+                (
+                    Panel(
+                        "current Iq / A",
+                        "torque constant kT / (N·m/A)",
+                        (
+                            Curve(current, curve, "a·Iq² + b·Iq + c"),
+                            Curve(currents, np.array([stall, peak]), "datasheet: stall and peak", "bold dots"),
+                        ),
+                    ),
+                ),
+            ),
+        ),
+    )

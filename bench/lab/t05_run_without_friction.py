@@ -1,0 +1,23 @@
+"""Task 5: the recording without friction: speed, acceleration and torque in SI units on one time axis."""
+
+from __future__ import annotations
+
+from bench.lab.result import Number, Task
+from bench.lab.run import Run, extent, signals_chart
+
+KEY, TITLE = "5", "Recording without friction"
+
+
+def task(run: Run, key: str = KEY, title: str = TITLE) -> Task:
+    """Draw the signals and say how far they reach."""
+    return Task(
+        key,
+        title,
+        (f"{run.time.size} samples, one each {run.sample_period * 1e3:.4g} ms, {run.time[-1]:.3g} s.",),
+        (
+            Number("largest speed", extent(run.velocity), "rad/s"),
+            Number("largest acceleration", extent(run.acceleration), "rad/s²"),
+            Number("largest torque", extent(run.torque), "N·m"),
+        ),
+        (signals_chart(run, f"Task {key}: {title.lower()}"),),
+    )

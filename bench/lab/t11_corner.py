@@ -1,0 +1,214 @@
+"""Task 11: why the measured corner lies at higher speed than the datasheet's, by simulating the motor's winding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bench.errors import InputError
+from bench.lab.corner import corner_speed
+from bench.lab.result import Chart, Curve, Number, Panel, Task
+from bench.lab.rig import torque_constant
+from bench.lab.t10_peak_torque import RPM, datasheet_curve, peak_curve
+from bench.lab.winding import STEP, Winding, WindingRun, run_winding
+from bench.plant.model import AxisParameters
+from bench.rig.circuit import COLD, HOT, Circuit
+from bench.rig.peak_curve import PeakCurve
+from bench.rig.rig import Rig
+
+KEY, TITLE = "11", "Why the measured corner lies higher"
+
+#: Electrical time constants that the split is shown for - s.
+TIME_CONSTANTS = (1e-3, 2e-3, 3e-3, 5e-3, 8e-3)
+#: The run-up lasts as many times J*omega_0/M_max.
+LENGTH = 5.0
+#: Of the drive, torque asked for per missing speed - N*m*s/rad.
+VELOCITY_GAIN = 0.9
+
+
+@dataclass(frozen=True)
+class Split:
+    """Speed of the corner - rad/s - of each simulation, and the runs themselves.
+
+    Attributes:
+        hot: winding at 120 degC, quasi-static.
+        cold: at 20 degC, quasi-static.
+        inductive: at 20 degC with the assumed inductance.
+        by_time_constant: (L/R - s, corner - rad/s) at 20 degC.
+        runs: hot, cold and inductive.
+        acceleration: at full torque - rad/s**2.
+    """
+
+    hot: float
+    cold: float
+    inductive: float
+    by_time_constant: tuple[tuple[float, float], ...]
+    runs: tuple[WindingRun, WindingRun, WindingRun]
+    acceleration: float
+
+
+def split(
+    rig: Rig, mains: float, axis: AxisParameters, progress: Callable[[float], None] = lambda share: None
+) -> Split:
+    """Simulate the run-up hot, then cold, then cold with L, and with other values of L/R.
+
+    Args:
+        rig: its motor.
+        mains: voltage - V.
+        axis: inertia and friction that the motor runs up.
+        progress: called with the share done.
+    """
+    circuit = Circuit.from_motor(rig.motor, peak_curve(rig, mains), rig.source)
+    limit, constant = peak_current(rig), torque_constant(rig)
+    full = float(constant.torque(np.asarray(limit)))
+    top = circuit.voltage / circuit.back_emf_constant
+    demand = np.full(round(LENGTH * axis.inertia * top / full / STEP), top)
+    others = [replace(circuit, time_constant=tau) for tau in TIME_CONSTANTS]
+    windings = [Winding(circuit, constant, limit, HOT, False), Winding(circuit, constant, limit, COLD, False)]
+    windings += [Winding(other, constant, limit, COLD, True) for other in (circuit, *others)]
+    runs = []
+    for k, winding in enumerate(windings):
+        runs.append(run_winding(winding, axis, demand, VELOCITY_GAIN))
+        progress((k + 1) / len(windings))
+    corners = [corner_speed(run.velocity, run.current) for run in runs]
+    acceleration = (full - axis.coulomb_friction) / axis.inertia
+    dependence = tuple(zip(TIME_CONSTANTS, corners[3:], strict=True))
+    return Split(corners[0], corners[1], corners[2], dependence, (runs[0], runs[1], runs[2]), acceleration)
+
+
+def peak_current(rig: Rig) -> float:
+    """Imax - A.
+
+    Raises:
+        InputError: the rig does not give it.
+    """
+    if rig.motor.peak_current is None:
+        raise InputError(f"{rig.source}: motor.peak_current", "missing", "the run-up is limited by it")
+    return rig.motor.peak_current
+
+
+def task(
+    rig: Rig,
+    axis: AxisParameters,
+    mains: float = 230.0,
+    measured: float | None = None,
+    progress: Callable[[float], None] = lambda share: None,
+) -> Task:
+    """State how many rpm of the corner's shift each of the two causes is.
+
+    Args:
+        rig: its motor.
+        axis: inertia and friction that the motor runs up.
+        mains: voltage - V.
+        measured: corner of task 10 - rpm - if that could be done.
+        progress: called with the share done.
+    """
+    found = split(rig, mains, axis, progress)
+    sheet = peak_curve(rig, mains).corner_speed
+    by_temperature, by_inductance = (found.cold - found.hot) * RPM, (found.inductive - found.cold) * RPM
+    says = [
+        f"Simulated hot and quasi-static the corner lies at {found.hot * RPM:.0f} rpm, cold at {found.cold * RPM:.0f} "
+        "rpm, cold "
+        f"with inductance at {found.inductive * RPM:.0f} rpm: {by_temperature:.0f} rpm come from the cold winding, "
+        f"{by_inductance:.0f} rpm from the inductance. A cold winding takes less voltage, so more is left for the "
+        "back-EMF; "
+        "and at the corner the inductance keeps the current up for L/R, in which speed rises by α·L/R.",
+        f"The winding warms by {found.runs[0].warming:.1f} K (hot) and {found.runs[1].warming:.1f} K (cold) during the "
+        "run-up, "
+        f"which keeps the hot corner {(found.hot - sheet) * RPM:+.0f} rpm from the datasheet's {sheet * RPM:.0f} rpm.",
+        _voltage_says(rig, mains),
+    ]
+    if measured is not None:
+        says.insert(1, f"Measured in task 10: {measured:.0f} rpm, {measured - found.inductive * RPM:+.0f} rpm from it.")
+    numbers = (
+        Number("corner, hot, quasi-static", found.hot * RPM, "rpm"),
+        Number("corner, cold, quasi-static", found.cold * RPM, "rpm"),
+        Number("corner, cold, with inductance", found.inductive * RPM, "rpm"),
+        Number("shift by temperature", by_temperature, "rpm"),
+        Number("shift by inductance", by_inductance, "rpm"),
+        *(
+            Number(f"shift by inductance, L/R = {tau * 1e3:g} ms", (corner - found.cold) * RPM, "rpm")
+            for tau, corner in found.by_time_constant
+        ),
+    )
+    return Task(KEY, TITLE, tuple(says), numbers, (_torque_chart(rig, mains, found), _dependence_chart(found)))
+
+
+def _voltage_says(rig: Rig, mains: float) -> str:
+    """What the circuit leaves out, told by the curve at another voltage."""
+    others = [curve for curve in rig.motor.peak_curves if curve.mains_voltage != mains]
+    if not others:
+        return "The datasheet has one mains voltage only, so what the circuit leaves out does not show."
+    other = others[0]
+    circuit = Circuit.from_motor(rig.motor, peak_curve(rig, mains), rig.source)
+    drop = circuit.resistance * peak_current(rig)
+    shift, time_constant = cross_voltage(circuit, peak_curve(rig, mains), other)
+    predicted = (circuit.voltage * other.mains_voltage / mains - drop) / circuit.back_emf_constant
+    return (
+        f"At {other.mains_voltage:g} V the same circuit has its corner at {predicted * RPM:.0f} rpm, the datasheet at "
+        f"{other.corner_speed * RPM:.0f} rpm: the course's equation leaves out the voltage ω·p·L·Iq at a right angle "
+        "to the "
+        "back-EMF, which grows with speed. So part of what it counts as resistance is inductance. With both curves of "
+        "the "
+        f"datasheet met by U² = (R·Iq + Ke·ω)² + (ω·p·L·Iq)², the cold winding shifts the corner by {shift * RPM:.0f} "
+        "rpm "
+        f"only, and L/R at {COLD:g} °C is {time_constant * 1e3:.3g} ms over the number of pole pairs: the assumed "
+        f"{circuit.time_constant * 1e3:g} ms are of the right size."
+    )
+
+
+def cross_voltage(circuit: Circuit, low: PeakCurve, high: PeakCurve) -> tuple[float, float]:
+    """What two peak curves say of a circuit with the voltage at a right angle, U**2 = (R*I + Ke*w)**2 + (w*p*L*I)**2.
+
+    Taking (w_2/w_1)**2 times the equation at corner 1 from that at corner 2 leaves a quadratic in R*I.
+
+    Args:
+        circuit: at the mains voltage of `low`.
+        low, high: curves at two mains voltages.
+
+    Returns:
+        Shift of the corner of `low` from hot to cold - rad/s, and p*L/R cold - s; the current cancels out.
+
+    Raises:
+        InputError: no such circuit meets both curves.
+    """
+    ke, voltage, one, two = circuit.back_emf_constant, circuit.voltage, low.corner_speed, high.corner_speed
+    q, ratio = (two / one) ** 2, high.mains_voltage / low.mains_voltage
+    drop = _positive_root(q - 1.0, 2.0 * ke * (q * one - two), voltage**2 * (ratio**2 - q))
+    across = (voltage**2 - (drop + ke * one) ** 2) / one**2
+    if not across > 0.0:
+        raise InputError("motor.peak_curves", "found two curves that no circuit meets", "give the datasheet's corners")
+    cold = drop * circuit.cold_share
+    corner = _positive_root(ke**2 + across, 2.0 * ke * cold, cold**2 - voltage**2)
+    return corner - one, float(np.sqrt(across)) / cold
+
+
+def _positive_root(a: float, b: float, c: float) -> float:
+    """Of a*x**2 + b*x + c with a > 0 > c."""
+    return float((-b + np.sqrt(b**2 - 4.0 * a * c)) / (2.0 * a))
+
+
+def _torque_chart(rig: Rig, mains: float, found: Split) -> Chart:
+    speed, torque = datasheet_curve(rig, mains)
+    names = (f"{HOT:g} °C, quasi-static", f"{COLD:g} °C, quasi-static", f"{COLD:g} °C, with inductance")
+    every = slice(None, None, 40)
+    curves = [Curve(speed * RPM, torque, f"datasheet, {mains:g} V", "dashes")]
+    curves += [
+        Curve(run.velocity[every] * RPM, run.torque[every], name) for run, name in zip(found.runs, names, strict=True)
+    ]
+    return Chart("Task 11: simulated peak torque", (Panel("speed n / rpm", "torque M / (N·m)", tuple(curves)),))
+
+
+def _dependence_chart(found: Split) -> Chart:
+    tau = np.array([tau for tau, _ in found.by_time_constant])
+    shift = np.array([corner - found.cold for _, corner in found.by_time_constant])
+    curves = (
+        Curve(tau * 1e3, shift * RPM, "simulated", "bold dots"),
+        Curve(
+            np.append(0.0, tau) * 1e3, np.append(0.0, tau) * found.acceleration * RPM, "α·L/R at full torque", "dashes"
+        ),
+    )
+    panel = Panel("electrical time constant L/R / ms", "shift of the corner by inductance / rpm", curves)
+    return Chart("Task 11: the split depends on the assumed L/R", (panel,))

@@ -1,0 +1,148 @@
+"""Every number of every task against the truth of the synthetic recordings, closed forms, or the datasheet."""
+
+import numpy as np
+import pytest
+
+from bench.errors import InputError, UndeterminedError
+from bench.identify.lab import backward_difference
+from bench.lab.catapult import FLIGHTS, fly
+from bench.lab.corner import corner_speed
+from bench.lab.recordings import Recordings
+from bench.lab.rig import lab_rig
+from bench.lab.t01_catapult import by_normal_equations, by_orthogonal_solver, columns
+from bench.lab.t04_torque_constant_curve import coefficients
+from bench.lab.t08_fast_samples import WIDTH, fast_samples, filtered_acceleration
+from bench.lab.t10_peak_torque import run_up
+
+RPM = 60.0 / (2.0 * np.pi)
+
+
+def near(number, share):
+    """The number against its truth."""
+    assert number.truth is not None
+    off = number.value / number.truth - 1.0
+    print(f"{number.name}: {number.value:.6g} {number.unit}, truth {number.truth:.6g}, {off:+.3%}")
+    assert number.value == pytest.approx(number.truth, rel=share)
+
+
+def test_1_catapult_recovers_the_throw_within_its_scatter(done):
+    task = done["1"]
+    flights = np.array([fly(factor, angle).coefficients for factor, angle in ((1.015, 2.3562), (0.985, 2.3562))])
+    spread = np.abs(flights[0] - flights[1]) / 2.0
+    assert len(task.charts[0].panels[0].curves) == FLIGHTS + 1
+    for name, reach in zip("abc", spread, strict=True):
+        number = task[name]
+        # ten launches, each as far off as one standard deviation of stiffness makes it; the release scatters alike
+        assert abs(number.value - number.truth) < 4.0 * reach / np.sqrt(FLIGHTS) + 0.01
+    y, z = np.concatenate([np.stack([c.x, c.y]) for c in task.charts[0].panels[0].curves[:FLIGHTS]], axis=1)
+    expected = np.polyfit(y, z, 2)
+    assert [task[name].value for name in "abc"] == pytest.approx(expected.tolist(), rel=1e-9)
+    assert task["E"].value == pytest.approx(np.sum((z - np.polyval(expected, y)) ** 2), rel=1e-9)
+
+
+def test_1_a_flight_in_mujoco_is_the_ballistic_parabola():
+    flight = fly()
+    assert flight.y.size == 20
+    assert np.abs(np.polyval(flight.coefficients, flight.y) - flight.z).max() < 1e-9
+
+
+def test_1_both_solvers_agree_until_the_condition_number_is_squared():
+    y, theta = np.linspace(0.0, 2.0, 50), np.array([-0.5, 0.8, 0.6])
+    for shift, tolerance in ((0.0, 1e-12), (1e3, 1e-2)):
+        matrix = columns(y + shift)
+        b = columns(y) @ theta
+        normal, orthogonal = (
+            np.abs(matrix @ f(matrix, b) - b).max() for f in (by_normal_equations, by_orthogonal_solver)
+        )
+        assert orthogonal < 1e-8
+        assert normal < tolerance if shift == 0.0 else normal > 100.0 * orthogonal
+
+
+def test_2_backward_difference_is_half_a_sample_late(done):
+    near(done["2"]["largest error of the backward difference"], 1e-3)
+    near(done["2"]["largest error of the bench's derivative"], 0.05)
+    assert backward_difference(np.array([3.0]), 1.0).tolist() == [0.0]
+    assert backward_difference(np.array([]), 1.0).size == 0
+    assert backward_difference(np.array([1.0, 3.0, 2.0]), 0.5).tolist() == [0.0, 4.0, -2.0]
+    for period in (0.0, -1e-3, np.nan):
+        with pytest.raises(InputError):
+            backward_difference(np.zeros(3), period)
+
+
+def test_3_and_4_torque_constant_is_exact(done):
+    assert done["3"]["kT from stall"].value == pytest.approx(1.4 / 1.8, rel=1e-15)
+    assert done["3"]["kT from peak"].value == pytest.approx(3.5 / 5.7, rel=1e-15)
+    rig = lab_rig()
+    a, b, c = coefficients(rig.motor, rig.source)
+    assert b == pytest.approx(0.0, abs=1e-15)
+    assert a * 1.8**2 + c == pytest.approx(1.4 / 1.8, rel=1e-14)
+    assert a * 5.7**2 + c == pytest.approx(3.5 / 5.7, rel=1e-14)
+    constant = rig.motor.torque_per_ampere
+    assert (constant.curvature, constant.constant) == pytest.approx((a, c), rel=1e-13)
+    curve = done["4"].charts[0].panels[0].curves[0]
+    assert curve.x[0] == 0.0
+    assert curve.x[-1] == 5.7
+    assert np.all(np.diff(curve.y) < 0.0)
+
+
+def test_5_and_7_three_signals_on_one_time_axis_in_si(done):
+    for key in ("5", "7"):
+        panels = done[key].charts[0].panels
+        assert [panel.y_label for panel in panels] == [
+            "speed ω / (rad/s)",
+            "acceleration α / (rad/s²)",
+            "torque M / (N·m)",
+        ]
+        assert {panel.x_label for panel in panels} == {"time / s"}
+        assert 100.0 < done[key]["largest speed"].value < 200.0
+        assert 2.0 < done[key]["largest torque"].value < 3.5
+
+
+def test_6_inertia_within_half_a_percent(done):
+    near(done["6"]["J"], 0.005)
+    near(done["6"]["J_load"], 0.005)
+    assert done["6"]["J_load, theory"].value == pytest.approx(21.906, abs=1e-3)
+
+
+def test_8_filtered_acceleration_is_in_step_and_slow_samples_are_gone():
+    run = Recordings.in_folder(None).run("JLoadAndFriction")
+    acceleration, synchronous = filtered_acceleration(run)
+    u = run.velocity
+    assert acceleration == pytest.approx((u[WIDTH:] - u[:-WIDTH]) / (WIDTH * run.sample_period))
+    assert run.time[synchronous].size == acceleration.size
+    kept = fast_samples(run)
+    assert np.abs(kept.velocity).min() >= 20.0
+    assert kept.time.size == np.count_nonzero(np.abs(u[synchronous]) >= 20.0)
+
+
+def test_9_inertia_within_half_a_percent_and_friction_within_three(done):
+    near(done["9"]["J"], 0.005)
+    near(done["9"]["J_load"], 0.005)
+    near(done["9"]["K_fric_w"], 0.03)
+    near(done["9"]["K_fric_0"], 0.03)
+    assert done["9"]["J_load"].value == pytest.approx(done["6"]["J_load"].value, rel=0.005)
+    assert done["9"]["E"].value < 2.0
+
+
+def test_10_peak_torque_and_corner(done):
+    near(done["10"]["peak torque"], 0.005)
+    near(done["10"]["measured corner"], 0.002)
+    assert done["10"]["datasheet's corner"].value == pytest.approx(2100.0)
+    measured, sheet = done["10"].charts[0].panels[0].curves
+    assert measured.y.min() >= 0.2
+    assert measured.y[0] > 3.0
+    assert np.stack([sheet.x, sheet.y], axis=1) == pytest.approx(np.array([[0.0, 3.5], [2100.0, 3.5], [5000.0, 0.0]]))
+
+
+def test_10_a_run_that_never_reaches_full_torque_is_refused():
+    run = Recordings.in_folder(None).run("JLoadAndFriction")
+    with pytest.raises(UndeterminedError, match="3 N"):
+        run_up(run)
+
+
+def test_10_corner_of_the_exact_circuit():
+    speed = np.linspace(0.0, 500.0, 400)
+    current = np.minimum(5.7, (398.0 - 0.76 * speed) / 40.0)
+    assert corner_speed(speed, current) == pytest.approx((398.0 - 5.7 * 40.0) / 0.76, rel=1e-9)
+    with pytest.raises(UndeterminedError):
+        corner_speed(speed, np.full(400, 5.7))
