@@ -47,8 +47,8 @@ class Sensed:
         return position, velocity
 
     def _seen(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        if self._encoders:
-            position, velocity = position.copy(), velocity.copy()
+        # copied, as both may be views of a batch that steps on
+        position, velocity = position.copy(), velocity.copy()
         for rows in self._encoders:
             i = rows.index
             position[i], velocity[i] = rows.effect.seen(rows.values, position[i], velocity[i])

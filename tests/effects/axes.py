@@ -1,0 +1,112 @@
+"""One axis for both worlds, and every effect of the catalogue with values that suit it, in each world's words."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from bench.effects.physics import Winding
+from bench.effects.present import Present
+from bench.plant.axis_model import AxisModel
+from bench.plant.drive import Cascade
+from bench.plant.model import AxisParameters
+from bench.plant.plant import Plant
+from bench.plant.references import References
+from tests.independent import KINDS, Effect, Sensors, simulate
+from tests.independent.axes import PLAIN
+
+PERIOD = 125e-6
+IDEAL = Sensors(sample_period=PERIOD, encoder_resolution=0.0)
+#: The independent drive sums errors up to the last tick, the bench's takes half of the present one too.
+AXIS = replace(PLAIN, control_period=PERIOD, velocity_gain=PLAIN.velocity_gain + PLAIN.integral_gain * PERIOD / 2.0)
+
+PARAMETERS = AxisParameters(AXIS.inertia, AXIS.viscous, AXIS.coulomb, motor_inertia=AXIS.rotor_inertia)
+CASCADE = Cascade(
+    AXIS.position_gain,
+    PLAIN.velocity_gain,
+    AXIS.integral_gain,
+    AXIS.inertia_feedforward,
+    AXIS.peak_torque,
+    PERIOD,
+)
+WINDING = Winding(AXIS.torque_constant, AXIS.resistance, AXIS.inductance, AXIS.back_emf_constant)
+
+#: Values that disturb this axis well and that it still bears.
+VALUES: dict[str, dict[str, float]] = {
+    "stribeck_friction": {"static_friction": 0.14, "stribeck_velocity": 5.0},
+    "presliding_friction": {"bristle_stiffness": 2.5, "bristle_damping": 2e-3},
+    "direction_dependent_friction": {"coulomb_difference": 0.05, "viscous_difference": 4e-4},
+    "quadratic_drag": {"quadratic_drag": 1.5e-5},
+    "load_dependent_friction": {"load_friction_coefficient": 0.12},
+    "position_dependent_friction": {"relative_amplitude": 0.6, "phase": 0.7},
+    "friction_warmup": {"relative_amplitude": 1.2, "time_constant": 0.8, "viscous_share": 1.0},
+    "torque_offset": {"torque": -0.12},
+    "unbalance": {"amplitude": 0.2, "phase": -0.5},
+    "torsion_spring": {"stiffness": 0.02},
+    "position_dependent_inertia": {"relative_amplitude": 0.1, "harmonic": 2.0, "phase": 0.4},
+    "elastic_coupling": {"stiffness": 40.0, "damping": 0.01},
+    "backlash": {"gap": 0.02, "contact_stiffness": 420.0, "contact_damping": 0.13},
+    "load_torque_event": {"torque": 0.2, "start": 0.3, "end": 0.5},
+    "cogging_torque": {"amplitude": 0.08, "harmonic": 6.0, "phase": 1.1},
+    "torque_ripple": {"relative_amplitude": 0.15, "harmonic": 4.0, "phase": -1.0},
+    "torque_constant_saturation": {"drop_at_peak": 0.2},
+    "voltage_limit": {"voltage": 36.0},
+    "current_loop_lag": {"time_constant": 2e-3},
+    "velocity_filter_lag": {"time_constant": 2e-3},
+    "encoder_eccentricity": {"amplitude": 0.02, "phase": 0.9},
+}
+
+
+def present(name: str) -> Present:
+    """The effect for the bench."""
+    return Present.of(name, VALUES[name])
+
+
+def independent(name: str) -> Effect:
+    """The same for the independent axis."""
+    values = dict(VALUES[name])
+    if name == "direction_dependent_friction":
+        ratio = values.pop("viscous_difference") / AXIS.viscous
+        values["viscous_share"] = ratio * AXIS.coulomb / values["coulomb_difference"]
+    return KINDS[name](**values)
+
+
+def model(*names: str) -> AxisModel:
+    """The axis with effects."""
+    return AxisModel(PARAMETERS, tuple(present(name) for name in names), AXIS.peak_torque, WINDING)
+
+
+def plant(*names: str) -> Plant:
+    """The axis with effects under its drive."""
+    return Plant(PARAMETERS, CASCADE, PERIOD, effects=tuple(present(name) for name in names), winding=WINDING)
+
+
+class Reversals:
+    """A motion of both worlds: fast and slow reversals of speed, and both slow and fast stretches between."""
+
+    def __init__(self, duration: float = 1.0, speed: float = 60.0) -> None:
+        self.duration, self.speed = duration, speed
+
+    def at(self, time: np.ndarray) -> np.ndarray:
+        """Position, speed, acceleration reference - (3, n)."""
+        position, speed, acceleration = np.zeros((3, time.size))
+        for share, frequency in ((0.6, 2.0), (0.3, 5.0), (0.1, 11.0)):
+            w = 2.0 * np.pi * frequency
+            position += self.speed * share * (1.0 - np.cos(w * time)) / w
+            speed += self.speed * share * np.sin(w * time)
+            acceleration += self.speed * share * w * np.cos(w * time)
+        return np.stack([position, speed, acceleration])
+
+    def references(self, period: float = PERIOD) -> References:
+        """The same at the bench's ticks."""
+        time = period * np.arange(int(self.duration / period + 1e-9) + 1)
+        return References(time, *self.at(time))
+
+
+def truth(cases: list[tuple[str, ...]], motion: Reversals) -> list[dict[str, np.ndarray]]:
+    """The independent axis with each set of effects along a motion: true and measured signals at every tick."""
+    count = len(cases)
+    effects = [[independent(name) for name in names] for names in cases]
+    recorded = simulate([AXIS] * count, [motion] * count, effects, [IDEAL] * count)
+    return [{**r.true, "measured_position": r.trace["position"]} for r in recorded]
