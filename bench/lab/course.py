@@ -7,6 +7,10 @@ from functools import cached_property
 
 from bench.errors import BenchError
 from bench.lab import (
+    emulated_friction,
+    equation_of_motion,
+    estimators,
+    operating_range,
     t01_catapult,
     t02_difference,
     t03_torque_constants,
@@ -18,11 +22,13 @@ from bench.lab import (
     t09_least_squares,
     t10_peak_torque,
     t11_corner,
+    tracking,
 )
 from bench.lab.flights import find_flights, read_flights
 from bench.lab.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION, Recordings, read_truth
 from bench.lab.result import NotDone, Number, Task
 from bench.lab.run import Run
+from bench.lab.t06_inertia import KG_CM2
 from bench.plant.model import AxisParameters
 
 Progress = Callable[[float], None]
@@ -80,6 +86,11 @@ class _Course:
             (t09_least_squares.KEY, t09_least_squares.TITLE, self._least_squares),
             (t10_peak_torque.KEY, t10_peak_torque.TITLE, lambda: self.peak_torque),
             (t11_corner.KEY, t11_corner.TITLE, self._corner),
+            (estimators.KEY, estimators.TITLE, lambda: estimators.task(rig)),
+            (operating_range.KEY, operating_range.TITLE, self._operating_range),
+            (tracking.KEY, tracking.TITLE, self._tracking),
+            (equation_of_motion.KEY, equation_of_motion.TITLE, lambda: equation_of_motion.task(rig)),
+            (emulated_friction.KEY, emulated_friction.TITLE, lambda: emulated_friction.task(rig)),
         ]
 
     @cached_property
@@ -109,6 +120,13 @@ class _Course:
         measured = _number(lambda: self.peak_torque, "measured corner")
         axis = AxisParameters.from_rig(self.rig)
         return t11_corner.task(self.rig, axis, measured=measured.value if measured else None)
+
+    def _operating_range(self) -> Task:
+        run = self.with_friction
+        return operating_range.task(self.rig, run.velocity, run.torque, "recording with friction")
+
+    def _tracking(self) -> Task:
+        return tracking.task(self.rig, self._least_squares()["J_load"].value / KG_CM2)
 
 
 def _number(task: Callable[[], Task], name: str) -> Number | None:

@@ -15,7 +15,6 @@ from bench.lab.corner import corner_speed
 from bench.lab.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.lab.result import Array
 from bench.lab.rig import lab_rig, torque_constant, without_friction
-from bench.lab.t10_peak_torque import peak_curve
 from bench.lab.t11_corner import VELOCITY_GAIN, peak_current
 from bench.lab.winding import STEP, Winding, WindingRun, run_winding
 from bench.plant.model import AxisParameters
@@ -23,6 +22,7 @@ from bench.plant.sensors import Sensors
 from bench.plant.simulate import simulate
 from bench.plant.truth import SCHEMA, truth_path, write_truth
 from bench.rig.circuit import COLD, Circuit
+from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig
 from bench.trace.write_machine_expert import machine_expert_trace
 from bench.units import convert
@@ -61,7 +61,7 @@ def record(folder: Path, seed: int = 0, progress: Callable[[float], None] = lamb
 
 def fastest_run(rig: Rig) -> WindingRun:
     """The run-up with full torque, cold and with inductance, then the stop."""
-    circuit = Circuit.from_motor(rig.motor, peak_curve(rig, MAINS), rig.source)
+    circuit = Circuit.from_motor(rig.motor, peak_curve(rig.motor, MAINS, rig.source), rig.source)
     winding = Winding(circuit, torque_constant(rig), peak_current(rig), COLD, inductive=True)
     time = np.arange(0.0, STOP + TOP_SPEED / BRAKING + START, STEP)
     demand = np.where(time < START, 0.0, np.clip(TOP_SPEED - BRAKING * (time - STOP), 0.0, TOP_SPEED))

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from bench.errors import InputError, UndeterminedError
+from bench.errors import UndeterminedError
 from bench.lab.corner import corner_speed
 from bench.lab.result import Array, Chart, Curve, Number, Panel, Task
 from bench.lab.run import Run
-from bench.rig.peak_curve import PeakCurve
+from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig
 
 KEY, TITLE = "10", "Peak torque over speed"
@@ -36,22 +36,9 @@ def run_up(run: Run) -> tuple[Array, Array, Array]:
     return velocity[start:], torque[start:], current[start:]
 
 
-def peak_curve(rig: Rig, mains: float) -> PeakCurve:
-    """The motor's peak curve at a mains voltage - V.
-
-    Raises:
-        InputError: the motor has none for it.
-    """
-    for curve in rig.motor.peak_curves:
-        if math.isclose(curve.mains_voltage, mains):
-            return curve
-    known = ", ".join(f"{curve.mains_voltage:g} V" for curve in rig.motor.peak_curves) or "none"
-    raise InputError(f"{rig.source}: motor.peak_curves", f"found none for {mains:g} V", f"given are: {known}")
-
-
 def datasheet_curve(rig: Rig, mains: float) -> tuple[Array, Array]:
     """Corners of the peak curve at a mains voltage - V: speed - rad/s, torque - N*m."""
-    curve = peak_curve(rig, mains)
+    curve = peak_curve(rig.motor, mains, rig.source)
     speed = np.array([0.0, curve.corner_speed, curve.no_load_speed])
     return speed, (rig.motor.peak_torque or 0.0) * curve.share(speed)
 

@@ -11,10 +11,11 @@ from bench.errors import InputError
 from bench.lab.corner import corner_speed
 from bench.lab.result import Chart, Curve, Number, Panel, Task
 from bench.lab.rig import torque_constant
-from bench.lab.t10_peak_torque import RPM, datasheet_curve, peak_curve
+from bench.lab.t10_peak_torque import RPM, datasheet_curve
 from bench.lab.winding import STEP, Winding, WindingRun, run_winding
 from bench.plant.model import AxisParameters
 from bench.rig.circuit import COLD, HOT, Circuit
+from bench.rig.limits import peak_curve
 from bench.rig.peak_curve import PeakCurve
 from bench.rig.rig import Rig
 
@@ -60,7 +61,7 @@ def split(
         axis: inertia and friction that the motor runs up.
         progress: called with the share done.
     """
-    circuit = Circuit.from_motor(rig.motor, peak_curve(rig, mains), rig.source)
+    circuit = Circuit.from_motor(rig.motor, peak_curve(rig.motor, mains, rig.source), rig.source)
     limit, constant = peak_current(rig), torque_constant(rig)
     full = float(constant.torque(np.asarray(limit)))
     top = circuit.voltage / circuit.back_emf_constant
@@ -106,7 +107,7 @@ def task(
         progress: called with the share done.
     """
     found = split(rig, mains, axis, progress)
-    sheet = peak_curve(rig, mains).corner_speed
+    sheet = peak_curve(rig.motor, mains, rig.source).corner_speed
     by_temperature, by_inductance = (found.cold - found.hot) * RPM, (found.inductive - found.cold) * RPM
     says = [
         f"Simulated hot and quasi-static the corner lies at {found.hot * RPM:.0f} rpm, cold at {found.cold * RPM:.0f} "
@@ -142,9 +143,9 @@ def _voltage_says(rig: Rig, mains: float) -> str:
     if not others:
         return "The datasheet has one mains voltage only, so what the circuit leaves out does not show."
     other = others[0]
-    circuit = Circuit.from_motor(rig.motor, peak_curve(rig, mains), rig.source)
+    circuit = Circuit.from_motor(rig.motor, peak_curve(rig.motor, mains, rig.source), rig.source)
     drop = circuit.resistance * peak_current(rig)
-    shift, time_constant = cross_voltage(circuit, peak_curve(rig, mains), other)
+    shift, time_constant = cross_voltage(circuit, peak_curve(rig.motor, mains, rig.source), other)
     predicted = (circuit.voltage * other.mains_voltage / mains - drop) / circuit.back_emf_constant
     return (
         f"At {other.mains_voltage:g} V the same circuit has its corner at {predicted * RPM:.0f} rpm, the datasheet at "

@@ -1,0 +1,49 @@
+"""What stands around the tasks: estimators compared, operating range, tracking, full equation, emulated friction."""
+
+import pytest
+
+from tests.lab.test_tasks import near
+
+
+def test_the_courses_estimators_keep_their_bounds_and_the_bench_is_better(done):
+    error = {number.name: number.value for number in done["estimators"].numbers}
+    print({name: round(value, 4) for name, value in error.items()}, "(RMS error in %)")
+    assert error["J, mean of M/α"] < 0.5
+    assert error["J, least squares, in step"] < 0.5
+    assert error["K_fric_w, least squares, in step"] < 3.0
+    assert error["K_fric_0, least squares, in step"] < 3.0
+    assert error["K_fric_w, least squares, out of step"] > 10.0
+    assert error["J, bench"] < 0.1 * error["J, least squares, in step"]
+    assert error["K_fric_w, bench"] < error["K_fric_w, least squares, in step"]
+    assert error["K_fric_0, bench"] < error["K_fric_0, least squares, in step"]
+
+
+def test_identified_inertia_tracks_best(done):
+    rms = [done["tracking"][f"RMS deviation, J_load {name}"].value for name in ("= 0", "theoretical", "identified")]
+    print("RMS tracking deviation with J_load = 0, theoretical, identified:", *(f"{value:.4f} deg" for value in rms))
+    assert rms[2] < rms[1] < 0.1 * rms[0]
+    assert "deg" in done["tracking"].charts[0].panels[0].y_label
+
+
+def test_load_torque_and_gearbox_are_identified(done):
+    near(done["equation"]["J"], 0.005)
+    near(done["equation"]["J_load behind the gear"], 0.005)
+    near(done["equation"]["M_load behind the gear"], 0.01)
+    near(done["equation"]["K_fric_w"], 0.03)
+    near(done["equation"]["K_fric_0"], 0.03)
+
+
+def test_emulated_friction_gives_the_same_coefficients_as_friction_in_the_mechanics(done):
+    task = done["emulation"]
+    for name, bound in (("J", 0.005), ("K_fric_w", 0.03), ("K_fric_0", 0.03)):
+        emulated, mechanics = task[f"{name}, emulated"], task[f"{name}, in the mechanics"]
+        near(emulated, bound)
+        near(mechanics, bound)
+        assert emulated.value == pytest.approx(mechanics.value, rel=2e-3)
+
+
+def test_operating_range_states_a_reserve_at_both_mains_voltages(done):
+    task = done["range"]
+    assert 0.0 < task["peak reserve, 230 V"].value <= task["peak reserve, 400 V"].value < 3.5
+    assert task["thermal reserve, 230 V"].value < 0.0
+    assert "overheat" in task.says[0]

@@ -1,0 +1,56 @@
+"""The operating range at its corners, and the reserve of motions that can be reckoned by hand."""
+
+import numpy as np
+import pytest
+
+from bench.assets import asset
+from bench.errors import InputError
+from bench.rig.limits import OperatingRange, peak_curve, reserve
+from bench.rig.rig import load_rig
+
+RPM = 60.0 / (2.0 * np.pi)
+
+
+@pytest.fixture
+def motor():
+    return load_rig(asset("data", "rigs", "lab.toml")).motor
+
+
+def rpm(*values):
+    return np.array(values) / RPM
+
+
+def test_peak_torque_is_flat_to_the_corner_and_falls_to_zero(motor):
+    low, high = (OperatingRange.of(motor, mains, "rig") for mains in (230.0, 400.0))
+    assert low.peak(rpm(0, 2100, 3550, 5000, 6000)) == pytest.approx([3.5, 3.5, 1.75, 0.0, 0.0])
+    assert high.peak(rpm(0, 2100, 4200)) == pytest.approx([3.5, 3.5, 3.5])
+    assert low.peak(-rpm(3550)) == pytest.approx([1.75])
+
+
+def test_continuous_torque_falls_slightly_and_never_passes_the_peak(motor):
+    low = OperatingRange.of(motor, 230.0, "rig")
+    torque = low.continuous(rpm(0, 2500, 4900))
+    assert torque[:2] == pytest.approx([1.4, 1.4 * 0.95])
+    assert torque[2] == pytest.approx(low.peak(rpm(4900))[0])
+
+
+def test_reserve_of_a_motion_by_hand(motor):
+    low = OperatingRange.of(motor, 230.0, "rig")
+    found = reserve(low, rpm(3550, 3550, 0, 0), np.array([1.0, -3.0, 0.0, 0.0]))
+    # driving, 1.75 - 1.0 are left; braking, where voltage helps, 3.5 - 3.0
+    assert found.peak == pytest.approx(0.5)
+    assert found.at == 1
+    assert found.beyond == 0.0
+    assert found.rms_torque == pytest.approx(np.sqrt(10.0 / 4.0))
+    assert found.mean_speed * RPM == pytest.approx(1775.0)
+    assert found.thermal == pytest.approx(1.4 * (1.0 - 0.1 * 1775.0 / 5000.0) - np.sqrt(2.5))
+    over = reserve(low, rpm(4000, 0), np.array([2.0, 0.1]))
+    assert over.peak < 0.0
+    assert over.beyond == 0.5
+
+
+def test_what_is_missing_is_named(motor):
+    with pytest.raises(InputError, match="230 V, 400 V"):
+        peak_curve(motor, 115.0, "rig")
+    with pytest.raises(InputError, match="peak_torque"):
+        OperatingRange.of(motor.model_copy(update={"peak_torque": None}), 230.0, "rig")
