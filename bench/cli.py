@@ -13,6 +13,7 @@ from typer.exceptions import TyperException
 
 from bench import __version__
 from bench.demo import demo as run_demo
+from bench.effects.present import parse_effect
 from bench.errors import BenchError, InputError
 from bench.files import write_text
 from bench.identify.estimate import Estimate
@@ -23,6 +24,7 @@ from bench.identify.regression import identify as regress
 from bench.plant.profiles import DEFAULT, PROFILES
 from bench.plant.simulate import simulate as run_simulation
 from bench.plant.truth import write_truth
+from bench.report.effects import effect_page, effects_table
 from bench.report.estimate import estimate_json, estimate_table, refinement_line
 from bench.report.identification import write_identification
 from bench.report.progress import progress
@@ -77,13 +79,30 @@ def simulate(
     out: Annotated[Path, typer.Option("--out", help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
     profile: Annotated[str, typer.Option("--profile", help=f"Motion: {', '.join(PROFILES)}.")] = DEFAULT,
     seed: Annotated[int, typer.Option("--seed", help="Seed of the sensors' noise.", min=0)] = 0,
+    effect: Annotated[
+        list[str] | None, typer.Option("--effect", help="NAME:key=value,... to add; see bench effects. Repeatable.")
+    ] = None,
 ) -> None:
     """Simulate the axis of a rig in MuJoCo; write its trace and, beside it, the truth."""
     axis = load_rig(rig)
     with progress(f"simulating {axis.name}") as done:
-        simulated = run_simulation(axis, profile, seed, progress=done)
+        present = [parse_effect(text, axis.linear) for text in effect or ()]
+        simulated = run_simulation(axis, profile, seed, progress=done, effects=present)
     write(simulated.trace, out)
     _tell_files([out, write_truth(out, simulated.truth)])
+
+
+@app.command()
+def effects(
+    name: Annotated[
+        str | None, typer.Argument(help="Effect whose page to print; all of them as a table without.")
+    ] = None,
+) -> None:
+    """List the physical effects the bench knows, or print the page of one: equation, quantities, source."""
+    if name is None:
+        _console().print(effects_table())
+    else:
+        typer.echo(effect_page(name))
 
 
 @app.command()

@@ -57,7 +57,7 @@ class Present:
         values = {**defaults, **dict(self.values)}
         for quantity in self.effect.quantities:
             if quantity.name not in values:
-                raise InputError(f"effect {self.name}", f"{quantity.name} missing", f"give it in {quantity.unit}")
+                raise InputError(f"effect {self.name}", f"{quantity.name} missing", f"give it, {quantity.unit}")
         return {quantity.name: values[quantity.name] for quantity in self.effect.quantities}
 
     def absent(self, axis: Axis) -> bool:
@@ -125,9 +125,12 @@ def parse_value(text: str, unit: str, where: str) -> float:
         InputError: neither.
     """
     try:
-        return float(text)
+        value = float(text)
     except ValueError:
         return parse(text, unit, where)
+    if not math.isfinite(value):
+        raise InputError(where, f"found {text}", f"allowed: a finite number in {unit}")
+    return value
 
 
 def _check(quantity: Quantity, value: float, where: str) -> None:

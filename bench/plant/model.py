@@ -29,6 +29,7 @@ from bench.effects.mjcf import DRIVE as DRIVE
 from bench.errors import InputError
 from bench.rig.load import Load
 from bench.rig.rig import Rig
+from bench.units import Quantity
 
 #: Share of the motion that dry friction takes away in one step while it sticks; MuJoCo's default of 0.9 creeps.
 STICKING_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
@@ -94,6 +95,20 @@ class AxisParameters:
     def frictionless(self) -> AxisParameters:
         """The same axis without friction in its mechanics."""
         return replace(self, viscous_friction_coefficient=0.0, coulomb_friction=0.0)
+
+
+def parameter_quantities(linear: bool) -> dict[str, Quantity]:
+    """What the fields of `AxisParameters` are called in files, with unit and bounds."""
+    inertia, kilograms = ("moving_mass", "kg") if linear else ("moment_of_inertia", "kg*m**2")
+    effort, newton = ("force", "N") if linear else ("torque", "N*m")
+    viscous = "N*s/m" if linear else "N*m*s/rad"
+    return {
+        "inertia": Quantity(inertia, "J", kilograms, lower=0.0),
+        "viscous_friction_coefficient": Quantity("viscous_friction_coefficient", "K_w", viscous, lower=0.0),
+        "coulomb_friction": Quantity(f"coulomb_friction_{effort}", "K_0", newton, lower=0.0),
+        "load_torque": Quantity(f"load_{effort}", "M_L", newton),
+        "motor_inertia": Quantity(f"motor_{inertia}", "J_m", kilograms, lower=0.0),
+    }
 
 
 def half_step_inertia(inertia: float, damping: float, timestep: float) -> float:

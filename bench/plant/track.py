@@ -72,7 +72,7 @@ def track(model: mujoco.MjModel, trace: Trace, effort: Array, misalignment: floa
     velocity = measured_velocity(trace)
     simulated = np.empty_like(velocity)
     for part in trace.segments:
-        position = trace["position"][part] if "position" in trace else _integral(velocity[part], trace.sample_period)
+        position = trace["position"][part] if "position" in trace else integrated(velocity[part], trace.sample_period)
         simulated[part] = _track_stretch(model, trace.time[part], position, velocity[part], effort[part], misalignment)
     return simulated
 
@@ -85,19 +85,26 @@ def measured_velocity(trace: Trace) -> Array:
     return np.concatenate(parts)
 
 
-def _integral(velocity: Array, sample_period: float) -> Array:
+def integrated(velocity: Array, sample_period: float) -> Array:
+    """Position from zero, by the trapezoidal rule - rad (m) - (n,)."""
     return np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2.0) * sample_period])
 
 
 def _track_stretch(
     model: mujoco.MjModel, time: Array, position: Array, velocity: Array, effort: Array, misalignment: float
 ) -> Array:
-    timestep = model.opt.timestep
+    controls, substeps = holding_controls(model.opt.timestep, time, position, velocity, effort, misalignment)
+    return run_controls(model, controls, position[0], velocity[0]).velocity[::substeps, 0]
+
+
+def holding_controls(
+    timestep: float, time: Array, position: Array, velocity: Array, effort: Array, misalignment: float
+) -> tuple[Array, int]:
+    """Inputs pos, vel, ff of the actuator of `holding_model` at its steps, (steps, 3), and how many make a sample."""
     substeps = round((time[1] - time[0]) / timestep) if time.size > 1 else 1
     ticks = time[0] + np.arange((time.size - 1) * substeps + 1) * timestep
     wanted = np.interp(ticks, time, velocity)
     # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts.
     lead = np.interp(ticks, time, position) + timestep / 2.0 * wanted
     feedforward = np.interp(ticks + timestep / 2.0 + misalignment, time, effort)
-    states = run_controls(model, np.stack([lead, wanted, feedforward], axis=-1), position[0], velocity[0])
-    return states.velocity[::substeps, 0]
+    return np.stack([lead, wanted, feedforward], axis=-1), substeps

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from bench.effects.present import Present, unit_of
 from bench.files import write_text
-from bench.plant.model import AxisParameters
+from bench.plant.model import AxisParameters, parameter_quantities
 from bench.plant.sensors import Sensors
 
 SCHEMA = "bench.truth/1"
@@ -39,18 +39,9 @@ class Truth:
     def as_json(self) -> str:
         """Truth as text, quantities under the names that `bench identify --json` gives them."""
         linear = self.parameters.linear
-        inertia, kilograms = ("moving_mass", "kg") if linear else ("moment_of_inertia", "kg*m**2")
-        effort, newton = ("force", "N") if linear else ("torque", "N*m")
-        speed, angle = ("m/s", "m") if linear else ("rad/s", "rad")
+        newton, speed, angle = ("N", "m/s", "m") if linear else ("N*m", "rad/s", "rad")
         parameters = {
-            inertia: (self.parameters.inertia, kilograms),
-            "viscous_friction_coefficient": (
-                self.parameters.viscous_friction_coefficient,
-                "N*s/m" if linear else "N*m*s/rad",
-            ),
-            f"coulomb_friction_{effort}": (self.parameters.coulomb_friction, newton),
-            f"load_{effort}": (self.parameters.load_torque, newton),
-            f"motor_{inertia}": (self.parameters.motor_inertia, kilograms),
+            q.name: (getattr(self.parameters, field), q.unit) for field, q in parameter_quantities(linear).items()
         }
         sensors = {
             "sample_period": (self.sensors.sample_period, "s"),

@@ -1,0 +1,174 @@
+"""A model of an axis on disk: `model.toml` holds all of it, `model.xml` beside it what MuJoCo makes by itself.
+
+schema = "bench.model/1"
+name = "axis"
+kind = "rotary"
+misalignment = "1.27e-05 s"
+peak_effort = "3.5 N*m"
+[parameters]
+moment_of_inertia = "0.0022 kg*m**2"
+[[effects]]
+name = "cogging_torque"
+amplitude = "0.05 N*m"
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from bench.effects.physics import Winding
+from bench.effects.present import Present, known_quantity, named, parse_value, unit_of
+from bench.errors import InputError
+from bench.files import write_text
+from bench.plant.axis_model import AxisModel
+from bench.plant.model import AxisParameters, parameter_quantities
+from bench.units import nearest
+
+SCHEMA = "bench.model/1"
+#: Step that the exported MuJoCo model runs at - s.
+TIMESTEP = 250e-6
+
+
+@dataclass(frozen=True)
+class StoredModel:
+    """A model with what is needed to hold it against a recording.
+
+    Attributes:
+        name: of the axis.
+        model: the axis with its effects.
+        misalignment: by how much recordings of it report the effort late - s.
+    """
+
+    name: str
+    model: AxisModel
+    misalignment: float = 0.0
+
+
+def write_model(folder: str | Path, stored: StoredModel, timestep: float = TIMESTEP) -> tuple[Path, Path]:
+    """Write `model.toml` and `model.xml` into a folder, each whole or not at all; returns their paths.
+
+    Raises:
+        InputError: the folder cannot be written to.
+    """
+    toml, xml = Path(folder) / "model.toml", Path(folder) / "model.xml"
+    write_text(toml, model_toml(stored))
+    write_text(xml, model_xml(stored.model, timestep))
+    return toml, xml
+
+
+def model_xml(model: AxisModel, timestep: float = TIMESTEP) -> str:
+    """MJCF that MuJoCo opens alone; what is not native in it is named in a comment."""
+    spec = model.spec(timestep)
+    spec.compile()
+    missing = sorted({present.name for present in model.effects} - set(model.structure))
+    rest = f"; not in it, but in model.toml: {', '.join(missing)}" if missing else ""
+    return f"<!-- Axis at steps of {timestep:g} s, torque as input{rest}. -->\n{spec.to_xml()}"
+
+
+def model_toml(stored: StoredModel) -> str:
+    """The whole model as TOML, every value with its unit."""
+    model, linear = stored.model, stored.model.parameters.linear
+    lines = [f'schema = "{SCHEMA}"', f"name = {_text(stored.name)}", f'kind = "{"linear" if linear else "rotary"}"']
+    lines.append(_line("misalignment", stored.misalignment, "s"))
+    if math.isfinite(model.peak_effort):
+        lines.append(_line("peak_effort", model.peak_effort, "N" if linear else "N*m"))
+    lines += ["", "[parameters]"]
+    for field, quantity in parameter_quantities(linear).items():
+        lines.append(_line(quantity.name, getattr(model.parameters, field), quantity.unit))
+    if model.winding is not None:
+        lines += ["", "[winding]"]
+        lines += [_line(key, getattr(model.winding, key), unit) for key, unit in _winding_units(linear).items()]
+    for present in model.effects:
+        lines += ["", "[[effects]]", f'name = "{present.name}"']
+        units = {quantity.name: unit_of(quantity, linear) for quantity in present.effect.quantities}
+        lines += [_line(key, value, units[key]) for key, value in present.values]
+    return "\n".join(lines) + "\n"
+
+
+def load_model(path: str | Path) -> StoredModel:
+    """Read a `model.toml`.
+
+    Raises:
+        InputError: no such file, no TOML, another schema, an unknown or missing key, or a value that is none.
+    """
+    table = _read(Path(path))
+    if table.get("schema") != SCHEMA:
+        raise InputError(f"{path}: schema", f"found {table.get('schema')!r}", f"allowed: '{SCHEMA}'")
+    kind = table.get("kind")
+    if kind not in ("rotary", "linear"):
+        raise InputError(f"{path}: kind", f"found {kind!r}", "allowed: rotary, linear")
+    linear = kind == "linear"
+    quantities = parameter_quantities(linear)
+    units = {quantity.name: quantity.unit for quantity in quantities.values()}
+    values = _values(table.get("parameters"), units, f"{path}: parameters")
+    parameters = AxisParameters(
+        **{field: values[quantity.name] for field, quantity in quantities.items()}, linear=linear
+    )
+    winding = None
+    if "winding" in table:
+        winding = Winding(**_values(table["winding"], _winding_units(linear), f"{path}: winding"))
+    peak = (
+        _number(table["peak_effort"], "N" if linear else "N*m", f"{path}: peak_effort")
+        if "peak_effort" in table
+        else math.inf
+    )
+    effects = tuple(_effect(entry, linear, f"{path}: effects") for entry in table.get("effects", []))
+    misalignment = _number(table.get("misalignment", 0.0), "s", f"{path}: misalignment")
+    return StoredModel(str(table.get("name", "axis")), AxisModel(parameters, effects, peak, winding), misalignment)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(path, f"cannot be read ({error.strerror})", "give the path of a model.toml") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(path, f"not TOML ({error})", "allowed: the model.toml that the bench wrote") from error
+
+
+def _values(table: object, units: Mapping[str, str], where: str) -> dict[str, float]:
+    """All of the named values of a table, and nothing else."""
+    if not isinstance(table, dict):
+        raise InputError(where, "missing", "this table is required")
+    for key in table:
+        if key not in units:
+            raise InputError(where, f"found '{key}'{nearest(key, list(units))}", f"allowed: {', '.join(units)}")
+    for key in units:
+        if key not in table:
+            raise InputError(f"{where}.{key}", "missing", "this key is required")
+    return {key: _number(table[key], unit, f"{where}.{key}") for key, unit in units.items()}
+
+
+def _effect(entry: object, linear: bool, where: str) -> Present:
+    if not isinstance(entry, dict) or "name" not in entry:
+        raise InputError(where, f"found {entry!r}", "allowed: tables with a name")
+    effect = named(str(entry["name"]), where)
+    values = {}
+    for key, value in entry.items():
+        if key != "name":
+            unit = unit_of(known_quantity(effect, key, where), linear)
+            values[key] = _number(value, unit, f"{where}: {effect.name}.{key}")
+    return Present.of(effect.name, values, where)
+
+
+def _number(value: object, unit: str, where: str) -> float:
+    return parse_value(str(value), unit, where)
+
+
+def _winding_units(linear: bool) -> dict[str, str]:
+    constants = ("N/A", "V*s/m") if linear else ("N*m/A", "V*s/rad")
+    names = [field.name for field in fields(Winding)]
+    return dict(zip(names, (constants[0], "ohm", "H", constants[1]), strict=True))
+
+
+def _line(key: str, value: float, unit: str) -> str:
+    return f"{key} = {float(value)!r}" if unit == "dimensionless" else f'{key} = "{float(value)!r} {unit}"'
+
+
+def _text(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ") + '"'

@@ -1,0 +1,78 @@
+"""The catalogue for a person: a table of all effects, and the page of one."""
+
+from __future__ import annotations
+
+import inspect
+import math
+
+from rich import box
+from rich.table import Table
+
+from bench.effects.catalogue import physics
+from bench.effects.physics import Electronics, Mechanism, Physics, Sensing
+from bench.effects.present import named
+from bench.units import Quantity
+
+#: What hooks do, in the words of a page.
+HOOKS = {
+    "add": "in the MuJoCo model",
+    "friction_excess": "in every step, level of dry friction",
+    "friction_factor": "in every step, level of dry friction",
+    "friction_difference": "in every step, level of dry friction",
+    "resisting_torque": "in every step, resisting torque",
+    "torque_factor": "in every step, motor torque",
+    "added_inertia": "in every step, inertia",
+    "flowing": "between demanded and reported current",
+    "acting": "between reported current and torque",
+    "delivered": "between reported current and torque",
+    "seen": "between motion and encoder",
+    "filtered": "between encoder and drive",
+}
+
+
+def effects_table() -> Table:
+    """Every effect with its quantities, and where it acts."""
+    table = Table("effect", "what it is", "quantities", "simulated", box=box.SIMPLE_HEAD)
+    for name, effect in sorted(physics().items()):
+        quantities = ", ".join(f"{q.name} [{_unit(q)}]" for q in effect.quantities)
+        table.add_row(name, effect.summary, quantities.replace("[", r"\["), _where(effect))
+    return table
+
+
+def effect_page(name: str) -> str:
+    """What the effect's module says of it, its quantities, and how it is simulated.
+
+    Raises:
+        InputError: no such effect.
+    """
+    effect = named(name, "bench effects")
+    module = inspect.getmodule(type(effect))
+    lines = [effect.name, "=" * len(effect.name), inspect.getdoc(module) or effect.summary, "", "Quantities"]
+    lines += [f"    {q.name} ({q.symbol}) [{_unit(q)}], {_bounds(q)}" for q in effect.quantities]
+    lines += ["", "Simulated"]
+    for hook, place in _acting(effect).items():
+        text = inspect.getdoc(getattr(effect, hook)) or ""
+        lines.append(f"    {place}: {text.splitlines()[0]}")
+    return "\n".join(lines)
+
+
+def _acting(effect: Physics) -> dict[str, str]:
+    return {hook: place for hook, place in HOOKS.items() if effect.acts_through(hook)}
+
+
+def _where(effect: Physics) -> str:
+    if isinstance(effect, Mechanism):
+        return "MuJoCo model" if effect.acts_through("add") else "every step"
+    return "electronics" if isinstance(effect, Electronics) else "sensor" if isinstance(effect, Sensing) else ""
+
+
+def _unit(quantity: Quantity) -> str:
+    return "-" if quantity.unit == "dimensionless" else quantity.unit
+
+
+def _bounds(quantity: Quantity) -> str:
+    if math.isinf(quantity.lower) and math.isinf(quantity.upper):
+        return "any"
+    if math.isinf(quantity.upper):
+        return f"from {quantity.lower:g}"
+    return f"{quantity.lower:g} to {quantity.upper:g}"
