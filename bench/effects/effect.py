@@ -33,7 +33,8 @@ class Signals:
         position: rad (m); from speed by the trapezoidal rule where it is not recorded.
         velocity: rad/s (m/s).
         sign: sgn(omega), 0 where noise may have made it.
-        effort: motor torque - N*m (N).
+        effort: motor torque as reported - N*m (N).
+        torque: motor torque as it acts, which a lag of the current loop delays - N*m (N).
         friction: level of dry friction with its sign, as share of K_0: sgn(omega), or what a named effect makes of it;
             effects that scale dry friction multiply it.
         peak_effort: effort at the motor's peak current - N*m (N); the recording's largest where the rig tells none.
@@ -45,6 +46,7 @@ class Signals:
     velocity: Array
     sign: Array
     effort: Array
+    torque: Array
     friction: Array
     peak_effort: float
     sample_period: float
@@ -82,12 +84,14 @@ class Effect(ABC):
         summary: one line.
         quantities: what is reported of it, with unit and bounds.
         shapes: the nonlinear ones, in the order in which `columns` takes them.
+        searched: whether a search may try its columns over the grids of its shapes.
     """
 
     name: str
     summary: str
     quantities: tuple[Quantity, ...]
     shapes: tuple[Shape, ...] = ()
+    searched: bool = True
 
     @abstractmethod
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

@@ -25,8 +25,8 @@ class LoadDependentFriction(Friction, Effect):
     quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Magnitude of the torque on the friction level."""
-        return [[(signals.friction * np.abs(signals.torque), 0)]]
+        """Magnitude of the torque, against the motion."""
+        return [[(signals.sign * np.abs(signals.torque), 0)]]
 
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""

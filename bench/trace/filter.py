@@ -84,7 +84,7 @@ class GaussianFilter:
             (wanted, m), at the samples of `__call__`.
         """
         count = signals.shape[1]
-        size = self.stride * _fast_length(math.ceil(count / self.stride))
+        size = self.stride * fast_length(math.ceil(count / self.stride))
         kept = size // self.stride // 2 + 1
         spectra = _transform(signals, size)[:, :kept]
         frequency = 2.0 * math.pi / (size * self.sample_period) * np.arange(kept)
@@ -98,7 +98,7 @@ def _transform(signals: NDArray[np.floating], size: int) -> NDArray[np.complex12
     return np.asarray(scipy.fft.rfft(signals, size))
 
 
-def _fast_length(length: int) -> int:
+def fast_length(length: int) -> int:
     """Shortest length for a fast transform that holds `length` samples."""
     fast = scipy.fft.next_fast_len(length, real=True)
     return length if fast is None else fast

@@ -1,0 +1,255 @@
+"""A hypothesis: which effects there are and of what shape; and its fit to a recording."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+from bench.diagnose.dead_zone import load_accelerations
+from bench.diagnose.outside import physics_of
+from bench.diagnose.workbench import Transfer, Workbench
+from bench.effects.effect import Base, Column, Signals
+
+Array = NDArray[np.float64]
+
+CURRENT_LAG, VELOCITY_LAG = "current_loop_lag", "velocity_filter_lag"
+BACKLASH = "backlash"
+ELASTIC, ECCENTRICITY, DIRECTION = "elastic_coupling", "encoder_eccentricity", "direction_dependent_friction"
+#: Effects that change how columns are made instead of adding columns of raw products.
+TRANSFORMS = (CURRENT_LAG, VELOCITY_LAG, ECCENTRICITY, ELASTIC, BACKLASH)
+
+
+@dataclass(frozen=True)
+class Named:
+    """An effect with its shape quantities, in the order in which the effect lists them."""
+
+    name: str
+    shape: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """Effects beyond inertia, viscous and Coulomb friction.
+
+    Attributes:
+        effects: in the order they were added.
+        asymmetry: D_0/K_0, by which effects that scale dry friction see it differ between directions.
+    """
+
+    effects: tuple[Named, ...] = ()
+    asymmetry: float = 0.0
+
+    def with_effect(self, named: Named) -> Hypothesis:
+        """This hypothesis and one effect more."""
+        return replace(self, effects=(*self.effects, named))
+
+    def without(self, index: int) -> Hypothesis:
+        """This hypothesis less one of its effects."""
+        return replace(self, effects=(*self.effects[:index], *self.effects[index + 1 :]))
+
+    def reshaped(self, index: int, shape: tuple[float, ...]) -> Hypothesis:
+        """This hypothesis with another shape of one effect."""
+        effect = replace(self.effects[index], shape=shape)
+        return replace(self, effects=(*self.effects[:index], effect, *self.effects[index + 1 :]))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return tuple(effect.name for effect in self.effects)
+
+    def shape_of(self, name: str) -> tuple[float, ...] | None:
+        """Shape of an effect, None where it is not in."""
+        return next((effect.shape for effect in self.effects if effect.name == name), None)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A hypothesis fitted to a recording by least squares.
+
+    Attributes:
+        hypothesis: what was fitted.
+        columns: (m, p).
+        theta: (p,): J, K_w, K_0, misalignment, then the strengths of the effects in order.
+        owners: (p,) index of the effect a column belongs to, -1 for the base.
+        residual: (m,) - N*m (N).
+        floor: RMS that sensor noise alone leaves under this model - N*m (N).
+    """
+
+    hypothesis: Hypothesis
+    columns: Array
+    theta: Array
+    owners: NDArray[np.int64]
+    residual: Array
+    floor: float
+
+    @property
+    def rms(self) -> float:
+        """RMS residual - N*m (N)."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+    @property
+    def chi(self) -> float:
+        """RMS residual over noise floor: 1 where the model explains all but noise."""
+        return self.rms / self.floor
+
+    @property
+    def excess(self) -> float:
+        """Squares above the noise floor, summed over rows - (N*m)**2, not negative."""
+        return max(float(np.sum(self.residual**2)) - self.residual.size * self.floor**2, 0.0)
+
+    @property
+    def base(self) -> Base:
+        """J, K_w and K_0."""
+        return Base(*(float(value) for value in self.theta[:3]))
+
+    def strengths(self, index: int) -> Array:
+        """Strengths of one effect."""
+        return self.theta[self.owners == index]
+
+
+def corrected(signals: Signals, eccentricity: tuple[float, ...]) -> Signals:
+    """Angle and speed without the encoder's error q_m = q + e_s*sin(q) + e_c*cos(q)."""
+    sine, cosine = eccentricity
+    angle = signals.position
+    for _ in range(4):
+        angle = signals.position - sine * np.sin(angle) - cosine * np.cos(angle)
+    rate = 1.0 + sine * np.cos(angle) - cosine * np.sin(angle)
+    return replace(signals, position=angle, velocity=signals.velocity / rate)
+
+
+def two_mass(bench: Workbench, antiresonance: float, damping: float) -> Transfer:
+    """Load's acceleration over the motor's, less one: (1 + 2*d*s/w)/(1 + 2*d*s/w + (s/w)**2) - 1; w - rad/s.
+
+    To be applied to the derivative of raw speed, which rests at both ends where an angle would jump and ring; where
+    speed is the central difference of an angle, its sin(omega*T)/(omega*T) is taken out.
+    """
+    difference = bench.conditioning.source == "position"
+    period = bench.conditioning.filter.sample_period
+
+    def transfer(omega: Array) -> NDArray[np.complex128]:
+        s = 1j * omega / antiresonance
+        relative = -(s**2) / (1.0 + 2.0 * damping * s + s**2)
+        return relative / np.maximum(np.sinc(omega * period / np.pi), 0.2) if difference else relative
+
+    return transfer
+
+
+def prepared(bench: Workbench, hypothesis: Hypothesis) -> Workbench:
+    """The recording as the hypothesis sees it: angle corrected, dry friction of the two directions unequal."""
+    eccentricity = hypothesis.shape_of(ECCENTRICITY)
+
+    lag = (hypothesis.shape_of(CURRENT_LAG) or (0.0,))[0]
+
+    def change(signals: Signals) -> Signals:
+        signals = corrected(signals, eccentricity) if eccentricity else signals
+        effort = lagged(signals.effort, lag, signals.sample_period) if lag else signals.effort
+        return replace(signals, torque=effort, friction=signals.sign + 0.5 * hypothesis.asymmetry)
+
+    return bench.with_signals(change) if eccentricity or hypothesis.asymmetry or lag else bench
+
+
+def lagged(values: Array, lag: float, sample_period: float) -> Array:
+    """Values (n,) through a first-order lag - s, exact for an input that is straight between samples."""
+    x = sample_period / lag
+    keep = np.exp(-x)
+    now = 1.0 - (1.0 - keep) / x
+    return scipy.signal.lfilter([now, 1.0 - keep - now], [1.0, -keep], values, zi=[values[0] * (1.0 - now)])[0]
+
+
+def kinematic(bench: Workbench, order: int) -> tuple[str, int]:
+    """Raw signal and derivative that give the `order`-th derivative of speed."""
+    return ("position", order + 1) if bench.conditioning.source == "position" else ("velocity", order)
+
+
+def lags(bench: Workbench, hypothesis: Hypothesis) -> tuple[float, float]:
+    """Lag to undo on speed and acceleration, and on everything else - s."""
+    current = (hypothesis.shape_of(CURRENT_LAG) or (0.0,))[0]
+    velocity = (hypothesis.shape_of(VELOCITY_LAG) or (0.0,))[0] if bench.conditioning.source == "velocity" else 0.0
+    return current + velocity, current
+
+
+def build(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np.int64]]:
+    """Columns (m, p) of a hypothesis and the effect each belongs to (p,)."""
+    seen = prepared(bench, hypothesis)
+    moving, resting = lags(bench, hypothesis)
+    speed, acceleration = kinematic(bench, 0), kinematic(bench, 1)
+
+    def motion(signals: Signals) -> list[Column]:
+        return [[(getattr(signals, name), order)] for name, order in (acceleration, speed)]
+
+    parts = [seen.table(motion, moving), seen.table(lambda s: [[(s.sign, 0)], [(-s.effort, 1)]], resting)]
+    owners = [-1, -1, -1, -1]
+    for index, effect in enumerate(hypothesis.effects):
+        table = effect_columns(seen, effect, moving, resting)
+        parts.append(table)
+        owners += [index] * table.shape[1]
+    return np.concatenate(parts, axis=1), np.array(owners)
+
+
+def effect_columns(seen: Workbench, effect: Named, moving: float, resting: float) -> Array:
+    """Columns (m, k) of one effect; none for one that only changes how the others are made."""
+    if effect.name == ELASTIC:
+        return seen.table(lambda s: [[(s.velocity, 1)]], moving, two_mass(seen, *effect.shape))
+    if effect.name == BACKLASH:
+        key = (effect, moving, seen.stretches[0].signals.position[-1])
+        if key not in seen.memory:
+            seen.memory[key] = dead_zone_columns(seen, np.array([effect.shape]), moving)
+        return seen.memory[key]
+    if effect.name in TRANSFORMS:
+        return np.empty((seen.effort.size, 0))
+    physics = physics_of(effect.name)
+    return seen.table(lambda s: physics.columns(s, effect.shape), resting)
+
+
+def dead_zone_columns(seen: Workbench, shapes: Array, lag: float) -> Array:
+    """Load's acceleration less the motor's behind several dead zones (k, 4), filtered - rad/s**2 (m/s**2) - (m, k)."""
+    name, order = kinematic(seen, 1)
+    made = seen.table(lambda s: [[(column, 0)] for column in load_accelerations(s, shapes).T], lag)
+    return made - seen.table(lambda s: [[(getattr(s, name), order)]], lag)
+
+
+def fit(bench: Workbench, hypothesis: Hypothesis) -> Fit:
+    """Least squares of a hypothesis; the asymmetry that scaled frictions see is brought in line with what is found."""
+    for _ in range(3):
+        columns, owners = build(bench, hypothesis)
+        scale = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
+        theta = np.linalg.lstsq(columns / scale, bench.effort, rcond=1e-10)[0] / scale
+        asymmetry = _asymmetry(hypothesis, theta, owners)
+        if abs(asymmetry - hypothesis.asymmetry) < 1e-3:
+            break
+        hypothesis = replace(hypothesis, asymmetry=asymmetry)
+    residual = bench.effort - columns @ theta
+    return Fit(hypothesis, columns, theta, owners, residual, noise_floor(bench, hypothesis, theta, owners))
+
+
+def _asymmetry(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> float:
+    if DIRECTION not in hypothesis.names or len(hypothesis.effects) < 2 or theta[2] <= 0.0:
+        return 0.0
+    difference = theta[owners == hypothesis.names.index(DIRECTION)][0]
+    return float(np.clip(difference / theta[2], -1.9, 1.9))
+
+
+def noise_floor(bench: Workbench, hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> float:
+    """RMS that white noise of effort and speed leaves in the residual, through filter and model - N*m (N).
+
+    sigma**2 = T/pi * integral of G**2*(s_M**2*|1 + tau*s|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2) d(omega)
+    """
+    conditioning = bench.conditioning
+    smooth = conditioning.filter
+    omega = np.linspace(0.0, np.pi / smooth.sample_period, 2048)
+    s = 1j * omega
+    moving, _ = lags(bench, hypothesis)
+    kinetic = theta[0] * s + theta[1]
+    elastic = hypothesis.shape_of(ELASTIC)
+    if BACKLASH in hypothesis.names:
+        kinetic = kinetic - theta[owners == hypothesis.names.index(BACKLASH)][0] * s
+    if elastic is not None:
+        kinetic = kinetic + theta[owners == hypothesis.names.index(ELASTIC)][0] * s * two_mass(bench, *elastic)(omega)
+    kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
+    power = conditioning.effort_noise**2 * np.abs(1.0 + theta[3] * s) ** 2
+    power = power + conditioning.source_noise**2 * np.abs(kinetic) ** 2
+    density = np.exp(-((omega * smooth.width) ** 2)) * power
+    return float(np.sqrt(smooth.sample_period / np.pi * np.trapezoid(density, omega)))

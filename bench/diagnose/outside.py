@@ -1,0 +1,108 @@
+"""Rivals from outside the catalogue, so that what none of its effects is does not get the name of the nearest one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.signal import lfilter
+
+from bench.effects.catalogue import catalogue
+from bench.effects.effect import Base, Column, Effect, Shape, Signals
+from bench.units import Quantity
+
+
+class Vibration(Effect):
+    """A torque periodic in time, M = A*sin(2*pi*f*t + phi)."""
+
+    name = "outside_vibration"
+    summary = "a torque periodic in time"
+    quantities = (Quantity("frequency", "f", "1/s", lower=0.0),)
+    shapes = (Shape(quantities[0], tuple(float(f) for f in np.geomspace(0.4, 120.0, 240))),)
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Sine and cosine of time."""
+        angle = 2.0 * np.pi * shape[0] * signals.time
+        return [[(np.sin(angle), 0)], [(np.cos(angle), 0)]]
+
+    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Frequency."""
+        return {"frequency": shape[0]}
+
+
+class Notch(Effect):
+    """A bump of torque or friction at one angle of the revolution, of Gaussian shape."""
+
+    name = "outside_notch"
+    summary = "a bump at one angle"
+    quantities = (Quantity("angle", "q_0", "rad"), Quantity("width", "w", "rad", lower=0.0))
+    shapes = (
+        Shape(quantities[0], tuple(float(q) for q in np.arange(36) * np.pi / 18.0)),
+        Shape(quantities[1], (0.08, 0.2, 0.45)),
+    )
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """The bump, and the bump of friction."""
+        away = np.angle(np.exp(1j * (signals.position - shape[0])))
+        bump = np.exp(-0.5 * (away / shape[1]) ** 2)
+        return [[(bump, 0)], [(bump * signals.sign, 0)]]
+
+    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Angle and width."""
+        return {"angle": shape[0], "width": shape[1]}
+
+
+class SlowMemory(Effect):
+    """Friction that grows with how fast the axis has run: level A*m, T*dm/dt = |omega| - m."""
+
+    name = "outside_slow_memory"
+    summary = "friction that grows with recent speed"
+    quantities = (Quantity("time_constant", "T", "s", lower=0.0),)
+    shapes = (Shape(quantities[0], (0.05, 0.12, 0.3, 0.7, 1.5, 3.0)),)
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Direction times low-passed magnitude of speed."""
+        keep = np.exp(-signals.sample_period / shape[0])
+        return [[(signals.sign * _lowpass(np.abs(signals.velocity), keep), 0)]]
+
+    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Time constant."""
+        return {"time_constant": shape[0]}
+
+
+class FrictionalMemory(Effect):
+    """Friction that follows a change of speed late: A*exp(-m/omega_s)*sgn(omega), T*dm/dt = |omega| - m.
+
+    Source: D. P. Hess, A. Soom, Journal of Tribology 112(1), 1990, 147-152.
+    """
+
+    name = "outside_frictional_memory"
+    summary = "friction that follows a change of speed late"
+    quantities = (Quantity("time_constant", "T", "s", lower=0.0), Quantity("speed", "omega_s", "rad/s", lower=0.0))
+    shapes = (
+        Shape(quantities[0], (0.03, 0.1, 0.3, 1.0)),
+        Shape(quantities[1], (1.0, 3.0, 10.0, 30.0)),
+    )
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """The late rise."""
+        keep = np.exp(-signals.sample_period / shape[0])
+        return [[(signals.sign * np.exp(-_lowpass(np.abs(signals.velocity), keep) / shape[1]), 0)]]
+
+    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Time constant and speed."""
+        return {"time_constant": shape[0], "speed": shape[1]}
+
+
+def _lowpass(values: np.ndarray, keep: float) -> np.ndarray:
+    return lfilter([1.0 - keep], [1.0, -keep], values)
+
+
+OUTSIDE: Mapping[str, Effect] = {
+    effect.name: effect for effect in (Vibration(), Notch(), SlowMemory(), FrictionalMemory())
+}
+
+
+def physics_of(name: str) -> Effect:
+    """An effect of the catalogue, or a rival from outside it."""
+    return OUTSIDE[name] if name in OUTSIDE else catalogue()[name]

@@ -1,0 +1,159 @@
+"""An effect's reported quantities from a fit, with intervals that count correlated residuals.
+
+Every free number of the fit, strengths and continuous shapes alike, is one column of the Jacobian of the modelled
+torque; covariance by long-run scores as in identification; quantities by the delta method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.diagnose.hypothesis import (
+    BACKLASH,
+    CURRENT_LAG,
+    ECCENTRICITY,
+    ELASTIC,
+    VELOCITY_LAG,
+    Fit,
+    Named,
+    build,
+)
+from bench.diagnose.search import free_shapes
+from bench.diagnose.workbench import Workbench
+from bench.effects.catalogue import catalogue, physics
+from bench.effects.effect import Base, amplitude_and_phase
+from bench.identify.covariance import long_run_covariance
+from bench.identify.estimate import Parameter
+
+Array = NDArray[np.float64]
+
+#: Step of a numerical derivative, relative, and 95 % of a normal distribution.
+STEP, REACH = 1e-4, 1.96
+#: Rows per block of the scores.
+BLOCK = 16
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """The free numbers of a fit - strengths, then continuous shapes - and their covariance."""
+
+    values: Array
+    covariance: Array
+    shapes: tuple[tuple[int, int], ...]
+
+
+def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
+    """Free numbers of a fit with their covariance."""
+    slots = tuple((index, k) for index, effect in enumerate(fitted.hypothesis.effects) for k in free_shapes(effect))
+    columns = [fitted.columns]
+    for index, k in slots:
+        shape = fitted.hypothesis.effects[index].shape
+        step = STEP * max(abs(shape[k]), 1e-3)
+        moved = tuple(value + step * (j == k) for j, value in enumerate(shape))
+        other, _ = build(bench, fitted.hypothesis.reshaped(index, moved))
+        columns.append((((other - fitted.columns) @ fitted.theta) / step)[:, None])
+    jacobian = np.concatenate(columns, axis=1)
+    scale = np.sqrt(np.mean(jacobian**2, axis=0)) + 1e-300
+    jacobian = jacobian / scale
+    inverse = np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-12)
+    scores = jacobian * fitted.residual[:, None]
+    edges = np.arange(0, scores.shape[0], BLOCK)
+    middle, _ = long_run_covariance(np.add.reduceat(scores, edges, axis=0))
+    covariance = inverse @ middle @ inverse / np.outer(scale, scale)
+    shapes = np.array([fitted.hypothesis.effects[index].shape[k] for index, k in slots])
+    return Uncertain(np.concatenate([fitted.theta, shapes]), covariance, slots)
+
+
+def base_parameters(
+    fitted: Fit, numbers: Uncertain, names: tuple[str, str, str], units: tuple[str, str, str]
+) -> dict[str, Parameter]:
+    """J, K_w and K_0 with their intervals."""
+    deviation = np.sqrt(np.maximum(np.diag(numbers.covariance), 0.0))
+    return {
+        name: _parameter(float(fitted.theta[k]), float(deviation[k]), unit)
+        for k, (name, unit) in enumerate(zip(names, units, strict=True))
+    }
+
+
+def effect_parameters(fitted: Fit, numbers: Uncertain, index: int, linear: bool, tick: float) -> dict[str, Parameter]:
+    """Quantities of one effect with their intervals.
+
+    Args:
+        fitted: the fit.
+        numbers: its free numbers.
+        index: of the effect.
+        linear: whether the axis is linear.
+        tick: control period of the drive, by half of which a lag is uncertain - s.
+    """
+    effect = fitted.hypothesis.effects[index]
+
+    def values(point: Array) -> Mapping[str, float]:
+        theta = point[: fitted.theta.size]
+        shape = list(effect.shape)
+        for slot, (owner, k) in enumerate(numbers.shapes):
+            if owner == index:
+                shape[k] = float(point[fitted.theta.size + slot])
+        base = Base(float(theta[0]), float(theta[1]), float(theta[2]))
+        return reported(Named(effect.name, tuple(shape)), theta[fitted.owners == index], base)
+
+    centre = values(numbers.values)
+    deviations = _deviations(values, numbers)
+    extra = 0.5 * tick if effect.name in (CURRENT_LAG, VELOCITY_LAG) else 0.0
+    return {
+        name: _parameter(value, deviations[name] + extra / REACH, unit_of_quantity(effect.name, name, linear))
+        for name, value in centre.items()
+    }
+
+
+def _deviations(values: Callable[[Array], Mapping[str, float]], numbers: Uncertain) -> dict[str, float]:
+    gradient: dict[str, list[float]] = {name: [] for name in values(numbers.values)}
+    for k, number in enumerate(numbers.values):
+        step = STEP * max(abs(float(number)), 1e-9)
+        up, down = numbers.values.copy(), numbers.values.copy()
+        up[k] += step
+        down[k] -= step
+        high, low = values(up), values(down)
+        for name, slopes in gradient.items():
+            slopes.append((high[name] - low[name]) / (2.0 * step))
+    found = {name: np.array(slopes) for name, slopes in gradient.items()}
+    return {name: float(np.sqrt(max(g @ numbers.covariance @ g, 0.0))) for name, g in found.items()}
+
+
+def reported(effect: Named, strengths: Array, base: Base) -> Mapping[str, float]:
+    """Quantities of an effect from its strengths and shape - SI."""
+    if effect.name in (CURRENT_LAG, VELOCITY_LAG):
+        return {"time_constant": effect.shape[0]}
+    if effect.name == ECCENTRICITY:
+        amplitude, phase = amplitude_and_phase(*effect.shape)
+        return {"amplitude": amplitude, "phase": phase}
+    if effect.name == ELASTIC:
+        antiresonance, damping = effect.shape
+        load, motor = float(strengths[0]), base.inertia - float(strengths[0])
+        stiffness = load * antiresonance**2
+        resonance = np.sqrt(max(stiffness * (1.0 / max(motor, 1e-12) + 1.0 / load), 0.0)) / (2.0 * np.pi)
+        loss = 2.0 * damping * stiffness / antiresonance
+        return {"stiffness": stiffness, "damping": loss, "resonance_frequency": float(resonance)}
+    if effect.name == BACKLASH:
+        gap, contact, damping, _ = effect.shape
+        stiffness = float(strengths[0]) * contact**2
+        return {"gap": gap, "contact_stiffness": stiffness, "contact_damping": 2.0 * damping * stiffness / contact}
+    return catalogue()[effect.name].values(strengths.tolist(), effect.shape, base)
+
+
+def unit_of_quantity(effect: str, quantity: str, linear: bool) -> str:
+    """Unit of a reported quantity."""
+    if quantity == "resonance_frequency":
+        return "Hz"
+    known = {q.name: q.unit for q in physics()[effect].quantities} if effect in physics() else {}
+    unit = known.get(quantity, "dimensionless")
+    return unit.replace("N*m", "N").replace("rad", "m") if linear and quantity != "phase" else unit
+
+
+def _parameter(value: float, deviation: float, unit: str) -> Parameter:
+    return Parameter(
+        float(value), unit, deviation, (float(value - REACH * deviation), float(value + REACH * deviation))
+    )

@@ -1,0 +1,249 @@
+"""Name what is missing: try every effect, keep what explains, polish it, let go of what a later one explains.
+
+Stop, accept and "unexplained" are tests against the noise floor of the recording itself (chi = 1 where only noise is
+left), so a recording in which nothing is hidden ends without a name.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.optimize
+
+from bench.diagnose.backlash import with_backlash
+from bench.diagnose.candidates import EVENT, Candidate, candidates
+from bench.diagnose.hypothesis import (
+    BACKLASH,
+    CURRENT_LAG,
+    DIRECTION,
+    ECCENTRICITY,
+    ELASTIC,
+    TRANSFORMS,
+    VELOCITY_LAG,
+    Fit,
+    Hypothesis,
+    Named,
+    fit,
+)
+from bench.diagnose.outside import OUTSIDE, physics_of
+from bench.diagnose.workbench import Workbench
+from bench.effects.catalogue import catalogue
+
+SPRING, OFFSET = "torsion_spring", "torque_offset"
+
+#: Residual over noise floor above which what is left stands clearly above noise.
+REMAINDER = 1.12
+#: Share of what stands above the floor that an effect must explain to be taken up.
+SHARE = 0.25
+#: The same for an event, which has a window of time to choose freely and so fits a part of anything.
+EVENT_SHARE = 0.5
+#: Gain over noise power per degree of freedom that chance does not reach in a search over some hundred candidates.
+SIGNIFICANT = 40.0
+#: Candidates whose shapes are polished before they are compared.
+FINALISTS = 4
+#: Effects at most.
+MOST = 5
+
+
+@dataclass(frozen=True)
+class Step:
+    """An effect taken up: its hypothesis fitted, and the candidates it was chosen from, best first."""
+
+    fitted: Fit
+    rivals: tuple[Candidate, ...]
+
+
+def search(bench: Workbench, rotor_inertia: float, excluded: frozenset[str] = frozenset()) -> list[Step]:
+    """Hypotheses in the order in which effects were added; the first has none.
+
+    Args:
+        bench: the recording.
+        rotor_inertia: of the motor alone, 0 where the rig does not tell - kg*m**2 (kg).
+        excluded: effects not to be tried.
+    """
+    steps = grown(bench, [Step(fit(bench, Hypothesis()), ())], excluded)
+    last = steps[-1].fitted
+    if last.chi > REMAINDER and BACKLASH not in excluded:
+        loose = loosened(bench, last, rotor_inertia)
+        if loose is not None:
+            steps = grown(
+                bench, [*steps[:-1], Step(loose, ())] if len(steps) > 1 else [*steps, Step(loose, ())], excluded
+            )
+    final = simpler(bench, uncontested(bench, steps[-1].fitted, excluded))
+    if final.hypothesis != steps[-1].fitted.hypothesis:
+        steps = [*steps[:-1], Step(final, steps[-1].rivals)] if final.hypothesis.effects else steps[:1]
+    return steps
+
+
+def grown(bench: Workbench, steps: list[Step], excluded: frozenset[str]) -> list[Step]:
+    """Steps with effects of the catalogue added until none is worthwhile."""
+    while len(steps) <= MOST:
+        current = steps[-1].fitted
+        tried = candidates(bench, current, excluded | frozenset(OUTSIDE))
+        threshold = SIGNIFICANT * row_correlation(bench) * current.floor**2
+        promising = [candidate for candidate in tried if candidate.gain > max(threshold, 0.1 * current.excess)]
+        finalists = [refined(bench, current, candidate) for candidate in promising[:FINALISTS]]
+        better = [found for found in finalists if worthwhile(bench, current, found)]
+        if not better:
+            break
+        chosen = min(better, key=lambda found: float(np.sum(found.residual**2)))
+        steps = [*steps, Step(eliminated(bench, polished(bench, chosen)), tuple(tried))]
+    return steps
+
+
+def loosened(bench: Workbench, fitted: Fit, rotor_inertia: float) -> Fit | None:
+    """The hypothesis with a dead zone instead of an elastic coupling, if that explains clearly more."""
+    if BACKLASH in fitted.hypothesis.names:
+        return None
+    kept = tuple(effect for effect in fitted.hypothesis.effects if effect.name not in (ELASTIC, CURRENT_LAG))
+    hypothesis = Hypothesis(kept)
+    rates = {0.0}
+    if SPRING in hypothesis.names and fitted.theta[0] > rotor_inertia:
+        stiffness = fit(bench, hypothesis).strengths(hypothesis.names.index(SPRING))[0]
+        rates.add(float(max(stiffness, 0.0) / (fitted.theta[0] - rotor_inertia)))
+    found = min((with_backlash(bench, hypothesis, rate) for rate in rates), key=lambda f: f.rms)
+    share = found.strengths(len(kept))[0] / found.theta[0]
+    gained = float(np.sum(fitted.residual**2) - np.sum(found.residual**2))
+    return found if gained > 0.5 * fitted.excess and 0.02 < share < 0.98 else None
+
+
+def uncontested(bench: Workbench, fitted: Fit, excluded: frozenset[str]) -> Fit:
+    """Without the names that something from outside the catalogue explains better, where a remainder is left."""
+    if fitted.chi < REMAINDER or not fitted.hypothesis.effects:
+        return fitted
+    for index in range(len(fitted.hypothesis.effects) - 1, -1, -1):
+        less = fit(bench, fitted.hypothesis.without(index))
+        rivals = [candidate for candidate in candidates(bench, less, excluded) if candidate.named.name in OUTSIDE]
+        if rivals and refined(bench, less, rivals[0]).rms < fitted.rms:
+            fitted = less
+    return fitted
+
+
+def simpler(bench: Workbench, fitted: Fit) -> Fit:
+    """A torque offset instead of direction-dependent friction where viscous friction does not differ."""
+    names = fitted.hypothesis.names
+    if DIRECTION not in names:
+        return fitted
+    plain = fit(bench, fitted.hypothesis.without(names.index(DIRECTION)).with_effect(Named(OFFSET)))
+    lost = float(np.sum(plain.residual**2) - np.sum(fitted.residual**2))
+    return plain if lost < SIGNIFICANT * row_correlation(bench) * fitted.floor**2 else fitted
+
+
+def worthwhile(bench: Workbench, before: Fit, after: Fit) -> bool:
+    """Whether an added effect explains enough, significantly, within what physics allows."""
+    saved = float(np.sum(before.residual**2) - np.sum(after.residual**2))
+    correlation = row_correlation(bench)
+    added = after.theta.size - before.theta.size + len(after.hypothesis.effects[-1].shape)
+    significant = saved > SIGNIFICANT * added * correlation * before.floor**2
+    share = EVENT_SHARE if after.hypothesis.names[-1] == EVENT else SHARE
+    return significant and before.chi > 1.0 and saved > share * before.excess and physical(after)
+
+
+def row_correlation(bench: Workbench) -> float:
+    """Variance of a sum of filtered noise over that of independent rows: 2*sqrt(pi)*width over the rows' distance."""
+    smooth = bench.conditioning.filter
+    return max(1.0, 2.0 * np.sqrt(np.pi) * smooth.width / (smooth.stride * smooth.sample_period))
+
+
+def physical(fitted: Fit) -> bool:
+    """Whether every effect has values that physics allows."""
+    for index, effect in enumerate(fitted.hypothesis.effects):
+        strengths = fitted.strengths(index)
+        if effect.name in (ELASTIC, BACKLASH) and not 0.02 < strengths[0] / fitted.theta[0] < 0.98:
+            return False
+        if effect.name in TRANSFORMS or effect.name in OUTSIDE:
+            continue
+        if not catalogue()[effect.name].physical(strengths, effect.shape, fitted.base):
+            return False
+    return fitted.theta[0] > 0.0
+
+
+def refined(bench: Workbench, current: Fit, candidate: Candidate) -> Fit:
+    """The candidate added, its shape searched around where the grid found it."""
+    return shaped(bench, current.hypothesis.with_effect(candidate.named), len(current.hypothesis.effects))
+
+
+def shaped(bench: Workbench, hypothesis: Hypothesis, index: int) -> Fit:
+    """Search one effect's shape for the least residual, the others held."""
+    effect = hypothesis.effects[index]
+    free = free_shapes(effect)
+    if not free:
+        return fit(bench, hypothesis)
+    start = np.array(effect.shape)
+    scale = _scale(effect)
+
+    def misfit(offset: np.ndarray) -> float:
+        shape = start.copy()
+        shape[free] = _moved(effect, start[free], offset * scale)
+        found = fit(bench, hypothesis.reshaped(index, tuple(shape.tolist())))
+        return float(np.log(np.sum(found.residual**2)))
+
+    if len(free) == 1:
+        best = scipy.optimize.minimize_scalar(
+            lambda x: misfit(np.array([x])), bounds=(-1.0, 1.0), method="bounded", options={"xatol": 4e-3}
+        )
+        offset = np.array([best.x])
+    else:
+        best = scipy.optimize.minimize(
+            misfit,
+            np.zeros(len(free)),
+            method="Nelder-Mead",
+            options={"initial_simplex": _simplex(len(free)), "xatol": 3e-3, "fatol": 1e-4, "maxfev": 120},
+        )
+        offset = np.asarray(best.x)
+    shape = start.copy()
+    shape[free] = _moved(effect, start[free], offset * scale)
+    return fit(bench, hypothesis.reshaped(index, tuple(shape.tolist())))
+
+
+def _simplex(size: int) -> np.ndarray:
+    return np.vstack([np.zeros(size), 0.5 * np.eye(size)])
+
+
+def free_shapes(effect: Named) -> list[int]:
+    """Indices of the shape quantities that vary continuously."""
+    if effect.name == BACKLASH:
+        return []
+    if effect.name in TRANSFORMS or effect.name == EVENT:
+        return list(range(len(effect.shape)))
+    physics = physics_of(effect.name)
+    return [index for index, shape in enumerate(physics.shapes) if not shape.whole]
+
+
+def _scale(effect: Named) -> float:
+    """How far a search goes at first: as factor e**scale of positive quantities, as distance of the others."""
+    if effect.name == EVENT:
+        return 0.05
+    if effect.name == ECCENTRICITY:
+        return 0.3 * max(float(np.hypot(*effect.shape)), 1e-4)
+    return {ELASTIC: 0.35, CURRENT_LAG: 1.0, VELOCITY_LAG: 1.0}.get(effect.name, 0.9)
+
+
+def _moved(effect: Named, start: np.ndarray, offset: np.ndarray) -> np.ndarray:
+    if effect.name in (EVENT, ECCENTRICITY) or (effect.name in OUTSIDE and effect.name == "outside_notch"):
+        return start + offset
+    return start * np.exp(offset)
+
+
+def polished(bench: Workbench, fitted: Fit) -> Fit:
+    """Every effect's shape searched again beside the others."""
+    if len(fitted.hypothesis.effects) < 2:
+        return fitted
+    for index in range(len(fitted.hypothesis.effects)):
+        fitted = shaped(bench, fitted.hypothesis, index)
+    return fitted
+
+
+def eliminated(bench: Workbench, fitted: Fit) -> Fit:
+    """Without the effects that no longer explain anything beside the later ones."""
+    correlation = row_correlation(bench)
+    for index in range(len(fitted.hypothesis.effects) - 1, -1, -1):
+        if len(fitted.hypothesis.effects) < 2:
+            break
+        less = fit(bench, fitted.hypothesis.without(index))
+        lost = float(np.sum(less.residual**2) - np.sum(fitted.residual**2))
+        own = fitted.strengths(index).size + len(fitted.hypothesis.effects[index].shape)
+        if lost < SIGNIFICANT * max(own, 1) * correlation * fitted.floor**2 or lost < 0.02 * less.excess:
+            fitted = less
+    return fitted
