@@ -13,6 +13,8 @@ from bench.plant.drive import Cascade
 from bench.plant.model import AxisParameters
 from bench.plant.plant import Plant
 from bench.plant.references import References
+from bench.plant.run import run
+from bench.plant.states import States
 from tests.independent import KINDS, Effect, Sensors, simulate
 from tests.independent.axes import PLAIN
 
@@ -80,6 +82,31 @@ def model(*names: str) -> AxisModel:
 def plant(*names: str) -> Plant:
     """The axis with effects under its drive."""
     return Plant(PARAMETERS, CASCADE, PERIOD, effects=tuple(present(name) for name in names), winding=WINDING)
+
+
+#: The same without friction, for closed forms.
+FREE = AxisParameters(AXIS.inertia, motor_inertia=AXIS.rotor_inertia)
+
+
+def moved(
+    effects: list[Present],
+    duration: float,
+    torque: float = 0.0,
+    velocity: float = 0.0,
+    position: float = 0.0,
+    parameters: AxisParameters = FREE,
+) -> States:
+    """Motion of an axis under a constant demanded torque: the drive has no gains, its feed-forward is the torque."""
+    time = PERIOD * np.arange(round(duration / PERIOD) + 1)
+    still = np.zeros_like(time)
+    references = References(time, still + position, still + velocity, still + torque)
+    open_loop = Cascade(0.0, 0.0, 0.0, 1.0, AXIS.peak_torque, PERIOD)
+    return run([Plant(parameters, open_loop, PERIOD, effects=tuple(effects), winding=WINDING)], [references])
+
+
+def signals(states: States) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time, position and velocity, (n,) each."""
+    return states.time, states.position[:, 0], states.velocity[:, 0]
 
 
 class Reversals:

@@ -1,0 +1,23 @@
+"""Friction that rises towards standstill: breakaway, and the time to stop."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from tests.effects.axes import FREE, moved, present, signals
+
+DRY = replace(FREE, coulomb_friction=0.06)
+
+
+@pytest.mark.parametrize(("torque", "holds"), [(0.135, True), (0.145, False)])
+def test_breaks_away_at_static_friction(torque, holds):
+    _, _, velocity = signals(moved([present("stribeck_friction")], 0.5, torque=torque, parameters=DRY))
+    assert (np.abs(velocity).max() < 1e-4) == holds
+
+
+def test_time_to_stop():
+    time, _, velocity = signals(moved([present("stribeck_friction")], 0.5, velocity=15.0, parameters=DRY))
+    needed, _ = quad(lambda w: DRY.inertia / (0.06 + 0.08 * np.exp(-((w / 5.0) ** 2))), 0.0, 15.0)
+    assert time[np.argmax(velocity < 1e-3)] == pytest.approx(needed, abs=2.5e-4)
