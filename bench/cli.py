@@ -13,7 +13,9 @@ from typer.exceptions import TyperException
 
 from bench import __version__
 from bench.demo import demo as run_demo
-from bench.effects.present import parse_effect
+from bench.diagnose.diagnosis import diagnose as run_diagnosis
+from bench.diagnose.replay import replay as run_replay
+from bench.effects.present import named, parse_effect
 from bench.errors import BenchError, InputError
 from bench.files import write_text
 from bench.identify.estimate import Estimate
@@ -21,12 +23,16 @@ from bench.identify.lab import identify_as_in_the_lab
 from bench.identify.refine import Refinement
 from bench.identify.refine import refine as polish
 from bench.identify.regression import identify as regress
+from bench.lab.record import record
 from bench.plant.profiles import DEFAULT, PROFILES
 from bench.plant.simulate import simulate as run_simulation
 from bench.plant.truth import write_truth
+from bench.report.course import course_table, report_course
+from bench.report.diagnosis import diagnosis_json, diagnosis_table, write_diagnosis
 from bench.report.effects import effect_page, effects_table
 from bench.report.estimate import estimate_json, estimate_table, refinement_line
 from bench.report.identification import write_identification
+from bench.report.limits import draw_operating_range, operating_range
 from bench.report.progress import progress
 from bench.rig.rig import Rig, load_rig
 from bench.trace.inspect import inspect as look
@@ -151,6 +157,44 @@ def identify(
     _tell_warnings(estimate)
 
 
+@app.command()
+def diagnose(
+    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    rig: RigOption,
+    holdout: Annotated[Path | None, typer.Option("--holdout", help="Another recording of the axis.")] = None,
+    json: JsonOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
+    without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
+) -> None:
+    """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
+    axis = load_rig(rig)
+    excluded = frozenset(named(name, "--without").name for name in without or [])
+    other = read(holdout, axis.trace.columns) if holdout else None
+    with progress(f"diagnosing {trace.name}") as done:
+        found = run_diagnosis(read(trace, axis.trace.columns), axis, other, excluded, done)
+    if json is not None:
+        _write_json(json, diagnosis_json(found))
+    files = write_diagnosis(out, found, f"{axis.name}: {trace.name}") if out is not None else []
+    if json != Path("-"):
+        _console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
+        _tell_files(files)
+    for warning in found.warnings:
+        typer.echo(f"warning: {warning}", err=True)
+
+
+@app.command()
+def replay(
+    model: Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")],
+    trace: Annotated[Path, typer.Argument(help="Recording to run it along.")],
+    rig: RigOption,
+    out: Annotated[Path, typer.Option("--out", help="CSV to write.")],
+) -> None:
+    """Run a diagnosed model along a recording; write measured and simulated signals."""
+    axis = load_rig(rig)
+    write_text(out, run_replay(model, read(trace, axis.trace.columns), axis).csv())
+    _tell_files([out])
+
+
 def _estimate(
     trace: Path, rig: Rig, estimator: Estimator, refine: bool, cutoff: float | None
 ) -> tuple[Estimate, Refinement | None]:
@@ -163,6 +207,39 @@ def _estimate(
             return regress(stream(trace, columns), rig, cutoff), None
         recording = read(trace, columns)
         return polish(recording, rig, regress(recording, rig, cutoff), done)
+
+
+@app.command()
+def lab(
+    data: Annotated[Path | None, typer.Option("--data", help="Folder of your recordings; else synthetic ones.")] = None,
+    out: Annotated[Path, typer.Option("--out", help="Folder for the report.")] = Path("bench_lab"),
+    synthetic: Annotated[
+        Path | None, typer.Option("--record", help="Only simulate the course's recordings, into this folder.")
+    ] = None,
+) -> None:
+    """Do all tasks of the lab course; write one report as HTML and PDF."""
+    if synthetic is not None:
+        with progress("recording") as done:
+            _tell_files(record(synthetic, progress=done))
+        return
+    with progress("lab course") as done:
+        report = report_course(data, out, done)
+    _console().print(course_table(report.results))
+    _tell_files(report.files)
+
+
+@app.command()
+def limits(
+    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    rig: RigOption,
+    out: Annotated[Path, typer.Option("--out", help="Diagram to write: .png, .pdf or .svg.")] = Path("limits.png"),
+) -> None:
+    """Draw a recording into its motor's speed-torque diagram; say how much reserve it leaves."""
+    axis = load_rig(rig)
+    found = operating_range(read(trace, axis.trace.columns), axis)
+    draw_operating_range(found, out)
+    typer.echo("\n".join(found.says))
+    _tell_files([out])
 
 
 def _write_json(path: Path, text: str) -> None:

@@ -11,6 +11,7 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from bench.effects.effect import Column, Signals
+from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
 from bench.trace.conditioning import Conditioning, condition, known_sign, raw_speed
 from bench.trace.filter import GaussianFilter, fast_length
@@ -19,6 +20,7 @@ from bench.trace.trace import Trace
 Array = NDArray[np.float64]
 Transfer = Callable[[Array], NDArray[np.complex128]]
 
+RECORD = "at least some seconds of motion in both directions, faster than the noise of the speed"
 #: Widest filter of a diagnosis - s: shapes of friction live in the milliseconds around a reversal.
 WIDEST = 2e-3
 #: A row needs one sign over this many filter widths to each side, so that a lag of some widths moves no reversal in.
@@ -50,22 +52,31 @@ class Workbench:
     memory: dict[tuple[object, ...], Array] = field(default_factory=dict, compare=False)
 
     @classmethod
-    def of(cls, trace: Trace, rig: Rig) -> Workbench:
+    def of(cls, trace: Trace, rig: Rig, width: float | None = None, every: bool = False) -> Workbench:
         """Lay out a recording.
+
+        Args:
+            trace: the recording.
+            rig: of the axis.
+            width: of the filter instead of the one chosen from the recording - s.
+            every: whether a row stands for every sample, which a replay wants.
 
         Raises:
             InputError, UndeterminedError: as identification does.
         """
         effort, _ = rig.net_effort(trace)
         found = condition(trace, effort)
-        width = min(WIDEST, found.filter.width)
+        width = width or min(WIDEST, found.filter.width)
         smooth = GaussianFilter.from_cutoff(GaussianFilter(width, trace.sample_period).cutoff, trace.sample_period)
+        smooth = replace(smooth, stride=1) if every else smooth
         conditioning = replace(found, filter=smooth)
         constant, peak = rig.motor.torque_per_ampere, rig.motor.peak_current
         largest = float(np.abs(effort).max())
         peak_effort = float(constant.torque(np.asarray(peak))) if constant and peak else largest
         parts = [part for part in trace.segments if part.stop - part.start > 4 * smooth.margin]
         stretches = tuple(_stretch(trace, effort, part, conditioning, peak_effort) for part in parts)
+        if not any(part.used.any() for part in stretches):
+            raise UndeterminedError("the torque balance", "no filtered sample moves clearly in one direction", RECORD)
         return cls(stretches, conditioning, trace.origin)
 
     def with_signals(self, change: Callable[[Signals], Signals]) -> Workbench:
@@ -77,6 +88,15 @@ class Workbench:
     def effort(self) -> Array:
         """Filtered motor torque at the used rows - N*m (N) - (m,)."""
         return self.rows(lambda s: [(s.effort, 0)])
+
+    def samples(self, trace: Trace) -> NDArray[np.int64]:
+        """Index into the recording of every used row (m,)."""
+        smooth, found = self.conditioning.filter, []
+        parts = [part for part in trace.segments if part.stop - part.start > 4 * smooth.margin]
+        for part, stretch in zip(parts, self.stretches, strict=True):
+            rows = part.start + smooth.margin + smooth.stride * np.arange(stretch.used.size)
+            found.append(rows[stretch.used])
+        return np.concatenate(found)
 
     def row_values(self, pick: Callable[[Signals], Array]) -> Array:
         """Raw values at the used rows (m,)."""

@@ -1,0 +1,80 @@
+"""The torque balance of a diagnosed model along any recording, which is held against the measured torque."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.diagnose.candidates import EVENT
+from bench.diagnose.hypothesis import Fit, Hypothesis, Named, build
+from bench.diagnose.workbench import Workbench
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Balance:
+    """A fitted torque balance, ready for other recordings of the axis.
+
+    Attributes:
+        hypothesis: its effects and their shapes.
+        theta: (p,) J, K_w, K_0, misalignment, strengths.
+        width: of the filter it was fitted through - s.
+        recording: the one it was fitted to; an event happened in it and in no other.
+    """
+
+    hypothesis: Hypothesis
+    theta: Array
+    width: float
+    recording: str
+
+    @classmethod
+    def of(cls, bench: Workbench, fitted: Fit) -> Balance:
+        """Balance of a fit."""
+        return cls(fitted.hypothesis, fitted.theta, bench.conditioning.filter.width, bench.origin)
+
+    def torque(self, bench: Workbench) -> Array:
+        """Modelled torque at the used rows of a recording - N*m (N) - (m,)."""
+        columns, owners = build(bench, self.hypothesis)
+        theta = self.theta.copy()
+        if bench.origin != self.recording:
+            names = self.hypothesis.names
+            theta[[owner >= 0 and names[owner] == EVENT for owner in owners]] = 0.0
+        return columns @ theta
+
+    def gap(self, bench: Workbench) -> float:
+        """RMS of measured less modelled torque along a recording - N*m (N)."""
+        return float(np.sqrt(np.mean((bench.effort - self.torque(bench)) ** 2)))
+
+    def toml(self) -> str:
+        """The table `[torque_balance]` of a `model.toml`."""
+        lines = [
+            "",
+            "# The same model as coefficients of the torque balance, for `bench replay`; SI.",
+            "[torque_balance]",
+            f"recording = {_quoted(self.recording)}",
+            f"filter_width = {self.width!r}",
+            f"asymmetry = {self.hypothesis.asymmetry!r}",
+            f"coefficients = [{', '.join(repr(float(value)) for value in self.theta)}]",
+        ]
+        for effect in self.hypothesis.effects:
+            shape = ", ".join(repr(float(value)) for value in effect.shape)
+            lines += ["", "[[torque_balance.effects]]", f'name = "{effect.name}"', f"shape = [{shape}]"]
+        return "\n".join(lines) + "\n"
+
+    @classmethod
+    def from_table(cls, table: dict) -> Balance:
+        """Balance of the table that `toml` wrote; KeyError, TypeError or ValueError if it is none."""
+        effects = tuple(
+            Named(str(entry["name"]), tuple(float(value) for value in entry["shape"]))
+            for entry in table.get("effects", [])
+        )
+        theta = np.array([float(value) for value in table["coefficients"]])
+        hypothesis = Hypothesis(effects, float(table["asymmetry"]))
+        return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'

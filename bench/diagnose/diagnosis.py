@@ -1,0 +1,181 @@
+"""Diagnosis in five steps: gap, where, name, add, show."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from bench.diagnose.added import axis_model, velocity_gap
+from bench.diagnose.balance import Balance
+from bench.diagnose.candidates import EVENT
+from bench.diagnose.found import Gap, NamedEffect
+from bench.diagnose.hypothesis import DIRECTION, Fit, fit
+from bench.diagnose.quantities import base_parameters, effect_parameters, uncertain
+from bench.diagnose.search import OFFSET, REMAINDER, Step, search
+from bench.diagnose.sensing import VelocityLag, velocity_lag
+from bench.diagnose.voltage import VoltageLimit, voltage_limit
+from bench.diagnose.where import Where, where
+from bench.diagnose.workbench import Workbench
+from bench.identify.estimate import Parameter
+from bench.identify.load_inertia import load_inertia
+from bench.identify.names import parameter_name, parameter_unit
+from bench.identify.regression import identify
+from bench.identify.regressors import COULOMB, INERTIA, VISCOUS
+from bench.plant.model_file import StoredModel
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+Progress = Callable[[float], None]
+
+#: Names that no recording of torque and motion tells apart.
+AMBIGUOUS = {
+    OFFSET: (DIRECTION,),
+    DIRECTION: (OFFSET,),
+    "current_loop_lag": ("velocity_filter_lag",),
+    "velocity_filter_lag": ("current_loop_lag",),
+}
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What is missing from the model of an axis, and the model with it."""
+
+    verdict: str
+    effects: list[NamedEffect]
+    where: list[Where]
+    unexplained_share: float
+    unexplained_where: list[Where]
+    parameters: dict[str, Parameter]
+    torque: Gap
+    velocity: Gap
+    steps: list[tuple[str, float]]
+    model: StoredModel | None
+    balance: Balance
+    warnings: list[str] = field(default_factory=list)
+
+
+def diagnose(
+    trace: Trace,
+    rig: Rig,
+    holdout: Trace | None = None,
+    excluded: frozenset[str] = frozenset(),
+    progress: Progress = lambda share: None,
+) -> Diagnosis:
+    """Find what is missing, name it, add it, and show the gap shrink.
+
+    Args:
+        trace: the recording.
+        rig: of the axis.
+        holdout: another recording of it, not used to fit.
+        excluded: effects that are not tried.
+        progress: called with the share done.
+
+    Raises:
+        UndeterminedError: the recording is too short, too slow or too quiet to decide.
+        InputError: rig and recording do not fit together.
+    """
+    identify(trace, rig)
+    bench = Workbench.of(trace, rig)
+    other = Workbench.of(holdout, rig, bench.conditioning.filter.width) if holdout is not None else None
+    steps = search(bench, rig.motor.rotor_inertia or 0.0, excluded)
+    progress(0.6)
+    warnings = foreign(bench, steps[0].fitted, other)
+    fitted = proven(bench, steps[-1].fitted, None if warnings else other)
+    lag = None if "velocity_filter_lag" in excluded else velocity_lag(trace, bench)
+    limit = None if "voltage_limit" in excluded else voltage_limit(trace, rig, bench)
+    effects, parameters = named(bench, fitted, rig, lag, limit)
+    balance = Balance.of(bench, fitted)
+    before = Balance.of(bench, steps[0].fitted)
+    torque = Gap(
+        rig.effort_unit,
+        fitted.floor,
+        (before.gap(bench), balance.gap(bench)),
+        (before.gap(other), balance.gap(other)) if other is not None else None,
+    )
+    progress(0.7)
+    model, problem = axis_model(fitted, effects, parameters, rig)
+    velocity, failed = velocity_gap(trace, holdout, rig, parameters, fitted, model)
+    remains = fitted.chi > REMAINDER
+    gap_before = float(np.sum(steps[0].fitted.residual ** 2))
+    return Diagnosis(
+        verdict="unexplained_remainder" if remains else "explained" if effects else "nothing_missing",
+        effects=effects,
+        where=where(bench, steps[0].fitted, rig.linear),
+        unexplained_share=fitted.excess / max(gap_before, 1e-300),
+        unexplained_where=where(bench, fitted, rig.linear)[:3] if remains else [],
+        parameters=parameters,
+        torque=torque,
+        velocity=velocity,
+        steps=_shrinking(steps, fitted),
+        model=model,
+        balance=balance,
+        warnings=[*warnings, *problem, *failed],
+    )
+
+
+def foreign(bench: Workbench, base: Fit, other: Workbench | None) -> list[str]:
+    """A warning where the holdout's inertia is not that of the recording: it is another axis."""
+    if other is None:
+        return []
+    inertia = fit(other, replace(base.hypothesis)).theta[0]
+    if abs(inertia / base.theta[0] - 1.0) < 0.5:
+        return []
+    return [f"the holdout recording has {inertia / base.theta[0]:.2f} times the inertia: another axis? It was not used"]
+
+
+def proven(bench: Workbench, fitted: Fit, other: Workbench | None) -> Fit:
+    """Without the effects that make motion which was not fitted worse; an event belongs to its own recording."""
+    if other is None:
+        return fitted
+    for index in range(len(fitted.hypothesis.effects) - 1, -1, -1):
+        if fitted.hypothesis.effects[index].name == EVENT:
+            continue
+        less = fit(bench, fitted.hypothesis.without(index))
+        if Balance.of(bench, fitted).gap(other) > Balance.of(bench, less).gap(other):
+            fitted = less
+    return fitted
+
+
+def named(
+    bench: Workbench, fitted: Fit, rig: Rig, lag: VelocityLag | None, limit: VoltageLimit | None
+) -> tuple[list[NamedEffect], dict[str, Parameter]]:
+    """Effects with their quantities, and J, K_w, K_0 beside them."""
+    numbers = uncertain(bench, fitted)
+    columns = (INERTIA, VISCOUS, COULOMB)
+    names = tuple(parameter_name(column, rig.linear) for column in columns)
+    units = tuple(parameter_unit(column, rig.linear, rig.effort_unit) for column in columns)
+    parameters = base_parameters(fitted, numbers, names, units)
+    parameters |= load_inertia(parameters, rig)
+    tick = rig.drive.control_period if rig.drive is not None else 0.0
+    effects = []
+    for index, effect in enumerate(fitted.hypothesis.effects):
+        less = fit(bench, fitted.hypothesis.without(index))
+        evidence = {"residual_without": less.rms, "residual_with": fitted.rms, "noise_floor": fitted.floor}
+        found = effect_parameters(fitted, numbers, index, rig.linear, tick)
+        ambiguous = AMBIGUOUS.get(effect.name, ())
+        if effect.name == "current_loop_lag" and bench.conditioning.source == "position":
+            ambiguous = ()
+        effects.append(NamedEffect(effect.name, found, ambiguous, evidence))
+    if lag is not None:
+        reach = 1.96 * lag.std_error + 0.5 * tick
+        value = Parameter(lag.time_constant, "s", reach / 1.96, (lag.time_constant - reach, lag.time_constant + reach))
+        evidence = {"speed_against_position_before": lag.before, "speed_against_position_after": lag.after}
+        effects.append(NamedEffect("velocity_filter_lag", {"time_constant": value}, (), evidence))
+    if limit is not None:
+        reach = 1.96 * limit.std_error
+        value = Parameter(limit.voltage, "V", limit.std_error, (limit.voltage - reach, limit.voltage + reach))
+        evidence = {"samples_at_the_limit": float(limit.samples), "speed_behind": limit.behind}
+        effects.append(NamedEffect("voltage_limit", {"voltage": value}, (), evidence))
+    return effects, parameters
+
+
+def _shrinking(steps: list[Step], final: Fit) -> list[tuple[str, float]]:
+    """Torque gap after each addition; the last one as it was kept."""
+    shown = [
+        (step.fitted.hypothesis.names[-1] if step.fitted.hypothesis.names else "", step.fitted.rms) for step in steps
+    ]
+    if final.hypothesis != steps[-1].fitted.hypothesis:
+        shown.append((final.hypothesis.names[-1] if final.hypothesis.names else "", final.rms))
+    return shown[1:]

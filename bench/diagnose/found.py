@@ -1,0 +1,39 @@
+"""What a diagnosis finds: effects with their quantities, and gaps before and after."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bench.identify.estimate import Parameter
+
+
+@dataclass(frozen=True)
+class NamedEffect:
+    """An effect that the recording shows.
+
+    Attributes:
+        name, parameters: of the effect; parameters with interval.
+        ambiguous_with: names that this recording cannot tell from it.
+        evidence: figures that speak for it, by what they are.
+    """
+
+    name: str
+    parameters: dict[str, Parameter]
+    ambiguous_with: tuple[str, ...]
+    evidence: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Gap:
+    """RMS gap before and after the effects were added, on both recordings, against the noise floor.
+
+    Attributes:
+        unit: of all numbers.
+        noise_floor: what sensor noise alone leaves.
+        identify, holdout: (before, after); None where it could not be had.
+    """
+
+    unit: str
+    noise_floor: float
+    identify: tuple[float, float] | None
+    holdout: tuple[float, float] | None

@@ -1,0 +1,139 @@
+"""A diagnosis as JSON (contract `bench.diagnose/1`), as a table, and as the folder it leaves."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from rich import box
+from rich.table import Table
+
+from bench.diagnose.diagnosis import Diagnosis
+from bench.diagnose.found import Gap
+from bench.diagnose.where import Where
+from bench.files import write_text
+from bench.plant.model_file import model_toml, model_xml
+from bench.report.estimate import parameters_json
+from bench.report.figures import MEASURED, MODELLED, save
+
+SCHEMA = "bench.diagnose/1"
+
+
+def diagnosis_json(diagnosis: Diagnosis) -> str:
+    """The diagnosis as the contract's JSON."""
+    content = {
+        "schema": SCHEMA,
+        "verdict": diagnosis.verdict,
+        "effects": [
+            {
+                "name": effect.name,
+                "parameters": parameters_json(effect.parameters),
+                "ambiguous_with": list(effect.ambiguous_with),
+                "evidence": effect.evidence,
+            }
+            for effect in diagnosis.effects
+        ],
+        "where": [_where(account) for account in diagnosis.where],
+        "unexplained": {
+            "share": diagnosis.unexplained_share,
+            "where": [_where(account) for account in diagnosis.unexplained_where],
+        },
+        "parameters": parameters_json(diagnosis.parameters),
+        "gap": {"torque": _gap(diagnosis.torque), "velocity": _gap(diagnosis.velocity)},
+        "steps": [{"effect": name, "torque_gap": gap, "velocity_gap": None} for name, gap in diagnosis.steps],
+        "next_experiment": None,
+        "model": {"mjcf": "model.xml" if diagnosis.model is not None else None, "toml": "model.toml"},
+        "warnings": diagnosis.warnings,
+    }
+    return json.dumps(content, indent=2)
+
+
+def _where(account: Where) -> dict[str, Any]:
+    return {
+        "coordinate": account.coordinate,
+        "region": list(account.region),
+        "unit": account.unit,
+        "share": account.share,
+    }
+
+
+def _gap(gap: Gap) -> dict[str, Any]:
+    def pair(values: tuple[float, float] | None) -> dict[str, float] | None:
+        return None if values is None else {"before": values[0], "after": values[1]}
+
+    return {
+        "unit": gap.unit,
+        "noise_floor": gap.noise_floor,
+        "identify": pair(gap.identify),
+        "holdout": pair(gap.holdout),
+    }
+
+
+def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
+    """Effects with their quantities, and the gaps they closed."""
+    caption = [f"verdict: {diagnosis.verdict.replace('_', ' ')}"]
+    for name, gap in (("torque", diagnosis.torque), ("velocity", diagnosis.velocity)):
+        for recording, pair in (("recording", gap.identify), ("holdout", gap.holdout)):
+            if pair is not None:
+                closed = f"{pair[0]:.4g} -> {pair[1]:.4g} {gap.unit}, noise floor {gap.noise_floor:.3g}"
+                caption.append(f"{name} gap, {recording}: {closed}")
+    if diagnosis.unexplained_where:
+        first = diagnosis.unexplained_where[0]
+        low, high = first.region
+        caption.append(
+            f"unexplained: {diagnosis.unexplained_share:.1%} of the gap, most over {first.coordinate} "
+            f"{low:.4g} to {high:.4g} {first.unit}"
+        )
+    table = Table(
+        title=title, caption="\n".join(caption), title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD
+    )
+    for heading in ("effect", "quantity"):
+        table.add_column(heading, no_wrap=True)
+    for heading in ("value", "± (95 %)"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    rows = [("", diagnosis.parameters, ()), *((e.name, e.parameters, e.ambiguous_with) for e in diagnosis.effects)]
+    for name, parameters, ambiguous in rows:
+        label = f"{name} (or {', '.join(ambiguous)})" if ambiguous else name
+        for quantity, found in parameters.items():
+            reach = f"{0.5 * (found.ci95[1] - found.ci95[0]):.2g}"
+            table.add_row(label, quantity.replace("_", " "), f"{found.value:.5g}", reach, found.unit)
+            label = ""
+    return table
+
+
+def where_figure(diagnosis: Diagnosis, title: str) -> Figure:
+    """The gap against each coordinate, before any effect was added and, where something remains, after."""
+    figure = Figure(figsize=(12.0, 6.5), layout="constrained")
+    figure.suptitle(title, x=0.01, ha="left", weight="bold")
+    after = {account.coordinate: account for account in diagnosis.unexplained_where}
+    for axis, account in zip(figure.subplots(2, 4).ravel(), diagnosis.where, strict=False):
+        order = np.argsort(account.centres)
+        axis.plot(account.centres[order], account.means[order], ".-", ms=3, lw=0.8, color=MEASURED, label="before")
+        if account.coordinate in after:
+            rest = after[account.coordinate]
+            order = np.argsort(rest.centres)
+            axis.plot(rest.centres[order], rest.means[order], ".-", ms=3, lw=0.8, color=MODELLED, label="after")
+            axis.legend(frameon=False, fontsize=7)
+        axis.set_title(f"{account.coordinate}: {account.share:.0%}", fontsize=9)
+        axis.set_xlabel(account.unit, fontsize=8)
+        axis.set_ylabel(f"gap / {diagnosis.torque.unit}", fontsize=8)
+        axis.tick_params(labelsize=7)
+        axis.grid(alpha=0.25)
+    return figure
+
+
+def write_diagnosis(out: Path, diagnosis: Diagnosis, title: str) -> list[Path]:
+    """Write `diagnosis.json`, `where.png`, `model.toml` and, where MuJoCo has all of it, `model.xml`; returns paths."""
+    written = [out / "diagnosis.json", out / "where.png", out / "model.toml"]
+    write_text(written[0], diagnosis_json(diagnosis) + "\n")
+    save(where_figure(diagnosis, title), written[1])
+    stored = model_toml(diagnosis.model) if diagnosis.model is not None else 'schema = "bench.model/1"\n'
+    write_text(written[2], stored + diagnosis.balance.toml())
+    if diagnosis.model is not None:
+        written.append(out / "model.xml")
+        write_text(written[-1], model_xml(diagnosis.model.model))
+    return written
