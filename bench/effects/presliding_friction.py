@@ -56,8 +56,9 @@ class PreslidingFriction(Friction, Effect):
         """LuGre friction of a passive DC motor in place of the joint's."""
         joint = spec.joint(AXIS)
         level, joint.frictionloss = joint.frictionloss, 0.0
-        lugre = (values["bristle_stiffness"], values["bristle_damping"], level, level, 1.0)
-        passive_motor(spec, PRESLIDING, lugre=lugre)
+        # MuJoCo takes the bend of the bristles at the start of a step; their rate carries it on to the middle
+        damping = values["bristle_damping"] + 0.5 * spec.option.timestep * values["bristle_stiffness"]
+        passive_motor(spec, PRESLIDING, lugre=(values["bristle_stiffness"], damping, level, level, 1.0))
 
 
 def bristles(position: np.ndarray, sign: np.ndarray, rate: float) -> np.ndarray:

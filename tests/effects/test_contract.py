@@ -1,0 +1,159 @@
+"""What every effect of the catalogue keeps to, whatever it is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bench.effects.catalogue import catalogue, physics
+from bench.effects.effect import Base, Effect, Signals
+from bench.effects.mjcf import AXIS as AXIS_JOINT
+from bench.effects.physics import Electronics, Friction, Mechanism, Moment
+from bench.effects.present import Present
+from bench.plant.axis_model import COUPLINGS
+from bench.plant.model import build_spec
+from bench.plant.native import run_controls, sense_torque
+from bench.plant.run import run
+from tests.effects.axes import AXIS, FREE, PARAMETERS, PERIOD, VALUES, Reversals, model, moved, plant, present
+
+EFFECTS = sorted(physics())
+SHORT = Reversals(0.4).references()
+NEUTRAL = {"friction_excess": 0.0, "friction_factor": 1.0, "resisting_torque": 0.0, "torque_factor": 1.0}
+#: Effects that the torque balance holds as columns of raw signals.
+BALANCED = [
+    name
+    for name, effect in catalogue().items()
+    if name not in COUPLINGS and (isinstance(effect, Mechanism) or name == "torque_constant_saturation")
+]
+
+
+def with_null(name):
+    values = {**VALUES[name], **{key: float(value) for key, value in physics()[name].null(model().axis).items()}}
+    return Present.of(name, values)
+
+
+def test_every_effect_of_the_catalogue_is_tried():
+    assert sorted(VALUES) == EFFECTS
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_null_values_leave_the_trajectory_as_it_is(name):
+    bare, null = plant(), replace(plant(), effects=(with_null(name),))
+    assert null.model.effects == ()
+    np.testing.assert_array_equal(run([null], [SHORT]).velocity, run([bare], [SHORT]).velocity)
+
+
+@pytest.mark.parametrize("name", [n for n in EFFECTS if np.isfinite(list(dict(with_null(n).values).values())).all()])
+def test_null_values_do_nothing_where_they_act(name):
+    """Not only are absent effects left out: acting on null values does nothing either."""
+    effect, values, axis = physics()[name], dict(with_null(name).values), model().axis
+    if isinstance(effect, Mechanism) and effect.acts_through("add") and name not in COUPLINGS:
+        motions = []
+        for adds in (False, True):
+            spec = build_spec(PARAMETERS, PERIOD)
+            if adds:
+                effect.add(spec, name, values, axis)
+            sense_torque(spec)
+            motions.append(run_controls(spec.compile(), 0.5 * np.sin(np.arange(4000) / 300.0)[:, None], 0.1, 3.0))
+        np.testing.assert_array_equal(motions[0].velocity, motions[1].velocity)
+    at = Moment(0.1, np.array([0.3, -2.0]), np.array([5.0, -0.1]), np.array([1.0, -0.2]))
+    if isinstance(effect, Mechanism):
+        for hook, neutral in NEUTRAL.items():
+            if effect.acts_through(hook):
+                np.testing.assert_array_equal(getattr(effect, hook)(values, axis, at), np.full(2, neutral))
+    if isinstance(effect, Electronics):
+        np.testing.assert_array_equal(effect.delivered(values, axis, at.effort), at.effort)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_it_does_something(name):
+    off = run([plant(name)], [SHORT]).velocity - run([plant()], [SHORT]).velocity
+    assert np.sqrt(np.mean(off**2)) > 0.01
+
+
+def test_order_does_not_matter():
+    names = [name for name in EFFECTS if name != "backlash"]
+    plants = [plant(*names), plant(*names[::-1]), plant(*np.random.default_rng(1).permutation(names))]
+    first, *others = (run([one], [SHORT]).velocity for one in plants)
+    for other in others:
+        np.testing.assert_array_equal(other, first)
+    assert np.abs(first).max() > 10.0
+
+
+@pytest.mark.parametrize("name", [n for n in EFFECTS if isinstance(physics()[n], Friction) or n == "quadratic_drag"])
+@pytest.mark.parametrize("velocity", [40.0, -40.0])
+def test_friction_only_dissipates(name, velocity):
+    """Coasting, the axis never gains energy, but for what bristles store, and loses it all."""
+    friction = replace(FREE, coulomb_friction=AXIS.coulomb, viscous_friction_coefficient=AXIS.viscous)
+    states = moved([present(name)], 2.0, velocity=velocity, parameters=friction)
+    energy = 0.5 * FREE.inertia * states.velocity[:, 0] ** 2
+    stored = AXIS.coulomb**2 / (2.0 * VALUES[name]["bristle_stiffness"]) if name == "presliding_friction" else 0.0
+    assert (energy <= np.minimum.accumulate(energy) + stored + 1e-9).all()
+    assert energy[-1] < 0.01 * energy[0]
+
+
+@pytest.mark.parametrize("name", BALANCED)
+def test_columns_agree_with_the_simulation(name):
+    """Motor torque less J*alpha + K_w*omega + K_0*sgn(omega) is the columns' sum, and gives the values back."""
+    effect, values = catalogue()[name], dict(VALUES[name])
+    if name == "presliding_friction":
+        values["bristle_damping"] = 0.0
+    if name == "friction_warmup":
+        values["relative_amplitude"] = 0.4
+    states = run([replace(plant(), effects=(Present.of(name, values),))], [Reversals(0.6).references()])
+    gap, columns, shape = balance(effect, values, states)
+    strengths, *_ = np.linalg.lstsq(columns, gap, rcond=None)
+    off = gap - columns @ strengths
+    share = np.sqrt(np.mean(off**2) / np.mean(gap**2))
+    found = effect.values(strengths, shape, Base(AXIS.inertia, AXIS.viscous, AXIS.coulomb))
+    print(f"{name}: {share:.1e} of the gap unexplained; {found} of {values}")
+    assert share < 0.006
+    for key, value in found.items():
+        if key in values:
+            scale = AXIS.coulomb / 2.0 if "difference" in key else abs(value)
+            assert found[key] == pytest.approx(values[key], rel=0.01, abs=0.01 * scale)
+
+
+def balance(effect: Effect, values, states):
+    """The gap at the middles of steps that do not reverse, the effect's columns there, and its shape."""
+    time, q, w = states.time, states.position[:, 0], states.velocity[:, 0]
+    effort = states.torque[:-1, 0]
+    middle = signals_of(time[:-1] + PERIOD / 2.0, (q[1:] + q[:-1]) / 2.0, (w[1:] + w[:-1]) / 2.0, effort)
+    ends = signals_of(time, q, w, states.torque[:, 0])
+    given = {**values, "bristle_rate": values.get("bristle_stiffness", 0.0) / AXIS.coulomb}
+    shape = [given[shape.quantity.name] for shape in effect.shapes]
+    columns = [
+        sum(raw if order == 0 else np.diff(late) / PERIOD for (raw, order), (late, _) in zip(here, there, strict=True))
+        for here, there in zip(effect.columns(middle, shape), effect.columns(ends, shape), strict=True)
+    ]
+    gap = effort - AXIS.inertia * np.diff(w) / PERIOD - AXIS.viscous * middle.velocity - AXIS.coulomb * middle.sign
+    clear = (np.sign(w[1:]) == np.sign(w[:-1])) & (np.abs(middle.velocity) > 0.3)
+    return gap[clear], np.stack(columns, axis=1)[clear], shape
+
+
+def signals_of(time, position, velocity, effort):
+    sign = np.sign(velocity)
+    return Signals(
+        time=time,
+        position=position,
+        velocity=velocity,
+        sign=sign,
+        effort=effort,
+        torque=effort,
+        friction=sign,
+        peak_effort=AXIS.peak_torque,
+        sample_period=PERIOD,
+    )
+
+
+def test_axes_with_and_without_effects_run_side_by_side_as_alone():
+    """Ticked effects gather over the axes that have them; models of other structure run in another batch."""
+    cases = [("stribeck_friction", "torque_ripple"), ("friction_warmup",), ("torque_ripple", "cogging_torque"), ()]
+    plants = [plant(*case) for case in cases]
+    together = run(plants, [SHORT] * len(plants))
+    for column, one in enumerate(plants):
+        np.testing.assert_array_equal(together.velocity[:, column], run([one], [SHORT]).velocity[:, 0])
+
+
+def test_the_joint_is_called_as_in_the_mjcf():
+    assert build_spec(PARAMETERS, PERIOD).joint(AXIS_JOINT) is not None
