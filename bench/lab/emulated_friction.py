@@ -40,7 +40,8 @@ def task(rig: Rig) -> Task:
         by_place.append((found.viscous, found.coulomb))
     (viscous, coulomb), (other_viscous, other_coulomb) = by_place
     says = (
-        f"Emulated, K_fric_w is {viscous / other_viscous - 1.0:+.1%} and K_fric_0 {coulomb / other_coulomb - 1.0:+.1%} "
+        f"Emulated, K_fric_w is {abs(viscous / other_viscous - 1.0):.2%} and K_fric_0 "
+        f"{abs(coulomb / other_coulomb - 1.0):.2%} "
         "off what "
         "the same friction in the mechanics gives: whoever reads current and speed cannot tell where friction sits.",
     )

@@ -32,12 +32,12 @@ class Number:
 
 @dataclass(frozen=True)
 class Curve:
-    """Points of a diagram, in the units of its panel's labels: x, y (n,)."""
+    """Points of a diagram, in the units of its panel's labels: x, y (n,); `wide` is to be drawn over."""
 
     x: Array
     y: Array
     label: str = ""
-    style: Literal["line", "dashes", "dots", "bold dots"] = "line"
+    style: Literal["line", "wide", "dashes", "dots", "bold dots"] = "line"
 
 
 @dataclass(frozen=True)

@@ -49,8 +49,8 @@ def task() -> Task:
                         "time / s",
                         "derivative / (1/s)",
                         (
-                            Curve(time, np.cos(time), "cos(t)"),
-                            Curve(time, backward, "backward difference", "dashes"),
+                            Curve(time, np.cos(time), "cos(t)", "wide"),
+                            Curve(time, backward, "backward difference"),
                         ),
                     ),
                     Panel("time / s", "error, backward / (1/s)", (Curve(time[1:], errors[0][1:]),)),

@@ -36,8 +36,8 @@ def task(run: Run, rig: Rig) -> Task:
         off = (inertia - rotor) / theory - 1.0
         says.append(f"J_load is {off:+.2%} off what the disk's geometry gives; hub and screws are not part of it.")
     curves = (
-        Curve(run.time, run.torque, "measured torque"),
-        Curve(run.time, inertia * run.acceleration, "J·α", "dashes"),
+        Curve(run.time, run.torque, "measured torque", "wide"),
+        Curve(run.time, inertia * run.acceleration, "J·α"),
     )
     chart = Chart("Task 6: J·α over the measured torque", (Panel("time / s", "torque / (N·m)", curves),))
     return Task(KEY, TITLE, tuple(says), tuple(numbers), (chart,))

@@ -75,7 +75,11 @@ def task(run: Run) -> Task:
     chart = Chart(
         "Task 8: remaining samples over the original ones",
         tuple(
-            Panel("t_sync / s", label, (Curve(time, all_, "original"), Curve(kept.time, rest, "remaining", "dots")))
+            Panel(
+                "t_sync / s",
+                label,
+                (Curve(time, all_, "original", "wide"), Curve(kept.time, rest, "remaining", "dots")),
+            )
             for label, time, all_, rest in panels
         ),
     )

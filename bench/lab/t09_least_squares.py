@@ -66,7 +66,7 @@ def task(run: Run, rig: Rig, load_inertia: Number | None) -> Task:
     if load_inertia is not None:
         says.append(f"J_load is {load / load_inertia.value - 1.0:+.2%} off the one of task 6.")
     curves = (
-        Curve(run.time, run.torque, "measured torque"),
+        Curve(run.time, run.torque, "measured torque", "wide"),
         Curve(samples.time, found.torque(samples), "reconstructed", "dots"),
     )
     return Task(

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from bench.errors import InputError
-from bench.lab.result import Chart, Curve, Number, Panel, Task
+from bench.lab.result import Array, Chart, Curve, Number, Panel, Task
 from bench.lab.rig import rotor_inertia
 from bench.lab.t06_inertia import KG_CM2
 from bench.plant.limits import MotionLimits
@@ -43,11 +43,6 @@ def task(rig: Rig, identified: float) -> Task:
     states = run(plants, [references] * len(plants))
     deviation = np.degrees(references.position[:, None] - states.position)
     rms = np.sqrt(np.mean(deviation**2, axis=0))
-    every = slice(None, None, 4)
-    curves = tuple(
-        Curve(states.time[every], deviation[every, k], f"{name}: {load * KG_CM2:.4g} kg·cm²")
-        for k, (name, load) in enumerate(loads.items())
-    )
     numbers = []
     for k, name in enumerate(loads):
         numbers.append(Number(f"largest deviation, {name}", float(np.abs(deviation[:, k]).max()), "deg"))
@@ -60,5 +55,16 @@ def task(rig: Rig, identified: float) -> Task:
             f"{rms[1] / rms[0]:.1%}. What is left is friction, which the feed-forward does not know, at each reversal.",
         ),
         tuple(numbers),
-        (Chart("Tracking deviation of the fast run", (Panel("time / s", "tracking deviation / deg", curves),)),),
+        (_chart(states.time, deviation, [f"{name}: {load * KG_CM2:.4g} kg·cm²" for name, load in loads.items()]),),
     )
+
+
+def _chart(time: Array, deviation: Array, labels: list[str]) -> Chart:
+    """Deviations over time - s, deg - (ticks, 3); again without the first, which hides the others."""
+    every = slice(None, None, 4)
+    curves = tuple(Curve(time[every], deviation[every, k], label) for k, label in enumerate(labels))
+    panels = (
+        Panel("time / s", "tracking deviation / deg", curves),
+        Panel("time / s", "the same, without J_load = 0 / deg", curves[1:]),
+    )
+    return Chart("Tracking deviation of the fast run", panels)

@@ -14,6 +14,9 @@ from bench.rig.peak_curve import PeakCurve
 
 Array = NDArray[np.float64]
 
+#: Torque this share of the peak torque beyond a limit is still at it: noise of current and speed.
+AT_LIMIT = 0.01
+
 
 @dataclass(frozen=True)
 class OperatingRange:
@@ -73,7 +76,7 @@ class Reserve:
         peak: least distance of the torque to its limit over the motion - N*m; negative beyond it.
         peak_share: the same as a share of the peak torque.
         at: index of the sample where it is least.
-        beyond: share of the samples beyond the limit.
+        beyond: share of the samples beyond the limit by more than AT_LIMIT.
         rms_torque: sqrt(mean(M**2)), which heats the winding - N*m.
         mean_speed: mean(|omega|), at which it is compared - rad/s.
         thermal: continuous torque there less the RMS torque - N*m; negative where the motor would overheat.
@@ -101,7 +104,7 @@ def reserve(limits: OperatingRange, speed: Array, torque: Array) -> Reserve:
         peak=float(left[at]),
         peak_share=float(left[at]) / limits.peak_torque,
         at=at,
-        beyond=float(np.mean(left < 0.0)),
+        beyond=float(np.mean(left < -AT_LIMIT * limits.peak_torque)),
         rms_torque=rms,
         mean_speed=mean,
         thermal=allowed - rms,

@@ -1,0 +1,68 @@
+"""The lab course's report: one HTML file with its figures inside, and the same as a PDF."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+from matplotlib import rc_context
+
+from bench.files import whole, write_text
+from bench.lab.result import Chart, NotDone, Task
+from bench.report.charts import chart_figure
+from bench.report.pdf import write_pages
+from bench.report.section import section
+
+TITLE = "Industrial Drives, Part 2: Identification of Mechanical Parameters"
+
+Results = Sequence[Task | NotDone]
+
+
+def write_lab_report(
+    out: Path, results: Results, about: Sequence[str], progress: Callable[[float], None] = lambda share: None
+) -> list[Path]:
+    """Write `lab.html` and `lab.pdf` into a folder.
+
+    Args:
+        out: folder, made if it is not there.
+        results: of the course.
+        about: where the recordings come from, a paragraph each.
+        progress: called with the share done.
+
+    Returns:
+        Paths written.
+    """
+    html, pdf = out / "lab.html", out / "lab.pdf"
+    write_text(html, lab_html(results, about))
+    progress(0.5)
+    with whole(pdf) as temporary:
+        write_pages(temporary, TITLE, about, [(section(result), _charts(result)) for result in results])
+    progress(1.0)
+    return [html, pdf]
+
+
+def lab_html(results: Results, about: Sequence[str]) -> str:
+    """The report as one HTML page that needs no other file."""
+    environment = Environment(
+        loader=PackageLoader("bench.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    tasks = [
+        (section(result), [_svg(c, f"{result.key}-{k}") for k, c in enumerate(_charts(result))]) for result in results
+    ]
+    return environment.get_template("lab.html.j2").render(title=TITLE, about=about, tasks=tasks)
+
+
+def _charts(result: Task | NotDone) -> tuple[Chart, ...]:
+    return result.charts if isinstance(result, Task) else ()
+
+
+def _svg(chart: Chart, salt: str) -> Markup:
+    """A chart as an SVG element; `salt` keeps its ids apart from those of the others on the page."""
+    buffer = io.StringIO()
+    with rc_context({"svg.hashsalt": salt, "svg.fonttype": "none"}):
+        chart_figure(chart).savefig(buffer, format="svg", metadata={"Date": None})
+    text = buffer.getvalue()
+    return Markup(text[text.index("<svg") :])

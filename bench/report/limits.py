@@ -1,0 +1,40 @@
+"""`bench limits`: a recording in the speed-torque diagram of its motor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from bench.errors import InputError
+from bench.lab.operating_range import task
+from bench.lab.result import Task
+from bench.report.charts import chart_figure
+from bench.report.figures import save
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+
+def operating_range(trace: Trace, rig: Rig) -> Task:
+    """The recording's reserve to the motor's limits, at every mains voltage the rig has a curve for.
+
+    Raises:
+        InputError: a linear axis, no velocity, no torque in N*m to be had, or no limits in the rig.
+    """
+    if rig.linear:
+        raise InputError(rig.source, "found a linear axis", "allowed: a rotary one, whose motor has peak_curves")
+    effort, unit = rig.effort(trace)
+    if unit != "N*m":
+        raise InputError(rig.source, f"gives the effort in {unit}", "the operating range needs it in N*m")
+    return task(rig, trace["velocity"], np.asarray(effort), Path(trace.origin).name)
+
+
+def draw_operating_range(found: Task, path: Path) -> None:
+    """Write the diagram; the ending decides the format.
+
+    Raises:
+        InputError: another ending, or a place that cannot be written to.
+    """
+    if path.suffix.lower() not in (".png", ".pdf", ".svg"):
+        raise InputError(path, f"found the ending '{path.suffix}'", "allowed: .png, .pdf, .svg")
+    save(chart_figure(found.charts[0]), path)

@@ -1,0 +1,49 @@
+"""A task of the lab as it is printed, whether in HTML, PDF or on a terminal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bench.lab.result import NotDone, Number, Task
+
+
+@dataclass(frozen=True)
+class Row:
+    """A number as it is printed."""
+
+    name: str
+    value: str
+    unit: str
+    truth: str
+    error: str
+
+
+@dataclass(frozen=True)
+class Section:
+    """A task as it is printed; `missing` says why it was not done, and is empty where it was."""
+
+    key: str
+    heading: str
+    missing: str
+    says: tuple[str, ...]
+    rows: tuple[Row, ...]
+
+    @property
+    def has_truth(self) -> bool:
+        """Whether any number has a truth beside it."""
+        return any(row.truth for row in self.rows)
+
+
+def section(result: Task | NotDone) -> Section:
+    """A task as it is printed."""
+    heading = f"Task {result.key}: {result.title}" if result.key.isdigit() else result.title
+    if isinstance(result, NotDone):
+        return Section(result.key, heading, str(result.reason), (), ())
+    return Section(result.key, heading, "", result.says, tuple(row(number) for number in result.numbers))
+
+
+def row(number: Number) -> Row:
+    """A number with five digits, and how far it is from its truth."""
+    truth = number.truth
+    error = f"{number.value / truth - 1.0:+.3%}" if truth else ""
+    return Row(number.name, f"{number.value:.5g}", number.unit, f"{truth:.5g}" if truth is not None else "", error)
