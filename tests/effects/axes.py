@@ -110,7 +110,10 @@ def signals(states: States) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 class Reversals:
-    """A motion of both worlds: fast and slow reversals of speed, and both slow and fast stretches between."""
+    """A motion of both worlds: fast and slow reversals of speed. It starts without speed and acceleration."""
+
+    #: Share of the speed, and frequency - Hz.
+    PARTS = ((0.6, 2.0), (0.3, 5.0), (-2.7 / 11.0, 11.0))
 
     def __init__(self, duration: float = 1.0, speed: float = 60.0) -> None:
         self.duration, self.speed = duration, speed
@@ -118,7 +121,7 @@ class Reversals:
     def at(self, time: np.ndarray) -> np.ndarray:
         """Position, speed, acceleration reference - (3, n)."""
         position, speed, acceleration = np.zeros((3, time.size))
-        for share, frequency in ((0.6, 2.0), (0.3, 5.0), (0.1, 11.0)):
+        for share, frequency in self.PARTS:
             w = 2.0 * np.pi * frequency
             position += self.speed * share * (1.0 - np.cos(w * time)) / w
             speed += self.speed * share * np.sin(w * time)

@@ -8,30 +8,15 @@ import pytest
 
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
-from tests.effects.axes import AXIS, VALUES, Reversals, plant, truth
+from tests.effects.axes import AXIS, plant
+from tests.effects.conftest import CASES, MOTION
 
-MOTION = Reversals(0.6)
-#: Effects that meet: levels of friction that multiply, torque that is made in turns, sensors on a coupling.
-TOGETHER = [
-    ("direction_dependent_friction", "position_dependent_friction", "stribeck_friction"),
-    ("friction_warmup", "load_dependent_friction", "torque_offset"),
-    ("current_loop_lag", "torque_constant_saturation", "torque_ripple"),
-    ("presliding_friction", "stribeck_friction"),
-    ("elastic_coupling", "unbalance", "velocity_filter_lag"),
-    ("encoder_eccentricity", "velocity_filter_lag", "voltage_limit"),
-]
-CASES = [(), *((name,) for name in VALUES), *TOGETHER]
 #: Share of what an effect changes that the two may differ by; contact begins and ends between MuJoCo's steps.
 SHARE = {("backlash",): 0.04}
 
 
 #: What the bare axis may differ by: MuJoCo ends the step of a reversal with friction against the new direction.
 FLOOR = {"velocity": 0.002, "measured_velocity": 0.002, "measured_position": 5e-5}
-
-
-@pytest.fixture(scope="module")
-def truths():
-    return dict(zip(CASES, truth(CASES, MOTION), strict=True))
 
 
 @pytest.mark.parametrize("case", CASES, ids=" + ".join)

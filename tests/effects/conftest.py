@@ -1,0 +1,23 @@
+"""The independent axis with every effect, and with effects that meet, simulated once for all tests."""
+
+import pytest
+
+from tests.effects.axes import VALUES, Reversals, truth
+
+MOTION = Reversals(0.6)
+#: Levels of friction that multiply, torque that is made in turns, sensors on a coupling.
+TOGETHER = [
+    ("direction_dependent_friction", "position_dependent_friction", "stribeck_friction"),
+    ("friction_warmup", "load_dependent_friction", "torque_offset"),
+    ("current_loop_lag", "torque_constant_saturation", "torque_ripple"),
+    ("presliding_friction", "stribeck_friction"),
+    ("elastic_coupling", "unbalance", "velocity_filter_lag"),
+    ("encoder_eccentricity", "velocity_filter_lag", "voltage_limit"),
+]
+CASES = [(), *((name,) for name in VALUES), *TOGETHER]
+
+
+@pytest.fixture(scope="session")
+def truths():
+    """True and measured signals at every tick of MOTION, by the names of the effects."""
+    return dict(zip(CASES, truth(CASES, MOTION), strict=True))

@@ -1,0 +1,75 @@
+"""A model held softly to a recording of the independent axis: the effect closes the velocity gap."""
+
+import time
+
+import numpy as np
+import pytest
+
+from bench.effects.present import Present
+from bench.plant.axis_model import AxisModel
+from bench.plant.model import build_spec
+from bench.plant.track import holding_cascade, holding_model, step_of, track
+from bench.plant.track_effects import track_effects
+from bench.trace.trace import Trace
+from tests.effects.axes import AXIS, PARAMETERS, PERIOD, model
+from tests.effects.conftest import CASES
+
+EVERY = 8
+#: Gap that is left, rad/s: the reversals between two samples, at which a recorded current jumps.
+LEFT = 0.06
+FAINT = Present.of("position_dependent_friction", {"relative_amplitude": 1e-12})
+
+
+@pytest.fixture(scope="module")
+def recordings(truths):
+    return {case: recording(signals) for case, signals in truths.items()}
+
+
+def recording(signals, position=True):
+    """Every eighth tick, as a drive would record it: 1 ms."""
+    kept = {"velocity": signals["measured_velocity"][::EVERY], "current": signals["current"][::EVERY]}
+    if position:
+        kept["position"] = signals["measured_position"][::EVERY]
+    units = {"velocity": "rad/s", "current": "A", "position": "rad"}
+    times = PERIOD * EVERY * np.arange(kept["velocity"].size)
+    return Trace(times, kept, {name: units[name] for name in kept}, "independent")
+
+
+def gap(axis: AxisModel, trace: Trace) -> float:
+    """RMS velocity gap - rad/s; the current belongs to the middle of the tick that begins with its sample."""
+    simulated = track_effects(axis, trace, AXIS.torque_constant * trace["current"], misalignment=-PERIOD / 2.0)
+    return float(np.sqrt(np.mean((simulated - trace["velocity"]) ** 2)))
+
+
+@pytest.mark.parametrize("case", CASES, ids=" + ".join)
+def test_effect_closes_the_gap(case, recordings):
+    start = time.perf_counter()
+    after = gap(model(*case), recordings[case])
+    took, before = time.perf_counter() - start, gap(model(), recordings[case])
+    print(f"{' + '.join(case) or 'none'}: {before:.3f} -> {after:.3f} rad/s in {1e3 * took:.0f} ms")
+    assert after < LEFT * (2.5 if "backlash" in case else 1.0)
+    # what flows is what was recorded: a voltage limit leaves no gap here
+    assert case in ((), ("voltage_limit",)) or after < 0.35 * before
+
+
+def test_without_position_the_velocity_holds_the_model(recordings):
+    trace = recordings["torque_offset",]
+    blind = Trace(trace.time, {n: trace[n] for n in ("velocity", "current")}, dict(trace.units), "independent")
+    assert gap(model("torque_offset"), blind) < LEFT
+
+
+def test_without_effects_it_is_the_plain_track(recordings):
+    trace = recordings[()]
+    effort, (timestep, _) = AXIS.torque_constant * trace["current"], step_of(trace)
+    compiled = holding_model(build_spec(PARAMETERS, timestep), holding_cascade(AXIS.inertia, timestep))
+    np.testing.assert_array_equal(track_effects(model(), trace, effort), track(compiled, trace, effort))
+
+
+def test_natively_and_step_by_step_alike(recordings):
+    """A friction that varies by next to nothing makes every step tick."""
+    trace = recordings["cogging_torque",]
+    native = model("cogging_torque")
+    ticked = native.with_effects([*native.effects, FAINT])
+    assert ticked.ticked
+    effort = AXIS.torque_constant * trace["current"]
+    np.testing.assert_allclose(track_effects(ticked, trace, effort), track_effects(native, trace, effort), atol=1e-6)
