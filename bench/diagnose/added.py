@@ -32,10 +32,11 @@ def axis_model(
         if effect.name in (ELASTIC, BACKLASH):
             motor = inertia - float(fitted.strengths(index)[0])
     base = AxisParameters(inertia, max(viscous, 0.0), max(coulomb, 0.0), 0.0, min(motor, inertia), rig.linear)
-    peak = rig.motor.torque_per_ampere.torque(np.asarray(rig.motor.peak_current)) if _peak(rig) else math.inf
+    constant, current = rig.motor.torque_per_ampere, rig.motor.peak_current
+    peak = float(constant.torque(np.asarray(current))) if constant is not None and current is not None else math.inf
     try:
         present = tuple(_present(effect) for effect in effects)
-        model = AxisModel(base, present, float(peak), _winding(rig))
+        model = AxisModel(base, present, peak, _winding(rig))
     except InputError as error:
         return None, [f"not added to the MuJoCo model: {error}"]
     return StoredModel(rig.name, model, float(fitted.theta[3])), []
@@ -44,10 +45,6 @@ def axis_model(
 def _present(effect: NamedEffect) -> Present:
     known = {quantity.name for quantity in Present(effect.name, ()).effect.quantities}
     return Present.of(effect.name, {key: p.value for key, p in effect.parameters.items() if key in known})
-
-
-def _peak(rig: Rig) -> bool:
-    return rig.motor.torque_per_ampere is not None and rig.motor.peak_current is not None
 
 
 def _winding(rig: Rig) -> Winding | None:

@@ -144,9 +144,8 @@ def named(
     """Effects with their quantities, and J, K_w, K_0 beside them."""
     numbers = uncertain(bench, fitted)
     columns = (INERTIA, VISCOUS, COULOMB)
-    names = tuple(parameter_name(column, rig.linear) for column in columns)
-    units = tuple(parameter_unit(column, rig.linear, rig.effort_unit) for column in columns)
-    parameters = base_parameters(fitted, numbers, names, units)
+    units = {parameter_name(c, rig.linear): parameter_unit(c, rig.linear, rig.effort_unit) for c in columns}
+    parameters = base_parameters(fitted, numbers, units)
     parameters |= load_inertia(parameters, rig)
     tick = rig.drive.control_period if rig.drive is not None else 0.0
     effects = []

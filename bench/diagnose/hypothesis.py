@@ -213,16 +213,22 @@ def dead_zone_columns(seen: Workbench, shapes: Array, lag: float) -> Array:
 
 def fit(bench: Workbench, hypothesis: Hypothesis) -> Fit:
     """Least squares of a hypothesis; the asymmetry that scaled frictions see is brought in line with what is found."""
-    for _ in range(3):
-        columns, owners = build(bench, hypothesis)
-        scale = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
-        theta = np.linalg.lstsq(columns / scale, bench.effort, rcond=1e-10)[0] / scale
+    columns, owners, theta = _solved(bench, hypothesis)
+    for _ in range(2):
         asymmetry = _asymmetry(hypothesis, theta, owners)
         if abs(asymmetry - hypothesis.asymmetry) < 1e-3:
             break
         hypothesis = replace(hypothesis, asymmetry=asymmetry)
+        columns, owners, theta = _solved(bench, hypothesis)
     residual = bench.effort - columns @ theta
     return Fit(hypothesis, columns, theta, owners, residual, noise_floor(bench, hypothesis, theta, owners))
+
+
+def _solved(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np.int64], Array]:
+    columns, owners = build(bench, hypothesis)
+    scale = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
+    theta = np.linalg.lstsq(columns / scale, bench.effort, rcond=1e-10)[0] / scale
+    return columns, owners, theta
 
 
 def _asymmetry(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> float:

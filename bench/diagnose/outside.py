@@ -95,7 +95,7 @@ class FrictionalMemory(Effect):
 
 
 def _lowpass(values: np.ndarray, keep: float) -> np.ndarray:
-    return lfilter([1.0 - keep], [1.0, -keep], values)
+    return np.asarray(lfilter([1.0 - keep], [1.0, -keep], values))
 
 
 OUTSIDE: Mapping[str, Effect] = {

@@ -68,14 +68,12 @@ def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
     return Uncertain(np.concatenate([fitted.theta, shapes]), covariance, slots)
 
 
-def base_parameters(
-    fitted: Fit, numbers: Uncertain, names: tuple[str, str, str], units: tuple[str, str, str]
-) -> dict[str, Parameter]:
-    """J, K_w and K_0 with their intervals."""
+def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -> dict[str, Parameter]:
+    """J, K_w and K_0 with their intervals; `units` by their names, in this order."""
     deviation = np.sqrt(np.maximum(np.diag(numbers.covariance), 0.0))
     return {
         name: _parameter(float(fitted.theta[k]), float(deviation[k]), unit)
-        for k, (name, unit) in enumerate(zip(names, units, strict=True))
+        for k, (name, unit) in enumerate(units.items())
     }
 
 

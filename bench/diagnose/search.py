@@ -154,7 +154,7 @@ def physical(fitted: Fit) -> bool:
             return False
         if effect.name in TRANSFORMS or effect.name in OUTSIDE:
             continue
-        if not catalogue()[effect.name].physical(strengths, effect.shape, fitted.base):
+        if not catalogue()[effect.name].physical(strengths.tolist(), effect.shape, fitted.base):
             return False
     return fitted.theta[0] > 0.0
 
@@ -216,7 +216,7 @@ def _scale(effect: Named) -> float:
     if effect.name == EVENT:
         return 0.05
     if effect.name == ECCENTRICITY:
-        return 0.3 * max(float(np.hypot(*effect.shape)), 1e-4)
+        return 0.3 * max(float(np.linalg.norm(effect.shape)), 1e-4)
     return {ELASTIC: 0.35, CURRENT_LAG: 1.0, VELOCITY_LAG: 1.0}.get(effect.name, 0.9)
 
 

@@ -172,7 +172,7 @@ def _filtered(columns: Sequence[Column], smooth: GaussianFilter, lag: float, tra
     orders = np.array([term[1] for column in columns for term in column])
     ends = np.cumsum([len(column) for column in columns])
     kept = size // smooth.stride // 2 + 1
-    omega = 2.0 * np.pi / (size * smooth.sample_period) * np.arange(kept)
+    omega = np.asarray(2.0 * np.pi / (size * smooth.sample_period) * np.arange(kept), dtype=np.float64)
     spectra = np.asarray(scipy.fft.rfft(values, size))[:, :kept]
     spectra = spectra * (1j * omega) ** orders[:, None]
     summed = np.add.reduceat(spectra, np.concatenate([[0], ends[:-1]]), axis=0)

@@ -1,0 +1,74 @@
+"""Columns of the hypotheses against closed forms: two masses, dead zone, lag, eccentric encoder."""
+
+import numpy as np
+import pytest
+import scipy.signal
+
+from bench.diagnose.dead_zone import load_accelerations
+from bench.diagnose.hypothesis import corrected, lagged
+from bench.effects.effect import Signals
+from bench.effects.presliding_friction import bristles
+
+PERIOD = 1e-3
+
+
+def signals(position, velocity):
+    count = position.size
+    sign = np.sign(velocity)
+    zero = np.zeros(count)
+    return Signals(np.arange(count) * PERIOD, position, velocity, sign, zero, zero, sign, 1.0, PERIOD)
+
+
+def test_a_load_without_a_gap_follows_the_motor():
+    time = np.arange(4000) * PERIOD
+    position, velocity = 10.0 * (1.0 - np.cos(3.0 * time)), 30.0 * np.sin(3.0 * time)
+    found = load_accelerations(signals(position, velocity), np.array([[1e-9, 400.0, 0.7, 0.0]]))[:, 0]
+    assert found[200:] == pytest.approx(90.0 * np.cos(3.0 * time[200:]), abs=2.0)
+
+
+def test_a_load_within_the_gap_feels_nothing():
+    time = np.arange(1000) * PERIOD
+    position = 0.01 * (1.0 - np.cos(20.0 * time))
+    found = load_accelerations(signals(position, np.gradient(position, PERIOD)), np.array([[0.1, 400.0, 0.5, 0.0]]))
+    assert np.abs(found).max() == 0.0
+
+
+def test_a_lag_is_the_first_order_response():
+    time = np.arange(2000) * PERIOD
+    ramp = 5.0 * time
+    expected = 5.0 * (time - 0.02 * (1.0 - np.exp(-time / 0.02)))
+    assert lagged(ramp, 0.02, PERIOD) == pytest.approx(expected, abs=1e-12)
+
+
+def test_an_eccentric_encoder_is_corrected():
+    time = np.arange(3000) * PERIOD
+    angle, speed = 40.0 * time**2, 80.0 * time
+    measured = angle + 0.02 * np.sin(angle + 0.7)
+    reported = speed * (1.0 + 0.02 * np.cos(angle + 0.7))
+    found = corrected(signals(measured, reported), (0.02 * np.cos(0.7), 0.02 * np.sin(0.7)))
+    assert found.position == pytest.approx(angle, abs=1e-7)
+    assert found.velocity == pytest.approx(speed, abs=1e-5)
+
+
+def test_bristles_are_dahls_equation_integrated():
+    time = np.arange(4000) * PERIOD
+    position, rate = 0.05 * np.sin(4.0 * time), 60.0
+    velocity = 0.2 * np.cos(4.0 * time)
+    fine = np.interp(np.arange(4000 * 20) / 20, np.arange(4000), position)
+    state, expected = 0.0, np.empty(4000)
+    for k, step in enumerate(np.diff(fine, prepend=fine[0])):
+        state += rate * (1.0 - state * np.sign(step)) * step
+        if k % 20 == 0:
+            expected[k // 20] = state
+    found = bristles(position, np.sign(velocity), rate)
+    assert found == pytest.approx(expected, abs=0.02)
+
+
+def test_the_two_mass_transfer_is_the_transfer_function():
+    antiresonance, damping = 150.0, 0.05
+    omega = np.linspace(1.0, 400.0, 50)
+    numerator = [2.0 * damping / antiresonance, 1.0]
+    denominator = [1.0 / antiresonance**2, 2.0 * damping / antiresonance, 1.0]
+    _, expected = scipy.signal.freqs(numerator, denominator, omega)
+    s = 1j * omega / antiresonance
+    assert 1.0 - s**2 / (1.0 + 2.0 * damping * s + s**2) == pytest.approx(expected)
