@@ -106,6 +106,10 @@ def load_model(path: str | Path) -> StoredModel:
     quantities = parameter_quantities(linear)
     units = {quantity.name: quantity.unit for quantity in quantities.values()}
     values = _values(table.get("parameters"), units, f"{path}: parameters")
+    for field, quantity in quantities.items():
+        value = values[quantity.name]
+        if value < quantity.lower or (field == "inertia" and value == 0.0):
+            raise InputError(f"{path}: parameters.{quantity.name}", f"found {value:g}", "allowed: above zero")
     parameters = AxisParameters(
         **{field: values[quantity.name] for field, quantity in quantities.items()}, linear=linear
     )

@@ -1,0 +1,118 @@
+"""Effects on the command line."""
+
+import json
+
+import pytest
+
+from bench.cli import main
+from bench.effects.catalogue import physics
+from bench.effects.present import parse_effect
+from bench.errors import InputError
+from tests.plant.conftest import RIG
+
+
+@pytest.fixture
+def bench(monkeypatch, capsys):
+    def run(*arguments):
+        monkeypatch.setattr("sys.argv", ["bench", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        output = capsys.readouterr()
+        return stop.value.code, output.out, output.err
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("cogging_torque:amplitude=0.05,harmonic=6", {"amplitude": 0.05, "harmonic": 6.0}),
+        ("cogging_torque: amplitude = 50 mN*m , phase=90 deg", {"amplitude": 0.05, "phase": 1.5707963}),
+        ('current_loop_lag:time_constant="2 ms"', {"time_constant": 2e-3}),
+        ("stribeck_friction:stribeck_velocity=60 rpm", {"stribeck_velocity": 6.2831853}),
+    ],
+)
+def test_values_with_and_without_units(text, values):
+    assert dict(parse_effect(text).values) == pytest.approx(values)
+
+
+def test_linear_axes_take_metres_and_newtons():
+    found = parse_effect("stribeck_friction:static_friction=30 N,stribeck_velocity=5 mm/s", linear=True)
+    assert dict(found.values) == pytest.approx({"static_friction": 30.0, "stribeck_velocity": 5e-3})
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("coging_torque:amplitude=1", "did you mean 'cogging_torque'"),
+        ("cogging_torque:amplitud=1", "did you mean 'amplitude'"),
+        ("cogging_torque:amplitude", "key=value"),
+        ("cogging_torque:amplitude=much", "number with a unit"),
+        ("cogging_torque:amplitude=1 kg", "dimension of N"),
+        ("cogging_torque:amplitude=-1", "0 to inf"),
+        ("cogging_torque:amplitude=inf", "finite"),
+    ],
+)
+def test_what_cannot_be_read_is_said(text, says):
+    with pytest.raises(InputError, match=says):
+        parse_effect(text)
+
+
+def test_simulate_writes_the_truth_of_its_effects(bench, tmp_path):
+    rig, out = tmp_path / "rig.toml", tmp_path / "run.csv.gz"
+    rig.write_text(RIG.format(simulation="", motor=""), encoding="utf-8")
+    effects = (
+        "--effect",
+        "cogging_torque:amplitude=50 mN*m,harmonic=6",
+        "--effect",
+        "velocity_filter_lag:time_constant=1 ms",
+    )
+    code, _, error = bench("simulate", rig, "--out", out, "--profile", "multisine", *effects)
+    assert (code, error) == (0, "")
+    truth = json.loads((tmp_path / "run.csv.gz.truth.json").read_text(encoding="utf-8"))
+    assert [effect["name"] for effect in truth["effects"]] == ["cogging_torque", "velocity_filter_lag"]
+    assert truth["effects"][0]["parameters"]["amplitude"] == {"value": 0.05, "unit": "N*m"}
+
+
+@pytest.mark.parametrize(
+    ("effect", "says"),
+    [
+        ("cogging_torque:amplitude=1", "harmonic missing"),
+        ("voltage_limit:voltage=50", "resistance"),
+        ("backlash:gap=0.1,contact_stiffness=x", "number with a unit"),
+    ],
+)
+def test_simulate_refuses_in_one_line_and_writes_nothing(bench, tmp_path, effect, says):
+    rig, out = tmp_path / "rig.toml", tmp_path / "run.csv.gz"
+    rig.write_text(RIG.format(simulation="", motor=""), encoding="utf-8")
+    code, _, error = bench("simulate", rig, "--out", out, "--profile", "multisine", "--effect", effect)
+    assert code == 2
+    assert says in error
+    assert error.count("\n") == 1
+    assert not out.exists()
+
+
+def test_friction_made_by_the_drive_has_no_effects(bench, tmp_path):
+    rig = tmp_path / "rig.toml"
+    rig.write_text(RIG.format(simulation='friction = "drive"', motor=""), encoding="utf-8")
+    effect = "load_dependent_friction:load_friction_coefficient=0.1"
+    code, _, error = bench("simulate", rig, "--out", tmp_path / "x.csv", "--effect", effect)
+    assert code == 2
+    assert "mechanics" in error
+
+
+def test_every_effect_is_listed_and_has_a_page(bench):
+    code, table, _ = bench("effects")
+    assert code == 0
+    for name, effect in physics().items():
+        assert name in table
+        code, page, _ = bench("effects", name)
+        assert code == 0
+        assert "Simulated\n    " in page
+        assert all(quantity.name in page for quantity in effect.quantities)
+
+
+def test_unknown_effect_has_no_page(bench):
+    code, _, error = bench("effects", "coging")
+    assert code == 2
+    assert "allowed: backlash" in error

@@ -1,0 +1,109 @@
+"""A model goes to disk and comes back as it was; what is native in it opens in MuJoCo alone."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+
+from bench.effects.present import Present
+from bench.errors import InputError
+from bench.plant.axis_model import AxisModel
+from bench.plant.model import AxisParameters
+from bench.plant.model_file import TIMESTEP, StoredModel, load_model, model_toml, write_model
+from bench.plant.native import run_controls, sense_torque
+from bench.plant.replay import replay_velocity
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+from tests.effects.axes import AXIS, PERIOD, VALUES, model
+
+#: All but the second coupling of motor and load.
+EVERYTHING = [name for name in VALUES if name != "backlash"]
+
+
+def test_everything_comes_back(tmp_path):
+    stored = StoredModel('the "axis" \\ of\tall', model(*EVERYTHING), 1.27e-5)
+    toml, _ = write_model(tmp_path, stored)
+    assert load_model(toml) == stored
+
+
+def test_linear_axis_without_winding_comes_back(tmp_path):
+    effects = (Present.of("cogging_torque", {"amplitude": 1.0, "harmonic": 2513.0}),)
+    parameters = AxisParameters(95.1, 203.5, 20.4, -3.2, 0.0, linear=True)
+    stored = StoredModel("slide", AxisModel(parameters, effects))
+    toml, _ = write_model(tmp_path, stored)
+    assert load_model(toml) == stored
+    text = toml.read_text(encoding="utf-8")
+    assert 'moving_mass = "95.1 kg"' in text
+    assert 'amplitude = "1.0 N"' in text
+    assert 'phase = "0.0 rad"' in text
+
+
+@pytest.mark.parametrize("names", [("elastic_coupling", "cogging_torque", "quadratic_drag"), ("presliding_friction",)])
+def test_xml_moves_as_the_model(tmp_path, names):
+    """MuJoCo writes numbers with six digits or more."""
+    native = model(*names, "torsion_spring", "unbalance", "torque_offset")
+    _, xml = write_model(tmp_path, StoredModel("axis", native))
+    torque = np.sin(np.arange(4000) / 200.0)[:, None]
+    mujoco.MjModel.from_xml_path(str(xml))
+    specs = native.spec(TIMESTEP), mujoco.MjSpec.from_file(str(xml))
+    motions = []
+    for spec in specs:
+        sense_torque(spec)
+        motions.append(run_controls(spec.compile(), torque, 0.0, 0.0).velocity)
+    np.testing.assert_allclose(motions[1], motions[0], atol=1e-3 * np.abs(motions[0]).max())
+
+
+def test_xml_names_what_it_lacks(tmp_path):
+    _, xml = write_model(tmp_path, StoredModel("axis", model("stribeck_friction", "cogging_torque")))
+    assert "not in it, but in model.toml: stribeck_friction." in xml.read_text(encoding="utf-8").splitlines()[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('schema = "bench.model/1"', 'schema = "bench.model/2"', "bench.model/1"),
+        ('kind = "rotary"', 'kind = "round"', "rotary, linear"),
+        ("moment_of_inertia =", "moment_of_inertai =", "did you mean 'moment_of_inertia'"),
+        ('"0.0012 kg*m**2"', '"0.0012 kg"', "dimension of kg"),
+        ('name = "cogging_torque"', 'name = "coging_torque"', "did you mean 'cogging_torque'"),
+        ("amplitude =", "amplitud =", "did you mean 'amplitude'"),
+        ('"0.08 N*m"', '"-0.08 N*m"', "0 to inf"),
+        ("harmonic = 6.0\n", "", "harmonic missing"),
+        ("[parameters]", "[parameters", "not TOML"),
+        ("[[effects]]", "[effects]", "effects"),
+        ('"1e-05 s"', "nan", "finite"),
+        ('"0.0012 kg*m**2"', '"0 kg*m**2"', "moment_of_inertia"),
+    ],
+)
+def test_bad_files_are_refused_in_one_line(tmp_path, old, new, says):
+    path = tmp_path / "model.toml"
+    text = model_toml(StoredModel("axis", model("cogging_torque"), 1e-5))
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        load_model(path)
+    assert says in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_no_such_file(tmp_path):
+    with pytest.raises(InputError, match=r"give the path of a model\.toml"):
+        load_model(tmp_path / "none.toml")
+
+
+def test_replay(truths, tmp_path):
+    """From disk, along a recording: next to no gap; and a rig of another kind is refused."""
+    signals = truths["cogging_torque",]
+    kept = {"velocity": signals["velocity"][::8], "current": signals["current"][::8]}
+    trace = Trace(PERIOD * 8 * np.arange(kept["velocity"].size), kept, {"velocity": "rad/s", "current": "A"}, "axis")
+    rig = Rig.model_validate(
+        {"name": "axis", "kind": "rotary", "motor": {"torque_constant": f"{AXIS.torque_constant} N*m/A"}},
+        context={"linear": False},
+    )
+    toml, _ = write_model(tmp_path, StoredModel("axis", model("cogging_torque"), -PERIOD / 2.0))
+    measured, simulated = replay_velocity(load_model(toml), trace, rig)
+    assert np.sqrt(np.mean((measured - simulated) ** 2)) < 0.03
+    linear = replace(model(), parameters=AxisParameters(1.0, linear=True))
+    with pytest.raises(InputError, match="kind"):
+        replay_velocity(StoredModel("slide", linear), trace, rig)
