@@ -120,8 +120,15 @@ class _Course:
 
     def _corner(self) -> Task:
         measured = _number(lambda: self.peak_torque, "measured corner")
-        axis = AxisParameters.from_rig(self.rig)
-        return t11_corner.task(self.rig, axis, measured=measured.value if measured else None)
+        return t11_corner.task(self.rig, self._axis(), measured=measured.value if measured else None)
+
+    def _axis(self) -> AxisParameters:
+        """The axis as task 9 finds it; as the rig's `[simulation]` has it where there is no such recording."""
+        try:
+            found = t09_least_squares.identify_friction(self.with_friction)
+        except BenchError:
+            return AxisParameters.from_rig(self.rig)
+        return AxisParameters(found.inertia, max(found.viscous, 0.0), max(found.coulomb, 0.0))
 
     def _operating_range(self) -> Task:
         run = self.with_friction

@@ -122,7 +122,8 @@ def task(
         _voltage_says(rig, mains),
     ]
     if measured is not None:
-        says.insert(1, f"Measured in task 10: {measured:.0f} rpm, {measured - found.inductive * RPM:+.0f} rpm from it.")
+        off = measured - found.inductive * RPM
+        says.insert(1, f"Measured in task 10: {measured:.0f} rpm, {off:+.1f} rpm from the simulation with both causes.")
     numbers = (
         Number("corner, hot, quasi-static", found.hot * RPM, "rpm"),
         Number("corner, cold, quasi-static", found.cold * RPM, "rpm"),

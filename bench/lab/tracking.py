@@ -51,6 +51,7 @@ def task(rig: Rig, identified: float) -> Task:
         KEY,
         TITLE,
         (
+            f"The simulated axis has J = {plant.parameters.inertia * KG_CM2:.4g} kg·cm².",
             f"The identified inertia leaves {rms[2] / rms[0]:.1%} of the deviation without J_load, the theoretical one "
             f"{rms[1] / rms[0]:.1%}. What is left is friction, which the feed-forward does not know, at each reversal.",
         ),
