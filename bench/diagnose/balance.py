@@ -13,6 +13,9 @@ from bench.diagnose.workbench import Workbench
 
 Array = NDArray[np.float64]
 
+#: Stands for a recording where an event comes at the same time of every one.
+EVERY = "every recording"
+
 
 @dataclass(frozen=True)
 class Balance:
@@ -22,7 +25,7 @@ class Balance:
         hypothesis: its effects and their shapes.
         theta: (p,) J, K_w, K_0, misalignment, strengths.
         width: of the filter it was fitted through - s.
-        recording: the one it was fitted to; an event happened in it and in no other.
+        recording: the one it was fitted to; an event happened in it and in no other, unless EVERY.
     """
 
     hypothesis: Hypothesis
@@ -39,7 +42,7 @@ class Balance:
         """Modelled torque at the used rows of a recording - N*m (N) - (m,)."""
         columns, owners = build(bench, self.hypothesis)
         theta = self.theta.copy()
-        if bench.origin != self.recording:
+        if self.recording not in (EVERY, bench.origin):
             names = self.hypothesis.names
             theta[[owner >= 0 and names[owner] == EVENT for owner in owners]] = 0.0
         return columns @ theta

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bench.diagnose.added import axis_model, velocity_gap
-from bench.diagnose.balance import Balance
+from bench.diagnose.balance import EVERY, Balance
 from bench.diagnose.candidates import EVENT
 from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.hypothesis import DIRECTION, Fit, fit
@@ -18,13 +18,15 @@ from bench.diagnose.sensing import VelocityLag, velocity_lag
 from bench.diagnose.voltage import VoltageLimit, voltage_limit
 from bench.diagnose.where import Where, where
 from bench.diagnose.workbench import Workbench
+from bench.identify.determined import require_determined, require_significant
 from bench.identify.estimate import Parameter
 from bench.identify.load_inertia import load_inertia
 from bench.identify.names import parameter_name, parameter_unit
-from bench.identify.regression import identify
-from bench.identify.regressors import COULOMB, INERTIA, VISCOUS
+from bench.identify.normal_equations import normal_equations
+from bench.identify.regressors import COULOMB, INERTIA, VISCOUS, regressors
 from bench.plant.model_file import StoredModel
 from bench.rig.rig import Rig
+from bench.trace.motion import motion
 from bench.trace.trace import Trace
 
 Progress = Callable[[float], None]
@@ -76,8 +78,8 @@ def diagnose(
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
         InputError: rig and recording do not fit together.
     """
-    identify(trace, rig)
     bench = Workbench.of(trace, rig)
+    require_decidable(trace, rig, bench)
     other = Workbench.of(holdout, rig, bench.conditioning.filter.width) if holdout is not None else None
     steps = search(bench, rig.motor.rotor_inertia or 0.0, excluded)
     progress(0.6)
@@ -86,7 +88,8 @@ def diagnose(
     lag = None if "velocity_filter_lag" in excluded else velocity_lag(trace, bench)
     limit = None if "voltage_limit" in excluded else voltage_limit(trace, rig, bench)
     effects, parameters = named(bench, fitted, rig, lag, limit)
-    balance = Balance.of(bench, fitted)
+    require_significant(parameters[parameter_name(INERTIA, rig.linear)], rig.linear)
+    balance = repeating(Balance.of(bench, fitted), other)
     before = Balance.of(bench, steps[0].fitted)
     torque = Gap(
         rig.effort_unit,
@@ -113,6 +116,21 @@ def diagnose(
         balance=balance,
         warnings=[*warnings, *problem, *failed],
     )
+
+
+def require_decidable(trace: Trace, rig: Rig, bench: Workbench) -> None:
+    """UndeterminedError where the rows do not determine inertia and friction, whatever else is in them."""
+    effort, _ = rig.net_effort(trace)
+    rows = regressors(motion(trace, effort, bench.conditioning))
+    require_determined(normal_equations(rows, 8.0 * bench.conditioning.filter.width, 512), rig.linear)
+
+
+def repeating(balance: Balance, other: Workbench | None) -> Balance:
+    """The balance with its events in every recording, where the holdout shows them at the same time of its own."""
+    if other is None or EVENT not in balance.hypothesis.names:
+        return balance
+    everywhere = replace(balance, recording=EVERY)
+    return everywhere if everywhere.gap(other) < balance.gap(other) else balance
 
 
 def foreign(bench: Workbench, base: Fit, other: Workbench | None) -> list[str]:
