@@ -9,6 +9,8 @@ from bench.lab.result import Array
 
 #: Stretch of the falling current, in shares of its top, that the line is fitted to.
 FROM, TO = 0.9, 0.5
+#: Faster samples, as a share of the highest speed, may belong to the drive's own stop at the speed asked for.
+STILL_RISING = 0.97
 #: The top is the mean of samples above this share of the largest.
 TOP = 0.95
 
@@ -28,7 +30,7 @@ def corner_speed(velocity: Array, current: Array) -> float:
     largest = float(current.max())
     high = np.flatnonzero(current > TOP * largest)
     falling = np.arange(current.size) > high[-1]
-    falling &= (current < FROM * largest) & (current > TO * largest)
+    falling &= (current < FROM * largest) & (current > TO * largest) & (velocity < STILL_RISING * velocity.max())
     speeds = velocity[falling]
     if speeds.size < 3 or np.ptp(speeds) <= 0.0:
         reason = "the current does not fall from its top to half of it as speed rises"

@@ -14,12 +14,15 @@ from bench.lab.run import Run, run_of
 from bench.plant.truth import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.trace.read import read, read_recording
+from bench.trace.readers import READERS
 from bench.trace.trace import Trace
 from bench.units import nearest
 
 WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"
 #: Signals that the tasks need.
 NEEDED = ("velocity", "current")
+#: Endings of recordings; a truth is JSON too, and none of the course's.
+ENDINGS = {ending for reader in READERS for ending in reader.ENDINGS} - {".json"}
 
 
 @dataclass(frozen=True)
@@ -54,14 +57,14 @@ class Recordings:
         Raises:
             InputError: none, or several.
         """
-        files = sorted(path for path in self.folder.iterdir() if path.is_file() and not path.name.endswith(".json"))
+        files = sorted(path for path in self.folder.iterdir() if path.is_file() and _ending(path) in ENDINGS)
         found = [path for path in files if _stem(path) == name.lower()]
         if len(found) == 1:
             return found[0]
         if found:
             names = ", ".join(path.name for path in found)
             raise InputError(self.folder / f"{name}.trace", f"found several ({names})", "allowed: one of them")
-        others = [path.name for path in files if path.name != "rig.toml"]
+        others = [path.name for path in files]
         hint = nearest(f"{name}.trace", others)
         raise InputError(
             self.folder / f"{name}.trace", f"no such file{hint}", f"found: {', '.join(others) or 'no recording'}"
@@ -92,6 +95,11 @@ def read_truth(path: Path) -> Mapping[str, float]:
         return {name: float(item["value"]) for name, item in content["parameters"].items()}
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(path, f"is no truth of a simulated trace ({error})", "remove it, or record again") from error
+
+
+def _ending(path: Path) -> str:
+    """Of the file inside, where it is compressed."""
+    return Path(path.name.lower().removesuffix(".gz")).suffix
 
 
 def _stem(path: Path) -> str:

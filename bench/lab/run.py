@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from bench.errors import InputError
 from bench.identify.lab import backward_difference
 from bench.lab.result import Array, Chart, Curve, Panel
 from bench.lab.rig import torque_constant
@@ -46,8 +47,10 @@ def run_of(trace: Trace, rig: Rig, truth: Mapping[str, float] | None = None) -> 
     """Signals of a recording, its longest stretch without a hole.
 
     Raises:
-        InputError: no velocity or current in it, or no torque constant in the rig.
+        InputError: no velocity or current in it, a linear axis, or no torque constant in the rig.
     """
+    if trace.linear:
+        raise InputError(trace.origin, "found a linear axis", "allowed: a rotary one, velocity in deg/s, rad/s or rpm")
     part = max(trace.segments, key=lambda segment: segment.stop - segment.start)
     velocity, current = trace["velocity"][part], trace["current"][part]
     return Run(

@@ -15,6 +15,7 @@ from bench.rig.catalogue import catalogue_motor
 from bench.rig.drive import Drive
 from bench.rig.load import Load
 from bench.rig.motor import Motor
+from bench.rig.peak_curve import PeakCurve
 from bench.rig.simulation import Simulation
 from bench.rig.values import Table
 from bench.trace.trace import Trace
@@ -178,6 +179,7 @@ def _known_keys(keys: list[str]) -> list[str]:
         "drive": Drive,
         "trace": TraceNotes,
         "simulation": Simulation,
+        "peak_curves": PeakCurve,
     }
     for key in keys:
         table = tables.get(key, table)

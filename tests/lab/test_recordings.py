@@ -144,6 +144,26 @@ def test_damaged_files_and_two_of_a_name_are_said_to_be_so(folder):
     assert "6" in found
 
 
+def test_other_files_beside_the_recordings_are_passed_over_and_linear_axes_refused(folder):
+    for name in ("MaxAcc.png", "MaxAcc.m", "JLoadAndFriction.docx"):
+        (folder / name).write_bytes(b"not a recording")
+    (folder / "JLoadWithoutFriction.trace").unlink()
+    slide = "time [ms],velocity [mm/s],current [A]\n" + "".join(f"{k},{k},1\n" for k in range(50))
+    (folder / "JLoadWithoutFriction.csv").write_text(slide)
+    found, missed = results(folder)
+    assert set(missed) == OF_THE_RECORDING["JLoadWithoutFriction"]
+    assert "linear" in missed["6"]
+    assert {"9", "10"} <= set(found)
+
+
+def test_progress_is_told_after_every_task():
+    shares = []
+    course(Recordings.in_folder(None), shares.append, keys=READING)
+    assert shares == sorted(shares)
+    assert len(shares) == len(READING)
+    assert shares[-1] == 1.0
+
+
 def test_no_folder_is_an_error(tmp_path):
     with pytest.raises(InputError, match="no such folder"):
         Recordings.in_folder(tmp_path / "nowhere")

@@ -2,6 +2,7 @@
 
 import re
 import sys
+import time
 
 import pytest
 
@@ -68,8 +69,12 @@ def test_what_was_not_done_says_what_is_missing(done):
 
 
 def test_lab_runs_alone_and_ends_naming_the_report(bench, tmp_path):
+    start = time.perf_counter()
     status, out, _ = bench("lab", "--out", "here")
+    seconds = time.perf_counter() - start
+    print(f"bench lab: {seconds:.0f} s")
     assert status == 0
+    assert seconds < 60.0
     assert "K_fric_w" in out
     assert out.splitlines()[-2:] == ["wrote here/lab.html", "wrote here/lab.pdf"]
     assert {path.name for path in (tmp_path / "here").iterdir()} == {"lab.html", "lab.pdf"}

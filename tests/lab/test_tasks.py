@@ -144,5 +144,10 @@ def test_10_corner_of_the_exact_circuit():
     speed = np.linspace(0.0, 500.0, 400)
     current = np.minimum(5.7, (398.0 - 0.76 * speed) / 40.0)
     assert corner_speed(speed, current) == pytest.approx((398.0 - 5.7 * 40.0) / 0.76, rel=1e-9)
+    held = (
+        np.append(speed[speed < 420.0], np.full(50, 420.0)),
+        np.append(current[speed < 420.0], np.linspace(2.0, 0.5, 50)),
+    )
+    assert corner_speed(*held) == pytest.approx((398.0 - 5.7 * 40.0) / 0.76, rel=1e-9)
     with pytest.raises(UndeterminedError):
         corner_speed(speed, np.full(400, 5.7))

@@ -54,3 +54,28 @@ def test_what_is_missing_is_named(motor):
         peak_curve(motor, 115.0, "rig")
     with pytest.raises(InputError, match="peak_torque"):
         OperatingRange.of(motor.model_copy(update={"peak_torque": None}), 230.0, "rig")
+
+
+@pytest.mark.parametrize(
+    ("curve", "words"),
+    [
+        (
+            '{ mains_voltage = "230 V", corner_speed = "5000 rpm", no_load_speed = "2100 rpm" }',
+            ["peak_curves", "below"],
+        ),
+        ('{ mains_voltage = "230 V", corner_speed = "2 A", no_load_speed = "5000 rpm" }', ["corner_speed", "2 A"]),
+        ('{ mains_voltage = "230 V", knee = "2100 rpm", no_load_speed = "5000 rpm" }', ["corner_speed"]),
+        (
+            '{ mains_voltage = "230 V", corner_speed = "21 rpm", no_load_sped = "1 rpm", no_load_speed = "50 rpm" }',
+            ["no_load_sped", "no_load_speed"],
+        ),
+    ],
+)
+def test_a_bad_curve_in_a_rig_file_is_named(tmp_path, curve, words):
+    path = tmp_path / "rig.toml"
+    path.write_text(f'name = "a"\nkind = "rotary"\n[motor]\npeak_curves = [{curve}]\n')
+    with pytest.raises(InputError) as error:
+        load_rig(path)
+    for word in words:
+        assert word in str(error.value)
+    assert "\n" not in str(error.value)
