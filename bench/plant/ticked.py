@@ -39,7 +39,10 @@ class TickedEffects:
     def __init__(self, batch: Batch, models: Sequence[AxisModel], velocity: Array) -> None:
         self._step = float(batch.model.opt.timestep)
         self._mechanisms = gather(models, Mechanism, ticked=True)
-        self._electronics = gather(models, Electronics)
+        electronics = gather(models, Electronics)
+        self._flowing = _through(electronics, "flowing")
+        self._acting = _through(electronics, "acting")
+        self._delivered = _through(electronics, "delivered")
         self._friction = _FrictionLevels(batch, models)
         dof = batch.model.joint(AXIS).dofadr[0]
         self._inertia = _through(self._mechanisms, "added_inertia")
@@ -69,10 +72,9 @@ class TickedEffects:
             for rows in self._factors:
                 torque[rows.index] *= rows.effect.torque_factor(rows.values, rows.axis, rows.moment(at))
             at = Moment(at.time, position, middle, torque)
-        applied = -self._friction.offset(at)
+        self._applied[:] = -self._friction.offset(at)
         for rows in self._resisting:
-            applied[rows.index] -= rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))
-        self._applied[:] = applied
+            self._applied[rows.index] -= rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))
         if self._inertia:
             self._armature[:] = self._bare_armature
             for rows in self._inertia:
@@ -81,18 +83,16 @@ class TickedEffects:
 
     def _driven(self, velocity: Array, demand: Array) -> tuple[Array, Array]:
         """Electronics in the order of the signal: what flows of a demand, what of it acts, what torque it makes."""
-        if not self._electronics:
-            return demand, demand
         reported = demand.copy()
-        for rows in _through(self._electronics, "flowing"):
+        for rows in self._flowing:
             i = rows.index
             flows = rows.effect.flowing(rows.values, rows.axis, velocity[i], demand[i], rows.memory, self._step)
             reported[i], rows.memory = flows
         torque = reported.copy()
-        for rows in _through(self._electronics, "acting"):
+        for rows in self._acting:
             i = rows.index
             torque[i], rows.memory = rows.effect.acting(rows.values, torque[i], rows.memory, self._step)
-        for rows in _through(self._electronics, "delivered"):
+        for rows in self._delivered:
             torque[rows.index] = rows.effect.delivered(rows.values, rows.axis, torque[rows.index])
         return reported, torque
 
@@ -115,20 +115,24 @@ class _FrictionLevels:
                 dof = batch.model.joint(AXIS).dofadr
                 self._levels = batch.expand("dof_frictionloss")[:, dof[0] : dof[0] + 1]
 
-    def offset(self, at: Moment) -> Array:
+    def offset(self, at: Moment) -> Array | float:
         """Set the level; returns half the difference of the two directions' levels - N*m (N) - (axes,)."""
         if self._levels is None:
-            return np.zeros_like(self._coulomb)
+            return 0.0
         level = self._coulomb.copy()
         for rows in self._excesses:
             level[rows.index] += rows.effect.friction_excess(rows.values, rows.axis, rows.moment(at))
-        half = np.zeros_like(level)
+        half = np.zeros(level.size)
         for rows in self._differences:
             half[rows.index] += 0.5 * rows.effect.friction_difference(rows.values, rows.axis)
-        factor = np.ones_like(level)
         for rows in self._factors:
-            factor[rows.index] *= rows.effect.friction_factor(rows.values, rows.axis, rows.moment(at))
-        forward, backward = np.maximum((level + half) * factor, 0.0), np.maximum((level - half) * factor, 0.0)
+            factor = rows.effect.friction_factor(rows.values, rows.axis, rows.moment(at))
+            level[rows.index] *= factor
+            half[rows.index] *= factor
+        if not self._differences:
+            self._levels[:] = np.maximum(level, 0.0)[:, None]
+            return 0.0
+        forward, backward = np.maximum(level + half, 0.0), np.maximum(level - half, 0.0)
         self._levels[:] = (0.5 * (forward + backward))[:, None]
         return 0.5 * (forward - backward)
 

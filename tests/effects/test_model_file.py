@@ -1,7 +1,5 @@
 """A model goes to disk and comes back as it was; what is native in it opens in MuJoCo alone."""
 
-from dataclasses import replace
-
 import mujoco
 import numpy as np
 import pytest
@@ -12,8 +10,7 @@ from bench.plant.axis_model import AxisModel
 from bench.plant.model import AxisParameters
 from bench.plant.model_file import TIMESTEP, StoredModel, load_model, model_toml, write_model
 from bench.plant.native import run_controls, sense_torque
-from bench.plant.replay import replay_velocity
-from bench.rig.rig import Rig
+from bench.plant.track_effects import track_effects
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, PERIOD, VALUES, model
 
@@ -92,18 +89,11 @@ def test_no_such_file(tmp_path):
         load_model(tmp_path / "none.toml")
 
 
-def test_replay(truths, tmp_path):
-    """From disk, along a recording: next to no gap; and a rig of another kind is refused."""
+def test_a_stored_model_runs_along_a_recording(truths, tmp_path):
     signals = truths["cogging_torque",]
     kept = {"velocity": signals["velocity"][::8], "current": signals["current"][::8]}
     trace = Trace(PERIOD * 8 * np.arange(kept["velocity"].size), kept, {"velocity": "rad/s", "current": "A"}, "axis")
-    rig = Rig.model_validate(
-        {"name": "axis", "kind": "rotary", "motor": {"torque_constant": f"{AXIS.torque_constant} N*m/A"}},
-        context={"linear": False},
-    )
     toml, _ = write_model(tmp_path, StoredModel("axis", model("cogging_torque"), -PERIOD / 2.0))
-    measured, simulated = replay_velocity(load_model(toml), trace, rig)
-    assert np.sqrt(np.mean((measured - simulated) ** 2)) < 0.03
-    linear = replace(model(), parameters=AxisParameters(1.0, linear=True))
-    with pytest.raises(InputError, match="kind"):
-        replay_velocity(StoredModel("slide", linear), trace, rig)
+    stored = load_model(toml)
+    simulated = track_effects(stored.model, trace, AXIS.torque_constant * trace["current"], stored.misalignment)
+    assert np.sqrt(np.mean((trace["velocity"] - simulated) ** 2)) < 0.03
