@@ -87,12 +87,13 @@ def diagnose(
     fitted = proven(bench, steps[-1].fitted, None if warnings else other)
     lag = None if "velocity_filter_lag" in excluded else velocity_lag(trace, bench)
     limit = None if "voltage_limit" in excluded else voltage_limit(trace, rig, bench)
-    effects, parameters = named(bench, fitted, rig, lag, limit)
+    _, unit = rig.net_effort(trace)
+    effects, parameters = named(bench, fitted, rig, unit, lag, limit)
     require_significant(parameters[parameter_name(INERTIA, rig.linear)], rig.linear)
     balance = repeating(Balance.of(bench, fitted), other)
     before = Balance.of(bench, steps[0].fitted)
     torque = Gap(
-        rig.effort_unit,
+        unit,
         fitted.floor,
         (before.gap(bench), balance.gap(bench)),
         (before.gap(other), balance.gap(other)) if other is not None else None,
@@ -105,9 +106,9 @@ def diagnose(
     return Diagnosis(
         verdict="unexplained_remainder" if remains else "explained" if effects else "nothing_missing",
         effects=effects,
-        where=where(bench, steps[0].fitted, rig.linear),
+        where=where(bench, steps[0].fitted, rig.linear, unit),
         unexplained_share=fitted.excess / max(gap_before, 1e-300),
-        unexplained_where=where(bench, fitted, rig.linear)[:3] if remains else [],
+        unexplained_where=where(bench, fitted, rig.linear, unit)[:3] if remains else [],
         parameters=parameters,
         torque=torque,
         velocity=velocity,
@@ -157,12 +158,12 @@ def proven(bench: Workbench, fitted: Fit, other: Workbench | None) -> Fit:
 
 
 def named(
-    bench: Workbench, fitted: Fit, rig: Rig, lag: VelocityLag | None, limit: VoltageLimit | None
+    bench: Workbench, fitted: Fit, rig: Rig, unit: str, lag: VelocityLag | None, limit: VoltageLimit | None
 ) -> tuple[list[NamedEffect], dict[str, Parameter]]:
     """Effects with their quantities, and J, K_w, K_0 beside them."""
     numbers = uncertain(bench, fitted)
     columns = (INERTIA, VISCOUS, COULOMB)
-    units = {parameter_name(c, rig.linear): parameter_unit(c, rig.linear, rig.effort_unit) for c in columns}
+    units = {parameter_name(c, rig.linear): parameter_unit(c, rig.linear, unit) for c in columns}
     parameters = base_parameters(fitted, numbers, units)
     parameters |= load_inertia(parameters, rig)
     tick = rig.drive.control_period if rig.drive is not None else 0.0
@@ -170,7 +171,7 @@ def named(
     for index, effect in enumerate(fitted.hypothesis.effects):
         less = fit(bench, fitted.hypothesis.without(index))
         evidence = {"residual_without": less.rms, "residual_with": fitted.rms, "noise_floor": fitted.floor}
-        found = effect_parameters(fitted, numbers, index, rig.linear, tick)
+        found = effect_parameters(fitted, numbers, index, rig.linear, unit, tick)
         ambiguous = AMBIGUOUS.get(effect.name, ())
         if effect.name == "current_loop_lag" and bench.conditioning.source == "position":
             ambiguous = ()

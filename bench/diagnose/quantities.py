@@ -77,7 +77,9 @@ def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -
     }
 
 
-def effect_parameters(fitted: Fit, numbers: Uncertain, index: int, linear: bool, tick: float) -> dict[str, Parameter]:
+def effect_parameters(
+    fitted: Fit, numbers: Uncertain, index: int, linear: bool, effort_unit: str, tick: float
+) -> dict[str, Parameter]:
     """Quantities of one effect with their intervals.
 
     Args:
@@ -85,6 +87,7 @@ def effect_parameters(fitted: Fit, numbers: Uncertain, index: int, linear: bool,
         numbers: its free numbers.
         index: of the effect.
         linear: whether the axis is linear.
+        effort_unit: N*m, N, or what the rig allows.
         tick: control period of the drive, by half of which a lag is uncertain - s.
     """
     effect = fitted.hypothesis.effects[index]
@@ -102,7 +105,9 @@ def effect_parameters(fitted: Fit, numbers: Uncertain, index: int, linear: bool,
     deviations = _deviations(values, numbers)
     extra = 0.5 * tick if effect.name in (CURRENT_LAG, VELOCITY_LAG) else 0.0
     return {
-        name: _parameter(value, deviations[name] + extra / REACH, unit_of_quantity(effect.name, name, linear))
+        name: _parameter(
+            value, deviations[name] + extra / REACH, unit_of_quantity(effect.name, name, linear, effort_unit)
+        )
         for name, value in centre.items()
     }
 
@@ -142,13 +147,14 @@ def reported(effect: Named, strengths: Array, base: Base) -> Mapping[str, float]
     return catalogue()[effect.name].values(strengths.tolist(), effect.shape, base)
 
 
-def unit_of_quantity(effect: str, quantity: str, linear: bool) -> str:
+def unit_of_quantity(effect: str, quantity: str, linear: bool, effort_unit: str) -> str:
     """Unit of a reported quantity."""
     if quantity == "resonance_frequency":
         return "Hz"
     known = {q.name: q.unit for q in physics()[effect].quantities} if effect in physics() else {}
     unit = known.get(quantity, "dimensionless")
-    return unit.replace("N*m", "N").replace("rad", "m") if linear and quantity != "phase" else unit
+    unit = unit.replace("rad", "m") if linear and quantity != "phase" else unit
+    return unit.replace("N*m", effort_unit)
 
 
 def _parameter(value: float, deviation: float, unit: str) -> Parameter:

@@ -37,7 +37,7 @@ class Where:
     means: Array
 
 
-def where(bench: Workbench, fitted: Fit, linear: bool) -> list[Where]:
+def where(bench: Workbench, fitted: Fit, linear: bool, effort_unit: str) -> list[Where]:
     """Shares of every coordinate, largest first."""
     length = "m" if linear else "rad"
     time = bench.row_values(lambda s: s.time)
@@ -49,7 +49,7 @@ def where(bench: Workbench, fitted: Fit, linear: bool) -> list[Where]:
         "position": (turn, length),
         "velocity": (bench.row_values(lambda s: s.velocity), f"{length}/s"),
         "acceleration": (fitted.columns[:, 0], f"{length}/s**2"),
-        "current": (bench.effort, "N" if linear else "N*m"),
+        "current": (bench.effort, effort_unit),
         "time": (time, "s"),
         "direction": (sign, "dimensionless"),
         "reversal": (time - np.maximum.accumulate(turned), "s"),

@@ -29,7 +29,7 @@ class CoggingTorque(Mechanism, Effect):
         Quantity("harmonic", "n", "dimensionless", lower=2.0),
         Quantity("phase", "phi", "rad"),
     )
-    shapes = (Shape(quantities[1], tuple(float(n) for n in range(2, 41)), whole=True),)
+    shapes = (Shape(quantities[1], tuple(float(n) for n in range(2, 81)), whole=True),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """sin(n*q) and cos(n*q), nothing where the wave is faster than the samples can follow."""
