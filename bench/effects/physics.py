@@ -3,7 +3,7 @@
 - `Mechanism`: on the mechanics. Natively, as a part of the MuJoCo model (`add`), or where MuJoCo has no such part by
   what it does in every step: the level of dry friction, a resisting torque, the inertia, the motor's torque.
 - `Electronics`: between the current that is demanded, the one that is reported and the torque that the motor makes.
-- `Sensing`: between the motion and what drive and recording see of it.
+- `Sensing`: between the motion and what the drive sees of it (`seen`), or what is recorded of that (`filtered`).
 
 Hooks are neutral unless an effect overrides them. They take values and states as numbers or as arrays of axes, (k,).
 """
@@ -166,21 +166,17 @@ class Sensing(Physics):
     """An effect of the sensor."""
 
     def seen(self, values: Values, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """Position and velocity as the encoder sees them, from the true ones."""
+        """Position and velocity as the encoder sees them and the drive has them, from the true ones."""
         return position, velocity
 
     def unseen(self, values: Mapping[str, float], position: Array, velocity: Array) -> tuple[Array, Array]:
         """True position and velocity from those that the encoder saw, (n,)."""
         return position, velocity
 
-    def filtered(self, values: Values, before: Array, now: Array, reported: Array, step: float) -> Array:
-        """Velocity reported after a step in which the seen one went from `before` to `now`; `reported` at its start."""
-        return now
-
-    def filtered_along(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
-        """`filtered` along a whole recording, (n,) at a constant step - s."""
+    def filtered(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
+        """Velocity that the recording holds, from the one that the drive has, (n,) at a constant step - s."""
         return velocity
 
-    def unfiltered_along(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
-        """Seen velocity from the reported one, (n,)."""
+    def unfiltered(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
+        """Velocity that the drive has, from the one that the recording holds, (n,)."""
         return velocity

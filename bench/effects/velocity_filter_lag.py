@@ -2,8 +2,8 @@
 
     T*dv/dt + v = omega
 
-T - time constant - s; v - reported velocity, omega - velocity of the motion - rad/s (m/s). Drive and
-recording both see v.
+T - time constant - s; v - reported velocity, omega - velocity of the motion - rad/s (m/s). v is what
+is recorded; the drive has a velocity of its own, without the filter.
 Source: W. Leonhard, Control of Electrical Drives (filtered speed feedback).
 """
 
@@ -14,7 +14,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.signal import lfilter
 
-from bench.effects.physics import Array, Axis, Number, Sensing, Values
+from bench.effects.physics import Array, Axis, Number, Sensing
 from bench.units import Quantity
 
 
@@ -29,18 +29,13 @@ class VelocityFilterLag(Sensing):
         """Where the effect is absent."""
         return {"time_constant": 0.0}
 
-    def filtered(self, values: Values, before: Array, now: Array, reported: Array, step: float) -> Array:
-        """Exact for a velocity that changes linearly within the step."""
-        decay, of_before, of_now = _weights(values["time_constant"], step)
-        return decay * reported + of_before * before + of_now * now
-
-    def filtered_along(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
-        """The same, started where the velocity is."""
+    def filtered(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
+        """Exact for a velocity that changes linearly within the step; started where the velocity is."""
         decay, of_before, of_now = _weights(values["time_constant"], step)
         start = np.array([(1.0 - of_now) * velocity[0]])
         return lfilter([of_now, of_before], [1.0, -decay], velocity, zi=start)[0]
 
-    def unfiltered_along(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
+    def unfiltered(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
         """v + T*dv/dt by central differences: what holds a model to a recording needs no more."""
         return velocity + values["time_constant"] * np.gradient(velocity, step) if velocity.size > 1 else velocity
 

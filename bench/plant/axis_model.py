@@ -9,7 +9,7 @@ from functools import cached_property
 
 import mujoco
 
-from bench.effects.physics import Axis, Mechanism, Physics, Winding
+from bench.effects.physics import Axis, Electronics, Mechanism, Physics, Sensing, Winding
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.plant.model import AxisParameters, build_spec
@@ -18,6 +18,9 @@ from bench.rig.rig import Rig
 
 #: Effects that part motor and load; an axis has one coupling.
 COUPLINGS = ("elastic_coupling", "backlash")
+
+#: Hooks of electronics and sensing that the drive has to do with.
+IN_THE_LOOP = ("flowing", "acting", "delivered", "seen")
 
 
 @dataclass(frozen=True)
@@ -85,7 +88,8 @@ class AxisModel:
     @property
     def all_native(self) -> bool:
         """Whether MuJoCo runs the whole axis and its drive by itself."""
-        return len(self.native) == len(self.effects)
+        in_the_loop = (*self.of_kind(Electronics), *self.of_kind(Sensing))
+        return not self.ticked and not any(p.effect.acts_through(h) for p in in_the_loop for h in IN_THE_LOOP)
 
     @property
     def structure(self) -> tuple[str, ...]:

@@ -9,12 +9,14 @@ import numpy as np
 from mujoco.batch import MODEL_FIELDS, Batch
 
 from bench.effects.mjcf import AXIS, DRIVE
+from bench.effects.physics import Sensing
 from bench.errors import SimulationError
 from bench.plant.drive import Cascade, CascadeDrive, FrictionEmulation
 from bench.plant.plant import Plant
 from bench.plant.quiet import quiet
 from bench.plant.references import References, side_by_side
-from bench.plant.sensing import Sensed
+from bench.plant.rows import gather
+from bench.plant.sensing import seen_by_drive
 from bench.plant.states import DIVERGED, States
 from bench.plant.ticked import TickedEffects
 
@@ -38,14 +40,14 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
     velocity[:] = motion.velocity[0]
     position[:] = motion.position[0] + half * velocity
     models = [plant.model for plant in plants]
-    sensed = Sensed(models, motion.position[0], motion.velocity[0], motion.period)
+    encoders = [rows for rows in gather(models, Sensing) if rows.effect.acts_through("seen")]
     acting = TickedEffects(batch, models, velocity) if any(not model.all_native for model in models) else None
     record = States(motion.time, *(np.zeros_like(motion.velocity) for _ in range(4)))
     with quiet():
         for k in range(len(motion.time)):
             record.position[k] = position - half * velocity
             record.velocity[k] = velocity
-            setpoint, motor = drive.tick(k, *sensed.see(record.position[k], velocity))
+            setpoint, motor = drive.tick(k, *seen_by_drive(encoders, record.position[k], velocity))
             if acting is None:
                 record.torque[k], record.motor_torque[k] = setpoint, motor
                 torque_input[:] = motor

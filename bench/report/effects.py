@@ -25,8 +25,8 @@ HOOKS = {
     "flowing": "between demanded and reported current",
     "acting": "between reported current and torque",
     "delivered": "between reported current and torque",
-    "seen": "between motion and encoder",
-    "filtered": "between encoder and drive",
+    "seen": "between motion and drive",
+    "filtered": "between drive and recording",
 }
 
 
