@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.diagnose.candidates import gain
+from bench.diagnose.candidates import gains
 from bench.diagnose.hypothesis import BACKLASH, Fit, Hypothesis, Named, dead_zone_columns, fit, lags, prepared
 from bench.diagnose.workbench import Workbench
 
@@ -40,8 +40,7 @@ def with_backlash(bench: Workbench, hypothesis: Hypothesis, spring_rate: float) 
         mesh = np.stack([m.ravel() for m in np.meshgrid(*axes, indexing="ij")], axis=1)
         shapes = np.column_stack([mesh, np.full(len(mesh), spring_rate)])
         columns = dead_zone_columns(seen, shapes, moving)
-        gains = [gain(columns[:, [k]], current.residual, basis) for k in range(len(shapes))]
-        best = shapes[int(np.argmax(gains))]
+        best = shapes[int(np.argmax(gains(columns, 1, current.residual, basis)))]
         spread = np.array(SPREAD) * 0.5**level
         axes = [best[k] * np.exp(spread[k] * np.linspace(-1.0, 1.0, 5 if k == 0 else 3)) for k in range(3)]
     return fit(bench, current.hypothesis.with_effect(Named(BACKLASH, tuple(float(value) for value in best))))

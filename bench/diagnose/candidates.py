@@ -75,17 +75,27 @@ def candidates(bench: Workbench, current: Fit, excluded: frozenset[str] = frozen
     return sorted(best.values(), key=lambda candidate: -candidate.gain)
 
 
-def gain(columns: Array, residual: Array, basis: Array) -> float:
-    """Squares that columns (m, k) take from a residual (m,) beyond what a basis (m, p) spans."""
-    beyond = columns - basis @ (basis.T @ columns)
-    scale = np.sqrt(np.sum(beyond**2, axis=0))
-    full = np.sqrt(np.sum(columns**2, axis=0))
-    kept = scale > 1e-4 * np.maximum(full, 1e-300)
-    if not kept.any():
-        return 0.0
-    beyond = beyond[:, kept] / scale[kept]
-    solved = np.linalg.lstsq(beyond.T @ beyond, beyond.T @ residual, rcond=1e-8)[0]
-    return float(solved @ (beyond.T @ residual))
+def gains(columns: Array, width: int, residual: Array, basis: Array) -> Array:
+    """Squares that groups of columns take from a residual (m,) beyond what an orthonormal basis (m, p) spans.
+
+    Args:
+        columns: (m, groups*width), group by group.
+        width: columns of a group.
+        residual: (m,).
+        basis: (m, p).
+
+    Returns:
+        (groups,) - the residual's unit squared.
+    """
+    rows = np.ascontiguousarray(columns.T)
+    full = np.sqrt(np.sum(rows**2, axis=1))
+    rows = rows - (rows @ basis) @ basis.T
+    scale = np.sqrt(np.sum(rows**2, axis=1))
+    rows = rows * np.where(scale > 1e-4 * np.maximum(full, 1e-300), 1.0 / np.maximum(scale, 1e-300), 0.0)[:, None]
+    shared = (rows @ residual).reshape(-1, width)
+    groups = rows.reshape(-1, width, rows.shape[1])
+    inverse = np.linalg.pinv(groups @ groups.transpose(0, 2, 1), rcond=1e-8, hermitian=True)
+    return np.einsum("gi,gij,gj->g", shared, inverse, shared)
 
 
 def _linear(seen: Workbench, current: Fit, basis: Array, excluded: frozenset[str]) -> Iterator[Candidate]:
@@ -97,9 +107,8 @@ def _linear(seen: Workbench, current: Fit, basis: Array, excluded: frozenset[str
         grids = _grid(physics.shapes)
         made = seen.table(lambda s, p=physics, g=grids: [c for shape in g for c in p.columns(s, shape)], resting)
         width = made.shape[1] // len(grids)
-        for index, shape in enumerate(grids):
-            part = made[:, index * width : (index + 1) * width]
-            yield Candidate(Named(physics.name, shape), gain(part, current.residual, basis))
+        worth = gains(made, width, current.residual, basis)
+        yield from (Candidate(Named(physics.name, shape), float(w)) for shape, w in zip(grids, worth, strict=True))
 
 
 def _grid(shapes: tuple) -> list[tuple[float, ...]]:
@@ -125,11 +134,11 @@ def _transforms(
         shapes = [(antiresonance, damping) for antiresonance in ANTIRESONANCES for damping in DAMPINGS]
         transfers = [two_mass(seen, *shape) for shape in shapes]
         made = seen.through(lambda s: [(s.velocity, 1)], moving, transfers)
-        for index, shape in enumerate(shapes):
-            yield Candidate(Named(ELASTIC, shape), gain(made[:, index : index + 1], current.residual, basis))
+        worth = gains(made, 1, current.residual, basis)
+        yield from (Candidate(Named(ELASTIC, shape), float(w)) for shape, w in zip(shapes, worth, strict=True))
     if ECCENTRICITY not in excluded and ECCENTRICITY not in current.hypothesis.names:
         columns = seen.table(_eccentric, moving)
-        worth = gain(columns, current.residual, basis)
+        worth = float(gains(columns, 2, current.residual, basis)[0])
         start = np.linalg.lstsq(columns, current.residual, rcond=None)[0] / -current.theta[0]
         yield Candidate(Named(ECCENTRICITY, (float(start[0]), float(start[1]))), worth)
 

@@ -11,7 +11,7 @@ from bench.diagnose.added import axis_model, velocity_gap
 from bench.diagnose.balance import EVERY, Balance
 from bench.diagnose.candidates import EVENT
 from bench.diagnose.found import Gap, NamedEffect
-from bench.diagnose.hypothesis import DIRECTION, Fit, fit
+from bench.diagnose.hypothesis import CURRENT_LAG, DIRECTION, VELOCITY_LAG, Fit, fit
 from bench.diagnose.quantities import base_parameters, effect_parameters, uncertain
 from bench.diagnose.search import OFFSET, REMAINDER, Step, search
 from bench.diagnose.sensing import VelocityLag, velocity_lag
@@ -35,8 +35,8 @@ Progress = Callable[[float], None]
 AMBIGUOUS = {
     OFFSET: (DIRECTION,),
     DIRECTION: (OFFSET,),
-    "current_loop_lag": ("velocity_filter_lag",),
-    "velocity_filter_lag": ("current_loop_lag",),
+    CURRENT_LAG: (VELOCITY_LAG,),
+    VELOCITY_LAG: (CURRENT_LAG,),
 }
 
 
@@ -79,13 +79,18 @@ def diagnose(
         InputError: rig and recording do not fit together.
     """
     bench = Workbench.of(trace, rig)
+    lag = None if VELOCITY_LAG in excluded else velocity_lag(trace, bench)
+    if {"position", "velocity"} <= set(trace.signals):
+        excluded = excluded | {VELOCITY_LAG}  # read from position and speed themselves
+    if lag is not None and bench.conditioning.source == "velocity":
+        trace, holdout = unlagged(trace), unlagged(holdout) if holdout is not None else None
+        bench = Workbench.of(trace, rig)
     require_decidable(trace, rig, bench)
     other = Workbench.of(holdout, rig, bench.conditioning.filter.width) if holdout is not None else None
     steps = search(bench, rig.motor.rotor_inertia or 0.0, excluded)
     progress(0.6)
     warnings = foreign(bench, steps[0].fitted, other)
     fitted = proven(bench, steps[-1].fitted, None if warnings else other)
-    lag = None if "velocity_filter_lag" in excluded else velocity_lag(trace, bench)
     limit = None if "voltage_limit" in excluded else voltage_limit(trace, rig, bench)
     _, unit = rig.net_effort(trace)
     effects, parameters = named(bench, fitted, rig, unit, lag, limit)
@@ -117,6 +122,11 @@ def diagnose(
         balance=balance,
         warnings=[*warnings, *problem, *failed],
     )
+
+
+def unlagged(trace: Trace) -> Trace:
+    """The recording without its reported speed, which lags, so that speed comes from position."""
+    return replace(trace, signals={name: values for name, values in trace.signals.items() if name != "velocity"})
 
 
 def require_decidable(trace: Trace, rig: Rig, bench: Workbench) -> None:
@@ -167,20 +177,21 @@ def named(
     parameters = base_parameters(fitted, numbers, units)
     parameters |= load_inertia(parameters, rig)
     tick = rig.drive.control_period if rig.drive is not None else 0.0
+    told_apart = bench.conditioning.source == "position" or lag is not None
     effects = []
     for index, effect in enumerate(fitted.hypothesis.effects):
         less = fit(bench, fitted.hypothesis.without(index))
         evidence = {"residual_without": less.rms, "residual_with": fitted.rms, "noise_floor": fitted.floor}
         found = effect_parameters(fitted, numbers, index, rig.linear, unit, tick)
         ambiguous = AMBIGUOUS.get(effect.name, ())
-        if effect.name == "current_loop_lag" and bench.conditioning.source == "position":
+        if effect.name == CURRENT_LAG and told_apart:
             ambiguous = ()
         effects.append(NamedEffect(effect.name, found, ambiguous, evidence))
     if lag is not None:
         reach = 1.96 * lag.std_error + 0.5 * tick
         value = Parameter(lag.time_constant, "s", reach / 1.96, (lag.time_constant - reach, lag.time_constant + reach))
         evidence = {"speed_against_position_before": lag.before, "speed_against_position_after": lag.after}
-        effects.append(NamedEffect("velocity_filter_lag", {"time_constant": value}, (), evidence))
+        effects.append(NamedEffect(VELOCITY_LAG, {"time_constant": value}, (), evidence))
     if limit is not None:
         reach = 1.96 * limit.std_error
         value = Parameter(limit.voltage, "V", limit.std_error, (limit.voltage - reach, limit.voltage + reach))
