@@ -78,15 +78,7 @@ def diagnose(
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
         InputError: rig and recording do not fit together.
     """
-    bench = Workbench.of(trace, rig)
-    lag = None if VELOCITY_LAG in excluded else velocity_lag(trace, bench)
-    if {"position", "velocity"} <= set(trace.signals):
-        excluded = excluded | {VELOCITY_LAG}  # read from position and speed themselves
-    if lag is not None and bench.conditioning.source == "velocity":
-        trace, holdout = unlagged(trace), unlagged(holdout) if holdout is not None else None
-        bench = Workbench.of(trace, rig)
-    require_decidable(trace, rig, bench)
-    other = Workbench.of(holdout, rig, bench.conditioning.filter.width) if holdout is not None else None
+    bench, other, lag, excluded = laid_out(trace, rig, holdout, excluded)
     steps = search(bench, rig.motor.rotor_inertia or 0.0, excluded)
     progress(0.6)
     warnings = foreign(bench, steps[0].fitted, other)
@@ -96,32 +88,51 @@ def diagnose(
     effects, parameters = named(bench, fitted, rig, unit, lag, limit)
     require_significant(parameters[parameter_name(INERTIA, rig.linear)], rig.linear)
     balance = repeating(Balance.of(bench, fitted), other)
-    before = Balance.of(bench, steps[0].fitted)
-    torque = Gap(
-        unit,
-        fitted.floor,
-        (before.gap(bench), balance.gap(bench)),
-        (before.gap(other), balance.gap(other)) if other is not None else None,
-    )
     progress(0.7)
     model, problem = axis_model(fitted, effects, parameters, rig)
     velocity, failed = velocity_gap(trace, holdout, rig, parameters, fitted, model)
     remains = fitted.chi > REMAINDER
-    gap_before = float(np.sum(steps[0].fitted.residual ** 2))
     return Diagnosis(
         verdict="unexplained_remainder" if remains else "explained" if effects else "nothing_missing",
         effects=effects,
         where=where(bench, steps[0].fitted, rig.linear, unit),
-        unexplained_share=fitted.excess / max(gap_before, 1e-300),
+        unexplained_share=fitted.excess / max(float(np.sum(steps[0].fitted.residual ** 2)), 1e-300),
         unexplained_where=where(bench, fitted, rig.linear, unit)[:3] if remains else [],
         parameters=parameters,
-        torque=torque,
+        torque=torque_gap(bench, other, Balance.of(bench, steps[0].fitted), balance, fitted.floor, unit),
         velocity=velocity,
         steps=_shrinking(steps, fitted),
         model=model,
         balance=balance,
         warnings=[*warnings, *problem, *failed],
     )
+
+
+def laid_out(
+    trace: Trace, rig: Rig, holdout: Trace | None, excluded: frozenset[str]
+) -> tuple[Workbench, Workbench | None, VelocityLag | None, frozenset[str]]:
+    """Both recordings laid out, the lag of the reported speed, and the effects not to be tried.
+
+    A reported speed that lags its position is not used where it would have been the source of speed.
+    """
+    bench = Workbench.of(trace, rig)
+    lag = None if VELOCITY_LAG in excluded else velocity_lag(trace, bench)
+    if {"position", "velocity"} <= set(trace.signals):
+        excluded = excluded | {VELOCITY_LAG}
+    if lag is not None and bench.conditioning.source == "velocity":
+        trace, holdout = unlagged(trace), unlagged(holdout) if holdout is not None else None
+        bench = Workbench.of(trace, rig)
+    require_decidable(trace, rig, bench)
+    other = Workbench.of(holdout, rig, bench.conditioning.filter.width) if holdout is not None else None
+    return bench, other, lag, excluded
+
+
+def torque_gap(
+    bench: Workbench, other: Workbench | None, before: Balance, after: Balance, floor: float, unit: str
+) -> Gap:
+    """RMS of measured less modelled torque without and with the effects, on both recordings."""
+    holdout = (before.gap(other), after.gap(other)) if other is not None else None
+    return Gap(unit, floor, (before.gap(bench), after.gap(bench)), holdout)
 
 
 def unlagged(trace: Trace) -> Trace:

@@ -81,8 +81,7 @@ def normal_equations(regressors: Regressors, block: float, most: int) -> NormalE
         block: duration of a block - s; longer where there would be more than `most` of them.
         most: number of blocks.
     """
-    table = np.column_stack([regressors.columns, regressors.effort])
-    time = regressors.time
+    table, time = regressors.table, regressors.time
     edges = np.empty(0, dtype=np.int64)
     if time.size:
         count = int(np.clip((time[-1] - time[0]) / block, 1, most))

@@ -21,31 +21,44 @@ class Regressors:
 
     Attributes:
         names: of the columns.
-        columns: (m, p).
-        effort: (m,), what they explain.
+        table: (m, p + 1): the columns, and the effort that they explain.
         noise: (p,) standard deviation of the sensor noise in each column, independent between columns: a smoothed
             signal and its derivative are uncorrelated under white noise, as G is even and omega*G odd.
         time: (m,) - s.
     """
 
     names: tuple[str, ...]
-    columns: NDArray[np.float64]
-    effort: NDArray[np.float64]
+    table: NDArray[np.float64]
     noise: NDArray[np.float64]
     time: NDArray[np.float64]
+
+    @property
+    def columns(self) -> NDArray[np.float64]:
+        """(m, p)."""
+        return self.table[:, :-1]
+
+    @property
+    def effort(self) -> NDArray[np.float64]:
+        """(m,) - the effort's unit."""
+        return self.table[:, -1]
 
 
 def regressors(motion: Motion) -> Regressors:
     """Columns of a motion: inertia, viscous, Coulomb, constant, misalignment."""
-    used = motion.direction != 0.0
     conditioning = motion.conditioning
-    table = {
-        INERTIA: (motion.acceleration, conditioning.acceleration_noise),
-        VISCOUS: (motion.velocity, conditioning.velocity_noise),
-        COULOMB: (motion.direction, 0.0),
-        OFFSET: (np.ones_like(motion.time), 0.0),
-        MISALIGNMENT: (-motion.effort_rate, conditioning.effort_noise * conditioning.filter.noise_gain(1)),
+    noise = {
+        INERTIA: conditioning.acceleration_noise,
+        VISCOUS: conditioning.velocity_noise,
+        COULOMB: 0.0,
+        OFFSET: 0.0,
+        MISALIGNMENT: conditioning.effort_noise * conditioning.filter.noise_gain(1),
     }
-    columns = np.stack([column[used] for column, _ in table.values()], axis=1)
-    noise = np.array([noise for _, noise in table.values()])
-    return Regressors(tuple(table), columns, motion.effort[used], noise, motion.time[used])
+    used = np.flatnonzero(motion.direction)
+    table = np.empty((used.size, len(noise) + 1))
+    table[:, 0] = motion.acceleration[used]
+    table[:, 1] = motion.velocity[used]
+    table[:, 2] = motion.direction[used]
+    table[:, 3] = 1.0
+    np.negative(motion.effort_rate[used], out=table[:, 4])
+    table[:, 5] = motion.effort[used]
+    return Regressors(tuple(noise), table, np.array(list(noise.values())), motion.time[used])
