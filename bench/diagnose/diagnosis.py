@@ -78,20 +78,20 @@ def diagnose(
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
         InputError: rig and recording do not fit together.
     """
-    bench, other, lag, excluded = laid_out(trace, rig, holdout, excluded)
-    steps = search(bench, rig.motor.rotor_inertia or 0.0, excluded)
+    bench, other, lag = laid_out(trace, rig, holdout)
+    steps = search(bench, rig.motor.rotor_inertia or 0.0, unsearched(trace, excluded))
     progress(0.6)
     warnings = foreign(bench, steps[0].fitted, other)
     fitted = proven(bench, steps[-1].fitted, None if warnings else other)
-    limit = None if "voltage_limit" in excluded else voltage_limit(trace, rig, bench)
     _, unit = rig.net_effort(trace)
-    effects, parameters = named(bench, fitted, rig, unit, lag, limit)
+    found, parameters = named(bench, fitted, rig, unit, lag, voltage_limit(trace, rig, bench))
+    effects = [effect for effect in found if effect.name not in excluded]
     require_significant(parameters[parameter_name(INERTIA, rig.linear)], rig.linear)
     balance = repeating(Balance.of(bench, fitted), other)
     progress(0.7)
     model, problem = axis_model(fitted, effects, parameters, rig)
     velocity, failed = velocity_gap(trace, holdout, rig, parameters, fitted, model)
-    remains = fitted.chi > REMAINDER
+    remains = fitted.chi > REMAINDER or len(effects) < len(found)
     return Diagnosis(
         verdict="unexplained_remainder" if remains else "explained" if effects else "nothing_missing",
         effects=effects,
@@ -108,23 +108,24 @@ def diagnose(
     )
 
 
-def laid_out(
-    trace: Trace, rig: Rig, holdout: Trace | None, excluded: frozenset[str]
-) -> tuple[Workbench, Workbench | None, VelocityLag | None, frozenset[str]]:
-    """Both recordings laid out, the lag of the reported speed, and the effects not to be tried.
+def unsearched(trace: Trace, excluded: frozenset[str]) -> frozenset[str]:
+    """Effects not to be sought in the torque balance: position and speed tell a lag of the speed themselves."""
+    return excluded | {VELOCITY_LAG} if {"position", "velocity"} <= set(trace.signals) else excluded
+
+
+def laid_out(trace: Trace, rig: Rig, holdout: Trace | None) -> tuple[Workbench, Workbench | None, VelocityLag | None]:
+    """Both recordings laid out, and the lag of the reported speed.
 
     A reported speed that lags its position is not used where it would have been the source of speed.
     """
     bench = Workbench.of(trace, rig)
-    lag = None if VELOCITY_LAG in excluded else velocity_lag(trace, bench)
-    if {"position", "velocity"} <= set(trace.signals):
-        excluded = excluded | {VELOCITY_LAG}
+    lag = velocity_lag(trace, bench)
     if lag is not None and bench.conditioning.source == "velocity":
         trace, holdout = unlagged(trace), unlagged(holdout) if holdout is not None else None
         bench = Workbench.of(trace, rig)
     require_decidable(trace, rig, bench)
     other = Workbench.of(holdout, rig, bench.conditioning.filter.width) if holdout is not None else None
-    return bench, other, lag, excluded
+    return bench, other, lag
 
 
 def torque_gap(

@@ -57,7 +57,8 @@ def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
         other, _ = build(bench, fitted.hypothesis.reshaped(index, moved))
         columns.append((((other - fitted.columns) @ fitted.theta) / step)[:, None])
     jacobian = np.concatenate(columns, axis=1)
-    scale = np.sqrt(np.mean(jacobian**2, axis=0)) + 1e-300
+    scale = np.sqrt(np.mean(jacobian**2, axis=0))
+    scale = np.where(scale > 0.0, scale, 1.0)
     jacobian = jacobian / scale
     inverse = np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-12)
     scores = jacobian * fitted.residual[:, None]

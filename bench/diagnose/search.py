@@ -34,6 +34,10 @@ SPRING, OFFSET = "torsion_spring", "torque_offset"
 
 #: Residual over noise floor above which what is left stands clearly above noise.
 REMAINDER = 1.12
+#: A large remainder, and the share of the first gap that names may leave in one; a dead zone's contact is never known.
+LARGE, REMAINING, REMAINING_BACKLASH = 3.0, 0.2, 0.35
+#: Longest event, as share of the recording; beyond, it is not an event but how the axis is.
+LONGEST_EVENT = 0.6
 #: Share of what stands above the floor that an effect must explain to be taken up.
 SHARE = 0.25
 #: The same for an event, which has a window of time to choose freely and so fits a part of anything.
@@ -71,6 +75,7 @@ def search(bench: Workbench, rotor_inertia: float, excluded: frozenset[str] = fr
                 bench, [*steps[:-1], Step(loose, ())] if len(steps) > 1 else [*steps, Step(loose, ())], excluded
             )
     final = simpler(bench, uncontested(bench, steps[-1].fitted, excluded))
+    final = believable(bench, steps[0].fitted, final)
     if final.hypothesis != steps[-1].fitted.hypothesis:
         steps = [*steps[:-1], Step(final, steps[-1].rivals)] if final.hypothesis.effects else steps[:1]
     return steps
@@ -120,6 +125,17 @@ def uncontested(bench: Workbench, fitted: Fit, excluded: frozenset[str]) -> Fit:
     return fitted
 
 
+def believable(bench: Workbench, before: Fit, fitted: Fit) -> Fit:
+    """No names, or none of an event, where so much is left that they are likelier the nearest than the right ones."""
+    if fitted.chi < LARGE:
+        return fitted
+    bearable = REMAINING_BACKLASH if BACKLASH in fitted.hypothesis.names else REMAINING
+    if fitted.excess > bearable * before.excess:
+        return before
+    events = [index for index, name in enumerate(fitted.hypothesis.names) if name == EVENT]
+    return fit(bench, fitted.hypothesis.without(events[0])) if events else fitted
+
+
 def simpler(bench: Workbench, fitted: Fit) -> Fit:
     """A torque offset instead of direction-dependent friction where viscous friction does not differ."""
     names = fitted.hypothesis.names
@@ -137,7 +153,7 @@ def worthwhile(bench: Workbench, before: Fit, after: Fit) -> bool:
     added = after.theta.size - before.theta.size + len(after.hypothesis.effects[-1].shape)
     significant = saved > SIGNIFICANT * added * correlation * before.floor**2
     share = EVENT_SHARE if after.hypothesis.names[-1] == EVENT else SHARE
-    return significant and before.chi > 1.0 and saved > share * before.excess and physical(after)
+    return significant and before.chi > 1.0 and saved > share * before.excess and physical(after, bench.duration)
 
 
 def row_correlation(bench: Workbench) -> float:
@@ -146,11 +162,13 @@ def row_correlation(bench: Workbench) -> float:
     return max(1.0, 2.0 * np.sqrt(np.pi) * smooth.width / (smooth.stride * smooth.sample_period))
 
 
-def physical(fitted: Fit) -> bool:
-    """Whether every effect has values that physics allows."""
+def physical(fitted: Fit, duration: float) -> bool:
+    """Whether every effect has values that physics allows, in a recording of a duration - s."""
     for index, effect in enumerate(fitted.hypothesis.effects):
         strengths = fitted.strengths(index)
         if effect.name in (ELASTIC, BACKLASH) and not 0.02 < strengths[0] / fitted.theta[0] < 0.98:
+            return False
+        if effect.name == EVENT and effect.shape[1] - effect.shape[0] > LONGEST_EVENT * duration:
             return False
         if effect.name in TRANSFORMS or effect.name in OUTSIDE:
             continue

@@ -85,6 +85,11 @@ class Workbench:
         return replace(self, stretches=stretches)
 
     @cached_property
+    def duration(self) -> float:
+        """Of the recording - s."""
+        return float(self.stretches[-1].signals.time[-1] - self.stretches[0].signals.time[0])
+
+    @cached_property
     def effort(self) -> Array:
         """Filtered motor torque at the used rows - N*m (N) - (m,)."""
         return self.rows(lambda s: [(s.effort, 0)])
