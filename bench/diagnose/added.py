@@ -8,11 +8,10 @@ import numpy as np
 
 from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.hypothesis import BACKLASH, ELASTIC, Fit
-from bench.effects.physics import Winding
 from bench.effects.present import Present
 from bench.errors import BenchError, InputError
 from bench.identify.estimate import Parameter
-from bench.plant.axis_model import AxisModel
+from bench.plant.axis_model import AxisModel, winding_of
 from bench.plant.model import AxisParameters
 from bench.plant.model_file import StoredModel
 from bench.plant.track import measured_velocity
@@ -36,7 +35,7 @@ def axis_model(
     peak = float(constant.torque(np.asarray(current))) if constant is not None and current is not None else math.inf
     try:
         present = tuple(_present(effect) for effect in effects)
-        model = AxisModel(base, present, peak, _winding(rig))
+        model = AxisModel(base, present, peak, winding_of(rig))
     except InputError as error:
         return None, [f"not added to the MuJoCo model: {error}"]
     return StoredModel(rig.name, model, float(fitted.theta[3])), []
@@ -45,19 +44,6 @@ def axis_model(
 def _present(effect: NamedEffect) -> Present:
     known = {quantity.name for quantity in Present(effect.name, ()).effect.quantities}
     return Present.of(effect.name, {key: p.value for key, p in effect.parameters.items() if key in known})
-
-
-def _winding(rig: Rig) -> Winding | None:
-    motor = rig.motor
-    if motor.resistance is None or motor.back_emf_constant is None or motor.torque_per_ampere is None:
-        return None
-    values = {
-        "resistance": motor.resistance,
-        "inductance": motor.inductance or 0.0,
-        "back_emf_constant": motor.back_emf_constant,
-        "torque_constant": motor.torque_per_ampere.constant,
-    }
-    return Winding(**{name: values[name] for name in Winding.__dataclass_fields__ if name in values})
 
 
 def velocity_gap(

@@ -60,10 +60,13 @@ def where(bench: Workbench, fitted: Fit, linear: bool, effort_unit: str) -> list
 
 
 def _account(name: str, values: Array, gap: Array, unit: str) -> Where:
-    """Share of variance between bins of equal count, less what chance puts between them."""
-    edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
-    index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, max(edges.size - 2, 0))
-    count = np.bincount(index, minlength=max(edges.size - 1, 1))
+    """Share of variance between bins of equal count, or of one value each, less what chance puts between them."""
+    gap = gap - gap.mean()
+    distinct, index = np.unique(values, return_inverse=True)
+    if distinct.size > BINS:
+        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
+        index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    count = np.bincount(index)
     means = np.bincount(index, gap, minlength=count.size) / np.maximum(count, 1)
     centres = np.bincount(index, values, minlength=count.size) / np.maximum(count, 1)
     kept = count >= LEAST

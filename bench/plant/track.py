@@ -14,9 +14,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.effects.mjcf import DRIVE
 from bench.plant.drive import Cascade, add_pid
-from bench.plant.native import run_controls
+from bench.plant.native import run_controls, sense_torque
 from bench.trace.trace import Trace
 
 Array = NDArray[np.float64]
@@ -51,9 +50,7 @@ def step_of(trace: Trace) -> tuple[float, int]:
 def holding_model(spec: mujoco.MjSpec, cascade: Cascade) -> mujoco.MjModel:
     """Compiled model whose actuator `drive` is the cascade with effort as feed-forward."""
     add_pid(spec, cascade)
-    spec.add_sensor(
-        name="torque", type=mujoco.mjtSensor.mjSENS_ACTUATORFRC, objtype=mujoco.mjtObj.mjOBJ_ACTUATOR, objname=DRIVE
-    )
+    sense_torque(spec)
     return spec.compile()
 
 

@@ -6,6 +6,7 @@ import scipy.signal
 
 from bench.diagnose.dead_zone import load_accelerations
 from bench.diagnose.hypothesis import corrected, lagged
+from bench.diagnose.where import _account
 from bench.effects.effect import Signals
 from bench.effects.presliding_friction import bristles
 
@@ -72,3 +73,11 @@ def test_the_two_mass_transfer_is_the_transfer_function():
     _, expected = scipy.signal.freqs(numerator, denominator, omega)
     s = 1j * omega / antiresonance
     assert 1.0 - s**2 / (1.0 + 2.0 * damping * s + s**2) == pytest.approx(expected)
+
+
+def test_a_gap_of_two_directions_belongs_to_direction():
+    rng = np.random.default_rng(0)
+    sign = np.sign(rng.normal(size=4000))
+    account = _account("direction", sign, 3.0 + 0.5 * sign + 0.1 * rng.normal(size=4000), "dimensionless")
+    assert account.centres == pytest.approx([-1.0, 1.0])
+    assert account.share == pytest.approx(0.25 / 0.26, abs=0.01)
