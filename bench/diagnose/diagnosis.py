@@ -10,6 +10,7 @@ import numpy as np
 from bench.diagnose.added import axis_model, velocity_gap
 from bench.diagnose.balance import EVERY, Balance
 from bench.diagnose.candidates import EVENT
+from bench.diagnose.decidable import require_decidable, require_positive, require_samples
 from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.hypothesis import CURRENT_LAG, DIRECTION, VELOCITY_LAG, Fit, fit
 from bench.diagnose.quantities import base_parameters, effect_parameters, uncertain
@@ -18,15 +19,13 @@ from bench.diagnose.sensing import VelocityLag, velocity_lag
 from bench.diagnose.voltage import VoltageLimit, voltage_limit
 from bench.diagnose.where import Where, where
 from bench.diagnose.workbench import Workbench
-from bench.identify.determined import require_determined, require_significant
+from bench.identify.determined import require_significant
 from bench.identify.estimate import Parameter
 from bench.identify.load_inertia import load_inertia
 from bench.identify.names import parameter_name, parameter_unit
-from bench.identify.normal_equations import normal_equations
-from bench.identify.regressors import COULOMB, INERTIA, VISCOUS, regressors
+from bench.identify.regressors import COULOMB, INERTIA, VISCOUS
 from bench.plant.model_file import StoredModel
 from bench.rig.rig import Rig
-from bench.trace.motion import motion
 from bench.trace.trace import Trace
 
 Progress = Callable[[float], None]
@@ -87,6 +86,7 @@ def diagnose(
     found, parameters = named(bench, fitted, rig, unit, lag, voltage_limit(trace, rig, bench))
     effects = [effect for effect in found if effect.name not in excluded]
     require_significant(parameters[parameter_name(INERTIA, rig.linear)], rig.linear)
+    require_positive(parameters[parameter_name(INERTIA, rig.linear)], trace.origin)
     balance = repeating(Balance.of(bench, fitted), other)
     progress(0.7)
     model, problem = axis_model(fitted, effects, parameters, rig)
@@ -118,12 +118,14 @@ def laid_out(trace: Trace, rig: Rig, holdout: Trace | None) -> tuple[Workbench, 
 
     A reported speed that lags its position is not used where it would have been the source of speed.
     """
+    require_samples(trace)
     bench = Workbench.of(trace, rig)
+    require_decidable(trace, rig, bench)
     lag = velocity_lag(trace, bench)
     if lag is not None and bench.conditioning.source == "velocity":
         trace, holdout = unlagged(trace), unlagged(holdout) if holdout is not None else None
         bench = Workbench.of(trace, rig)
-    require_decidable(trace, rig, bench)
+        require_decidable(trace, rig, bench)
     other = Workbench.of(holdout, rig, bench.conditioning.filter.width) if holdout is not None else None
     return bench, other, lag
 
@@ -139,13 +141,6 @@ def torque_gap(
 def unlagged(trace: Trace) -> Trace:
     """The recording without its reported speed, which lags, so that speed comes from position."""
     return replace(trace, signals={name: values for name, values in trace.signals.items() if name != "velocity"})
-
-
-def require_decidable(trace: Trace, rig: Rig, bench: Workbench) -> None:
-    """UndeterminedError where the rows do not determine inertia and friction, whatever else is in them."""
-    effort, _ = rig.net_effort(trace)
-    rows = regressors(motion(trace, effort, bench.conditioning))
-    require_determined(normal_equations(rows, 8.0 * bench.conditioning.filter.width, 512), rig.linear)
 
 
 def repeating(balance: Balance, other: Workbench | None) -> Balance:

@@ -20,7 +20,6 @@ from bench.trace.trace import Trace
 Array = NDArray[np.float64]
 Transfer = Callable[[Array], NDArray[np.complex128]]
 
-RECORD = "at least some seconds of motion in both directions, faster than the noise of the speed"
 #: Widest filter of a diagnosis - s: shapes of friction live in the milliseconds around a reversal.
 WIDEST = 2e-3
 #: A row needs one sign over this many filter widths to each side, so that a lag of some widths moves no reversal in.
@@ -76,7 +75,8 @@ class Workbench:
         parts = [part for part in trace.segments if part.stop - part.start > 4 * smooth.margin]
         stretches = tuple(_stretch(trace, effort, part, conditioning, peak_effort) for part in parts)
         if not any(part.used.any() for part in stretches):
-            raise UndeterminedError("the torque balance", "no filtered sample moves clearly in one direction", RECORD)
+            reason = f"no filtered sample of {trace.origin} moves clearly in one direction"
+            raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, trace.linear))
         return cls(stretches, conditioning, trace.origin)
 
     def with_signals(self, change: Callable[[Signals], Signals]) -> Workbench:
@@ -140,6 +140,15 @@ class Workbench:
             made = columns(part.signals)
             parts.append(_filtered(made, self.conditioning.filter, lag, transfer)[part.used])
         return np.concatenate(parts)
+
+
+def clear_motion(conditioning: Conditioning, linear: bool) -> str:
+    """What a row of the torque balance needs: one direction over the filter's reach, at a speed above the noise."""
+    speed, reach = conditioning.sign_threshold, 2.0 * SIGN_WIDTHS * conditioning.filter.width
+    return (
+        f"runs that keep one direction well over {reach:.2g} s, "
+        f"at speeds well above {speed:.3g} {'m/s' if linear else 'rad/s'}, where noise no longer makes the sign"
+    )
 
 
 def _stretch(trace: Trace, effort: Array, part: slice, conditioning: Conditioning, peak_effort: float) -> Stretch:

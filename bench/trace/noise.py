@@ -20,18 +20,22 @@ def white_noise(values: NDArray[np.floating]) -> float:
 
     The median over Hann-weighted windows of the periodogram's mean over its top 30 %: the median keeps jerks and
     events out, which fill the top of few windows. Second differences first, so that a ramp leaks nothing there. The
-    median of such a mean, a gamma variable, lies below its expectation by a known factor.
+    median of such a mean, a gamma variable, lies below its expectation by a known factor. Windows in which the signal
+    stands still hide their noise below its resolution and are left out.
 
     Args:
         values: (n,) regular samples.
 
     Returns:
-        Standard deviation; 0 when the signal is shorter than a window.
+        Standard deviation; 0 when the signal is shorter than a window, or never changes.
     """
     count = (values.size - 2) // WINDOW
     if count < 1:
         return 0.0
     differences = np.diff(values, 2)[: count * WINDOW].reshape(count, WINDOW)
+    differences = differences[differences.any(axis=1)]
+    if not differences.size:
+        return 0.0
     taper = np.hanning(WINDOW)
     power = np.abs(np.fft.rfft(differences * taper, axis=1)) ** 2 / np.sum(taper**2)
     frequency = np.linspace(0.0, np.pi, WINDOW // 2 + 1)

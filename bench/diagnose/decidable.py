@@ -1,0 +1,144 @@
+"""Whether a recording lets a diagnosis decide at all: long enough, fast enough, loud enough, and signals that agree."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from bench.diagnose.hypothesis import Fit, Hypothesis, fit
+from bench.diagnose.search import SIGNIFICANT, row_correlation
+from bench.diagnose.workbench import Workbench, clear_motion
+from bench.errors import InputError, UndeterminedError
+from bench.identify.determined import require_determined
+from bench.identify.estimate import Parameter
+from bench.identify.normal_equations import normal_equations
+from bench.identify.regressors import regressors
+from bench.rig.rig import Rig
+from bench.trace.filter import LEAST_WIDTH
+from bench.trace.motion import motion
+from bench.trace.trace import Trace
+
+#: Independent rows of clear motion. Of the shared cases cut short, those with 25 to 70 named an effect that was not
+#: there in 5 of 12, those with 90 to 130 in 1 of 15 (first 0.2, 0.4 and 0.8 s of every other one).
+INDEPENDENT = 100
+#: An effect this many times smaller than the torque that moves the axis is small, however little friction there is.
+SMALL = 10.0
+#: Speed and derivative of position may differ by a gear's or a lag's worth, not by a unit's.
+AGREE = 1.5
+#: Samples over which displacements are compared, and the correlation from which one is a multiple of the other.
+SPAN, PROPORTIONAL = 20, 0.95
+
+WHAT = "whether the model lacks an effect"
+
+
+def require_samples(trace: Trace) -> None:
+    """UndeterminedError where not even the narrowest filter would leave enough independent rows of the recording."""
+    needed = math.ceil(INDEPENDENT * 2.0 * math.sqrt(math.pi) * LEAST_WIDTH)
+    if len(trace) < needed:
+        raise UndeterminedError(
+            WHAT,
+            f"{trace.origin} holds {len(trace)} samples, {len(trace) * trace.sample_period:.2g} s",
+            f"at this rate {needed * trace.sample_period:.2g} s at least, better ten times that, "
+            "in both directions with several reversals",
+        )
+
+
+def require_decidable(trace: Trace, rig: Rig, bench: Workbench) -> None:
+    """Refuse a recording that is too short, too quiet, or whose rows determine no inertia and friction.
+
+    Raises:
+        UndeterminedError: with what to record instead.
+        InputError: position and velocity contradict each other.
+    """
+    require_agreement(trace)
+    _require_length(trace, bench)
+    effort, unit = rig.net_effort(trace)
+    rows = regressors(motion(trace, effort, bench.conditioning))
+    require_determined(normal_equations(rows, 8.0 * bench.conditioning.filter.width, 512), rig.linear)
+    require_audible(bench, fit(bench, Hypothesis()), unit)
+
+
+def require_agreement(trace: Trace) -> None:
+    """InputError where reported velocity is not the derivative of reported position, but a multiple of it."""
+    if not {"position", "velocity"} <= set(trace.signals):
+        return
+    moved, reported = [], []
+    for part in trace.segments:
+        position, velocity = trace["position"][part], trace["velocity"][part]
+        travelled = np.cumsum((velocity[1:] + velocity[:-1]) / 2.0) * trace.sample_period
+        moved.append(position[1 + SPAN :] - position[1:-SPAN])
+        reported.append(travelled[SPAN:] - travelled[:-SPAN])
+    actual, claimed = np.concatenate(moved), np.concatenate(reported)
+    scale = math.sqrt(float(actual @ actual) * float(claimed @ claimed))
+    if abs(float(actual @ claimed)) < PROPORTIONAL * scale or scale == 0.0:
+        return
+    ratio = math.copysign(float(np.linalg.norm(claimed) / np.linalg.norm(actual)), float(actual @ claimed))
+    if 1.0 / AGREE < ratio < AGREE:
+        return
+    raise InputError(
+        f"{trace.origin}: velocity",
+        f"found {ratio:.4g} times the derivative of position",
+        "allowed: the same motion in both (check the units of the two columns, or leave one of them out)",
+    )
+
+
+def _require_length(trace: Trace, bench: Workbench) -> None:
+    smooth = bench.conditioning.filter
+    found = bench.effort.size / row_correlation(bench)
+    if found >= INDEPENDENT:
+        return
+    moving = bench.effort.size * smooth.stride * smooth.sample_period
+    raise UndeterminedError(
+        WHAT,
+        f"{moving:.2g} s of {trace.time[-1] - trace.time[0]:.3g} s move clearly in one direction, "
+        f"{found:.0f} independent samples where {INDEPENDENT} are needed",
+        f"at least {moving * INDEPENDENT / found:.2g} s of such motion in both directions: "
+        f"{clear_motion(bench.conditioning, trace.linear)}",
+    )
+
+
+def smallest_visible(bench: Workbench, fitted: Fit) -> float:
+    """RMS torque of the smallest effect that noise would let be found - N*m (N)."""
+    return fitted.floor * math.sqrt(SIGNIFICANT * row_correlation(bench) / bench.effort.size)
+
+
+def require_audible(bench: Workbench, base: Fit, unit: str) -> None:
+    """UndeterminedError where an effect as large as friction, or a tenth of the torque, would drown in the noise.
+
+    Args:
+        bench: the recording.
+        base: inertia, viscous and Coulomb friction fitted to it.
+        unit: of the effort.
+    """
+    conditioning = bench.conditioning
+    noise = conditioning.effort_noise * conditioning.filter.noise_gain(0)
+    varies = float(np.std(bench.effort))
+    if varies <= 2.0 * noise:
+        raise UndeterminedError(
+            WHAT,
+            f"the motor torque varies by {varies:.3g} {unit}, its noise alone by {noise:.3g} {unit}",
+            f"a motion that takes more than {4.0 * noise:.2g} {unit} to accelerate and brake"
+            if noise > 0.0
+            else "the signal that the motor's torque follows: this one never changes",
+        )
+    friction = float(np.sqrt(np.mean((base.columns[:, 1:3] @ base.theta[1:3]) ** 2)))
+    torque = float(np.sqrt(np.mean((base.columns[:, :3] @ base.theta[:3]) ** 2)))
+    least, loud = smallest_visible(bench, base), max(friction, torque / SMALL)
+    if least > loud:
+        raise UndeterminedError(
+            WHAT,
+            f"only effects above {least:.3g} {unit} would stand out of the noise, friction is {friction:.3g} {unit} "
+            f"and the torque {torque:.3g} {unit}",
+            f"{(least / loud) ** 2:.2g} times as long, or accelerations {least / loud:.2g} times as large",
+        )
+
+
+def require_positive(inertia: Parameter, origin: str) -> None:
+    """InputError where the inertia is negative: torque and speed are counted in opposite directions."""
+    if inertia.ci95[1] <= 0.0:
+        raise InputError(
+            origin,
+            f"found an inertia of {inertia.value:.3g} {inertia.unit}: torque and motion have opposite signs",
+            "allowed: both counted the same way (a leading - in the rig's [trace.columns] turns one)",
+        )
