@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.diagnose.candidates import EVENT
-from bench.diagnose.hypothesis import Fit, Hypothesis, Named, build
+from bench.diagnose.hypothesis import MAINS, Fit, Hypothesis, Named, build
 from bench.diagnose.workbench import Workbench
 
 Array = NDArray[np.float64]
@@ -42,6 +42,8 @@ class Balance:
         """Modelled torque at the used rows of a recording - N*m (N) - (m,)."""
         columns, owners = build(bench, self.hypothesis)
         theta = self.theta.copy()
+        if self.recording != bench.origin:
+            theta[owners == MAINS] = 0.0
         if self.recording not in (EVERY, bench.origin):
             names = self.hypothesis.names
             theta[[owner >= 0 and names[owner] == EVENT for owner in owners]] = 0.0
@@ -60,6 +62,7 @@ class Balance:
             f"recording = {_quoted(self.recording)}",
             f"filter_width = {self.width!r}",
             f"asymmetry = {self.hypothesis.asymmetry!r}",
+            f"mains = [{', '.join(repr(line) for line in self.hypothesis.mains)}]",
             f"coefficients = [{', '.join(repr(float(value)) for value in self.theta)}]",
         ]
         for effect in self.hypothesis.effects:
@@ -75,7 +78,8 @@ class Balance:
             for entry in table.get("effects", [])
         )
         theta = np.array([float(value) for value in table["coefficients"]])
-        hypothesis = Hypothesis(effects, float(table["asymmetry"]))
+        mains = tuple(float(line) for line in table.get("mains", []))
+        hypothesis = Hypothesis(effects, float(table["asymmetry"]), mains)
         return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,6 +10,7 @@ import scipy.signal
 from numpy.typing import NDArray
 
 from bench.diagnose.dead_zone import load_accelerations
+from bench.diagnose.noise import noise_floor
 from bench.diagnose.outside import physics_of
 from bench.diagnose.workbench import Transfer, Workbench
 from bench.effects.effect import Base, Column, Signals
@@ -18,6 +20,8 @@ Array = NDArray[np.float64]
 CURRENT_LAG, VELOCITY_LAG = "current_loop_lag", "velocity_filter_lag"
 BACKLASH = "backlash"
 ELASTIC, ECCENTRICITY, DIRECTION = "elastic_coupling", "encoder_eccentricity", "direction_dependent_friction"
+#: Owners of columns that belong to no effect.
+BASE, MAINS = -1, -2
 #: Effects that change how columns are made instead of adding columns of raw products.
 TRANSFORMS = (CURRENT_LAG, VELOCITY_LAG, ECCENTRICITY, ELASTIC, BACKLASH)
 
@@ -37,14 +41,20 @@ class Hypothesis:
     Attributes:
         effects: in the order they were added.
         asymmetry: D_0/K_0, by which effects that scale dry friction see it differ between directions.
+        mains: frequencies of the hum in this recording's sensors - Hz.
     """
 
     effects: tuple[Named, ...] = ()
     asymmetry: float = 0.0
+    mains: tuple[float, ...] = ()
 
     def with_effect(self, named: Named) -> Hypothesis:
         """This hypothesis and one effect more."""
         return replace(self, effects=(*self.effects, named))
+
+    def with_mains(self, mains: tuple[float, ...]) -> Hypothesis:
+        """This hypothesis with hum at frequencies - Hz."""
+        return replace(self, mains=mains)
 
     def without(self, index: int) -> Hypothesis:
         """This hypothesis less one of its effects."""
@@ -72,10 +82,10 @@ class Fit:
     Attributes:
         hypothesis: what was fitted.
         columns: (m, p).
-        theta: (p,): J, K_w, K_0, misalignment, then the strengths of the effects in order.
-        owners: (p,) index of the effect a column belongs to, -1 for the base.
+        theta: (p,): J, K_w, K_0, misalignment, sines and cosines of hum, then the strengths of the effects in order.
+        owners: (p,) index of the effect a column belongs to, BASE or MAINS.
         residual: (m,) - N*m (N).
-        floor: RMS that sensor noise alone leaves under this model - N*m (N).
+        floor: RMS that sensor noise alone leaves under this model, see `bench.diagnose.noise` - N*m (N).
     """
 
     hypothesis: Hypothesis
@@ -181,12 +191,20 @@ def build(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np.i
         return [[(getattr(signals, name), order)] for name, order in (acceleration, speed)]
 
     parts = [seen.table(motion, moving), seen.table(lambda s: [[(s.sign, 0)], [(-s.effort, 1)]], resting)]
-    owners = [-1, -1, -1, -1]
+    owners = [BASE] * 4
+    if hypothesis.mains:
+        parts.append(seen.table(lambda s: [wave for f in hypothesis.mains for wave in _hum(s, f)], resting))
+        owners += [MAINS] * 2 * len(hypothesis.mains)
     for index, effect in enumerate(hypothesis.effects):
         table = effect_columns(seen, effect, moving, resting)
         parts.append(table)
         owners += [index] * table.shape[1]
     return np.concatenate(parts, axis=1), np.array(owners)
+
+
+def _hum(signals: Signals, frequency: float) -> list[Column]:
+    angle = 2.0 * np.pi * frequency * signals.time
+    return [[(np.sin(angle), 0)], [(np.cos(angle), 0)]]
 
 
 def effect_columns(seen: Workbench, effect: Named, moving: float, resting: float) -> Array:
@@ -221,7 +239,8 @@ def fit(bench: Workbench, hypothesis: Hypothesis) -> Fit:
         hypothesis = replace(hypothesis, asymmetry=asymmetry)
         columns, owners, theta = _solved(bench, hypothesis)
     residual = bench.effort - columns @ theta
-    return Fit(hypothesis, columns, theta, owners, residual, noise_floor(bench, hypothesis, theta, owners))
+    floor = noise_floor(bench, white_power(bench, hypothesis, theta, owners), residual)
+    return Fit(hypothesis, columns, theta, owners, residual, floor)
 
 
 def _solved(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np.int64], Array]:
@@ -238,24 +257,27 @@ def _asymmetry(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) 
     return float(np.clip(difference / theta[2], -1.9, 1.9))
 
 
-def noise_floor(bench: Workbench, hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> float:
-    """RMS that white noise of effort and speed leaves in the residual, through filter and model - N*m (N).
+def white_power(
+    bench: Workbench, hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]
+) -> Callable[[Array], Array]:
+    """Power of white noise of effort and speed in the torque balance, over angular frequency - (N*m)**2 (N**2).
 
-    sigma**2 = T/pi * integral of G**2*(s_M**2*|1 + tau*s|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2) d(omega)
+    s_M**2*|1 + tau*s|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
     """
     conditioning = bench.conditioning
-    smooth = conditioning.filter
-    omega = np.linspace(0.0, np.pi / smooth.sample_period, 2048)
-    s = 1j * omega
     moving, _ = lags(bench, hypothesis)
-    kinetic = theta[0] * s + theta[1]
     elastic = hypothesis.shape_of(ELASTIC)
-    if BACKLASH in hypothesis.names:
-        kinetic = kinetic - theta[owners == hypothesis.names.index(BACKLASH)][0] * s
-    if elastic is not None:
-        kinetic = kinetic + theta[owners == hypothesis.names.index(ELASTIC)][0] * s * two_mass(bench, *elastic)(omega)
-    kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
-    power = conditioning.effort_noise**2 * np.abs(1.0 + theta[3] * s) ** 2
-    power = power + conditioning.source_noise**2 * np.abs(kinetic) ** 2
-    density = np.exp(-((omega * smooth.width) ** 2)) * power
-    return float(np.sqrt(smooth.sample_period / np.pi * np.trapezoid(density, omega)))
+
+    def power(omega: Array) -> Array:
+        s = 1j * omega
+        kinetic = theta[0] * s + theta[1]
+        if BACKLASH in hypothesis.names:
+            kinetic = kinetic - theta[owners == hypothesis.names.index(BACKLASH)][0] * s
+        if elastic is not None:
+            relative = two_mass(bench, *elastic)(omega)
+            kinetic = kinetic + theta[owners == hypothesis.names.index(ELASTIC)][0] * s * relative
+        kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
+        effort = conditioning.effort_noise**2 * np.abs(1.0 + theta[3] * s) ** 2
+        return effort + conditioning.source_noise**2 * np.abs(kinetic) ** 2
+
+    return power

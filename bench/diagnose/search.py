@@ -26,6 +26,7 @@ from bench.diagnose.hypothesis import (
     Named,
     fit,
 )
+from bench.diagnose.mains import humming
 from bench.diagnose.outside import OUTSIDE, physics_of
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue
@@ -66,7 +67,7 @@ def search(bench: Workbench, rotor_inertia: float, excluded: frozenset[str] = fr
         rotor_inertia: of the motor alone, 0 where the rig does not tell - kg*m**2 (kg).
         excluded: effects not to be tried.
     """
-    steps = grown(bench, [Step(fit(bench, Hypothesis()), ())], excluded)
+    steps = grown(bench, [Step(humming(bench, fit(bench, Hypothesis())), ())], excluded)
     last = steps[-1].fitted
     if last.chi > REMAINDER and BACKLASH not in excluded:
         loose = loosened(bench, last, rotor_inertia)
@@ -93,7 +94,7 @@ def grown(bench: Workbench, steps: list[Step], excluded: frozenset[str]) -> list
         if not better:
             break
         chosen = min(better, key=lambda found: float(np.sum(found.residual**2)))
-        steps = [*steps, Step(eliminated(bench, polished(bench, chosen)), tuple(tried))]
+        steps = [*steps, Step(humming(bench, eliminated(bench, polished(bench, chosen))), tuple(tried))]
     return steps
 
 

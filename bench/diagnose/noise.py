@@ -1,0 +1,97 @@
+"""Noise floor of a fit: what the sensors' noise leaves in the residual, its colour read from the residual itself.
+
+White noise of effort and speed passes filter and model with a known spectrum. Real noise need not be white: below
+the frequencies at which its level was read it may stand higher. The residual tells by how much where it is quietest
+- noise is there at every moment and every frequency, what a model lacks comes and goes with the motion - so the
+lower quartile over windows of time is taken at each frequency, and a first-order spectrum is laid through.
+
+    S(omega) = S_white(omega)*(1 + c/(1 + (omega/omega_c)**2))
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.diagnose.workbench import Workbench
+
+Array = NDArray[np.float64]
+
+#: Rows of a window, and windows below which white noise is assumed.
+WINDOW, ENOUGH = 64, 12
+#: Lowest bin clear of the window's own leakage, and share of the strongest density below which a bin is not read.
+LOWEST, HEARD = 3, 0.03
+#: Share of windows taken as the quiet ones, and what an exponential variable's quantile there is to its mean.
+QUIET = 0.25
+QUIET_LEVEL = -float(np.log(1.0 - QUIET))
+#: Excess at low frequency that chance makes in a white recording, and that is therefore not called colour.
+CHANCE = 0.25
+#: Corners tried, from the lowest frequency read to this many times the highest.
+CORNERS, BEYOND = 16, 3.0
+
+
+def noise_floor(bench: Workbench, power: Callable[[Array], Array], residual: Array) -> float:
+    """RMS of noise in a residual - N*m (N).
+
+    Args:
+        bench: the recording.
+        power: of white noise in the torque balance before the filter, over angular frequency - (N*m)**2 (N**2).
+        residual: (m,) of the used rows - N*m (N).
+    """
+    smooth = bench.conditioning.filter
+    omega = np.linspace(0.0, np.pi / smooth.sample_period, 2048)
+
+    def density(at: Array) -> Array:
+        return np.exp(-((at * smooth.width) ** 2)) * power(at)
+
+    excess, corner = colour(bench, density, residual)
+    coloured = density(omega) * (1.0 + excess / (1.0 + (omega / corner) ** 2))
+    return float(np.sqrt(smooth.sample_period / np.pi * np.trapezoid(coloured, omega)))
+
+
+def colour(bench: Workbench, density: Callable[[Array], Array], residual: Array) -> tuple[float, float]:
+    """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white."""
+    windows = _windows(bench, residual)
+    smooth = bench.conditioning.filter
+    period = smooth.stride * smooth.sample_period
+    omega = np.pi / period * np.arange(WINDOW // 2 + 1) / (WINDOW // 2)
+    white = density(omega) * smooth.stride**-1
+    read = np.flatnonzero(white > HEARD * white.max())
+    read = read[read >= LOWEST]
+    if windows.shape[0] < ENOUGH or read.size < LOWEST:
+        return 0.0, 1.0
+    taper = np.hanning(WINDOW)
+    spectra = np.abs(np.fft.rfft(windows * taper, axis=1)[:, read]) ** 2 / np.sum(taper**2)
+    ratio = np.quantile(spectra, QUIET, axis=0) / QUIET_LEVEL / white[read]
+    corners = np.geomspace(omega[read[0]], BEYOND * omega[read[-1]], CORNERS)
+    shapes = 1.0 / (1.0 + (omega[read] / corners[:, None]) ** 2)
+    excess = np.maximum(shapes @ (ratio - 1.0) / np.sum(shapes**2, axis=1), 0.0)
+    misfit = np.sum((np.log1p(excess[:, None] * shapes) - np.log(ratio)) ** 2, axis=1)
+    best = int(np.argmin(misfit))
+    return (float(excess[best]), float(corners[best])) if excess[best] > CHANCE else (0.0, 1.0)
+
+
+def _windows(bench: Workbench, residual: Array) -> Array:
+    """Half-overlapping windows of neighbouring rows, each less its straight line (k, WINDOW)."""
+    starts = _starts(tuple(part.used.tobytes() for part in bench.stretches))
+    if starts.size == 0:
+        return np.empty((0, WINDOW))
+    rows = residual[starts[:, None] + np.arange(WINDOW)]
+    ramp = np.linspace(-1.0, 1.0, WINDOW)
+    return rows - rows.mean(axis=1, keepdims=True) - np.outer(rows @ ramp / (ramp @ ramp), ramp)
+
+
+@lru_cache(maxsize=8)
+def _starts(used: tuple[bytes, ...]) -> NDArray[np.int64]:
+    """First rows of the windows that span no gap."""
+    found, offset = [], 0
+    for raw in used:
+        kept = np.frombuffer(raw, dtype=bool)
+        rows = np.flatnonzero(kept)
+        runs = np.split(np.arange(rows.size), np.flatnonzero(np.diff(rows) != 1) + 1)
+        found += [offset + np.arange(run[0], run[-1] - WINDOW + 2, WINDOW // 2) for run in runs if run.size >= WINDOW]
+        offset += rows.size
+    return np.concatenate(found) if found else np.empty(0, dtype=np.int64)
