@@ -12,6 +12,7 @@ from bench.diagnose.balance import EVERY, Balance
 from bench.diagnose.candidates import EVENT
 from bench.diagnose.decidable import require_decidable, require_positive, require_samples
 from bench.diagnose.found import Gap, NamedEffect
+from bench.diagnose.holdout import foreign, require_another
 from bench.diagnose.hypothesis import CURRENT_LAG, DIRECTION, VELOCITY_LAG, Fit, fit
 from bench.diagnose.quantities import base_parameters, effect_parameters, uncertain
 from bench.diagnose.search import OFFSET, REMAINDER, Step, search
@@ -80,7 +81,7 @@ def diagnose(
     bench, other, lag = laid_out(trace, rig, holdout)
     steps = search(bench, rig.motor.rotor_inertia or 0.0, unsearched(trace, excluded))
     progress(0.6)
-    warnings = foreign(bench, steps[0].fitted, other)
+    warnings = foreign(bench, steps[-1].fitted, other)
     fitted = proven(bench, steps[-1].fitted, None if warnings else other)
     _, unit = rig.net_effort(trace)
     found, parameters = named(bench, fitted, rig, unit, lag, voltage_limit(trace, rig, bench))
@@ -119,6 +120,9 @@ def laid_out(trace: Trace, rig: Rig, holdout: Trace | None) -> tuple[Workbench, 
     A reported speed that lags its position is not used where it would have been the source of speed.
     """
     require_samples(trace)
+    if holdout is not None:
+        require_samples(holdout)
+        require_another(trace, holdout)
     bench = Workbench.of(trace, rig)
     require_decidable(trace, rig, bench)
     lag = velocity_lag(trace, bench)
@@ -149,16 +153,6 @@ def repeating(balance: Balance, other: Workbench | None) -> Balance:
         return balance
     everywhere = replace(balance, recording=EVERY)
     return everywhere if everywhere.gap(other) < balance.gap(other) else balance
-
-
-def foreign(bench: Workbench, base: Fit, other: Workbench | None) -> list[str]:
-    """A warning where the holdout's inertia is not that of the recording: it is another axis."""
-    if other is None:
-        return []
-    inertia = fit(other, replace(base.hypothesis)).theta[0]
-    if abs(inertia / base.theta[0] - 1.0) < 0.5:
-        return []
-    return [f"the holdout recording has {inertia / base.theta[0]:.2f} times the inertia: another axis? It was not used"]
 
 
 def proven(bench: Workbench, fitted: Fit, other: Workbench | None) -> Fit:
