@@ -61,13 +61,13 @@ class Moment:
     """State of axes at the middle of a step.
 
     Attributes:
-        time: s.
+        time: s - one for all, or (k,).
         position: rad (m) - (k,).
         velocity: rad/s (m/s) - (k,).
         effort: of the motor - N*m (N) - (k,).
     """
 
-    time: float
+    time: Number
     position: Array
     velocity: Array
     effort: Array

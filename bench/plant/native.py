@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
+
 import mujoco
 import numpy as np
 from mujoco import rollout
@@ -41,21 +44,44 @@ def run_controls(model: mujoco.MjModel, controls: Array, position: float, veloci
         controls: held from each step to the next.
         position: to start at - rad (m).
         velocity: to start with - rad/s (m/s).
+
+    Raises:
+        SimulationError: the model diverged.
     """
-    data, steps = mujoco.MjData(model), controls.shape[0]
-    half = model.opt.timestep / 2.0
-    joint, actuator = model.joint(AXIS), model.actuator(DRIVE).id
-    data.qpos[joint.qposadr[0]], data.qvel[joint.dofadr[0]] = position + half * velocity, velocity
-    inputs = np.zeros((steps, model.nu))
-    first = model.actuator_ctrladr[actuator]
-    inputs[:, first : first + controls.shape[1]] = controls
-    start = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS))
-    mujoco.mj_getState(model, data, start, mujoco.mjtState.mjSTATE_FULLPHYSICS)
-    with quiet():
-        after, sensors = rollout.rollout(model, data, start, inputs)
-    before = np.concatenate([start[None], after[0, :-1]])
-    if after[0, -1, 0] < (steps - 0.5) * model.opt.timestep:
+    (run,) = run_side_by_side([model], controls[None], np.array([[position, velocity]]))
+    if run is None:
         raise SimulationError(DIVERGED)
-    qpos, qvel = before[:, 1 + joint.qposadr[0]], before[:, 1 + model.nq + joint.dofadr[0]]
-    torque = sensors[0][:, model.sensor("torque").adr[0]]
-    return States.of_one(np.arange(steps) * model.opt.timestep, qpos - half * qvel, qvel, torque)
+    return States.of_one(np.arange(controls.shape[0]) * model.opt.timestep, *run)
+
+
+def run_side_by_side(
+    models: Sequence[mujoco.MjModel], controls: Array, start: Array
+) -> list[tuple[Array, Array, Array] | None]:
+    """Open loop, as `run_controls`, of several models of one structure, on as many threads as there are processors.
+
+    Args:
+        models: of one axis each.
+        controls: (k, steps, inputs), held from each step to the next.
+        start: position - rad (m) - and velocity - rad/s (m/s) - (k, 2).
+
+    Returns:
+        Position, velocity and torque of each, (steps,); None where one diverged.
+    """
+    model, (count, steps, width) = models[0], controls.shape
+    half = model.opt.timestep / 2.0
+    joint, first = model.joint(AXIS), model.actuator_ctrladr[model.actuator(DRIVE).id]
+    inputs = np.zeros((count, steps, model.nu))
+    inputs[:, :, first : first + width] = controls
+    states = np.empty((count, mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)))
+    for each, (position, velocity), state in zip(models, start, states, strict=True):
+        data = mujoco.MjData(each)
+        data.qpos[joint.qposadr[0]], data.qvel[joint.dofadr[0]] = position + half * velocity, velocity
+        mujoco.mj_getState(each, data, state, mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    workers = [mujoco.MjData(model) for _ in range(min(count, os.cpu_count() or 1))]
+    with quiet():
+        after, sensors = rollout.rollout(list(models), workers, states, inputs)
+    before = np.concatenate([states[:, None], after[:, :-1]], axis=1)
+    torque = sensors[:, :, model.sensor("torque").adr[0]]
+    qpos, qvel = before[:, :, 1 + joint.qposadr[0]], before[:, :, 1 + model.nq + joint.dofadr[0]]
+    sound = (after[:, -1, 0] >= (steps - 0.5) * model.opt.timestep) & np.isfinite(after).all(axis=(1, 2))
+    return [(qpos[i] - half * qvel[i], qvel[i], torque[i]) if sound[i] else None for i in range(count)]

@@ -38,7 +38,8 @@ class Rows(Generic[Kind]):
         """What these axes see of a moment."""
         if isinstance(self.index, slice):
             return at
-        return Moment(at.time, at.position[self.index], at.velocity[self.index], at.effort[self.index])
+        time = at.time[self.index] if isinstance(at.time, np.ndarray) else at.time
+        return Moment(time, at.position[self.index], at.velocity[self.index], at.effort[self.index])
 
 
 def gather(models: Sequence[AxisModel], kind: type[Kind], ticked: bool = False) -> list[Rows[Kind]]:

@@ -54,11 +54,11 @@ class TickedEffects:
         self._applied = batch.bind("qfrc_applied")[:, dof]
         self._before = velocity.copy()
 
-    def act(self, time: float, position: Array, velocity: Array, demand: Array) -> tuple[Array, Array]:
+    def act(self, time: float | Array, position: Array, velocity: Array, demand: Array) -> tuple[Array, Array]:
         """Set up the batch for the next step; returns the effort that is reported and the motor's torque, (axes,) each.
 
         Args:
-            time: at the start of the step - s.
+            time: at the start of the step - s - one for all axes, or (axes,).
             position: MuJoCo's, half a step on - rad (m) - (axes,).
             velocity: at the start of the step - rad/s (m/s) - (axes,).
             demand: effort that the drive asks for - N*m (N) - (axes,).

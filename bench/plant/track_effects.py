@@ -8,6 +8,9 @@ would be pulled after the sensor's errors.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +19,7 @@ from bench.effects.mjcf import AXIS, DRIVE
 from bench.effects.physics import Electronics, Mechanism
 from bench.errors import SimulationError
 from bench.plant.axis_model import AxisModel
-from bench.plant.native import run_controls
+from bench.plant.native import run_side_by_side
 from bench.plant.quiet import quiet
 from bench.plant.sensing import reported, true_motion, true_velocity
 from bench.plant.states import DIVERGED
@@ -34,6 +37,40 @@ from bench.plant.track import (
 from bench.trace.trace import Trace
 
 Array = NDArray[np.float64]
+#: Position and velocity at every step, (steps,) each; None where it diverged.
+Run = tuple[Array, Array] | None
+
+
+@dataclass(frozen=True)
+class Held:
+    """A model and the recording that it is to be held to.
+
+    Attributes:
+        model: with effects.
+        trace: the recording, with velocity or position.
+        effort: (n,) torque - N*m (force - N) that the rig makes of it.
+        misalignment: by how much the effort is reported late - s.
+        inertia: that the cascade is laid out for, the model's if None - kg*m**2 (kg).
+    """
+
+    model: AxisModel
+    trace: Trace
+    effort: Array
+    misalignment: float = 0.0
+    inertia: float | None = None
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """One stretch without holes of a recording, ready to run: compiled model, its inputs, and where it starts."""
+
+    held: Held
+    part: slice
+    compiled: mujoco.MjModel
+    controls: Array
+    substeps: int
+    position: float
+    velocity: float
 
 
 def track_effects(
@@ -44,32 +81,63 @@ def track_effects(
     Each stretch without holes is started from the recording; time of effects counts from the recording's start.
 
     Args:
-        model: with effects.
-        trace: the recording, with velocity or position.
-        effort: (n,) torque - N*m (force - N) that the rig makes of it.
-        misalignment: by how much the effort is reported late - s.
+        model, trace, effort, misalignment: as `Held` has them.
         bandwidth: of the cascade that holds the model - rad/s.
 
     Raises:
         SimulationError: the model diverged.
     """
+    (simulated,) = track_models([Held(model, trace, effort, misalignment)], bandwidth)
+    if simulated is None:
+        raise SimulationError(DIVERGED)
+    return simulated
+
+
+def track_models(held: Sequence[Held], bandwidth: float = BANDWIDTH) -> list[Array | None]:
+    """Velocities that models report, each held to its recording, (n,) each - rad/s (m/s); None where one diverged.
+
+    Models of one structure run side by side, which costs hardly more than one of them where effects are ticked.
+    """
+    simulated: list[Array | None] = [np.empty(len(one.trace)) for one in held]
+    stretches = [(k, stretch) for k, one in enumerate(held) for stretch in _stretches(one, bandwidth)]
+    for alike in _alike([stretch for _, stretch in stretches]):
+        together = [stretches[i][1] for i in alike]
+        runs = _run_ticked(together) if together[0].held.model.ticked else _run_native(together)
+        for i, run in zip(alike, runs, strict=True):
+            k, stretch = stretches[i]
+            target = simulated[k]
+            if run is None or target is None:
+                simulated[k] = None
+                continue
+            seen = reported(stretch.held.model, *run, stretch.compiled.opt.timestep)[1]
+            target[stretch.part] = seen[:: stretch.substeps]
+    return simulated
+
+
+def _stretches(held: Held, bandwidth: float) -> list[_Stretch]:
+    model, trace = held.model, held.trace
     timestep, _ = step_of(trace)
-    compiled = holding_model(model.spec(timestep), holding_cascade(model.parameters.inertia, timestep, bandwidth))
-    velocity, simulated = measured_velocity(trace), np.empty(len(trace))
+    cascade = holding_cascade(held.inertia or model.parameters.inertia, timestep, bandwidth)
+    compiled = holding_model(model.spec(timestep), cascade)
+    velocity, found = measured_velocity(trace), []
     for part in trace.segments:
         seen = true_velocity(model, velocity[part], trace.sample_period)
         position = trace["position"][part] if "position" in trace else integrated(seen, trace.sample_period)
         motion = true_motion(model, position, seen)
-        controls, substeps = holding_controls(timestep, trace.time[part], *motion, effort[part], misalignment)
+        controls, substeps = holding_controls(timestep, trace.time[part], *motion, held.effort[part], held.misalignment)
         controls[:, 2] = acting_effort(model, controls[:, 2], timestep)
-        start = (motion[0][0], motion[1][0])
-        if model.ticked:
-            result = _run_ticked(compiled, model, controls, start, float(trace.time[part][0] - trace.time[0]))
-        else:
-            states = run_controls(compiled, controls, *start)
-            result = states.position[:, 0], states.velocity[:, 0]
-        simulated[part] = reported(model, *result, timestep)[1][::substeps]
-    return simulated
+        found.append(_Stretch(held, part, compiled, controls, substeps, float(motion[0][0]), float(motion[1][0])))
+    return found
+
+
+def _alike(stretches: Sequence[_Stretch]) -> list[list[int]]:
+    """Stretches grouped by what is built into their models and how they run: only such can run side by side."""
+    groups: dict[tuple[object, ...], list[int]] = {}
+    for i, stretch in enumerate(stretches):
+        model = stretch.held.model
+        key = (model.structure, bool(model.ticked), round(stretch.compiled.opt.timestep, 12))
+        groups.setdefault(key, []).append(i)
+    return list(groups.values())
 
 
 def acting_effort(model: AxisModel, effort: Array, step: float) -> Array:
@@ -84,24 +152,55 @@ def acting_effort(model: AxisModel, effort: Array, step: float) -> Array:
     return effort
 
 
-def _run_ticked(
-    compiled: mujoco.MjModel, model: AxisModel, controls: Array, start: tuple[float, float], time: float
-) -> tuple[Array, Array]:
-    """Position and velocity at every step, (steps,) each, of an axis whose effects act in every step."""
-    batch, half = batch_of([compiled]), compiled.opt.timestep / 2.0
-    joint, first = compiled.joint(AXIS), compiled.actuator_ctrladr[compiled.actuator(DRIVE).id]
+def _run_native(stretches: Sequence[_Stretch]) -> list[Run]:
+    """Position and velocity at every step, (steps,) each, of axes that MuJoCo runs by itself."""
+    steps = max(stretch.controls.shape[0] for stretch in stretches)
+    found: list[Run] = []
+    for states, stretch in zip(
+        run_side_by_side(
+            [stretch.compiled for stretch in stretches],
+            np.stack([_padded(stretch.controls, steps) for stretch in stretches]),
+            np.array([[stretch.position, stretch.velocity] for stretch in stretches]),
+        ),
+        stretches,
+        strict=True,
+    ):
+        count = stretch.controls.shape[0]
+        found.append(None if states is None else (states[0][:count], states[1][:count]))
+    return found
+
+
+def _run_ticked(stretches: Sequence[_Stretch]) -> list[Run]:
+    """Position and velocity at every step, (steps,) each, of axes whose effects act in every step."""
+    models = [stretch.compiled for stretch in stretches]
+    batch, half = batch_of(models), models[0].opt.timestep / 2.0
+    joint, first = models[0].joint(AXIS), models[0].actuator_ctrladr[models[0].actuator(DRIVE).id]
     position = batch.bind("qpos")[:, joint.qposadr[0]]
     velocity = batch.bind("qvel")[:, joint.dofadr[0]]
-    inputs = batch.bind("ctrl")[:, first : first + controls.shape[1]]
-    position[:], velocity[:] = start[0] + half * start[1], start[1]
-    acting = TickedEffects(batch, [model.with_effects(model.of_kind(Mechanism))], velocity)
-    record = np.empty((2, controls.shape[0]))
+    steps = max(stretch.controls.shape[0] for stretch in stretches)
+    controls = np.stack([_padded(stretch.controls, steps) for stretch in stretches], axis=1)
+    inputs = batch.bind("ctrl")[:, first : first + controls.shape[2]]
+    velocity[:] = [stretch.velocity for stretch in stretches]
+    position[:] = np.array([stretch.position for stretch in stretches]) + half * velocity
+    time = np.array([stretch.held.trace.time[stretch.part][0] - stretch.held.trace.time[0] for stretch in stretches])
+    mechanisms = [stretch.held.model.with_effects(stretch.held.model.of_kind(Mechanism)) for stretch in stretches]
+    acting = TickedEffects(batch, mechanisms, velocity)
+    record = np.empty((steps, 2, len(stretches)))
     with quiet():
         for k, control in enumerate(controls):
-            record[0, k], record[1, k] = position[0] - half * velocity[0], velocity[0]
+            record[k, 0], record[k, 1] = position - half * velocity, velocity
             inputs[:] = control
-            inputs[:, 2] = acting.act(time + k * 2.0 * half, position, velocity, control[2:])[1]
+            inputs[:, 2] = acting.act(time + k * 2.0 * half, position, velocity, control[:, 2])[1]
             batch.step()
-    if batch.warning.any() or not np.isfinite(record).all():
-        raise SimulationError(DIVERGED)
-    return record[0], record[1]
+    warned = np.asarray(batch.warning).reshape(len(stretches), -1).any(axis=1)
+    sound = (np.isfinite(record).all(axis=(0, 1)) & ~warned).tolist()
+    found: list[Run] = []
+    for i, stretch in enumerate(stretches):
+        rows = record[: stretch.controls.shape[0], :, i]
+        found.append((rows[:, 0], rows[:, 1]) if sound[i] else None)
+    return found
+
+
+def _padded(controls: Array, steps: int) -> Array:
+    """Inputs (n, 3) held to the end of the longest stretch, (steps, 3)."""
+    return np.concatenate([controls, np.repeat(controls[-1:], steps - controls.shape[0], axis=0)])
