@@ -29,7 +29,7 @@ def with_backlash(bench: Workbench, hypothesis: Hypothesis, spring_rate: float) 
         spring_rate: stiffness over load inertia of a spring on the load's side, 0 for none - 1/s**2.
     """
     current = fit(bench, hypothesis)
-    basis, _ = np.linalg.qr(current.columns)
+    basis = current.span
     seen = prepared(bench, current.hypothesis)
     moving, _ = lags(bench, current.hypothesis)
     speed = float(np.sqrt(np.mean(bench.row_values(lambda s: s.velocity) ** 2)))

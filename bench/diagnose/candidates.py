@@ -19,9 +19,9 @@ from bench.diagnose.hypothesis import (
     fit,
     lags,
     prepared,
-    two_mass,
 )
 from bench.diagnose.outside import OUTSIDE
+from bench.diagnose.transforms import two_mass
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Column, Signals
@@ -54,7 +54,7 @@ class Candidate:
 
 def candidates(bench: Workbench, current: Fit, excluded: frozenset[str] = frozenset()) -> list[Candidate]:
     """Best shape on the grid of every effect that is not in the hypothesis yet, best first."""
-    basis, _ = np.linalg.qr(current.columns)
+    basis = current.span
     seen = prepared(bench, current.hypothesis)
     best: dict[str, Candidate] = {}
     present = {effect.name for effect in current.hypothesis.effects}

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.signal
 from numpy.typing import NDArray
 
 from bench.diagnose.dead_zone import load_accelerations
 from bench.diagnose.noise import noise_floor
 from bench.diagnose.outside import physics_of
-from bench.diagnose.workbench import Transfer, Workbench
+from bench.diagnose.transforms import corrected, lagged, two_mass
+from bench.diagnose.workbench import Workbench
 from bench.effects.effect import Base, Column, Signals
 
 Array = NDArray[np.float64]
@@ -22,6 +22,8 @@ BACKLASH = "backlash"
 ELASTIC, ECCENTRICITY, DIRECTION = "elastic_coupling", "encoder_eccentricity", "direction_dependent_friction"
 #: Owners of columns that belong to no effect.
 BASE, MAINS = -1, -2
+#: Column of the time by which torque is behind speed.
+MISALIGNMENT = 3
 #: Effects that change how columns are made instead of adding columns of raw products.
 TRANSFORMS = (CURRENT_LAG, VELOCITY_LAG, ECCENTRICITY, ELASTIC, BACKLASH)
 
@@ -86,6 +88,7 @@ class Fit:
         owners: (p,) index of the effect a column belongs to, BASE or MAINS.
         residual: (m,) - N*m (N).
         floor: RMS that sensor noise alone leaves under this model, see `bench.diagnose.noise` - N*m (N).
+        held: whether the misalignment is at its bound.
     """
 
     hypothesis: Hypothesis
@@ -94,6 +97,7 @@ class Fit:
     owners: NDArray[np.int64]
     residual: Array
     floor: float
+    held: bool
 
     @property
     def rms(self) -> float:
@@ -115,36 +119,15 @@ class Fit:
         """J, K_w and K_0."""
         return Base(*(float(value) for value in self.theta[:3]))
 
+    @property
+    def span(self) -> Array:
+        """Orthonormal basis of the columns that were free (m, p)."""
+        free = np.delete(self.columns, MISALIGNMENT, 1) if self.held else self.columns
+        return np.linalg.qr(free)[0]
+
     def strengths(self, index: int) -> Array:
         """Strengths of one effect."""
         return self.theta[self.owners == index]
-
-
-def corrected(signals: Signals, eccentricity: tuple[float, ...]) -> Signals:
-    """Angle and speed without the encoder's error q_m = q + e_s*sin(q) + e_c*cos(q)."""
-    sine, cosine = eccentricity
-    angle = signals.position
-    for _ in range(4):
-        angle = signals.position - sine * np.sin(angle) - cosine * np.cos(angle)
-    rate = 1.0 + sine * np.cos(angle) - cosine * np.sin(angle)
-    return replace(signals, position=angle, velocity=signals.velocity / rate)
-
-
-def two_mass(bench: Workbench, antiresonance: float, damping: float) -> Transfer:
-    """Load's acceleration over the motor's, less one: (1 + 2*d*s/w)/(1 + 2*d*s/w + (s/w)**2) - 1; w - rad/s.
-
-    To be applied to the derivative of raw speed, which rests at both ends where an angle would jump and ring; where
-    speed is the central difference of an angle, its sin(omega*T)/(omega*T) is taken out.
-    """
-    difference = bench.conditioning.source == "position"
-    period = bench.conditioning.filter.sample_period
-
-    def transfer(omega: Array) -> NDArray[np.complex128]:
-        s = 1j * omega / antiresonance
-        relative = -(s**2) / (1.0 + 2.0 * damping * s + s**2)
-        return relative / np.maximum(np.sinc(omega * period / np.pi), 0.2) if difference else relative
-
-    return transfer
 
 
 def prepared(bench: Workbench, hypothesis: Hypothesis) -> Workbench:
@@ -159,14 +142,6 @@ def prepared(bench: Workbench, hypothesis: Hypothesis) -> Workbench:
         return replace(signals, torque=effort, friction=signals.sign + 0.5 * hypothesis.asymmetry)
 
     return bench.with_signals(change) if eccentricity or hypothesis.asymmetry or lag else bench
-
-
-def lagged(values: Array, lag: float, sample_period: float) -> Array:
-    """Values (n,) through a first-order lag - s, exact for an input that is straight between samples."""
-    x = sample_period / lag
-    keep = np.exp(-x)
-    now = 1.0 - (1.0 - keep) / x
-    return scipy.signal.lfilter([now, 1.0 - keep - now], [1.0, -keep], values, zi=[values[0] * (1.0 - now)])[0]
 
 
 def kinematic(bench: Workbench, order: int) -> tuple[str, int]:
@@ -240,14 +215,24 @@ def fit(bench: Workbench, hypothesis: Hypothesis) -> Fit:
         columns, owners, theta = _solved(bench, hypothesis)
     residual = bench.effort - columns @ theta
     floor = noise_floor(bench, white_power(bench, hypothesis, theta, owners), residual)
-    return Fit(hypothesis, columns, theta, owners, residual, floor)
+    held = abs(theta[MISALIGNMENT]) >= bench.latched
+    return Fit(hypothesis, columns, theta, owners, residual, floor, held)
 
 
 def _solved(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np.int64], Array]:
+    """Least squares; torque and speed are no further apart in time than they were latched, else it is a lag."""
     columns, owners = build(bench, hypothesis)
-    scale = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
-    theta = np.linalg.lstsq(columns / scale, bench.effort, rcond=1e-10)[0] / scale
+    theta = _least_squares(columns, bench.effort)
+    if abs(theta[MISALIGNMENT]) > bench.latched:
+        held = np.copysign(bench.latched, theta[MISALIGNMENT])
+        rest = _least_squares(np.delete(columns, MISALIGNMENT, 1), bench.effort - held * columns[:, MISALIGNMENT])
+        theta = np.insert(rest, MISALIGNMENT, held)
     return columns, owners, theta
+
+
+def _least_squares(columns: Array, effort: Array) -> Array:
+    scale = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
+    return np.linalg.lstsq(columns / scale, effort, rcond=1e-10)[0] / scale
 
 
 def _asymmetry(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> float:
@@ -277,7 +262,7 @@ def white_power(
             relative = two_mass(bench, *elastic)(omega)
             kinetic = kinetic + theta[owners == hypothesis.names.index(ELASTIC)][0] * s * relative
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
-        effort = conditioning.effort_noise**2 * np.abs(1.0 + theta[3] * s) ** 2
+        effort = conditioning.effort_noise**2 * np.abs(1.0 + theta[MISALIGNMENT] * s) ** 2
         return effort + conditioning.source_noise**2 * np.abs(kinetic) ** 2
 
     return power

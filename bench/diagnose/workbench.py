@@ -42,12 +42,14 @@ class Workbench:
         stretches: raw signals, stretch by stretch.
         conditioning: source, noises and filter.
         origin: of the recording.
+        latched: within what time torque and speed were taken: one tick of a drive, else one sample - s.
         memory: columns that cost a simulation, by what they were made from.
     """
 
     stretches: tuple[Stretch, ...]
     conditioning: Conditioning
     origin: str
+    latched: float
     memory: dict[tuple[object, ...], Array] = field(default_factory=dict, compare=False)
 
     @classmethod
@@ -77,7 +79,8 @@ class Workbench:
         if not any(part.used.any() for part in stretches):
             reason = f"no filtered sample of {trace.origin} moves clearly in one direction"
             raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, trace.linear))
-        return cls(stretches, conditioning, trace.origin)
+        latched = rig.drive.control_period if rig.drive is not None else trace.sample_period
+        return cls(stretches, conditioning, trace.origin, latched)
 
     def with_signals(self, change: Callable[[Signals], Signals]) -> Workbench:
         """The same rows over changed raw signals (a corrected angle, another friction level)."""

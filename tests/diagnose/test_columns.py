@@ -5,7 +5,7 @@ import pytest
 import scipy.signal
 
 from bench.diagnose.dead_zone import load_accelerations
-from bench.diagnose.hypothesis import corrected, lagged
+from bench.diagnose.transforms import corrected, lagged
 from bench.diagnose.where import _account
 from bench.effects.effect import Signals
 from bench.effects.presliding_friction import bristles
