@@ -193,11 +193,11 @@ def _run_ticked(stretches: Sequence[_Stretch]) -> list[Run]:
             inputs[:, 2] = acting.act(time + k * 2.0 * half, position, velocity, control[:, 2])[1]
             batch.step()
     warned = np.asarray(batch.warning).reshape(len(stretches), -1).any(axis=1)
-    sound = (np.isfinite(record).all(axis=(0, 1)) & ~warned).tolist()
+    sound = set(np.flatnonzero(np.isfinite(record).all(axis=(0, 1)) & ~warned).tolist())
     found: list[Run] = []
     for i, stretch in enumerate(stretches):
         rows = record[: stretch.controls.shape[0], :, i]
-        found.append((rows[:, 0], rows[:, 1]) if sound[i] else None)
+        found.append((rows[:, 0], rows[:, 1]) if i in sound else None)
     return found
 
 
