@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -75,7 +76,7 @@ def demo(
     with progress("demo") as done:
         result = run_demo(out, done)
     _console().print(estimate_table(result.estimate, result.title, result.truth))
-    _tell_warnings(result.estimate)
+    _tell_warnings(result.estimate.warnings)
     _tell_files(result.files)
 
 
@@ -154,7 +155,7 @@ def identify(
         if refinement is not None:
             typer.echo(refinement_line(refinement, axis.linear))
         _tell_files(files)
-    _tell_warnings(estimate)
+    _tell_warnings(estimate.warnings)
 
 
 @app.command()
@@ -178,8 +179,7 @@ def diagnose(
     if json != Path("-"):
         _console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
         _tell_files(files)
-    for warning in found.warnings:
-        typer.echo(f"warning: {warning}", err=True)
+    _tell_warnings(found.warnings)
 
 
 @app.command()
@@ -191,8 +191,11 @@ def replay(
 ) -> None:
     """Run a diagnosed model along a recording; write measured and simulated signals."""
     axis = load_rig(rig)
-    write_text(out, run_replay(model, read(trace, axis.trace.columns), axis).csv())
+    replayed = run_replay(model, read(trace, axis.trace.columns), axis)
+    write_text(out, replayed.csv())
+    typer.echo(replayed.says)
     _tell_files([out])
+    _tell_warnings(replayed.warnings)
 
 
 def _estimate(
@@ -255,8 +258,8 @@ def _console() -> Console:
     return console if console.is_terminal else Console(highlight=False, width=110)
 
 
-def _tell_warnings(estimate: Estimate) -> None:
-    for warning in estimate.warnings:
+def _tell_warnings(warnings: Iterable[str]) -> None:
+    for warning in warnings:
         typer.echo(f"warning: {warning}", err=True)
 
 

@@ -10,15 +10,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.diagnose.balance import Balance
+from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG, build
+from bench.diagnose.outside import OUTSIDE, physics_of
 from bench.diagnose.workbench import Workbench
-from bench.errors import InputError
+from bench.effects.catalogue import catalogue
+from bench.errors import InputError, UndeterminedError
 from bench.plant.model_file import load_model
 from bench.plant.track import measured_velocity
 from bench.plant.track_effects import track_effects
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
+from bench.units import nearest
 
 Array = NDArray[np.float64]
+
+#: Shape numbers of the effects that change how columns are made; the others list theirs.
+SHAPES = {CURRENT_LAG: 1, VELOCITY_LAG: 1, ECCENTRICITY: 2, ELASTIC: 2, BACKLASH: 4}
+#: Share of a recording's torque that the model of its axis does not leave unexplained.
+LEFT = 0.2
 
 
 @dataclass(frozen=True)
@@ -29,7 +38,8 @@ class Replay:
         time: s.
         velocity, velocity_simulated: rad/s (m/s).
         torque, torque_simulated: both through the filter the model was fitted with - N*m (N).
-        linear: whether the axis is linear.
+        speed_unit, effort_unit: of velocity and torque.
+        warnings: what the user should know before believing them.
     """
 
     time: Array
@@ -37,11 +47,21 @@ class Replay:
     velocity_simulated: Array
     torque: Array
     torque_simulated: Array
-    linear: bool
+    speed_unit: str
+    effort_unit: str
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def says(self) -> str:
+        """Both gaps in one line; without the one that the model says nothing about."""
+        torque = f"torque gap {_rms(self.torque - self.torque_simulated):.4g} of {_rms(self.torque):.4g}"
+        velocity = f"velocity gap {_rms(self.velocity - self.velocity_simulated):.4g} of {_rms(self.velocity):.4g}"
+        told = f"{torque} {self.effort_unit}"
+        return f"{told}, {velocity} {self.speed_unit}" if np.isfinite(self.velocity_simulated).any() else told
 
     def csv(self) -> str:
         """The contract's CSV, empty cells where the model says nothing."""
-        speed, effort = ("m/s", "N") if self.linear else ("rad/s", "N*m")
+        speed, effort = self.speed_unit, self.effort_unit
         head = f"time [s],velocity [{speed}],velocity_simulated [{speed}],torque [{effort}],torque_simulated [{effort}]"
         table = np.column_stack([self.time, self.velocity, self.velocity_simulated, self.torque, self.torque_simulated])
         rows = [",".join("" if value != value else f"{value:.9g}" for value in row) for row in table.tolist()]
@@ -52,20 +72,44 @@ def replay(path: Path, trace: Trace, rig: Rig) -> Replay:
     """Run the model of a `model.toml` along a recording.
 
     Raises:
-        InputError: no model, or one without the torque balance that `bench diagnose` writes.
+        InputError: no model, one without the torque balance that `bench diagnose` writes, or of another kind of axis.
+        UndeterminedError: the recording is too short for the model's filter, or never moves clearly.
         SimulationError: the model diverged.
     """
+    table = _table(path)
     balance = load_balance(path)
-    bench = Workbench.of(trace, rig, balance.width, every=True)
+    kind = table.get("kind", rig.kind)
+    if kind != rig.kind:
+        raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
+    effort, unit = rig.net_effort(trace)
+    try:
+        bench = Workbench.of(trace, rig, balance.width, every=True)
+    except UndeterminedError as error:
+        raise UndeterminedError(f"the torque gap along {trace.origin}", error.reason, error.record) from error
+    _, owners = build(bench, balance.hypothesis)
+    if owners.size != balance.theta.size:
+        where, found = f"{path}: torque_balance.coefficients", f"found {balance.theta.size} of them"
+        raise InputError(where, found, f"allowed: {owners.size}, as its effects want")
     samples = bench.samples(trace)
     torque, simulated = np.full(len(trace), np.nan), np.full(len(trace), np.nan)
     torque[samples], simulated[samples] = bench.effort, balance.torque(bench)
     velocity = np.full(len(trace), np.nan)
-    if _has_model(path):
+    if "parameters" in table:
         stored = load_model(path)
-        effort, _ = rig.net_effort(trace)
         velocity = track_effects(stored.model, trace, effort, stored.misalignment)
-    return Replay(trace.time, measured_velocity(trace), velocity, torque, simulated, rig.linear)
+    warnings = []
+    if str(table.get("name", rig.name)) != rig.name:
+        warnings.append(f"the model is of '{table['name']}', the rig file of '{rig.name}'")
+    left = _rms(torque - simulated) / max(_rms(torque), 1e-300)
+    if left > LEFT:
+        warnings.append(f"the model leaves {left:.0%} of the torque unexplained: another axis, or other units?")
+    speed = "m/s" if rig.linear else "rad/s"
+    return Replay(trace.time, measured_velocity(trace), velocity, torque, simulated, speed, unit, tuple(warnings))
+
+
+def _rms(values: Array) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else 0.0
 
 
 def load_balance(path: Path) -> Balance:
@@ -77,14 +121,33 @@ def load_balance(path: Path) -> Balance:
     table = _table(path)
     if "torque_balance" not in table:
         raise InputError(f"{path}: torque_balance", "missing", "allowed: a model.toml that bench diagnose wrote")
+    where = f"{path}: torque_balance"
+    if not isinstance(table["torque_balance"], dict):
+        raise InputError(where, f"found {table['torque_balance']!r}", "allowed: a table, as bench diagnose wrote it")
     try:
-        return Balance.from_table(table["torque_balance"])
-    except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"{path}: torque_balance", f"found {error}", "allowed: as bench diagnose wrote it") from error
+        balance = Balance.from_table(table["torque_balance"])
+    except KeyError as error:
+        raise InputError(f"{where}.{error.args[0]}", "missing", "allowed: as bench diagnose wrote it") from error
+    except (TypeError, ValueError) as error:
+        raise InputError(where, f"found {error}", "allowed: as bench diagnose wrote it") from error
+    _require_sound(balance, where)
+    return balance
 
 
-def _has_model(path: Path) -> bool:
-    return "parameters" in _table(path)
+def _require_sound(balance: Balance, where: str) -> None:
+    if not (np.isfinite(balance.width) and balance.width > 0.0):
+        raise InputError(f"{where}.filter_width", f"found {balance.width:g}", "allowed: a width above zero - s")
+    if not np.isfinite(balance.theta).all():
+        raise InputError(f"{where}.coefficients", "found one that is not finite", "allowed: finite numbers")
+    for effect in balance.hypothesis.effects:
+        known = [*SHAPES, *catalogue(), *OUTSIDE]
+        if effect.name not in known:
+            found = f"found '{effect.name}'{nearest(effect.name, known)}"
+            raise InputError(f"{where}.effects", found, "allowed: names that bench effects lists")
+        size = SHAPES[effect.name] if effect.name in SHAPES else len(physics_of(effect.name).shapes)
+        if len(effect.shape) != size or not np.isfinite(effect.shape).all():
+            found = f"found {list(effect.shape)}"
+            raise InputError(f"{where}.effects: {effect.name}.shape", found, f"allowed: {size} finite numbers")
 
 
 def _table(path: Path) -> dict:

@@ -131,9 +131,14 @@ def write_diagnosis(out: Path, diagnosis: Diagnosis, title: str) -> list[Path]:
     written = [out / "diagnosis.json", out / "where.png", out / "model.toml"]
     write_text(written[0], diagnosis_json(diagnosis) + "\n")
     save(where_figure(diagnosis, title), written[1])
-    stored = model_toml(diagnosis.model) if diagnosis.model is not None else 'schema = "bench.model/1"\n'
+    stored = model_toml(diagnosis.model) if diagnosis.model is not None else _nameless(diagnosis)
     write_text(written[2], stored + diagnosis.balance.toml())
     if diagnosis.model is not None:
         written.append(out / "model.xml")
         write_text(written[-1], model_xml(diagnosis.model.model))
     return written
+
+
+def _nameless(diagnosis: Diagnosis) -> str:
+    kind = "linear" if diagnosis.velocity.unit == "m/s" else "rotary"
+    return f'schema = "bench.model/1"\nkind = "{kind}"\n'
