@@ -17,6 +17,7 @@ from bench.diagnose.hypothesis import CURRENT_LAG, DIRECTION, VELOCITY_LAG, Fit,
 from bench.diagnose.quantities import base_parameters, effect_parameters, uncertain
 from bench.diagnose.search import OFFSET, REMAINDER, Step, search
 from bench.diagnose.sensing import VelocityLag, velocity_lag
+from bench.diagnose.suspicious import suspicions
 from bench.diagnose.voltage import VoltageLimit, voltage_limit
 from bench.diagnose.where import Where, where
 from bench.diagnose.workbench import Workbench
@@ -105,7 +106,7 @@ def diagnose(
         steps=_shrinking(steps, fitted),
         model=model,
         balance=balance,
-        warnings=[*warnings, *problem, *failed],
+        warnings=[*suspicions(trace, rig, parameters), *warnings, *problem, *failed],
     )
 
 
