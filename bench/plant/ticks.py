@@ -22,6 +22,8 @@ from bench.plant.ticked import TickedEffects
 
 Progress = Callable[[float], None]
 
+#: Axes from which it pays to share a step between threads: calling them costs some 10 to 50 us, an axis 2 to 4.
+SHARED_FROM = 64
 #: Ticks between two reports of progress.
 REPORT_EVERY = 1000
 
@@ -68,7 +70,7 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
 
 def batch_of(models: Sequence[mujoco.MjModel]) -> Batch:
     """A batch with one simulation per model; fields in which the models differ become per-simulation ones."""
-    batch = Batch(models[0], len(models))
+    batch = Batch(models[0], len(models), nthread=1 if len(models) < SHARED_FROM else 0)
     distinct = list({id(model): model for model in models}.values())
     for name in sorted(MODEL_FIELDS):
         if len(distinct) > 1 and not name.startswith("opt."):
