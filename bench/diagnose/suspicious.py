@@ -10,7 +10,7 @@ from bench.identify.estimate import Parameter
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-#: Share of the samples that stand at exactly the largest value, and samples in a row, which no motion and no noise make.
+#: Share of the samples that stand at exactly the largest value, in rows of so many, which no motion and no noise make.
 CLIPPED, IN_A_ROW = 0.005, 5
 #: Distance from the drive's own limit within which standing there is the drive's doing and the value true.
 AT_LIMIT = 0.02
