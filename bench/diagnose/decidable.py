@@ -10,10 +10,11 @@ from bench.diagnose.hypothesis import Fit, Hypothesis, fit
 from bench.diagnose.search import SIGNIFICANT, row_correlation
 from bench.diagnose.workbench import Workbench, clear_motion
 from bench.errors import InputError, UndeterminedError
-from bench.identify.determined import require_determined
+from bench.identify.determined import DIRECTION_SHARE, require_friction, require_inertia
 from bench.identify.estimate import Parameter
+from bench.identify.names import parameter_name
 from bench.identify.normal_equations import normal_equations
-from bench.identify.regressors import regressors
+from bench.identify.regressors import COULOMB, OFFSET, regressors
 from bench.rig.rig import Rig
 from bench.trace.filter import LEAST_WIDTH
 from bench.trace.motion import motion
@@ -55,8 +56,22 @@ def require_decidable(trace: Trace, rig: Rig, bench: Workbench) -> None:
     _require_length(trace, bench)
     effort, unit = rig.net_effort(trace)
     rows = regressors(motion(trace, effort, bench.conditioning))
-    require_determined(normal_equations(rows, 8.0 * bench.conditioning.filter.width, 512), rig.linear)
+    equations = normal_equations(rows, 8.0 * bench.conditioning.filter.width, 512)
+    require_inertia(equations, rig.linear)
+    require_friction(equations, rig.linear)
     require_audible(bench, fit(bench, Hypothesis()), unit)
+
+
+def one_way(bench: Workbench, linear: bool) -> list[str]:
+    """A warning where the axis moves one way only: what else the motion tells stays told, but friction is a sum."""
+    mean = float(np.mean(bench.row_values(lambda s: s.sign)))
+    if 0.5 * (1.0 - abs(mean)) >= DIRECTION_SHARE:
+        return []
+    offset, friction = parameter_name(OFFSET, linear), parameter_name(COULOMB, linear)
+    return [
+        f"the axis moves {'forward' if mean > 0.0 else 'backward'} only: {friction} holds any {offset} too, "
+        "and friction cannot be told from it; record both directions for that"
+    ]
 
 
 def require_agreement(trace: Trace) -> None:

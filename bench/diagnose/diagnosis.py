@@ -10,13 +10,13 @@ import numpy as np
 from bench.diagnose.added import axis_model, velocity_gap
 from bench.diagnose.balance import EVERY, Balance
 from bench.diagnose.candidates import EVENT
-from bench.diagnose.decidable import require_decidable, require_positive, require_samples
+from bench.diagnose.decidable import one_way, require_decidable, require_positive, require_samples
 from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.holdout import foreign, require_another
 from bench.diagnose.hypothesis import CURRENT_LAG, DIRECTION, VELOCITY_LAG, Fit, fit
 from bench.diagnose.quantities import base_parameters, effect_parameters, uncertain
 from bench.diagnose.search import OFFSET, REMAINDER, Step, search
-from bench.diagnose.sensing import VelocityLag, velocity_lag
+from bench.diagnose.sensing import VelocityLag, unlagged, velocity_lag
 from bench.diagnose.suspicious import suspicions
 from bench.diagnose.voltage import VoltageLimit, voltage_limit
 from bench.diagnose.where import Where, where
@@ -106,7 +106,7 @@ def diagnose(
         steps=_shrinking(steps, fitted),
         model=model,
         balance=balance,
-        warnings=[*suspicions(trace, rig, parameters), *warnings, *problem, *failed],
+        warnings=[*suspicions(trace, rig, parameters), *one_way(bench, rig.linear), *warnings, *problem, *failed],
     )
 
 
@@ -118,7 +118,7 @@ def unsearched(trace: Trace, excluded: frozenset[str]) -> frozenset[str]:
 def laid_out(trace: Trace, rig: Rig, holdout: Trace | None) -> tuple[Workbench, Workbench | None, VelocityLag | None]:
     """Both recordings laid out, and the lag of the reported speed.
 
-    A reported speed that lags its position is not used where it would have been the source of speed.
+    A reported speed that lags its position is taken back to where it would have been without the lag.
     """
     require_samples(trace)
     if holdout is not None:
@@ -128,7 +128,7 @@ def laid_out(trace: Trace, rig: Rig, holdout: Trace | None) -> tuple[Workbench, 
     require_decidable(trace, rig, bench)
     lag = velocity_lag(trace, bench)
     if lag is not None and bench.conditioning.source == "velocity":
-        trace, holdout = unlagged(trace), unlagged(holdout) if holdout is not None else None
+        trace, holdout = unlagged(trace, lag), unlagged(holdout, lag) if holdout is not None else None
         bench = Workbench.of(trace, rig)
         require_decidable(trace, rig, bench)
     other = Workbench.of(holdout, rig, bench.conditioning.filter.width) if holdout is not None else None
@@ -141,11 +141,6 @@ def torque_gap(
     """RMS of measured less modelled torque without and with the effects, on both recordings."""
     holdout = (before.gap(other), after.gap(other)) if other is not None else None
     return Gap(unit, floor, (before.gap(bench), after.gap(bench)), holdout)
-
-
-def unlagged(trace: Trace) -> Trace:
-    """The recording without its reported speed, which lags, so that speed comes from position."""
-    return replace(trace, signals={name: values for name, values in trace.signals.items() if name != "velocity"})
 
 
 def repeating(balance: Balance, other: Workbench | None) -> Balance:

@@ -148,13 +148,19 @@ def simpler(bench: Workbench, fitted: Fit) -> Fit:
 
 
 def worthwhile(bench: Workbench, before: Fit, after: Fit) -> bool:
-    """Whether an added effect explains enough, significantly, within what physics allows."""
+    """Whether an added effect explains enough, significantly, within what physics allows.
+
+    Noise is what the lower of the two floors says: an effect that never pauses, such as the cogging of a steady speed,
+    passes for coloured noise until it is named.
+    """
     saved = float(np.sum(before.residual**2) - np.sum(after.residual**2))
+    noise = min(before.floor, after.floor) ** 2
+    excess = max(float(np.sum(before.residual**2)) - before.residual.size * noise, 0.0)
     correlation = row_correlation(bench)
     added = after.theta.size - before.theta.size + len(after.hypothesis.effects[-1].shape)
-    significant = saved > SIGNIFICANT * added * correlation * before.floor**2
+    significant = saved > SIGNIFICANT * added * correlation * noise
     share = EVENT_SHARE if after.hypothesis.names[-1] == EVENT else SHARE
-    return significant and before.chi > 1.0 and saved > share * before.excess and physical(after, bench.duration)
+    return significant and 0.0 < share * excess < saved and physical(after, bench.duration)
 
 
 def row_correlation(bench: Workbench) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.diagnose.workbench import Workbench
+from bench.effects.velocity_filter_lag import VelocityFilterLag
 from bench.trace.filter import GaussianFilter
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
@@ -31,6 +32,15 @@ class VelocityLag:
     std_error: float
     before: float
     after: float
+
+
+def unlagged(trace: Trace, lag: VelocityLag) -> Trace:
+    """The recording with the speed that its reported one lags behind, omega = v + T*dv/dt."""
+    effect = VelocityFilterLag()
+    values, speed = {"time_constant": lag.time_constant}, trace["velocity"].copy()
+    for part in trace.segments:
+        speed[part] = effect.unfiltered(values, speed[part], trace.sample_period)
+    return trace.with_signals({"velocity": speed}, {})
 
 
 def velocity_lag(trace: Trace, bench: Workbench) -> VelocityLag | None:

@@ -32,24 +32,36 @@ def require_determined(equations: NormalEquations, linear: bool) -> None:
         equations: of every column, the constant one among them.
         linear: whether the axis is linear.
     """
+    require_inertia(equations, linear)
+    side = only_direction(equations)
+    if side is not None:
+        name = f"{parameter_name(COULOMB, linear)} apart from {parameter_name(OFFSET, linear)}".replace("_", " ")
+        raise UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
+    require_friction(equations, linear)
+
+
+def require_inertia(equations: NormalEquations, linear: bool) -> None:
+    """UndeterminedError where the rows are too few or leave the inertia open."""
     least = ROWS_PER_COLUMN * len(equations.names)
     if equations.count < least:
         reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
         raise UndeterminedError(parameter_name(INERTIA, linear).replace("_", " "), reason, RECORD[INERTIA])
     _require_excited(equations, INERTIA, linear)
-    _require_directions(equations, linear)
+
+
+def require_friction(equations: NormalEquations, linear: bool) -> None:
+    """UndeterminedError where the rows leave viscous or Coulomb friction open beside the inertia."""
     for column in (VISCOUS, COULOMB):
         _require_excited(equations, column, linear)
 
 
-def _require_directions(equations: NormalEquations, linear: bool) -> None:
+def only_direction(equations: NormalEquations) -> str | None:
+    """`forward` or `backward` where the axis moves one way only, so that Coulomb friction and offset are one number."""
     coulomb, constant = equations.names.index(COULOMB), equations.names.index(OFFSET)
     mean_direction = equations.gram[:, coulomb, constant].sum() / equations.count
-    weaker = 0.5 * (1.0 - abs(mean_direction))
-    if weaker < DIRECTION_SHARE:
-        name = f"{parameter_name(COULOMB, linear)} apart from {parameter_name(OFFSET, linear)}".replace("_", " ")
-        side = "forward" if mean_direction > 0.0 else "backward"
-        raise UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
+    if 0.5 * (1.0 - abs(mean_direction)) >= DIRECTION_SHARE:
+        return None
+    return "forward" if mean_direction > 0.0 else "backward"
 
 
 def _require_excited(equations: NormalEquations, column: str, linear: bool) -> None:
