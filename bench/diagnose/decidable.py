@@ -21,7 +21,7 @@ from bench.trace.motion import motion
 from bench.trace.trace import Trace
 
 #: Independent rows of clear motion. Of the shared cases cut short, those with 25 to 70 named an effect that was not
-#: there in 5 of 12, those with 90 to 130 in 1 of 15 (first 0.2, 0.4 and 0.8 s of every other one).
+#: there in 5 of 11, those with 90 to 130 in 1 of 13 (first 0.2, 0.4 and 0.8 s of every other one).
 INDEPENDENT = 100
 #: An effect this many times smaller than the torque that moves the axis is small, however little friction there is.
 SMALL = 10.0
