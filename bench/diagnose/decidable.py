@@ -25,6 +25,9 @@ from bench.trace.trace import Trace
 INDEPENDENT = 100
 #: An effect this many times smaller than the torque that moves the axis is small, however little friction there is.
 SMALL = 10.0
+#: Share of the acceleration's power that may be noise. Least squares loses as much of the inertia to it: 27 % of J at
+#: 0.27, 4 % at 0.04; the shared cases have 6e-5 at most.
+NOISY = 0.1
 #: Speed and derivative of position may differ by a gear's or a lag's worth, not by a unit's.
 AGREE = 1.5
 #: Samples over which displacements are compared, and the correlation from which one is a multiple of the other.
@@ -59,7 +62,7 @@ def require_decidable(trace: Trace, rig: Rig, bench: Workbench) -> None:
     equations = normal_equations(rows, 8.0 * bench.conditioning.filter.width, 512)
     require_inertia(equations, rig.linear)
     require_friction(equations, rig.linear)
-    require_audible(bench, fit(bench, Hypothesis()), unit)
+    require_audible(bench, fit(bench, Hypothesis()), unit, rig.linear)
 
 
 def one_way(bench: Workbench, linear: bool) -> list[str]:
@@ -118,15 +121,17 @@ def smallest_visible(bench: Workbench, fitted: Fit) -> float:
     return fitted.floor * math.sqrt(SIGNIFICANT * row_correlation(bench) / bench.effort.size)
 
 
-def require_audible(bench: Workbench, base: Fit, unit: str) -> None:
+def require_audible(bench: Workbench, base: Fit, unit: str, linear: bool) -> None:
     """UndeterminedError where an effect as large as friction, or a tenth of the torque, would drown in the noise.
 
     Args:
         bench: the recording.
         base: inertia, viscous and Coulomb friction fitted to it.
         unit: of the effort.
+        linear: whether the axis is linear.
     """
     conditioning = bench.conditioning
+    _require_acceleration(bench, base, linear)
     noise = conditioning.effort_noise * conditioning.filter.noise_gain(0)
     varies = float(np.std(bench.effort))
     if varies <= 2.0 * noise:
@@ -147,6 +152,19 @@ def require_audible(bench: Workbench, base: Fit, unit: str) -> None:
             f"and the torque {torque:.3g} {unit}",
             f"{(least / loud) ** 2:.2g} times as long, or accelerations {least / loud:.2g} times as large",
         )
+
+
+def _require_acceleration(bench: Workbench, base: Fit, linear: bool) -> None:
+    conditioning = bench.conditioning
+    noise, moved = conditioning.acceleration_noise, float(np.sqrt(np.mean(base.columns[:, 0] ** 2)))
+    if noise**2 <= NOISY * moved**2:
+        return
+    unit = "m/s**2" if linear else "rad/s**2"
+    raise UndeterminedError(
+        WHAT,
+        f"acceleration is {moved:.3g} {unit} RMS, {noise:.3g} {unit} of it noise of {conditioning.source}",
+        f"accelerations above {noise / math.sqrt(NOISY):.3g} {unit} RMS, or a finer {conditioning.source}",
+    )
 
 
 def require_positive(inertia: Parameter, origin: str) -> None:

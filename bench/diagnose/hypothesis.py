@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.diagnose.dead_zone import load_accelerations
+from bench.diagnose.dead_zone import dead_zone_columns, sensitivity
 from bench.diagnose.friction_levels import alike, levels_of, multiply, rubbing
 from bench.diagnose.noise import noise_floor
 from bench.diagnose.outside import physics_of
@@ -27,6 +27,8 @@ BASE, MAINS = -1, -2
 MISALIGNMENT = 3
 #: Rounds in which levels of dry friction that multiply are brought in line.
 LEVEL_ROUNDS = 4
+#: Share of the noise floor by which a row's torque may hang on the contact of a dead zone.
+UNTOLD_SHARE = 0.3
 #: Effects that change how columns are made instead of adding columns of raw products.
 TRANSFORMS = (CURRENT_LAG, VELOCITY_LAG, ECCENTRICITY, ELASTIC, BACKLASH)
 
@@ -94,9 +96,10 @@ class Fit:
         columns: (m, p).
         theta: (p,): J, K_w, K_0, misalignment, sines and cosines of hum, then the strengths of the effects in order.
         owners: (p,) index of the effect a column belongs to, BASE or MAINS.
-        residual: (m,) - N*m (N).
+        residual: (m,), 0 at rows that are not told - N*m (N).
         floor: RMS that sensor noise alone leaves under this model, see `bench.diagnose.noise` - N*m (N).
         held: whether the misalignment is at its bound.
+        told: (m,) rows whose torque the recording determines: not those that hang on the instant of an impact.
     """
 
     hypothesis: Hypothesis
@@ -106,11 +109,12 @@ class Fit:
     residual: Array
     floor: float
     held: bool
+    told: NDArray[np.bool_]
 
     @property
     def rms(self) -> float:
         """RMS residual - N*m (N)."""
-        return float(np.sqrt(np.mean(self.residual**2)))
+        return float(np.sqrt(np.mean(self.residual[self.told] ** 2)))
 
     @property
     def chi(self) -> float:
@@ -120,7 +124,7 @@ class Fit:
     @property
     def excess(self) -> float:
         """Squares above the noise floor, summed over rows - (N*m)**2, not negative."""
-        return max(float(np.sum(self.residual**2)) - self.residual.size * self.floor**2, 0.0)
+        return max(float(np.sum(self.residual**2)) - np.count_nonzero(self.told) * self.floor**2, 0.0)
 
     @property
     def base(self) -> Base:
@@ -204,13 +208,6 @@ def effect_columns(seen: Workbench, effect: Named, moving: float, resting: float
     return seen.table(lambda s: physics.columns(s, effect.shape), resting)
 
 
-def dead_zone_columns(seen: Workbench, shapes: Array, lag: float) -> Array:
-    """Load's acceleration less the motor's behind several dead zones (k, 4), filtered - rad/s**2 (m/s**2) - (m, k)."""
-    name, order = kinematic(seen, 1)
-    made = seen.table(lambda s: [[(column, 0)] for column in load_accelerations(s, shapes).T], lag)
-    return made - seen.table(lambda s: [[(getattr(s, name), order)]], lag)
-
-
 def fit(bench: Workbench, hypothesis: Hypothesis) -> Fit:
     """Least squares of a hypothesis; the levels that scaled frictions see are brought in line with what is found."""
     columns, owners, theta = _solved(bench, hypothesis)
@@ -223,19 +220,42 @@ def fit(bench: Workbench, hypothesis: Hypothesis) -> Fit:
         columns, owners, theta = _solved(bench, hypothesis)
     residual = bench.effort - columns @ theta
     floor = noise_floor(bench, white_power(bench, hypothesis, theta, owners), residual)
+    told = _told(bench, hypothesis, theta, owners, floor)
+    if not told.all():
+        theta = _balanced(bench, columns[told], bench.effort[told])
+        residual = (bench.effort - columns @ theta) * told
     held = abs(theta[MISALIGNMENT]) >= bench.latched
-    return Fit(hypothesis, columns, theta, owners, residual, floor, held)
+    return Fit(hypothesis, columns, theta, owners, residual, floor, held, told)
+
+
+def _told(
+    bench: Workbench, hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64], floor: float
+) -> NDArray[np.bool_]:
+    """Rows whose modelled torque a contact that the recording does not tell from this one would not change (m,)."""
+    effect = hypothesis.shape_of(BACKLASH)
+    if effect is None:
+        return np.ones(bench.effort.size, dtype=bool)
+    seen, (moving, _) = prepared(bench, hypothesis), lags(bench, hypothesis)
+    key = ("sensitivity", effect, moving, seen.stretches[0].signals.position[-1])
+    if key not in seen.memory:
+        seen.memory[key] = sensitivity(seen, effect, moving)
+    load = abs(theta[owners == hypothesis.names.index(BACKLASH)][0])
+    return seen.memory[key] * load < UNTOLD_SHARE * floor
 
 
 def _solved(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np.int64], Array]:
-    """Least squares; torque and speed are no further apart in time than they were latched, else it is a lag."""
     columns, owners = build(bench, hypothesis)
-    theta = _least_squares(columns, bench.effort)
+    return columns, owners, _balanced(bench, columns, bench.effort)
+
+
+def _balanced(bench: Workbench, columns: Array, effort: Array) -> Array:
+    """Least squares; torque and speed are no further apart in time than they were latched, else it is a lag."""
+    theta = _least_squares(columns, effort)
     if abs(theta[MISALIGNMENT]) > bench.latched:
         held = np.copysign(bench.latched, theta[MISALIGNMENT])
-        rest = _least_squares(np.delete(columns, MISALIGNMENT, 1), bench.effort - held * columns[:, MISALIGNMENT])
+        rest = _least_squares(np.delete(columns, MISALIGNMENT, 1), effort - held * columns[:, MISALIGNMENT])
         theta = np.insert(rest, MISALIGNMENT, held)
-    return columns, owners, theta
+    return theta
 
 
 def _least_squares(columns: Array, effort: Array) -> Array:

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.diagnose.backlash import SCALE
+from bench.diagnose.dead_zone import UNTOLD
 from bench.diagnose.hypothesis import (
     BACKLASH,
     CURRENT_LAG,
@@ -33,6 +35,8 @@ Array = NDArray[np.float64]
 
 #: Step of a numerical derivative, relative, and 95 % of a normal distribution.
 STEP, REACH = 1e-4, 1.96
+#: The same of a dead zone's gap, frequency and damping: impacts move in jumps, a smaller step would see only one.
+DEAD_ZONE_STEPS = (3e-3, 3e-2, 3e-2)
 #: Rows per block of the scores.
 BLOCK = 16
 
@@ -47,12 +51,15 @@ class Uncertain:
 
 
 def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
-    """Free numbers of a fit with their covariance."""
-    slots = tuple((index, k) for index, effect in enumerate(fitted.hypothesis.effects) for k in free_shapes(effect))
+    """Free numbers of a fit with their covariance; rows beside a dead zone count as in its search."""
+    slots = tuple(
+        (index, k) for index, effect in enumerate(fitted.hypothesis.effects) for k in _uncertain_shapes(effect)
+    )
     columns = [fitted.columns]
     for index, k in slots:
         shape = fitted.hypothesis.effects[index].shape
-        step = STEP * max(abs(shape[k]), 1e-3)
+        backlash = fitted.hypothesis.effects[index].name == BACKLASH
+        step = (DEAD_ZONE_STEPS[k] if backlash else STEP) * max(abs(shape[k]), 1e-3)
         moved = tuple(value + step * (j == k) for j, value in enumerate(shape))
         other, _ = build(bench, fitted.hypothesis.reshaped(index, moved))
         columns.append((((other - fitted.columns) @ fitted.theta) / step)[:, None])
@@ -60,13 +67,23 @@ def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
     scale = np.sqrt(np.mean(jacobian**2, axis=0))
     scale = np.where(scale > 0.0, scale, 1.0)
     jacobian = jacobian / scale
-    inverse = np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-12)
-    scores = jacobian * fitted.residual[:, None]
+    left, weight = bench.effort - fitted.columns @ fitted.theta, np.ones(jacobian.shape[0])
+    if not fitted.told.all():
+        weight = 1.0 / (1.0 + (left / (SCALE * fitted.floor)) ** 2)
+    inverse = np.linalg.pinv((jacobian.T * weight) @ jacobian, rcond=1e-12)
+    scores = jacobian * (weight * left)[:, None]
     edges = np.arange(0, scores.shape[0], BLOCK)
     middle, _ = long_run_covariance(np.add.reduceat(scores, edges, axis=0))
     covariance = inverse @ middle @ inverse / np.outer(scale, scale)
     shapes = np.array([fitted.hypothesis.effects[index].shape[k] for index, k in slots])
+    for place, (index, k) in enumerate(slots, fitted.theta.size):
+        if fitted.hypothesis.effects[index].name == BACKLASH:
+            covariance[place, place] += (0.5 * (UNTOLD[k] - 1.0) * fitted.hypothesis.effects[index].shape[k]) ** 2
     return Uncertain(np.concatenate([fitted.theta, shapes]), covariance, slots)
+
+
+def _uncertain_shapes(effect: Named) -> list[int]:
+    return list(range(len(DEAD_ZONE_STEPS))) if effect.name == BACKLASH else free_shapes(effect)
 
 
 def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -> dict[str, Parameter]:

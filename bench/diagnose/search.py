@@ -99,7 +99,10 @@ def grown(bench: Workbench, steps: list[Step], excluded: frozenset[str]) -> list
 
 
 def loosened(bench: Workbench, fitted: Fit, rotor_inertia: float) -> Fit | None:
-    """The hypothesis with a dead zone instead of an elastic coupling, if that explains clearly more."""
+    """The hypothesis with a dead zone instead of an elastic coupling, if that explains clearly more.
+
+    Clearly more is half of what stands above noise where no instant of an impact matters, and no less elsewhere.
+    """
     if BACKLASH in fitted.hypothesis.names:
         return None
     kept = tuple(effect for effect in fitted.hypothesis.effects if effect.name not in (ELASTIC, CURRENT_LAG))
@@ -108,10 +111,13 @@ def loosened(bench: Workbench, fitted: Fit, rotor_inertia: float) -> Fit | None:
     if SPRING in hypothesis.names and fitted.theta[0] > rotor_inertia:
         stiffness = fit(bench, hypothesis).strengths(hypothesis.names.index(SPRING))[0]
         rates.add(float(max(stiffness, 0.0) / (fitted.theta[0] - rotor_inertia)))
-    found = min((with_backlash(bench, hypothesis, rate) for rate in rates), key=lambda f: f.rms)
+    found = with_backlash(bench, hypothesis, rates)
     share = found.strengths(len(kept))[0] / found.theta[0]
-    gained = float(np.sum(fitted.residual**2) - np.sum(found.residual**2))
-    return found if gained > 0.5 * fitted.excess and 0.02 < share < 0.98 else None
+    left = bench.effort - found.columns @ found.theta
+    before, after = float(np.sum(fitted.residual[found.told] ** 2)), float(np.sum(found.residual**2))
+    excess = before - np.count_nonzero(found.told) * fitted.floor**2
+    clearly = before - after > 0.5 * max(excess, 0.0) and np.sum(left**2) < np.sum(fitted.residual**2)
+    return found if clearly and found.told.mean() > 0.5 and 0.02 < share < 0.98 else None
 
 
 def uncontested(bench: Workbench, fitted: Fit, excluded: frozenset[str]) -> Fit:

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 import scipy.signal
+from scipy.interpolate import CubicSpline
 
-from bench.diagnose.dead_zone import load_accelerations
+from bench.diagnose.dead_zone import load_positions
 from bench.diagnose.transforms import corrected, lagged
 from bench.diagnose.where import _account
 from bench.effects.effect import Signals
@@ -22,16 +23,41 @@ def signals(position, velocity):
 
 def test_a_load_without_a_gap_follows_the_motor():
     time = np.arange(4000) * PERIOD
-    position, velocity = 10.0 * (1.0 - np.cos(3.0 * time)), 30.0 * np.sin(3.0 * time)
-    found = load_accelerations(signals(position, velocity), np.array([[1e-9, 400.0, 0.7, 0.0]]))[:, 0]
-    assert found[200:] == pytest.approx(90.0 * np.cos(3.0 * time[200:]), abs=2.0)
+    position = 10.0 * (1.0 - np.cos(3.0 * time))
+    found = load_positions(position, PERIOD, np.array([[1e-9, 400.0, 0.7, 0.0]]))[:, 0]
+    assert np.gradient(np.gradient(found, PERIOD), PERIOD)[200:-2] == pytest.approx(
+        90.0 * np.cos(3.0 * time[200:-2]), abs=0.02
+    )
 
 
 def test_a_load_within_the_gap_feels_nothing():
     time = np.arange(1000) * PERIOD
     position = 0.01 * (1.0 - np.cos(20.0 * time))
-    found = load_accelerations(signals(position, np.gradient(position, PERIOD)), np.array([[0.1, 400.0, 0.5, 0.0]]))
-    assert np.abs(found).max() == 0.0
+    found = load_positions(position, PERIOD, np.array([[0.1, 400.0, 0.5, 0.0]]))
+    assert np.abs(found - found[0]).max() < 1e-6
+
+
+def test_a_load_thrown_across_the_gap_is_the_contacts_equation_integrated():
+    time, gap, frequency, damping = np.arange(3000) * PERIOD, 0.05, 300.0, 0.4
+    position = 0.8 * np.sin(6.0 * time) ** 3
+    twenty = 20
+    fine = CubicSpline(time, position)
+    x, v, expected, step = position[0], 0.0, np.empty(3000), PERIOD / twenty
+
+    def slopes(t, x, v):
+        twist = fine(t) - x
+        penetration = twist - np.clip(twist, -0.5 * gap, 0.5 * gap)
+        rate = (fine(t, 1) - v) * (penetration != 0.0)
+        return v, frequency**2 * penetration + 2.0 * damping * frequency * rate
+
+    for k in range(3000 * twenty):
+        if k % twenty == 0:
+            expected[k // twenty] = x
+        a = slopes(k * step, x, v)
+        b = slopes((k + 0.5) * step, x + 0.5 * step * a[0], v + 0.5 * step * a[1])
+        x, v = x + step * b[0], v + step * b[1]
+    found = load_positions(position, PERIOD, np.array([[gap, frequency, damping, 0.0]]))[:, 0]
+    assert found == pytest.approx(expected, abs=0.01 * gap)
 
 
 def test_a_lag_is_the_first_order_response():
