@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,13 +62,12 @@ class Balance:
             "[torque_balance]",
             f"recording = {_quoted(self.recording)}",
             f"filter_width = {self.width!r}",
-            f"asymmetry = {self.hypothesis.asymmetry!r}",
-            f"mains = [{', '.join(repr(line) for line in self.hypothesis.mains)}]",
-            f"coefficients = [{', '.join(repr(float(value)) for value in self.theta)}]",
+            f"mains = [{_listed(self.hypothesis.mains)}]",
+            f"coefficients = [{_listed(self.theta)}]",
         ]
-        for effect in self.hypothesis.effects:
-            shape = ", ".join(repr(float(value)) for value in effect.shape)
-            lines += ["", "[[torque_balance.effects]]", f'name = "{effect.name}"', f"shape = [{shape}]"]
+        for effect, level in zip(self.hypothesis.effects, self.hypothesis.levels, strict=True):
+            lines += ["", "[[torque_balance.effects]]", f'name = "{effect.name}"']
+            lines += [f"shape = [{_listed(effect.shape)}]", f"level = [{_listed(level)}]"]
         return "\n".join(lines) + "\n"
 
     @classmethod
@@ -79,8 +79,13 @@ class Balance:
         )
         theta = np.array([float(value) for value in table["coefficients"]])
         mains = tuple(float(line) for line in table.get("mains", []))
-        hypothesis = Hypothesis(effects, float(table["asymmetry"]), mains)
+        levels = tuple(tuple(float(value) for value in entry["level"]) for entry in table.get("effects", []))
+        hypothesis = Hypothesis(effects, levels, mains)
         return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
+
+
+def _listed(values: Iterable[float]) -> str:
+    return ", ".join(repr(float(value)) for value in values)
 
 
 def _quoted(text: str) -> str:

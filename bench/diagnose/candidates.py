@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.diagnose.friction_levels import rubbing
 from bench.diagnose.hypothesis import (
     BACKLASH,
     CURRENT_LAG,
@@ -55,7 +56,8 @@ class Candidate:
 def candidates(bench: Workbench, current: Fit, excluded: frozenset[str] = frozenset()) -> list[Candidate]:
     """Best shape on the grid of every effect that is not in the hypothesis yet, best first."""
     basis = current.span
-    seen = prepared(bench, current.hypothesis)
+    hypothesis = current.hypothesis
+    seen = rubbing(prepared(bench, hypothesis), hypothesis, len(hypothesis.effects))
     best: dict[str, Candidate] = {}
     present = {effect.name for effect in current.hypothesis.effects}
     found = _linear(seen, current, basis, excluded)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.diagnose.dead_zone import dead_zone_columns, sensitivity
+from bench.diagnose.friction_levels import alike, levels_of, multiply, rubbing
 from bench.diagnose.noise import noise_floor
 from bench.diagnose.outside import physics_of
 from bench.diagnose.transforms import corrected, lagged, two_mass
@@ -24,6 +25,8 @@ ELASTIC, ECCENTRICITY, DIRECTION = "elastic_coupling", "encoder_eccentricity", "
 BASE, MAINS = -1, -2
 #: Column of the time by which torque is behind speed.
 MISALIGNMENT = 3
+#: Rounds in which levels of dry friction that multiply are brought in line.
+LEVEL_ROUNDS = 4
 #: Share of the noise floor by which a row's torque may hang on the contact of a dead zone.
 UNTOLD_SHARE = 0.3
 #: Effects that change how columns are made instead of adding columns of raw products.
@@ -44,12 +47,12 @@ class Hypothesis:
 
     Attributes:
         effects: in the order they were added.
-        asymmetry: D_0/K_0, by which effects that scale dry friction see it differ between directions.
+        levels: strengths over K_0 of each effect that is dry friction, () of the others.
         mains: frequencies of the hum in this recording's sensors - Hz.
     """
 
     effects: tuple[Named, ...] = ()
-    asymmetry: float = 0.0
+    levels: tuple[tuple[float, ...], ...] = ()
     mains: tuple[float, ...] = ()
 
     def with_effect(self, named: Named) -> Hypothesis:
@@ -62,7 +65,12 @@ class Hypothesis:
 
     def without(self, index: int) -> Hypothesis:
         """This hypothesis less one of its effects."""
-        return replace(self, effects=(*self.effects[:index], *self.effects[index + 1 :]))
+        effects, levels = self.effects, self.levels
+        return replace(
+            self,
+            effects=(*effects[:index], *effects[index + 1 :]),
+            levels=(*levels[:index], *levels[index + 1 :]),
+        )
 
     def reshaped(self, index: int, shape: tuple[float, ...]) -> Hypothesis:
         """This hypothesis with another shape of one effect."""
@@ -135,17 +143,16 @@ class Fit:
 
 
 def prepared(bench: Workbench, hypothesis: Hypothesis) -> Workbench:
-    """The recording as the hypothesis sees it: angle corrected, dry friction of the two directions unequal."""
+    """The recording as the hypothesis sees it: angle corrected, torque as it acts."""
     eccentricity = hypothesis.shape_of(ECCENTRICITY)
-
     lag = (hypothesis.shape_of(CURRENT_LAG) or (0.0,))[0]
 
     def change(signals: Signals) -> Signals:
         signals = corrected(signals, eccentricity) if eccentricity else signals
         effort = lagged(signals.effort, lag, signals.sample_period) if lag else signals.effort
-        return replace(signals, torque=effort, friction=signals.sign + 0.5 * hypothesis.asymmetry)
+        return replace(signals, torque=effort)
 
-    return bench.with_signals(change) if eccentricity or hypothesis.asymmetry or lag else bench
+    return bench.with_signals(change) if eccentricity or lag else bench
 
 
 def kinematic(bench: Workbench, order: int) -> tuple[str, int]:
@@ -175,7 +182,7 @@ def build(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np.i
         parts.append(seen.table(lambda s: [wave for f in hypothesis.mains for wave in _hum(s, f)], resting))
         owners += [MAINS] * 2 * len(hypothesis.mains)
     for index, effect in enumerate(hypothesis.effects):
-        table = effect_columns(seen, effect, moving, resting)
+        table = effect_columns(rubbing(seen, hypothesis, index), effect, moving, resting)
         parts.append(table)
         owners += [index] * table.shape[1]
     return np.concatenate(parts, axis=1), np.array(owners)
@@ -202,13 +209,14 @@ def effect_columns(seen: Workbench, effect: Named, moving: float, resting: float
 
 
 def fit(bench: Workbench, hypothesis: Hypothesis) -> Fit:
-    """Least squares of a hypothesis; the asymmetry that scaled frictions see is brought in line with what is found."""
+    """Least squares of a hypothesis; the levels that scaled frictions see are brought in line with what is found."""
     columns, owners, theta = _solved(bench, hypothesis)
-    for _ in range(2):
-        asymmetry = _asymmetry(hypothesis, theta, owners)
-        if abs(asymmetry - hypothesis.asymmetry) < 1e-3:
+    for _ in range(LEVEL_ROUNDS):
+        levels = levels_of(hypothesis, theta, owners)
+        settled = alike(levels, hypothesis.levels) or not multiply(hypothesis)
+        hypothesis = replace(hypothesis, levels=levels)
+        if settled:
             break
-        hypothesis = replace(hypothesis, asymmetry=asymmetry)
         columns, owners, theta = _solved(bench, hypothesis)
     residual = bench.effort - columns @ theta
     floor = noise_floor(bench, white_power(bench, hypothesis, theta, owners), residual)
@@ -253,13 +261,6 @@ def _balanced(bench: Workbench, columns: Array, effort: Array) -> Array:
 def _least_squares(columns: Array, effort: Array) -> Array:
     scale = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
     return np.linalg.lstsq(columns / scale, effort, rcond=1e-10)[0] / scale
-
-
-def _asymmetry(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> float:
-    if DIRECTION not in hypothesis.names or len(hypothesis.effects) < 2 or theta[2] <= 0.0:
-        return 0.0
-    difference = theta[owners == hypothesis.names.index(DIRECTION)][0]
-    return float(np.clip(difference / theta[2], -1.9, 1.9))
 
 
 def white_power(

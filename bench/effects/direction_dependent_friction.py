@@ -34,6 +34,10 @@ class DirectionDependentFriction(Friction, Effect):
         """1/2 and |omega|/2."""
         return [[(np.full_like(signals.time, 0.5), 0)], [(0.5 * signals.velocity * signals.sign, 0)]]
 
+    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> float:
+        """Half of the dry difference."""
+        return 0.5 * strengths[0]
+
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Differences forward less backward."""
         return {"coulomb_difference": strengths[0], "viscous_difference": strengths[1]}

@@ -85,6 +85,7 @@ class Effect(ABC):
         quantities: what is reported of it, with unit and bounds.
         shapes: the nonlinear ones, in the order in which `columns` takes them.
         searched: whether a search may try its columns over the grids of its shapes.
+        scales_friction: whether it multiplies the level of dry friction, what other effects add to it included.
     """
 
     name: str
@@ -92,6 +93,7 @@ class Effect(ABC):
     quantities: tuple[Quantity, ...]
     shapes: tuple[Shape, ...] = ()
     searched: bool = True
+    scales_friction: bool = False
 
     @abstractmethod
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
@@ -100,6 +102,10 @@ class Effect(ABC):
     @abstractmethod
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The effect's quantities from fitted strengths and shape - SI."""
+
+    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array | float:
+        """Dry friction beside Coulomb's, with its sign, that strengths make - the strengths' unit - (n,)."""
+        return 0.0
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """Whether physics allows these values: every quantity within its bounds."""

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Shape, Signals
+from bench.effects.effect import Array, Base, Column, Effect, Shape, Signals
 from bench.effects.physics import Axis, Friction, Moment, Number, Values
 from bench.units import Quantity
 
@@ -29,10 +29,16 @@ class FrictionWarmup(Friction, Effect):
     )
     shapes = (Shape(quantities[1], (0.7, 1.5, 3.0, 6.0, 12.0)),)
 
+    scales_friction = True
+
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """exp(-t/T) of the friction level, and of speed."""
         cold = np.exp(-signals.time / shape[0])
         return [[(signals.friction * cold, 0)], [(signals.velocity * cold, 0)]]
+
+    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array:
+        """Of the dry part."""
+        return strengths[0] * signals.friction * np.exp(-signals.time / shape[0])
 
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude relative to the Coulomb friction of the warm axis."""

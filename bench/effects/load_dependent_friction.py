@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Signals
+from bench.effects.effect import Array, Base, Column, Effect, Signals
 from bench.effects.physics import Axis, Friction, Moment, Number, Values
 from bench.units import Quantity
 
@@ -27,6 +27,10 @@ class LoadDependentFriction(Friction, Effect):
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Magnitude of the torque, against the motion."""
         return [[(signals.sign * np.abs(signals.torque), 0)]]
+
+    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array:
+        """All of it."""
+        return strengths[0] * signals.sign * np.abs(signals.torque)
 
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Signals, amplitude_and_phase
+from bench.effects.effect import Array, Base, Column, Effect, Signals, amplitude_and_phase
 from bench.effects.physics import Axis, Friction, Moment, Number, Values
 from bench.units import Quantity
 
@@ -26,9 +26,15 @@ class PositionDependentFriction(Friction, Effect):
         Quantity("phase", "phi", "rad"),
     )
 
+    scales_friction = True
+
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """sin(q) and cos(q) of the friction level."""
         return [[(signals.friction * wave, 0)] for wave in (np.sin(signals.position), np.cos(signals.position))]
+
+    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array:
+        """The wave of the friction level."""
+        return signals.friction * (strengths[0] * np.sin(signals.position) + strengths[1] * np.cos(signals.position))
 
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude relative to Coulomb friction, and phase."""

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Shape, Signals
+from bench.effects.effect import Array, Base, Column, Effect, Shape, Signals
 from bench.effects.physics import Axis, Friction, Moment, Number, Values
 from bench.units import Quantity
 
@@ -29,8 +29,12 @@ class StribeckFriction(Friction, Effect):
     shapes = (Shape(quantities[1], (0.3, 0.6, 1.2, 2.5, 5.0, 10.0, 20.0)),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """exp(-(omega/omega_s)**2) of the friction level."""
-        return [[(signals.friction * np.exp(-((signals.velocity / shape[0]) ** 2)), 0)]]
+        """exp(-(omega/omega_s)**2) against the motion."""
+        return [[(signals.sign * np.exp(-((signals.velocity / shape[0]) ** 2)), 0)]]
+
+    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array:
+        """The rise."""
+        return strengths[0] * signals.sign * np.exp(-((signals.velocity / shape[0]) ** 2))
 
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Static friction is Coulomb friction plus the rise."""
