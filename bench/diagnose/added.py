@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
+from bench.diagnose.fit import Fit
 from bench.diagnose.found import Gap, NamedEffect
-from bench.diagnose.hypothesis import BACKLASH, ELASTIC, Fit
+from bench.diagnose.hypothesis import BACKLASH, ELASTIC
 from bench.effects.present import Present
 from bench.errors import BenchError, InputError
 from bench.identify.estimate import Parameter

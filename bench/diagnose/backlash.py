@@ -10,8 +10,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.diagnose.columns import lags, prepared
 from bench.diagnose.dead_zone import dead_zone_columns
-from bench.diagnose.hypothesis import BACKLASH, Fit, Hypothesis, Named, fit, lags, prepared
+from bench.diagnose.fit import Fit, fit
+from bench.diagnose.hypothesis import BACKLASH, Hypothesis, Named
 from bench.diagnose.workbench import Workbench
 
 Array = NDArray[np.float64]

@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.diagnose.candidates import EVENT
-from bench.diagnose.hypothesis import MAINS, Fit, Hypothesis, Named, build
+from bench.diagnose.columns import MAINS, build
+from bench.diagnose.fit import Fit
+from bench.diagnose.hypothesis import Hypothesis, Named
 from bench.diagnose.workbench import Workbench
 
 Array = NDArray[np.float64]

@@ -8,19 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.diagnose.columns import lags, prepared
+from bench.diagnose.fit import Fit, fit
 from bench.diagnose.friction_levels import rubbing
-from bench.diagnose.hypothesis import (
-    BACKLASH,
-    CURRENT_LAG,
-    ECCENTRICITY,
-    ELASTIC,
-    VELOCITY_LAG,
-    Fit,
-    Named,
-    fit,
-    lags,
-    prepared,
-)
+from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG, Named
 from bench.diagnose.outside import OUTSIDE
 from bench.diagnose.transforms import two_mass
 from bench.diagnose.workbench import Workbench

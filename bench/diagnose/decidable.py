@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from bench.diagnose.hypothesis import Fit, Hypothesis, fit
+from bench.diagnose.fit import Fit, fit
+from bench.diagnose.hypothesis import Hypothesis
 from bench.diagnose.search import SIGNIFICANT, row_correlation
 from bench.diagnose.workbench import Workbench, clear_motion
 from bench.errors import InputError, UndeterminedError

@@ -11,9 +11,10 @@ from bench.diagnose.added import axis_model, velocity_gap
 from bench.diagnose.balance import EVERY, Balance
 from bench.diagnose.candidates import EVENT
 from bench.diagnose.decidable import one_way, require_decidable, require_positive, require_samples
+from bench.diagnose.fit import Fit, fit
 from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.holdout import foreign, require_another
-from bench.diagnose.hypothesis import CURRENT_LAG, DIRECTION, VELOCITY_LAG, Fit, fit
+from bench.diagnose.hypothesis import CURRENT_LAG, DIRECTION, VELOCITY_LAG
 from bench.diagnose.quantities import base_parameters, effect_parameters, uncertain
 from bench.diagnose.search import OFFSET, REMAINDER, Step, search
 from bench.diagnose.sensing import VelocityLag, unlagged, velocity_lag

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.diagnose.candidates import EVENT
-from bench.diagnose.hypothesis import Fit, fit
+from bench.diagnose.fit import Fit, fit
 from bench.diagnose.quantities import uncertain
 from bench.diagnose.workbench import Workbench
 from bench.errors import InputError

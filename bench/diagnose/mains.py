@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bench.diagnose.hypothesis import Fit, fit
+from bench.diagnose.fit import Fit, fit
 from bench.diagnose.workbench import Workbench
 
 #: Lines of the two grids of the world - Hz, and how far a grid strays - Hz.

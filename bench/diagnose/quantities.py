@@ -13,17 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.diagnose.backlash import SCALE
+from bench.diagnose.columns import build
 from bench.diagnose.dead_zone import UNTOLD
-from bench.diagnose.hypothesis import (
-    BACKLASH,
-    CURRENT_LAG,
-    ECCENTRICITY,
-    ELASTIC,
-    VELOCITY_LAG,
-    Fit,
-    Named,
-    build,
-)
+from bench.diagnose.fit import Fit
+from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG, Named
 from bench.diagnose.search import free_shapes
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue, physics

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.diagnose.balance import Balance
-from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG, build
+from bench.diagnose.columns import build
+from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG
 from bench.diagnose.outside import OUTSIDE, physics_of
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue

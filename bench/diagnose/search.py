@@ -13,6 +13,7 @@ import scipy.optimize
 
 from bench.diagnose.backlash import with_backlash
 from bench.diagnose.candidates import EVENT, Candidate, candidates
+from bench.diagnose.fit import Fit, fit
 from bench.diagnose.hypothesis import (
     BACKLASH,
     CURRENT_LAG,
@@ -21,10 +22,8 @@ from bench.diagnose.hypothesis import (
     ELASTIC,
     TRANSFORMS,
     VELOCITY_LAG,
-    Fit,
     Hypothesis,
     Named,
-    fit,
 )
 from bench.diagnose.mains import humming
 from bench.diagnose.outside import OUTSIDE, physics_of

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from bench.diagnose.hypothesis import Fit
+from bench.diagnose.fit import Fit
 from bench.diagnose.workbench import Workbench
 
 Array = NDArray[np.float64]
