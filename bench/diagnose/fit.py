@@ -40,6 +40,7 @@ class Fit:
         owners: (p,) index of the effect a column belongs to, BASE or MAINS.
         residual: (m,), 0 at rows that are not told - N*m (N).
         floor: RMS that sensor noise alone leaves under this model, see `bench.diagnose.noise` - N*m (N).
+        white_floor: the same were noise white - N*m (N).
         held: whether the misalignment is at its bound.
         told: (m,) rows whose torque the recording determines: not those that hang on the instant of an impact.
     """
@@ -50,6 +51,7 @@ class Fit:
     owners: NDArray[np.int64]
     residual: Array
     floor: float
+    white_floor: float
     held: bool
     told: NDArray[np.bool_]
 
@@ -95,13 +97,13 @@ def fit(bench: Workbench, hypothesis: Hypothesis) -> Fit:
             break
         columns, owners, theta = _solved(bench, hypothesis)
     residual = bench.effort - columns @ theta
-    floor = noise_floor(bench, white_power(bench, hypothesis, theta, owners), residual)
+    floor, white = noise_floor(bench, white_power(bench, hypothesis, theta, owners), residual)
     told = _told(bench, hypothesis, theta, owners, floor)
     if not told.all():
         theta = _balanced(bench, columns[told], bench.effort[told])
         residual = (bench.effort - columns @ theta) * told
     held = abs(theta[MISALIGNMENT]) >= bench.latched
-    return Fit(hypothesis, columns, theta, owners, residual, floor, held, told)
+    return Fit(hypothesis, columns, theta, owners, residual, floor, white, held, told)
 
 
 def _told(

@@ -20,21 +20,22 @@ from bench.diagnose.workbench import Workbench
 
 Array = NDArray[np.float64]
 
-#: Rows of a window, and windows below which white noise is assumed.
-WINDOW, ENOUGH = 64, 12
+#: Rows of a window, longer ones first, and windows of a length that it takes; else white noise is assumed.
+LENGTHS, ENOUGH = (128, 64), 24
 #: Lowest bin clear of the window's own leakage, and share of the strongest density below which a bin is not read.
 LOWEST, HEARD = 3, 0.03
 #: Quantile over windows that counts as quiet. Of noise every quantile tells the same level; of a lag's residual at
 #: 4 ms a bin of the lower quartile still held 600 times the noise, of the lowest tenth 6 to 12 times.
 QUIET = 0.1
 #: Excess at low frequency that chance makes in a white recording, and that is therefore not called colour.
-CHANCE = 0.25
-#: Corners tried, from the lowest frequency read to this many times the highest.
+CHANCE = 0.4
+#: Excesses tried, and corners, from the lowest frequency read to this many times the highest.
+EXCESSES = np.r_[0.0, np.geomspace(CHANCE, 1e4, 60)]
 CORNERS, BEYOND = 16, 3.0
 
 
-def noise_floor(bench: Workbench, power: Callable[[Array], Array], residual: Array) -> float:
-    """RMS of noise in a residual - N*m (N).
+def noise_floor(bench: Workbench, power: Callable[[Array], Array], residual: Array) -> tuple[float, float]:
+    """RMS of noise in a residual, and what it were if noise were white - N*m (N).
 
     Args:
         bench: the recording.
@@ -48,30 +49,33 @@ def noise_floor(bench: Workbench, power: Callable[[Array], Array], residual: Arr
         return np.exp(-((at * smooth.width) ** 2)) * power(at)
 
     excess, corner = colour(bench, density, residual)
-    coloured = density(omega) * (1.0 + excess / (1.0 + (omega / corner) ** 2))
-    return float(np.sqrt(smooth.sample_period / np.pi * np.trapezoid(coloured, omega)))
+    white = density(omega)
+    spectra = np.stack([white * (1.0 + excess / (1.0 + (omega / corner) ** 2)), white])
+    coloured, plain = np.sqrt(smooth.sample_period / np.pi * np.trapezoid(spectra, omega, axis=1))
+    return float(coloured), float(plain)
 
 
 def colour(bench: Workbench, density: Callable[[Array], Array], residual: Array) -> tuple[float, float]:
     """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white."""
     windows = _windows(bench, residual)
+    count, length = windows.shape
     smooth = bench.conditioning.filter
     period = smooth.stride * smooth.sample_period
-    omega = np.pi / period * np.arange(WINDOW // 2 + 1) / (WINDOW // 2)
-    white = density(omega) * smooth.stride**-1
+    omega = np.pi / period * np.arange(length // 2 + 1) / max(length // 2, 1)
+    white = density(omega) / smooth.stride
     read = np.flatnonzero(white > HEARD * white.max())
     read = read[read >= LOWEST]
-    if windows.shape[0] < ENOUGH or read.size < LOWEST:
+    if not count or read.size < LOWEST:
         return 0.0, 1.0
-    taper = np.hanning(WINDOW)
+    taper = np.hanning(length)
     spectra = np.abs(np.fft.rfft(windows * taper, axis=1)[:, read]) ** 2 / np.sum(taper**2)
-    ratio = np.quantile(spectra, QUIET, axis=0) / _quiet_level(windows.shape[0]) / white[read]
+    ratio = np.quantile(spectra, QUIET, axis=0) / _quiet_level(count) / white[read]
     corners = np.geomspace(omega[read[0]], BEYOND * omega[read[-1]], CORNERS)
     shapes = 1.0 / (1.0 + (omega[read] / corners[:, None]) ** 2)
-    excess = np.maximum(shapes @ (ratio - 1.0) / np.sum(shapes**2, axis=1), 0.0)
-    misfit = np.sum((np.log1p(excess[:, None] * shapes) - np.log(ratio)) ** 2, axis=1)
-    best = int(np.argmin(misfit))
-    return (float(excess[best]), float(corners[best])) if excess[best] > CHANCE else (0.0, 1.0)
+    levels = np.log1p(EXCESSES[:, None, None] * shapes)
+    misfit = np.sum(np.abs(levels - np.log(ratio)), axis=2)  # a sharp line sways a sum of magnitudes little
+    excess, corner = np.unravel_index(int(np.argmin(misfit)), misfit.shape)
+    return float(EXCESSES[excess]), float(corners[corner])
 
 
 def _quiet_level(count: int) -> float:
@@ -81,23 +85,24 @@ def _quiet_level(count: int) -> float:
 
 
 def _windows(bench: Workbench, residual: Array) -> Array:
-    """Half-overlapping windows of neighbouring rows, each less its straight line (k, WINDOW)."""
-    starts = _starts(tuple(part.used.tobytes() for part in bench.stretches))
-    if starts.size == 0:
-        return np.empty((0, WINDOW))
-    rows = residual[starts[:, None] + np.arange(WINDOW)]
-    ramp = np.linspace(-1.0, 1.0, WINDOW)
-    return rows - rows.mean(axis=1, keepdims=True) - np.outer(rows @ ramp / (ramp @ ramp), ramp)
+    """Half-overlapping windows of neighbouring rows, each less its straight line (k, length); none where too few."""
+    used = tuple(part.used.tobytes() for part in bench.stretches)
+    for length in LENGTHS:
+        starts = _starts(used, length)
+        if starts.size >= ENOUGH:
+            rows = residual[starts[:, None] + np.arange(length)]
+            ramp = np.linspace(-1.0, 1.0, length)
+            return rows - rows.mean(axis=1, keepdims=True) - np.outer(rows @ ramp / (ramp @ ramp), ramp)
+    return np.empty((0, LENGTHS[-1]))
 
 
 @lru_cache(maxsize=8)
-def _starts(used: tuple[bytes, ...]) -> NDArray[np.int64]:
+def _starts(used: tuple[bytes, ...], length: int) -> NDArray[np.int64]:
     """First rows of the windows that span no gap."""
     found, offset = [], 0
     for raw in used:
-        kept = np.frombuffer(raw, dtype=bool)
-        rows = np.flatnonzero(kept)
+        rows = np.flatnonzero(np.frombuffer(raw, dtype=bool))
         runs = np.split(np.arange(rows.size), np.flatnonzero(np.diff(rows) != 1) + 1)
-        found += [offset + np.arange(run[0], run[-1] - WINDOW + 2, WINDOW // 2) for run in runs if run.size >= WINDOW]
+        found += [offset + np.arange(run[0], run[-1] - length + 2, length // 2) for run in runs if run.size >= length]
         offset += rows.size
     return np.concatenate(found) if found else np.empty(0, dtype=np.int64)

@@ -126,9 +126,20 @@ def uncontested(bench: Workbench, fitted: Fit, excluded: frozenset[str]) -> Fit:
     for index in range(len(fitted.hypothesis.effects) - 1, -1, -1):
         less = fit(bench, fitted.hypothesis.without(index))
         rivals = [candidate for candidate in candidates(bench, less, excluded) if candidate.named.name in OUTSIDE]
-        if rivals and refined(bench, less, rivals[0]).rms < fitted.rms:
+        if rivals and outdone(bench, fitted, refined(bench, less, rivals[0])):
             fitted = less
     return fitted
+
+
+def outdone(bench: Workbench, fitted: Fit, rival: Fit) -> bool:
+    """Whether a rival with a quantity or two more explains clearly more."""
+    saved = float(np.sum(fitted.residual**2) - np.sum(rival.residual**2))
+    added = max(_freedom(rival) - _freedom(fitted), 1)
+    return saved > max(SHARE * fitted.excess, SIGNIFICANT * added * row_correlation(bench) * fitted.floor**2)
+
+
+def _freedom(fitted: Fit) -> int:
+    return fitted.theta.size + sum(len(free_shapes(effect)) for effect in fitted.hypothesis.effects)
 
 
 def believable(bench: Workbench, before: Fit, fitted: Fit) -> Fit:
@@ -155,12 +166,13 @@ def simpler(bench: Workbench, fitted: Fit) -> Fit:
 def worthwhile(bench: Workbench, before: Fit, after: Fit) -> bool:
     """Whether an added effect explains enough, significantly, within what physics allows.
 
-    Noise is what the lower of the two floors says: an effect that never pauses, such as the cogging of a steady speed,
-    passes for coloured noise until it is named.
+    Noise has the colour that the later fit sees: an effect that never pauses, such as the cogging of a steady speed,
+    passes for coloured noise until it is named. It is no less than white noise makes under the former model: one that
+    damps the noise of speed, as a soft coupling does, explains nothing by that.
     """
     saved = float(np.sum(before.residual**2) - np.sum(after.residual**2))
-    noise = min(before.floor, after.floor) ** 2
-    excess = max(float(np.sum(before.residual**2)) - before.residual.size * noise, 0.0)
+    noise = min(before.floor, max(before.white_floor, after.floor)) ** 2
+    excess = max(float(np.sum(before.residual**2)) - np.count_nonzero(before.told) * noise, 0.0)
     correlation = row_correlation(bench)
     added = after.theta.size - before.theta.size + len(after.hypothesis.effects[-1].shape)
     significant = saved > SIGNIFICANT * added * correlation * noise
