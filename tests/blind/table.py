@@ -15,6 +15,10 @@ from tests.independent.effects import CATALOGUE
 #: Truth's residual over what sensor noise makes of it, below which no noise floor could show the effect.
 VISIBLE = 1.12
 HEADINGS = (
+    *("case", "hidden", "strength", "severity", "residual_ratio", "sample_period_ms", "noise", "linear"),
+    *("named", "verdict", "right", "chi_before", "chi_after", "inertia_error", "gap_closed"),
+    *("inside", "outside_interval", "seconds", "refused"),
+)
     "case",
     "hidden",
     "strength",
