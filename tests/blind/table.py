@@ -19,26 +19,6 @@ HEADINGS = (
     *("named", "verdict", "right", "chi_before", "chi_after", "inertia_error", "gap_closed"),
     *("inside", "outside_interval", "seconds", "refused"),
 )
-    "case",
-    "hidden",
-    "strength",
-    "severity",
-    "residual_ratio",
-    "sample_period_ms",
-    "noise",
-    "linear",
-    "named",
-    "verdict",
-    "right",
-    "chi_before",
-    "chi_after",
-    "inertia_error",
-    "gap_closed",
-    "inside",
-    "outside_interval",
-    "seconds",
-    "refused",
-)
 
 
 def ratio(scores: Sequence[Score], holds: Callable[[Score], bool] = lambda score: score.right) -> str:
