@@ -10,7 +10,7 @@ import numpy as np
 from bench.diagnose.added import axis_model, velocity_gap
 from bench.diagnose.balance import EVERY, Balance
 from bench.diagnose.candidates import EVENT
-from bench.diagnose.decidable import one_way, require_decidable, require_positive, require_samples
+from bench.diagnose.decidable import one_way, require_decidable, require_positive, require_samples, untold
 from bench.diagnose.fit import Fit, fit
 from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.holdout import foreign, require_another
@@ -22,6 +22,8 @@ from bench.diagnose.suspicious import suspicions
 from bench.diagnose.voltage import VoltageLimit, voltage_limit
 from bench.diagnose.where import Where, where
 from bench.diagnose.workbench import Workbench
+from bench.effects.catalogue import physics
+from bench.effects.physics import Friction
 from bench.identify.determined import require_significant
 from bench.identify.estimate import Parameter
 from bench.identify.load_inertia import load_inertia
@@ -81,7 +83,7 @@ def diagnose(
         InputError: rig and recording do not fit together.
     """
     bench, other, lag = laid_out(trace, rig, holdout)
-    steps = search(bench, rig.motor.rotor_inertia or 0.0, unsearched(trace, excluded))
+    steps = search(bench, rig.motor.rotor_inertia or 0.0, unsearched(trace, bench, excluded))
     progress(0.6)
     warnings = foreign(bench, steps[-1].fitted, other)
     fitted = proven(bench, steps[-1].fitted, None if warnings else other)
@@ -107,13 +109,19 @@ def diagnose(
         steps=_shrinking(steps, fitted),
         model=model,
         balance=balance,
-        warnings=[*suspicions(trace, rig, parameters), *one_way(bench, rig.linear), *warnings, *problem, *failed],
+        warnings=[*suspicions(trace, rig, parameters), *untold(bench, rig.linear), *warnings, *problem, *failed],
     )
 
 
-def unsearched(trace: Trace, excluded: frozenset[str]) -> frozenset[str]:
-    """Effects not to be sought in the torque balance: position and speed tell a lag of the speed themselves."""
-    return excluded | {VELOCITY_LAG} if {"position", "velocity"} <= set(trace.signals) else excluded
+def unsearched(trace: Trace, bench: Workbench, excluded: frozenset[str]) -> frozenset[str]:
+    """Effects not to be sought in the torque balance.
+
+    Position and speed tell a lag of the speed themselves. In one direction an effect on dry friction is the same as one
+    on torque: friction that varies with position and an unbalance, for instance.
+    """
+    lag = {VELOCITY_LAG} if {"position", "velocity"} <= set(trace.signals) else set()
+    friction = {name for name, effect in physics().items() if isinstance(effect, Friction)} if one_way(bench) else set()
+    return excluded | lag | friction
 
 
 def laid_out(trace: Trace, rig: Rig, holdout: Trace | None) -> tuple[Workbench, Workbench | None, VelocityLag | None]:
