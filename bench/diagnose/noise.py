@@ -33,8 +33,8 @@ CHANCE = 0.25
 CORNERS, BEYOND = 16, 3.0
 
 
-def noise_floor(bench: Workbench, power: Callable[[Array], Array], residual: Array) -> float:
-    """RMS of noise in a residual - N*m (N).
+def noise_floor(bench: Workbench, power: Callable[[Array], Array], residual: Array) -> tuple[float, float]:
+    """RMS of noise in a residual, and of its white part - N*m (N).
 
     Args:
         bench: the recording.
@@ -48,8 +48,11 @@ def noise_floor(bench: Workbench, power: Callable[[Array], Array], residual: Arr
         return np.exp(-((at * smooth.width) ** 2)) * power(at)
 
     excess, corner = colour(bench, density, residual)
-    coloured = density(omega) * (1.0 + excess / (1.0 + (omega / corner) ** 2))
-    return float(np.sqrt(smooth.sample_period / np.pi * np.trapezoid(coloured, omega)))
+    white = density(omega)
+    coloured = white * (1.0 + excess / (1.0 + (omega / corner) ** 2))
+    scale = smooth.sample_period / np.pi
+    floor, least = (float(np.sqrt(scale * np.trapezoid(spectrum, omega))) for spectrum in (coloured, white))
+    return floor, least
 
 
 def colour(bench: Workbench, density: Callable[[Array], Array], residual: Array) -> tuple[float, float]:

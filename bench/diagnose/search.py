@@ -169,11 +169,12 @@ def simpler(bench: Workbench, fitted: Fit) -> Fit:
 def worthwhile(bench: Workbench, before: Fit, after: Fit) -> bool:
     """Whether an added effect explains enough, significantly, within what physics allows.
 
-    Noise is what the lower of the two floors says: an effect that never pauses, such as the cogging of a steady speed,
-    passes for coloured noise until it is named.
+    Noise is what the less coloured of the two floors says: an effect that never pauses, such as the cogging of a steady
+    speed, passes for coloured noise until it is named. White noise is that of the model before: an effect that filters
+    speed or copies torque lowers its own, and explains nothing by that.
     """
     saved = float(np.sum(before.residual**2) - np.sum(after.residual**2))
-    noise = min(before.floor, after.floor) ** 2
+    noise = min(before.floor, after.floor * before.white / after.white) ** 2
     excess = max(float(np.sum(before.residual**2)) - before.residual.size * noise, 0.0)
     correlation = row_correlation(bench)
     added = after.theta.size - before.theta.size + len(after.hypothesis.effects[-1].shape)
