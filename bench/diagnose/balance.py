@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,10 @@ class Balance:
     def of(cls, bench: Workbench, fitted: Fit) -> Balance:
         """Balance of a fit."""
         return cls(fitted.hypothesis, fitted.theta, bench.conditioning.filter.width, bench.origin)
+
+    def repeating(self, events: bool) -> Balance:
+        """The same with its events in every recording, if they happen in every one."""
+        return replace(self, recording=EVERY) if events else self
 
     def torque(self, bench: Workbench) -> Array:
         """Modelled torque at the used rows of a recording - N*m (N) - (m,)."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from bench.diagnose.columns import lags, prepared
 from bench.diagnose.fit import Fit, fit
 from bench.diagnose.friction_levels import rubbing
+from bench.diagnose.grids import TURNING, sought
 from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG, Named
 from bench.diagnose.outside import OUTSIDE
 from bench.diagnose.transforms import two_mass
@@ -49,6 +50,7 @@ def candidates(bench: Workbench, current: Fit, excluded: frozenset[str] = frozen
     basis = current.span
     hypothesis = current.hypothesis
     seen = rubbing(prepared(bench, hypothesis), hypothesis, len(hypothesis.effects))
+    excluded = excluded | TURNING if bench.linear else excluded
     best: dict[str, Candidate] = {}
     present = {effect.name for effect in current.hypothesis.effects}
     found = _linear(seen, current, basis, excluded)
@@ -97,15 +99,15 @@ def _linear(seen: Workbench, current: Fit, basis: Array, excluded: frozenset[str
     for physics in (*catalogue().values(), *OUTSIDE.values()):
         if physics.name in excluded or physics.name == EVENT or not physics.searched:
             continue
-        grids = _grid(physics.shapes)
+        grids = _grid(sought(seen, physics))
         made = seen.table(lambda s, p=physics, g=grids: [c for shape in g for c in p.columns(s, shape)], resting)
         width = made.shape[1] // len(grids)
         worth = gains(made, width, current.residual, basis)
         yield from (Candidate(Named(physics.name, shape), float(w)) for shape, w in zip(grids, worth, strict=True))
 
 
-def _grid(shapes: tuple) -> list[tuple[float, ...]]:
-    mesh = np.meshgrid(*(shape.grid for shape in shapes), indexing="ij") if shapes else []
+def _grid(sought_along: tuple[tuple[float, ...], ...]) -> list[tuple[float, ...]]:
+    mesh = np.meshgrid(*sought_along, indexing="ij") if sought_along else []
     return [tuple(float(value) for value in point) for point in zip(*(m.ravel() for m in mesh), strict=True)] or [()]
 
 

@@ -66,16 +66,24 @@ def require_decidable(trace: Trace, rig: Rig, bench: Workbench) -> None:
     require_audible(bench, fit(bench, Hypothesis()), unit, rig.linear)
 
 
-def one_way(bench: Workbench, linear: bool) -> list[str]:
-    """A warning where the axis moves one way only: what else the motion tells stays told, but friction is a sum."""
-    mean = float(np.mean(bench.row_values(lambda s: s.sign)))
-    if 0.5 * (1.0 - abs(mean)) >= DIRECTION_SHARE:
+def one_way(bench: Workbench) -> bool:
+    """Whether the axis moves in one direction only, so that dry friction and a constant torque are one number."""
+    return 0.5 * (1.0 - abs(_mean_direction(bench))) < DIRECTION_SHARE
+
+
+def untold(bench: Workbench, linear: bool) -> list[str]:
+    """A warning of what a motion in one direction leaves open; what else it tells stays told."""
+    if not one_way(bench):
         return []
     offset, friction = parameter_name(OFFSET, linear), parameter_name(COULOMB, linear)
     return [
-        f"the axis moves {'forward' if mean > 0.0 else 'backward'} only: {friction} holds any {offset} too, "
-        "and friction cannot be told from it; record both directions for that"
+        f"the axis moves {'forward' if _mean_direction(bench) > 0.0 else 'backward'} only: {friction} holds any "
+        f"{offset} too, and no effect on friction was sought; record both directions for that"
     ]
+
+
+def _mean_direction(bench: Workbench) -> float:
+    return float(np.mean(bench.row_values(lambda s: s.sign)))
 
 
 def require_agreement(trace: Trace) -> None:

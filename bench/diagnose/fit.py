@@ -17,12 +17,15 @@ from bench.diagnose.hypothesis import (
     Hypothesis,
 )
 from bench.diagnose.noise import noise_floor
+from bench.diagnose.outside import physics_of
 from bench.diagnose.transforms import two_mass
 from bench.diagnose.workbench import Workbench
 from bench.effects.effect import Base
 
 Array = NDArray[np.float64]
 
+#: Effects whose columns are made of the measured torque, and so hold its noise.
+OF_EFFORT = ("load_dependent_friction", "torque_ripple", "torque_constant_saturation")
 #: Rounds in which levels of dry friction that multiply are brought in line.
 LEVEL_ROUNDS = 4
 #: Share of the noise floor by which a row's torque may hang on the contact of a dead zone.
@@ -40,7 +43,7 @@ class Fit:
         owners: (p,) index of the effect a column belongs to, BASE or MAINS.
         residual: (m,), 0 at rows that are not told - N*m (N).
         floor: RMS that sensor noise alone leaves under this model, see `bench.diagnose.noise` - N*m (N).
-        white_floor: the same were noise white - N*m (N).
+        white: the part of the floor that is white noise's - N*m (N).
         held: whether the misalignment is at its bound.
         told: (m,) rows whose torque the recording determines: not those that hang on the instant of an impact.
     """
@@ -51,7 +54,7 @@ class Fit:
     owners: NDArray[np.int64]
     residual: Array
     floor: float
-    white_floor: float
+    white: float
     held: bool
     told: NDArray[np.bool_]
 
@@ -146,9 +149,10 @@ def white_power(
 ) -> Callable[[Array], Array]:
     """Power of white noise of effort and speed in the torque balance, over angular frequency - (N*m)**2 (N**2).
 
-    s_M**2*|1 + tau*s|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
+    s_M**2*|1 + tau*s|**2*<(1 - dM_model/dM)**2> + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
     """
     conditioning = bench.conditioning
+    left = _left_of_effort(bench, hypothesis, theta, owners)
     moving, _ = lags(bench, hypothesis)
     elastic = hypothesis.shape_of(ELASTIC)
 
@@ -161,7 +165,29 @@ def white_power(
             relative = two_mass(bench, *elastic)(omega)
             kinetic = kinetic + theta[owners == hypothesis.names.index(ELASTIC)][0] * s * relative
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
-        effort = conditioning.effort_noise**2 * np.abs(1.0 + theta[MISALIGNMENT] * s) ** 2
+        effort = left * conditioning.effort_noise**2 * np.abs(1.0 + theta[MISALIGNMENT] * s) ** 2
         return effort + conditioning.source_noise**2 * np.abs(kinetic) ** 2
 
     return power
+
+
+def _left_of_effort(bench: Workbench, hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> float:
+    """Mean of (1 - dM_model/dM)**2: what effects made of the measured torque leave of its noise's power.
+
+    An effect that copies the torque copies its noise, and so would take all of it for explained.
+    """
+    made = [k for k, effect in enumerate(hypothesis.effects) if effect.name in OF_EFFORT]
+    if not made:
+        return 1.0
+    total, count = 0.0, 0
+    for part in bench.stretches:
+        signals = part.signals
+        step = 1e-6 * signals.peak_effort
+        more, slope = replace(signals, torque=signals.torque + step), np.zeros(signals.torque.size)
+        for k in made:
+            physics, shape = physics_of(hypothesis.effects[k].name), hypothesis.effects[k].shape
+            pairs = zip(physics.columns(more, shape), physics.columns(signals, shape), theta[owners == k], strict=True)
+            for ((high, _),), ((low, _),), strength in pairs:
+                slope += strength * (high - low) / step
+        total, count = total + float(np.sum((1.0 - slope) ** 2)), count + slope.size
+    return total / count

@@ -37,3 +37,31 @@ class Gap:
     noise_floor: float
     identify: tuple[float, float] | None
     holdout: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A name that was not kept.
+
+    Attributes:
+        name: of the effect.
+        reason: what spoke against it.
+    """
+
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Shrunk:
+    """Gaps at one point of the model's growth.
+
+    Attributes:
+        effect: added last; empty for the bare axis.
+        torque: of the recording, and of the holdout where there is one - N*m (N).
+        velocity: the same - rad/s (m/s); nan where it could not be had.
+    """
+
+    effect: str
+    torque: tuple[float, ...]
+    velocity: tuple[float, ...]

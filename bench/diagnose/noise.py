@@ -35,7 +35,7 @@ CORNERS, BEYOND = 16, 3.0
 
 
 def noise_floor(bench: Workbench, power: Callable[[Array], Array], residual: Array) -> tuple[float, float]:
-    """RMS of noise in a residual, and what it were if noise were white - N*m (N).
+    """RMS of noise in a residual, and of its white part - N*m (N).
 
     Args:
         bench: the recording.
@@ -50,9 +50,10 @@ def noise_floor(bench: Workbench, power: Callable[[Array], Array], residual: Arr
 
     excess, corner = colour(bench, density, residual)
     white = density(omega)
-    spectra = np.stack([white * (1.0 + excess / (1.0 + (omega / corner) ** 2)), white])
-    coloured, plain = np.sqrt(smooth.sample_period / np.pi * np.trapezoid(spectra, omega, axis=1))
-    return float(coloured), float(plain)
+    coloured = white * (1.0 + excess / (1.0 + (omega / corner) ** 2))
+    scale = smooth.sample_period / np.pi
+    floor, least = (float(np.sqrt(scale * np.trapezoid(spectrum, omega))) for spectrum in (coloured, white))
+    return floor, least
 
 
 def colour(bench: Workbench, density: Callable[[Array], Array], residual: Array) -> tuple[float, float]:

@@ -17,7 +17,7 @@ from bench.diagnose.columns import build
 from bench.diagnose.dead_zone import UNTOLD
 from bench.diagnose.fit import Fit
 from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG, Named
-from bench.diagnose.search import free_shapes
+from bench.diagnose.shapes import free_shapes
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue, physics
 from bench.effects.effect import Base, amplitude_and_phase
@@ -46,7 +46,7 @@ class Uncertain:
 def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
     """Free numbers of a fit with their covariance; rows beside a dead zone count as in its search."""
     slots = tuple(
-        (index, k) for index, effect in enumerate(fitted.hypothesis.effects) for k in _uncertain_shapes(effect)
+        (index, k) for index, effect in enumerate(fitted.hypothesis.effects) for k in _uncertain_shapes(effect, bench)
     )
     columns = [fitted.columns]
     for index, k in slots:
@@ -75,8 +75,8 @@ def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
     return Uncertain(np.concatenate([fitted.theta, shapes]), covariance, slots)
 
 
-def _uncertain_shapes(effect: Named) -> list[int]:
-    return list(range(len(DEAD_ZONE_STEPS))) if effect.name == BACKLASH else free_shapes(effect)
+def _uncertain_shapes(effect: Named, bench: Workbench) -> list[int]:
+    return list(range(len(DEAD_ZONE_STEPS))) if effect.name == BACKLASH else free_shapes(effect, bench)
 
 
 def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -> dict[str, Parameter]:
@@ -162,6 +162,8 @@ def unit_of_quantity(effect: str, quantity: str, linear: bool, effort_unit: str)
     """Unit of a reported quantity."""
     if quantity == "resonance_frequency":
         return "Hz"
+    if quantity == "harmonic" and linear:
+        return "rad/m"
     known = {q.name: q.unit for q in physics()[effect].quantities} if effect in physics() else {}
     unit = known.get(quantity, "dimensionless")
     unit = unit.replace("rad", "m") if linear and quantity != "phase" else unit

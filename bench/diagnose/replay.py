@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.diagnose.balance import Balance
+from bench.diagnose.added import holding_bandwidth, without_events
+from bench.diagnose.balance import EVERY, Balance
 from bench.diagnose.columns import build
 from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG
 from bench.diagnose.outside import OUTSIDE, physics_of
@@ -97,7 +98,10 @@ def replay(path: Path, trace: Trace, rig: Rig) -> Replay:
     velocity = np.full(len(trace), np.nan)
     if "parameters" in table:
         stored = load_model(path)
-        velocity = track_effects(stored.model, trace, effort, stored.misalignment)
+        happening = balance.recording in (EVERY, trace.origin)
+        model = stored.model if happening else without_events(stored.model)
+        bandwidth = holding_bandwidth(model, float(np.abs(measured_velocity(trace)).max()))
+        velocity = track_effects(model, trace, effort, stored.misalignment, bandwidth)
     warnings = []
     if str(table.get("name", rig.name)) != rig.name:
         warnings.append(f"the model is of '{table['name']}', the rig file of '{rig.name}'")

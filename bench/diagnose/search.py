@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
 
 from bench.diagnose.backlash import with_backlash
 from bench.diagnose.candidates import EVENT, Candidate, candidates
@@ -18,15 +17,14 @@ from bench.diagnose.hypothesis import (
     BACKLASH,
     CURRENT_LAG,
     DIRECTION,
-    ECCENTRICITY,
     ELASTIC,
     TRANSFORMS,
-    VELOCITY_LAG,
     Hypothesis,
     Named,
 )
 from bench.diagnose.mains import humming
-from bench.diagnose.outside import OUTSIDE, physics_of
+from bench.diagnose.outside import OUTSIDE
+from bench.diagnose.shapes import shaped
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue
 
@@ -38,12 +36,16 @@ REMAINDER = 1.12
 LARGE, REMAINING, REMAINING_BACKLASH = 3.0, 0.2, 0.35
 #: Longest event, as share of the recording; beyond, it is not an event but how the axis is.
 LONGEST_EVENT = 0.6
+#: Share of its worth that a name keeps beside a rival from outside the catalogue that takes nothing of it.
+KEPT = 0.5
 #: Share of what stands above the floor that an effect must explain to be taken up.
 SHARE = 0.25
 #: The same for an event, which has a window of time to choose freely and so fits a part of anything.
 EVENT_SHARE = 0.5
 #: Gain over noise power per degree of freedom that chance does not reach in a search over some hundred candidates.
 SIGNIFICANT = 40.0
+#: Damping ratio from which a coupling no longer rings, so that nothing tells it from a lag.
+OVERDAMPED = 1.0
 #: Candidates whose shapes are polished before they are compared.
 FINALISTS = 4
 #: Effects at most.
@@ -120,26 +122,38 @@ def loosened(bench: Workbench, fitted: Fit, rotor_inertia: float) -> Fit | None:
 
 
 def uncontested(bench: Workbench, fitted: Fit, excluded: frozenset[str]) -> Fit:
-    """Without the names that something from outside the catalogue explains better, where a remainder is left."""
+    """Without the names that something from outside the catalogue explains better, where a remainder is left.
+
+    A rival that explains more, but of something else, contests nothing: beside it the name keeps its worth.
+    """
     if fitted.chi < REMAINDER or not fitted.hypothesis.effects:
         return fitted
     for index in range(len(fitted.hypothesis.effects) - 1, -1, -1):
         less = fit(bench, fitted.hypothesis.without(index))
         rivals = [candidate for candidate in candidates(bench, less, excluded) if candidate.named.name in OUTSIDE]
-        if rivals and outdone(bench, fitted, refined(bench, less, rivals[0])):
+        if not rivals:
+            continue
+        rival = refined(bench, less, rivals[0])
+        beside = fit(bench, rival.hypothesis.with_effect(fitted.hypothesis.effects[index]))
+        if outdone(bench, fitted, rival) and worth(rival, beside) < KEPT * worth(less, fitted):
             fitted = less
     return fitted
 
 
 def outdone(bench: Workbench, fitted: Fit, rival: Fit) -> bool:
     """Whether a rival with a quantity or two more explains clearly more."""
-    saved = float(np.sum(fitted.residual**2) - np.sum(rival.residual**2))
     added = max(_freedom(rival) - _freedom(fitted), 1)
-    return saved > max(SHARE * fitted.excess, SIGNIFICANT * added * row_correlation(bench) * fitted.floor**2)
+    least = max(SHARE * fitted.excess, SIGNIFICANT * added * row_correlation(bench) * fitted.floor**2)
+    return worth(fitted, rival) > least
 
 
 def _freedom(fitted: Fit) -> int:
     return fitted.theta.size + sum(len(free_shapes(effect)) for effect in fitted.hypothesis.effects)
+
+
+def worth(without: Fit, having: Fit) -> float:
+    """Squares that an effect saves, summed over rows - (N*m)**2 (N**2)."""
+    return float(np.sum(without.residual**2) - np.sum(having.residual**2))
 
 
 def believable(bench: Workbench, before: Fit, fitted: Fit) -> Fit:
@@ -166,18 +180,18 @@ def simpler(bench: Workbench, fitted: Fit) -> Fit:
 def worthwhile(bench: Workbench, before: Fit, after: Fit) -> bool:
     """Whether an added effect explains enough, significantly, within what physics allows.
 
-    Noise has the colour that the later fit sees: an effect that never pauses, such as the cogging of a steady speed,
-    passes for coloured noise until it is named. It is no less than white noise makes under the former model: one that
-    damps the noise of speed, as a soft coupling does, explains nothing by that.
+    Noise is what the less coloured of the two floors says: an effect that never pauses, such as the cogging of a steady
+    speed, passes for coloured noise until it is named. White noise is that of the model before: an effect that filters
+    speed or copies torque lowers its own, and explains nothing by that.
     """
     saved = float(np.sum(before.residual**2) - np.sum(after.residual**2))
-    noise = min(before.floor, max(before.white_floor, after.floor)) ** 2
+    noise = min(before.floor, after.floor * before.white / after.white) ** 2
     excess = max(float(np.sum(before.residual**2)) - np.count_nonzero(before.told) * noise, 0.0)
     correlation = row_correlation(bench)
     added = after.theta.size - before.theta.size + len(after.hypothesis.effects[-1].shape)
     significant = saved > SIGNIFICANT * added * correlation * noise
     share = EVENT_SHARE if after.hypothesis.names[-1] == EVENT else SHARE
-    return significant and 0.0 < share * excess < saved and physical(after, bench.duration)
+    return significant and 0.0 < share * (before.excess or excess) < saved and physical(after, bench.duration)
 
 
 def row_correlation(bench: Workbench) -> float:
@@ -192,6 +206,8 @@ def physical(fitted: Fit, duration: float) -> bool:
         strengths = fitted.strengths(index)
         if effect.name in (ELASTIC, BACKLASH) and not 0.02 < strengths[0] / fitted.theta[0] < 0.98:
             return False
+        if effect.name == ELASTIC and effect.shape[1] >= OVERDAMPED:
+            return False
         if effect.name == EVENT and effect.shape[1] - effect.shape[0] > LONGEST_EVENT * duration:
             return False
         if effect.name in TRANSFORMS or effect.name in OUTSIDE:
@@ -204,68 +220,6 @@ def physical(fitted: Fit, duration: float) -> bool:
 def refined(bench: Workbench, current: Fit, candidate: Candidate) -> Fit:
     """The candidate added, its shape searched around where the grid found it."""
     return shaped(bench, current.hypothesis.with_effect(candidate.named), len(current.hypothesis.effects))
-
-
-def shaped(bench: Workbench, hypothesis: Hypothesis, index: int) -> Fit:
-    """Search one effect's shape for the least residual, the others held."""
-    effect = hypothesis.effects[index]
-    free = free_shapes(effect)
-    if not free:
-        return fit(bench, hypothesis)
-    start = np.array(effect.shape)
-    scale = _scale(effect)
-
-    def misfit(offset: np.ndarray) -> float:
-        shape = start.copy()
-        shape[free] = _moved(effect, start[free], offset * scale)
-        found = fit(bench, hypothesis.reshaped(index, tuple(shape.tolist())))
-        return float(np.log(np.sum(found.residual**2)))
-
-    if len(free) == 1:
-        best = scipy.optimize.minimize_scalar(
-            lambda x: misfit(np.array([x])), bounds=(-1.0, 1.0), method="bounded", options={"xatol": 4e-3}
-        )
-        offset = np.array([best.x])
-    else:
-        best = scipy.optimize.minimize(
-            misfit,
-            np.zeros(len(free)),
-            method="Nelder-Mead",
-            options={"initial_simplex": _simplex(len(free)), "xatol": 3e-3, "fatol": 1e-4, "maxfev": 120},
-        )
-        offset = np.asarray(best.x)
-    shape = start.copy()
-    shape[free] = _moved(effect, start[free], offset * scale)
-    return fit(bench, hypothesis.reshaped(index, tuple(shape.tolist())))
-
-
-def _simplex(size: int) -> np.ndarray:
-    return np.vstack([np.zeros(size), 0.5 * np.eye(size)])
-
-
-def free_shapes(effect: Named) -> list[int]:
-    """Indices of the shape quantities that vary continuously."""
-    if effect.name == BACKLASH:
-        return []
-    if effect.name in TRANSFORMS or effect.name == EVENT:
-        return list(range(len(effect.shape)))
-    physics = physics_of(effect.name)
-    return [index for index, shape in enumerate(physics.shapes) if not shape.whole]
-
-
-def _scale(effect: Named) -> float:
-    """How far a search goes at first: as factor e**scale of positive quantities, as distance of the others."""
-    if effect.name == EVENT:
-        return 0.05
-    if effect.name == ECCENTRICITY:
-        return 0.3 * max(float(np.linalg.norm(effect.shape)), 1e-4)
-    return {ELASTIC: 0.35, CURRENT_LAG: 1.0, VELOCITY_LAG: 1.0}.get(effect.name, 0.9)
-
-
-def _moved(effect: Named, start: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    if effect.name in (EVENT, ECCENTRICITY) or (effect.name in OUTSIDE and effect.name == "outside_notch"):
-        return start + offset
-    return start * np.exp(offset)
 
 
 def polished(bench: Workbench, fitted: Fit) -> Fit:

@@ -11,6 +11,8 @@ from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
 
+VOLTAGE_LIMIT = "voltage_limit"
+
 #: Speed behind its reference that counts as falling behind, as share of the largest reference.
 BEHIND = 0.02
 #: Share of the top within which the voltage counts as standing at it, share of the samples behind that do, and samples.

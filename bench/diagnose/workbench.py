@@ -43,6 +43,7 @@ class Workbench:
         conditioning: source, noises and filter.
         origin: of the recording.
         latched: within what time torque and speed were taken: one tick of a drive, else one sample - s.
+        linear: whether the axis moves in metres.
         memory: columns that cost a simulation, by what they were made from.
     """
 
@@ -50,6 +51,7 @@ class Workbench:
     conditioning: Conditioning
     origin: str
     latched: float
+    linear: bool
     memory: dict[tuple[object, ...], Array] = field(default_factory=dict, compare=False)
 
     @classmethod
@@ -80,7 +82,7 @@ class Workbench:
             reason = f"no filtered sample of {trace.origin} moves clearly in one direction"
             raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, trace.linear))
         latched = rig.drive.control_period if rig.drive is not None else trace.sample_period
-        return cls(stretches, conditioning, trace.origin, latched)
+        return cls(stretches, conditioning, trace.origin, latched, trace.linear)
 
     def with_signals(self, change: Callable[[Signals], Signals]) -> Workbench:
         """The same rows over changed raw signals (a corrected angle, another friction level)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from rich import box
 from rich.table import Table
 
 from bench.diagnose.diagnosis import Diagnosis
-from bench.diagnose.found import Gap
+from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where import Where
 from bench.files import write_text
 from bench.plant.model_file import model_toml, model_xml
@@ -42,8 +43,9 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
             "where": [_where(account) for account in diagnosis.unexplained_where],
         },
         "parameters": parameters_json(diagnosis.parameters),
-        "gap": {"torque": _gap(diagnosis.torque), "velocity": _gap(diagnosis.velocity)},
-        "steps": [{"effect": name, "torque_gap": gap, "velocity_gap": None} for name, gap in diagnosis.steps],
+        "gap": {"torque": _gap(diagnosis.torque), "velocity": _velocity_gap(diagnosis)},
+        "steps": [_step(step) for step in diagnosis.steps[1:]],
+        "rejected": [{"name": found.name, "reason": found.reason} for found in diagnosis.rejected],
         "next_experiment": None,
         "model": {"mjcf": "model.xml" if diagnosis.model is not None else None, "toml": "model.toml"},
         "warnings": diagnosis.warnings,
@@ -70,6 +72,26 @@ def _gap(gap: Gap) -> dict[str, Any]:
         "identify": pair(gap.identify),
         "holdout": pair(gap.holdout),
     }
+
+
+def _velocity_gap(diagnosis: Diagnosis) -> dict[str, Any]:
+    """The gap, and how it was had: models held to the recording by a cascade, fed with the recorded effort."""
+    content = _gap(diagnosis.velocity)
+    content["loop"] = {"kind": "held", "bandwidth": {"value": diagnosis.bandwidth, "unit": "rad/s"}}
+    closed = diagnosis.closed_loop
+    content["closed_loop"] = None if closed is None else {"before": closed[0], "after": closed[1]}
+    refined = diagnosis.refined
+    content["refined"] = None if refined is None else {"before": refined[0], "after": refined[1]}
+    return content
+
+
+def _step(step: Shrunk) -> dict[str, Any]:
+    """Gaps after an addition, of the recording and of the holdout; null where there is none."""
+    content: dict[str, Any] = {"effect": step.effect}
+    for name, gaps in (("torque_gap", step.torque), ("velocity_gap", step.velocity)):
+        found = [gap if math.isfinite(gap) else None for gap in gaps]
+        content |= {name: found[0], f"{name}_holdout": found[1] if len(found) > 1 else None}
+    return content
 
 
 def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:

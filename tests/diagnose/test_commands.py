@@ -162,6 +162,15 @@ def test_nothing_hidden_is_nothing_missing(bench):
     assert (found["verdict"], found["effects"], found["unexplained"]["where"]) == ("nothing_missing", [], [])
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_slow_motion_under_noisy_torque_is_given_no_name(bench, seed):
+    """What copies the measured torque, or filters speed, takes up noise and so explains less than it saves."""
+    write(only(run_of(seed, speed=0.06, duration=4.0), "velocity", "current"), "run.csv")
+    status, out, _ = bench("diagnose", "run.csv", "--rig", "rig.toml", "--json", "-")
+    assert status == 0
+    assert json.loads(out)["effects"] == []
+
+
 @pytest.mark.parametrize(
     ("trace", "words"),
     [

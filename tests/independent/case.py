@@ -15,7 +15,7 @@ from tests.independent.effects import Effect
 from tests.independent.references import random_motion
 from tests.independent.rig import Axis, write_rig
 from tests.independent.sensors import Sensors
-from tests.independent.simulate import Recorded, simulate
+from tests.independent.simulate import LONGEST_STEP, Recorded, simulate
 
 #: Decimals of a column: finer than any sensor here, so that a file does not round what the sensor did not.
 DECIMALS = {"time": 4, "position": 5, "velocity": 4, "current": 3, "position_reference": 5, "velocity_reference": 4}
@@ -39,15 +39,31 @@ class Hidden:
     duration: float
 
 
-def record(cases: Sequence[Hidden], seed: int = 0) -> list[tuple[Recorded, Recorded]]:
-    """Two recordings a case, of different motions drawn from `seed` and its place; all simulated together."""
+def record(
+    cases: Sequence[Hidden],
+    seed: int = 0,
+    *,
+    numbers: Sequence[int] | None = None,
+    longest_step: float = LONGEST_STEP,
+) -> list[tuple[Recorded, Recorded]]:
+    """Two recordings a case, of different motions; all simulated together.
+
+    Motion and noise are drawn from `seed` and the case's number, which is its place if not given.
+    """
+    places = [2 * number + run for number in (range(len(cases)) if numbers is None else numbers) for run in range(2)]
     twice = [case for case in cases for _ in range(2)]
     motions = [
         random_motion(case.axis, np.random.default_rng([seed, place, 2]), case.duration * (0.8 if place % 2 else 1.0))
-        for place, case in enumerate(twice)
+        for place, case in zip(places, twice, strict=True)
     ]
     recorded = simulate(
-        [case.axis for case in twice], motions, [c.effects for c in twice], [c.sensors for c in twice], seed
+        [case.axis for case in twice],
+        motions,
+        [case.effects for case in twice],
+        [case.sensors for case in twice],
+        seed,
+        numbers=places,
+        longest_step=longest_step,
     )
     return list(zip(recorded[::2], recorded[1::2], strict=True))
 

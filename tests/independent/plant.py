@@ -57,6 +57,7 @@ class Plant:
         current, acting_current: that the drive measures, and that makes torque - A.
         motor_torque: during the last step - N*m.
         measured_position, measured_velocity: what ideal electronics would read from the sensor.
+        sensed_velocity: the same before the filter on the speed, if there is one.
     """
 
     def __init__(self, axes: Sequence[Axis], effects: Sequence[Sequence[Effect]], position=0.0, velocity=0.0):
@@ -196,20 +197,20 @@ class Plant:
 
     def _sense_at_start(self) -> None:
         self.measured_position, self.measured_velocity = self._sensed(self.position, self.velocity)
-        self._sensed_velocity = self.measured_velocity
+        self.sensed_velocity = self.measured_velocity
         for rows in self._with("filtered"):
             rows.memory = self.measured_velocity[rows.index].copy()
 
     def _sense(self, start, speed, position, after, step) -> None:
-        before = self._sensed_velocity
-        self.measured_position, self._sensed_velocity = self._sensed(position, after)
-        self.measured_velocity = self._sensed_velocity
+        before = self.sensed_velocity
+        self.measured_position, self.sensed_velocity = self._sensed(position, after)
+        self.measured_velocity = self.sensed_velocity
         filters = self._with("filtered")
         if filters:
-            self.measured_velocity = self._sensed_velocity.copy()
+            self.measured_velocity = self.sensed_velocity.copy()
         for rows in filters:
             i = rows.index
-            rows.memory = rows.effect.filtered(before[i], self._sensed_velocity[i], rows.memory, step)
+            rows.memory = rows.effect.filtered(before[i], self.sensed_velocity[i], rows.memory, step)
             self.measured_velocity[i] = rows.memory
 
 

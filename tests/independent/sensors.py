@@ -69,6 +69,7 @@ class Sensors:
         velocity, current: noise of the reported speed and current.
         position_recorded: whether the recording holds the position and its reference.
         velocity_noise_fed_back: whether the drive sees the noise of the speed too, or only the recording does.
+        velocity_filter_fed_back: the same of a filter on the speed (`VelocityFilterLag`).
         current_age: 0, the current just after the control tick that a sample falls on; 1, just before it.
     """
 
@@ -78,6 +79,7 @@ class Sensors:
     current: Noise = Noise()
     position_recorded: bool = True
     velocity_noise_fed_back: bool = False
+    velocity_filter_fed_back: bool = False
     current_age: int = 0
 
     def __post_init__(self):
@@ -98,6 +100,7 @@ def random_sensors(axis: Axis, rng: np.random.Generator, level: float = 1.0) -> 
         position_recorded=bool(rng.random() < 0.75),
         velocity_noise_fed_back=bool(rng.random() < 0.3),
         current_age=int(rng.integers(0, 2)),
+        velocity_filter_fed_back=bool(rng.random() < 0.5),
     )
 
 

@@ -45,10 +45,18 @@ def simulate(
     effects: Sequence[Sequence[Effect]],
     sensors: Sequence[Sensors],
     seed: int = 0,
+    *,
+    numbers: Sequence[int] | None = None,
+    longest_step: float = LONGEST_STEP,
 ) -> list[Recorded]:
-    """One recording an axis, in the order given. An axis' noise depends on `seed` and its place in the list alone."""
+    """One recording an axis, in the order given.
+
+    An axis' noise depends on `seed` and its number alone, which is its place in the list if not given: with a number of
+    its own, it can be simulated again without the others.
+    """
     if not len(axes) == len(motions) == len(effects) == len(sensors):
         raise ValueError("axes, motions, effects and sensors come one each")
+    numbers = range(len(axes)) if numbers is None else numbers
     recordings: dict[int, Recorded] = {}
     for period in sorted({axis.control_period for axis in axes}):
         same = [k for k, axis in enumerate(axes) if axis.control_period == period]
@@ -56,12 +64,13 @@ def simulate(
         for first in range(0, len(same), SIDE_BY_SIDE):
             places = same[first : first + SIDE_BY_SIDE]
             batch = _Batch(
-                places,
+                [numbers[k] for k in places],
                 [axes[k] for k in places],
                 [motions[k] for k in places],
                 [tuple(effects[k]) for k in places],
                 [sensors[k] for k in places],
                 seed,
+                longest_step,
             )
             recordings |= dict(zip(places, batch.record(), strict=True))
     return [recordings[k] for k in range(len(axes))]
@@ -71,12 +80,13 @@ def simulate(
 class _Batch:
     """Axes of one control period, simulated together."""
 
-    places: Sequence[int]
+    numbers: Sequence[int]
     axes: Sequence[Axis]
     motions: Sequence[Motion]
     effects: Sequence[tuple[Effect, ...]]
     sensors: Sequence[Sensors]
     seed: int
+    longest_step: float
 
     def record(self) -> list[Recorded]:
         decimations = [_decimation(sensor, axis) for sensor, axis in zip(self.sensors, self.axes, strict=True)]
@@ -90,15 +100,16 @@ class _Batch:
     def _blocks(self) -> Iterator[tuple[int, np.ndarray]]:
         """First tick, and signals (ticks, 7, axes): the six below and the noise of the speed."""
         period = self.axes[0].control_period
-        substeps = ceil(period / LONGEST_STEP - 1e-9)
+        substeps = ceil(period / self.longest_step - 1e-9)
         plant, drive = Plant(self.axes, self.effects), Drive(self.axes, period)
         resolution = np.array([sensor.encoder_resolution for sensor in self.sensors])
         rounding = np.array([s.velocity.resolution if s.velocity_noise_fed_back else 0.0 for s in self.sensors])
         streams = [
-            NoiseStream(s.velocity, period, np.random.default_rng([self.seed, place, 0]))
-            for s, place in zip(self.sensors, self.places, strict=True)
+            NoiseStream(s.velocity, period, np.random.default_rng([self.seed, number, 0]))
+            for s, number in zip(self.sensors, self.numbers, strict=True)
         ]
         fed_back = np.array([s.velocity_noise_fed_back for s in self.sensors], dtype=float)
+        filtered = np.array([s.velocity_filter_fed_back for s in self.sensors])
         ticks = ceil(max(motion.duration for motion in self.motions) / period) + 1
         for first in range(0, ticks, BLOCK):
             time = period * np.arange(first, min(first + BLOCK, ticks))
@@ -107,7 +118,8 @@ class _Batch:
             block = np.empty((time.size, 7, len(self.axes)))
             for tick, row in enumerate(block):
                 position = rounded(plant.measured_position, resolution)
-                velocity = rounded(plant.measured_velocity + fed_back * noise[tick], rounding)
+                seen = np.where(filtered, plant.measured_velocity, plant.sensed_velocity)
+                velocity = rounded(seen + fed_back * noise[tick], rounding)
                 demand = drive.current(reference[:, tick], position, velocity)
                 row[0], row[1], row[2] = plant.position, plant.velocity, plant.motor_torque
                 row[3], row[4], row[5], row[6] = position, plant.measured_velocity, plant.current, noise[tick]
@@ -128,7 +140,7 @@ class _Batch:
         count = int(motion.duration / sensor.sample_period + 1e-9) + 1
         time = sensor.sample_period * np.arange(count)
         position, velocity, torque, measured, clean, current, noise = signals[:, :count]
-        hiss = NoiseStream(sensor.current, sensor.sample_period, np.random.default_rng([self.seed, self.places[k], 1]))
+        hiss = NoiseStream(sensor.current, sensor.sample_period, np.random.default_rng([self.seed, self.numbers[k], 1]))
         reference = motion.at(time)
         reported = {
             "position": measured,

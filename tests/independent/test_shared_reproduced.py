@@ -22,6 +22,7 @@ from tests.independent.effects import (
     TorqueConstantSaturation,
     TorqueOffset,
     TorsionSpring,
+    VelocityFilterLag,
     VoltageLimit,
 )
 
@@ -41,6 +42,7 @@ REPRODUCIBLE = {
     "load_torque_event": LoadTorqueEvent,
     "torque_constant_saturation": TorqueConstantSaturation,
     "voltage_limit": VoltageLimit,
+    "velocity_filter_lag": VelocityFilterLag,
     "elastic_coupling": lambda resonance_frequency, stiffness: ElasticCoupling(stiffness, 0.005),
 }
 

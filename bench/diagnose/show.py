@@ -1,0 +1,44 @@
+"""Show the gap shrink: torque and velocity, on both recordings, after each effect that was kept."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from bench.diagnose.add import Added
+from bench.diagnose.balance import Balance
+from bench.diagnose.found import Gap, Shrunk
+from bench.diagnose.recordings import Recordings
+from bench.plant.track import measured_velocity
+from bench.trace.noise import white_noise
+
+
+def shrinking(recordings: Recordings, added: Added) -> list[Shrunk]:
+    """Gaps of the bare axis and after each addition, the last one as it was kept."""
+    found = []
+    for grown in added.chain.grown:
+        balance = Balance.of(recordings.bench, grown.fitted).repeating(added.repeats)
+        torque = [balance.gap(bench) for bench in (recordings.bench, recordings.other) if bench is not None]
+        velocity = [added.gaps.of(grown, recorded) for recorded in added.recorded]
+        found.append(Shrunk(grown.effect, tuple(torque), tuple(velocity)))
+    if added.refined.gap is not None:
+        velocity = added.gaps.of_models([added.refined.model] * len(added.recorded), added.recorded)
+        found[-1] = replace(found[-1], velocity=tuple(velocity))
+    return found
+
+
+def torque_gap(steps: list[Shrunk], floor: float, unit: str) -> Gap:
+    """Of all effects together."""
+    pairs = list(zip(steps[0].torque, steps[-1].torque, strict=True))
+    return Gap(unit, floor, pairs[0], pairs[1] if len(pairs) > 1 else None)
+
+
+def velocity_gap(recordings: Recordings, steps: list[Shrunk]) -> Gap:
+    """Of all effects together; None where MuJoCo cannot have the model or a simulation diverged."""
+    pairs = [
+        pair if all(map(math.isfinite, pair)) else None
+        for pair in zip(steps[0].velocity, steps[-1].velocity, strict=True)
+    ]
+    floor = white_noise(measured_velocity(recordings.trace))
+    unit = "m/s" if recordings.rig.linear else "rad/s"
+    return Gap(unit, floor, pairs[0], pairs[1] if len(pairs) > 1 else None)

@@ -1,0 +1,83 @@
+"""Outcome against truth, judged as the shared cases are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from tests.blind.parameters import WHOLE, inside
+from tests.blind.run import Outcome
+
+#: Names that the contract says no recording of the kind tells apart.
+TWINS = (
+    frozenset({"torque_offset", "direction_dependent_friction"}),
+    frozenset({"current_loop_lag", "velocity_filter_lag"}),
+)
+
+
+def twins(name: str) -> frozenset[str]:
+    """A name with its twin, if it has one."""
+    return next((pair for pair in TWINS if name in pair), frozenset({name}))
+
+
+def same(names: Sequence[str]) -> set[frozenset[str]]:
+    """Names with twins taken as one."""
+    return {twins(name) for name in names}
+
+
+@dataclass(frozen=True)
+class Score:
+    """A case, judged.
+
+    Attributes:
+        right: names are exactly those hidden; none, and a remainder, if the physics is outside or taken away.
+        inertia_error: relative, nan if refused.
+        closed: share of the holdout torque gap above the noise floor that is closed, None if nothing stands above.
+        inside: by effect and quantity, whether the interval holds the truth.
+    """
+
+    name: str
+    truth: Mapping
+    outcome: Outcome
+    right: bool
+    inertia_error: float
+    closed: float | None
+    inside: dict[str, dict[str, bool]] = field(default_factory=dict)
+
+    @property
+    def group(self) -> str:
+        """Of the case."""
+        return self.truth["group"]
+
+    @property
+    def hidden(self) -> str:
+        """Names hidden, joined."""
+        return "+".join(self.truth["effects"])
+
+    @property
+    def all_inside(self) -> bool | None:
+        """Whether every interval of the case holds; None if it has none."""
+        held = [ok for those in self.inside.values() for key, ok in those.items() if key not in WHOLE]
+        return all(held) if held else None
+
+
+def score(name: str, truth: Mapping, outcome: Outcome, without_truth: bool = False) -> Score:
+    """Judge an outcome; `without_truth` if the hidden effects were taken out of the catalogue."""
+    if outcome.refused:
+        right = False
+    elif truth["group"] == "outside" or (without_truth and truth["effects"]):
+        right = not outcome.named and outcome.verdict == "unexplained_remainder"
+    else:
+        right = same(list(outcome.named)) == same(truth["effects"])
+    held = {}
+    for effect in truth["effects"]:
+        for named in twins(effect) & set(outcome.named):
+            held[effect] = inside(truth, effect, named, outcome.named[named])
+    return Score(name, truth, outcome, right, outcome.inertia / truth["inertia"] - 1.0, _closed(outcome), held)
+
+
+def _closed(outcome: Outcome) -> float | None:
+    if outcome.holdout is None:
+        return None
+    before, after, floor = outcome.holdout
+    return 1.0 - (after - floor) / (before - floor) if before > floor else None
