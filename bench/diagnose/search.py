@@ -24,7 +24,7 @@ from bench.diagnose.hypothesis import (
 )
 from bench.diagnose.mains import humming
 from bench.diagnose.outside import OUTSIDE
-from bench.diagnose.shapes import shaped
+from bench.diagnose.shapes import free_shapes, shaped
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue
 
@@ -142,13 +142,13 @@ def uncontested(bench: Workbench, fitted: Fit, excluded: frozenset[str]) -> Fit:
 
 def outdone(bench: Workbench, fitted: Fit, rival: Fit) -> bool:
     """Whether a rival with a quantity or two more explains clearly more."""
-    added = max(_freedom(rival) - _freedom(fitted), 1)
+    added = max(_freedom(bench, rival) - _freedom(bench, fitted), 1)
     least = max(SHARE * fitted.excess, SIGNIFICANT * added * row_correlation(bench) * fitted.floor**2)
     return worth(fitted, rival) > least
 
 
-def _freedom(fitted: Fit) -> int:
-    return fitted.theta.size + sum(len(free_shapes(effect)) for effect in fitted.hypothesis.effects)
+def _freedom(bench: Workbench, fitted: Fit) -> int:
+    return fitted.theta.size + sum(len(free_shapes(effect, bench)) for effect in fitted.hypothesis.effects)
 
 
 def worth(without: Fit, having: Fit) -> float:
