@@ -124,7 +124,8 @@ class Trial:
     def of(cls, recordings: Recordings, suspects: Suspects, unseen: Unseen, chain: Chain) -> Trial:
         """The effects of a chain, refitted to what may be seen."""
         judged = replace(chain, bench=unseen.fitted, rows=unseen.rows)
-        gaps = VelocityGaps(bandwidth(chain, recordings), float(chain.whole.fitted.theta[0]))
+        laid_out_for = chain.whole if chain.whole.model is not None else chain.grown[0]
+        gaps = VelocityGaps(bandwidth(chain, recordings), float(laid_out_for.fitted.theta[0]))
         without = tuple(judged.less(index) for index in range(len(chain.names)))
         return cls(recordings, suspects, unseen, gaps, judged, without)
 

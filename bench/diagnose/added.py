@@ -13,6 +13,7 @@ from bench.diagnose.hypothesis import BACKLASH, ELASTIC
 from bench.diagnose.quantities import reported
 from bench.effects.physics import Friction, Moment
 from bench.effects.present import Present
+from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, winding_of
 from bench.plant.model import AxisParameters
 from bench.plant.model_file import StoredModel
@@ -35,9 +36,11 @@ def stored_model(fitted: Fit, beside: Sequence[Present], rig: Rig) -> StoredMode
         rig: of the axis.
 
     Raises:
-        InputError: MuJoCo cannot have the effects with these values.
+        InputError: MuJoCo cannot have the effects with these values, or no inertia.
     """
     inertia, viscous, coulomb = (float(value) for value in fitted.theta[:3])
+    if inertia <= 0.0:
+        raise InputError(rig.source, f"found an inertia of {inertia:.3g}", "allowed: above zero")
     motor = rig.motor.rotor_inertia or rig.motor.moving_mass or 0.0
     for index, effect in enumerate(fitted.hypothesis.effects):
         if effect.name in (ELASTIC, BACKLASH):

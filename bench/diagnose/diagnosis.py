@@ -14,6 +14,7 @@ from bench.diagnose.fit import Fit, fit
 from bench.diagnose.found import Gap, NamedEffect, Rejected, Shrunk
 from bench.diagnose.hypothesis import Hypothesis
 from bench.diagnose.name import Suspects, name
+from bench.diagnose.quantities import base_parameters, uncertain
 from bench.diagnose.recordings import Recordings
 from bench.diagnose.search import REMAINDER
 from bench.diagnose.show import shrinking, torque_gap, velocity_gap
@@ -21,7 +22,7 @@ from bench.diagnose.suspicious import suspicions
 from bench.diagnose.where import Where, where
 from bench.identify.determined import require_significant
 from bench.identify.estimate import Parameter
-from bench.identify.names import parameter_name
+from bench.identify.names import parameter_name, parameter_unit
 from bench.identify.regressors import INERTIA
 from bench.plant.model_file import StoredModel
 from bench.rig.rig import Rig
@@ -89,23 +90,31 @@ def diagnose(
     gap = fit(recordings.bench, Hypothesis())
     located = where(recordings.bench, gap, rig.linear, recordings.unit)
     suspects = name(recordings, excluded)
+    require_weight(recordings, suspects.steps[-1].fitted)
     progress(0.6)
     added = add(recordings, suspects)
     progress(0.9)
     return show(recordings, gap, located, suspects, added)
 
 
-def show(recordings: Recordings, gap: Fit, located: list[Where], suspects: Suspects, added: Added) -> Diagnosis:
-    """What was found, with the gaps that every addition closed.
+def require_weight(recordings: Recordings, fitted: Fit) -> None:
+    """Refuse effects that leave no inertia which the recording tells, before a model is made of them.
 
     Raises:
-        UndeterminedError, InputError: the effects leave no inertia that the recording tells.
+        UndeterminedError: its interval holds zero.
+        InputError: it is negative.
     """
+    linear = recordings.rig.linear
+    units = {parameter_name(INERTIA, linear): parameter_unit(INERTIA, linear, recordings.unit)}
+    (inertia,) = base_parameters(fitted, uncertain(recordings.bench, fitted), units).values()
+    require_significant(inertia, linear)
+    require_positive(inertia, recordings.trace.origin)
+
+
+def show(recordings: Recordings, gap: Fit, located: list[Where], suspects: Suspects, added: Added) -> Diagnosis:
+    """What was found, with the gaps that every addition closed."""
     bench, rig, unit = recordings.bench, recordings.rig, recordings.unit
     whole, kept = added.chain.whole.fitted, added.refined
-    inertia = kept.parameters[parameter_name(INERTIA, rig.linear)]
-    require_significant(inertia, rig.linear)
-    require_positive(inertia, recordings.trace.origin)
     steps = shrinking(recordings, added)
     remains = whole.chi > REMAINDER or suspects.withheld
     return Diagnosis(

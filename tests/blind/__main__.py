@@ -67,8 +67,10 @@ def tell(folder: Path, name: str, without_truth: bool) -> None:
     console.print(truth)
     found = diagnosis_of(folder / name, left_out(truth["effects"], without_truth))
     console.print(diagnosis_table(found, str(folder / name)))
-    for effect, gap in found.steps:
-        console.print(f"{effect}: {gap / found.torque.noise_floor:.3f} of the noise floor")
+    for step in found.steps:
+        console.print(
+            f"{step.effect or 'bare axis'}: {step.torque[0] / found.torque.noise_floor:.3f} of the noise floor"
+        )
     for place in found.unexplained_where:
         console.print(place.coordinate, place.region, f"{place.share:.2f}")
 

@@ -60,6 +60,6 @@ def outcome(folder: Path, excluded: frozenset[str] = frozenset()) -> Outcome:
         tuple(gap / torque.noise_floor for gap in torque.identify) if torque.identify else (float("nan"),) * 2,
         (*torque.holdout, torque.noise_floor) if torque.holdout else None,
         inertia.value,
-        tuple((name, gap / torque.noise_floor) for name, gap in found.steps),
+        tuple((step.effect, step.torque[0] / torque.noise_floor) for step in found.steps),
         seconds,
     )
