@@ -71,9 +71,11 @@ class Balance:
             f"mains = [{_listed(self.hypothesis.mains)}]",
             f"coefficients = [{_listed(self.theta)}]",
         ]
-        for effect, level in zip(self.hypothesis.effects, self.hypothesis.levels, strict=True):
+        loads = self.hypothesis.loads
+        for index, (effect, level) in enumerate(zip(self.hypothesis.effects, self.hypothesis.levels, strict=True)):
             lines += ["", "[[torque_balance.effects]]", f'name = "{effect.name}"']
             lines += [f"shape = [{_listed(effect.shape)}]", f"level = [{_listed(level)}]"]
+            lines += [] if loads is None else [f"load = [{_listed(loads[index])}]"]
         return "\n".join(lines) + "\n"
 
     @classmethod
@@ -86,7 +88,8 @@ class Balance:
         theta = np.array([float(value) for value in table["coefficients"]])
         mains = tuple(float(line) for line in table.get("mains", []))
         levels = tuple(tuple(float(value) for value in entry["level"]) for entry in table.get("effects", []))
-        hypothesis = Hypothesis(effects, levels, mains)
+        loads = [tuple(float(value) for value in entry["load"]) for entry in table.get("effects", []) if "load" in entry]
+        hypothesis = Hypothesis(effects, levels, mains, tuple(loads) if loads else None)
         return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
 
 

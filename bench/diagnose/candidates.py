@@ -14,7 +14,7 @@ from bench.diagnose.friction_levels import rubbing
 from bench.diagnose.grids import TURNING, sought
 from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG, Named
 from bench.diagnose.outside import OUTSIDE
-from bench.diagnose.transforms import two_mass
+from bench.diagnose.soft_coupling import coupled_columns
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Column, Signals
@@ -127,8 +127,7 @@ def _transforms(
             yield Candidate(Named(name, (lag,)), worth)
     if ELASTIC not in excluded:
         shapes = [(antiresonance, damping) for antiresonance in ANTIRESONANCES for damping in DAMPINGS]
-        transfers = [two_mass(seen, *shape) for shape in shapes]
-        made = seen.through(lambda s: [(s.velocity, 1)], moving, transfers)
+        made = coupled_columns(seen, shapes, (), moving)
         worth = gains(made, 1, current.residual, basis)
         yield from (Candidate(Named(ELASTIC, shape), float(w)) for shape, w in zip(shapes, worth, strict=True))
     if ECCENTRICITY not in excluded and ECCENTRICITY not in current.hypothesis.names:

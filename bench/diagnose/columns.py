@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,8 +20,10 @@ from bench.diagnose.hypothesis import (
     Hypothesis,
     Named,
 )
+from bench.diagnose.load_side import acting
 from bench.diagnose.outside import physics_of
-from bench.diagnose.transforms import corrected, lagged, two_mass
+from bench.diagnose.soft_coupling import Acting, coupled_columns
+from bench.diagnose.transforms import corrected, lagged
 from bench.diagnose.workbench import Workbench
 from bench.effects.effect import Column, Signals
 
@@ -72,7 +75,7 @@ def build(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np.i
         parts.append(seen.table(lambda s: [wave for f in hypothesis.mains for wave in _hum(s, f)], resting))
         owners += [MAINS] * 2 * len(hypothesis.mains)
     for index, effect in enumerate(hypothesis.effects):
-        table = effect_columns(rubbing(seen, hypothesis, index), effect, moving, resting)
+        table = effect_columns(rubbing(seen, hypothesis, index), effect, moving, resting, acting(hypothesis))
         parts.append(table)
         owners += [index] * table.shape[1]
     return np.concatenate(parts, axis=1), np.array(owners)
@@ -83,10 +86,12 @@ def _hum(signals: Signals, frequency: float) -> list[Column]:
     return [[(np.sin(angle), 0)], [(np.cos(angle), 0)]]
 
 
-def effect_columns(seen: Workbench, effect: Named, moving: float, resting: float) -> Array:
+def effect_columns(
+    seen: Workbench, effect: Named, moving: float, resting: float, loads: Sequence[Acting] = ()
+) -> Array:
     """Columns (m, k) of one effect; none for one that only changes how the others are made."""
     if effect.name == ELASTIC:
-        return seen.table(lambda s: [[(s.velocity, 1)]], moving, two_mass(seen, *effect.shape))
+        return coupled_columns(seen, [effect.shape], loads, moving)
     if effect.name == BACKLASH:
         key = (effect, moving, seen.stretches[0].signals.position[-1])
         if key not in seen.memory:

@@ -17,6 +17,7 @@ from bench.diagnose.hypothesis import (
     Hypothesis,
 )
 from bench.diagnose.noise import noise_floor
+from bench.diagnose.load_side import loads_of
 from bench.diagnose.outside import physics_of
 from bench.diagnose.transforms import two_mass
 from bench.diagnose.workbench import Workbench
@@ -93,9 +94,10 @@ def fit(bench: Workbench, hypothesis: Hypothesis) -> Fit:
     """Least squares of a hypothesis; the levels that scaled frictions see are brought in line with what is found."""
     columns, owners, theta = _solved(bench, hypothesis)
     for _ in range(LEVEL_ROUNDS):
-        levels = levels_of(hypothesis, theta, owners)
+        levels, loads = levels_of(hypothesis, theta, owners), loads_of(hypothesis, theta, owners)
         settled = alike(levels, hypothesis.levels) or not multiply(hypothesis)
-        hypothesis = replace(hypothesis, levels=levels)
+        settled &= loads is None or alike(loads, hypothesis.loads or ())
+        hypothesis = replace(hypothesis, levels=levels, loads=loads)
         if settled:
             break
         columns, owners, theta = _solved(bench, hypothesis)
@@ -162,7 +164,7 @@ def white_power(
         if BACKLASH in hypothesis.names:
             kinetic = kinetic - theta[owners == hypothesis.names.index(BACKLASH)][0] * s
         if elastic is not None:
-            relative = two_mass(bench, *elastic)(omega)
+            relative = two_mass(*elastic)(omega)
             kinetic = kinetic + theta[owners == hypothesis.names.index(ELASTIC)][0] * s * relative
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
         effort = left * conditioning.effort_noise**2 * np.abs(1.0 + theta[MISALIGNMENT] * s) ** 2

@@ -32,11 +32,14 @@ class Hypothesis:
         effects: in the order they were added.
         levels: strengths over K_0 of each effect that is dry friction, () of the others.
         mains: frequencies of the hum in this recording's sensors - Hz.
+        loads: strengths over load inertia of each effect that may act on the load, () of the others, where a soft
+            coupling lets the recording tell that they do; None where they act on the motor.
     """
 
     effects: tuple[Named, ...] = ()
     levels: tuple[tuple[float, ...], ...] = ()
     mains: tuple[float, ...] = ()
+    loads: tuple[tuple[float, ...], ...] | None = None
 
     def with_effect(self, named: Named) -> Hypothesis:
         """This hypothesis and one effect more."""
@@ -48,11 +51,12 @@ class Hypothesis:
 
     def without(self, index: int) -> Hypothesis:
         """This hypothesis less one of its effects."""
-        effects, levels = self.effects, self.levels
+        effects, levels, loads = self.effects, self.levels, self.loads
         return replace(
             self,
             effects=(*effects[:index], *effects[index + 1 :]),
             levels=(*levels[:index], *levels[index + 1 :]),
+            loads=None if loads is None else (*loads[:index], *loads[index + 1 :]),
         )
 
     def reshaped(self, index: int, shape: tuple[float, ...]) -> Hypothesis:

@@ -6,7 +6,7 @@ left), so a recording in which nothing is hidden ends without a name.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from bench.diagnose.hypothesis import (
     Hypothesis,
     Named,
 )
+from bench.diagnose.load_side import outer_loads
 from bench.diagnose.mains import humming
 from bench.diagnose.outside import OUTSIDE
 from bench.diagnose.shapes import free_shapes, shaped
@@ -95,7 +96,7 @@ def grown(bench: Workbench, steps: list[Step], excluded: frozenset[str]) -> list
         if not better:
             break
         chosen = min(better, key=lambda found: float(np.sum(found.residual**2)))
-        steps = [*steps, Step(humming(bench, eliminated(bench, polished(bench, chosen))), tuple(tried))]
+        steps = [*steps, Step(humming(bench, eliminated(bench, loaded(bench, polished(bench, chosen)))), tuple(tried))]
     return steps
 
 
@@ -229,6 +230,15 @@ def polished(bench: Workbench, fitted: Fit) -> Fit:
     for index in range(len(fitted.hypothesis.effects)):
         fitted = shaped(bench, fitted.hypothesis, index)
     return fitted
+
+
+def loaded(bench: Workbench, fitted: Fit) -> Fit:
+    """With outer loads on the side of a soft coupling, motor or load, on which they explain more."""
+    if not outer_loads(fitted.hypothesis):
+        return fitted
+    other = replace(fitted.hypothesis, loads=() if fitted.hypothesis.loads is None else None)
+    moved = shaped(bench, other, other.names.index(ELASTIC))
+    return min(fitted, moved, key=lambda found: float(np.sum(found.residual**2)))
 
 
 def eliminated(bench: Workbench, fitted: Fit) -> Fit:

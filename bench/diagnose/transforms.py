@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from bench.diagnose.workbench import Transfer, Workbench
 from bench.effects.effect import Signals
 
 Array = NDArray[np.float64]
@@ -24,19 +24,12 @@ def corrected(signals: Signals, eccentricity: tuple[float, ...]) -> Signals:
     return replace(signals, position=angle, velocity=signals.velocity / rate)
 
 
-def two_mass(bench: Workbench, antiresonance: float, damping: float) -> Transfer:
-    """Load's acceleration over the motor's, less one: (1 + 2*d*s/w)/(1 + 2*d*s/w + (s/w)**2) - 1; w - rad/s.
-
-    To be applied to the derivative of raw speed, which rests at both ends where an angle would jump and ring; where
-    speed is the central difference of an angle, its sin(omega*T)/(omega*T) is taken out.
-    """
-    difference = bench.conditioning.source == "position"
-    period = bench.conditioning.filter.sample_period
+def two_mass(antiresonance: float, damping: float) -> Callable[[Array], NDArray[np.complex128]]:
+    """Load's acceleration over the motor's, less one: (1 + 2*d*s/w)/(1 + 2*d*s/w + (s/w)**2) - 1; w - rad/s."""
 
     def transfer(omega: Array) -> NDArray[np.complex128]:
         s = 1j * omega / antiresonance
-        relative = -(s**2) / (1.0 + 2.0 * damping * s + s**2)
-        return relative / np.maximum(np.sinc(omega * period / np.pi), 0.2) if difference else relative
+        return -(s**2) / (1.0 + 2.0 * damping * s + s**2)
 
     return transfer
 

@@ -18,7 +18,6 @@ from bench.trace.filter import GaussianFilter, fast_length
 from bench.trace.trace import Trace
 
 Array = NDArray[np.float64]
-Transfer = Callable[[Array], NDArray[np.complex128]]
 
 #: Widest filter of a diagnosis - s: shapes of friction live in the milliseconds around a reversal.
 WIDEST = 2e-3
@@ -117,33 +116,21 @@ class Workbench:
         ]
         return np.concatenate([values[part.used] for values, part in zip(picked, self.stretches, strict=True)])
 
-    def rows(self, column: Callable[[Signals], Column], lag: float = 0.0, transfer: Transfer | None = None) -> Array:
+    def rows(self, column: Callable[[Signals], Column], lag: float = 0.0) -> Array:
         """One filtered column at the used rows (m,)."""
-        return self.table(lambda s: [column(s)], lag, transfer)[:, 0]
+        return self.table(lambda s: [column(s)], lag)[:, 0]
 
-    def through(self, column: Callable[[Signals], Column], lag: float, transfers: Sequence[Transfer]) -> Array:
-        """One filtered column through each of several transfers (m, k)."""
-        parts = []
-        for part in self.stretches:
-            made = [column(part.signals)]
-            rows = [_filtered(made, self.conditioning.filter, lag, transfer)[part.used] for transfer in transfers]
-            parts.append(np.concatenate(rows, axis=1))
-        return np.concatenate(parts)
-
-    def table(
-        self, columns: Callable[[Signals], Sequence[Column]], lag: float = 0.0, transfer: Transfer | None = None
-    ) -> Array:
+    def table(self, columns: Callable[[Signals], Sequence[Column]], lag: float = 0.0) -> Array:
         """Filtered columns at the used rows (m, k).
 
         Args:
             columns: of the raw signals.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag - s.
-            transfer: further factor over angular frequency - rad/s.
         """
         parts = []
         for part in self.stretches:
             made = columns(part.signals)
-            parts.append(_filtered(made, self.conditioning.filter, lag, transfer)[part.used])
+            parts.append(_filtered(made, self.conditioning.filter, lag)[part.used])
         return np.concatenate(parts)
 
 
@@ -183,8 +170,8 @@ def _stretch(trace: Trace, effort: Array, part: slice, conditioning: Conditionin
     return Stretch(signals, used)
 
 
-def _filtered(columns: Sequence[Column], smooth: GaussianFilter, lag: float, transfer: Transfer | None) -> Array:
-    """Filter a stretch's columns, (r, k): each term to its derivative, the lag undone, the transfer applied."""
+def _filtered(columns: Sequence[Column], smooth: GaussianFilter, lag: float) -> Array:
+    """Filter a stretch's columns, (r, k): each term to its derivative, the lag undone."""
     count = columns[0][0][0].size
     size = smooth.stride * fast_length(-(-count // smooth.stride))
     values = np.stack([term[0] for column in columns for term in column])
@@ -196,8 +183,6 @@ def _filtered(columns: Sequence[Column], smooth: GaussianFilter, lag: float, tra
     spectra = spectra * (1j * omega) ** orders[:, None]
     summed = np.add.reduceat(spectra, np.concatenate([[0], ends[:-1]]), axis=0)
     factor = np.exp(-0.5 * (omega * smooth.width) ** 2) / smooth.stride * (1.0 + 1j * omega * lag)
-    if transfer is not None:
-        factor = factor * transfer(omega)
     rows = np.asarray(scipy.fft.irfft(summed * factor, size // smooth.stride), dtype=np.float64)
     first, last = smooth.margin // smooth.stride, -(-(count - smooth.margin) // smooth.stride)
     return rows[:, first:last].T

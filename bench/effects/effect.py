@@ -86,6 +86,7 @@ class Effect(ABC):
         shapes: the nonlinear ones, in the order in which `columns` takes them.
         searched: whether a search may try its columns over the grids of its shapes.
         scales_friction: whether it multiplies the level of dry friction, what other effects add to it included.
+        may_load: whether it may act on the load of a coupling rather than on the motor.
     """
 
     name: str
@@ -94,6 +95,7 @@ class Effect(ABC):
     shapes: tuple[Shape, ...] = ()
     searched: bool = True
     scales_friction: bool = False
+    may_load: bool = False
 
     @abstractmethod
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

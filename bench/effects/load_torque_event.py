@@ -26,6 +26,7 @@ class LoadTorqueEvent(Mechanism, Effect):
         Quantity("start", "t_1", "s", lower=0.0),
         Quantity("end", "t_2", "s", lower=0.0),
     )
+    may_load = True
     shapes = (Shape(quantities[1], ()), Shape(quantities[2], ()))
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

@@ -1,9 +1,9 @@
 """Presliding: friction builds up over a small displacement after each reversal (Dahl's bristles, LuGre's at low speed).
 
-    dz/dt = omega*(1 - sigma*z*sgn(omega)/K_0), M = sigma*z
+    dz/dt = omega*(1 - sigma*z*sgn(omega)/K_0), M = sigma*z + sigma_1*dz/dt
 
-so between reversals f = M/K_0 approaches sgn(omega) as exp(-sigma*|x|/K_0) over the displacement x.
-sigma - bristle stiffness - N*m/rad (N/m); K_0 - Coulomb friction - N*m (N).
+so between reversals f = sigma*z/K_0 approaches sgn(omega) as exp(-sigma*|x|/K_0) over the displacement x.
+sigma, sigma_1 - bristle stiffness - N*m/rad (N/m) - and damping - N*m*s/rad (N*s/m); K_0 - Coulomb friction - N*m (N).
 Source: P. R. Dahl, AIAA Journal 14(12), 1976, 1675-1682; C. Canudas de Wit et al., IEEE TAC 40(3), 1995, eqs. 1-4.
 """
 
@@ -21,6 +21,10 @@ from bench.effects.physics import Axis, Friction, Number
 from bench.units import Quantity
 
 
+#: Share of critical damping, of the axis against its bristles, below which a negative damping may be noise.
+UNDAMPED = 0.1
+
+
 class PreslidingFriction(Friction, Effect):
     """See the module."""
 
@@ -33,16 +37,21 @@ class PreslidingFriction(Friction, Effect):
     shapes = (Shape(Quantity("bristle_rate", "sigma/K_0", "1/rad", lower=0.0), (3.0, 8.0, 20.0, 50.0, 130.0, 350.0)),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """What the bristles lack of full friction, f - sgn(omega)."""
-        return [[(bristles(signals.position, signals.sign, shape[0]) - signals.sign, 0)]]
+        """What the bristles lack of full friction, f - sgn(omega), and their bending, omega - |omega|*f."""
+        share = bristles(signals.position, signals.sign, shape[0])
+        bending = signals.velocity - np.abs(signals.velocity) * share
+        return [[(share - signals.sign, 0)], [(bending, 0)]]
 
     def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """sigma is its rate over displacement times Coulomb friction."""
-        return {"bristle_stiffness": shape[0] * base.coulomb}
+        """sigma is its rate over displacement times Coulomb friction, sigma_1 the strength of the bending."""
+        return {"bristle_stiffness": shape[0] * base.coulomb, "bristle_damping": strengths[1]}
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
-        """The bristles carry Coulomb friction itself, no more and no less within a factor of two."""
-        return base.coulomb > 0.0 and 0.5 * base.coulomb < strengths[0] < 2.0 * base.coulomb
+        """The bristles carry Coulomb friction itself within a factor of two, and damp as far as noise lets that be seen."""
+        if base.coulomb <= 0.0 or base.inertia <= 0.0:
+            return False
+        critical = 2.0 * np.sqrt(shape[0] * base.coulomb * base.inertia)
+        return 0.5 * base.coulomb < strengths[0] < 2.0 * base.coulomb and strengths[1] > -UNDAMPED * critical
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

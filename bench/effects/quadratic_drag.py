@@ -24,6 +24,7 @@ class QuadraticDrag(Mechanism, Effect):
     name = "quadratic_drag"
     summary = "resisting torque grows with velocity*|velocity|"
     quantities = (Quantity("quadratic_drag", "k_q", "N*m*s**2/rad**2", lower=0.0),)
+    may_load = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """omega*|omega|."""

@@ -23,6 +23,7 @@ class TorsionSpring(Mechanism, Effect):
     name = "torsion_spring"
     summary = "a torque proportional to position"
     quantities = (Quantity("stiffness", "c", "N*m/rad", lower=0.0),)
+    may_load = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """q."""

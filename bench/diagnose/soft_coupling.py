@@ -1,0 +1,114 @@
+"""Motion of a load behind a soft coupling, driven along the recorded motion of the motor.
+
+    p'' + 2*d*w_a*p' + w_a**2*p = -alpha_m - sum(c_k*D_k(q_l, omega_l, t)),  p = q_l - q_m
+
+w_a - antiresonance sqrt(k/J_l) - rad/s -, d - damping ratio; D_k - torque of what acts on the load (drag, a spring, an
+unbalance) per unit of its strength -, c_k its strength over load inertia. The load starts with the motor, at rest
+against it. In time, not in frequency: there the ringing that a recording ends with returns at its start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from bench.diagnose.workbench import Workbench
+from bench.effects.effect import Column, Effect, Signals
+
+Array = NDArray[np.float64]
+
+#: Longest step - rad of the antiresonance: speed that runs straight within it lacks step**2/12 of its swing.
+LONGEST_STEP = 0.1
+#: Turns in which the load's motion and what acts on it are brought in line, the change that ends them and the one that
+#: no load beyond belief would make - shares of the twist under the load's own inertia.
+TURNS, SETTLED, ASTRAY = 40, 1e-6, 10.0
+
+#: An effect that acts on the load, its shape, its strengths over load inertia.
+Acting = tuple[Effect, tuple[float, ...], tuple[float, ...]]
+
+
+def coupled_columns(seen: Workbench, shapes: Sequence[Sequence[float]], acting: Sequence[Acting], lag: float) -> Array:
+    """Load's acceleration less the motor's behind several couplings, with what acts on the load, filtered.
+
+    Args:
+        seen: the recording as the hypothesis sees it.
+        shapes: antiresonance - rad/s - and damping ratio of each.
+        acting: on the load; its own column in the balance is that of an effect on the motor, so only the difference of
+            the two enters here.
+        lag: to undo on the motion - s.
+
+    Returns:
+        (m, k) - rad/s**2 (m/s**2).
+    """
+    source = seen.conditioning.source
+
+    def relative(signals: Signals) -> list[Column]:
+        values = signals.position if source == "position" else signals.velocity
+        spline = CubicSpline(np.arange(values.size), values)
+        fine: dict[int, Array] = {}
+        columns: list[Column] = []
+        for antiresonance, damping in (shape[:2] for shape in shapes):
+            substeps = max(2, int(np.ceil(antiresonance * signals.sample_period / LONGEST_STEP)))
+            if substeps not in fine:
+                at = np.arange((values.size - 1) * substeps + 1) / substeps
+                fine[substeps] = spline(at, 1) / signals.sample_period if source == "position" else spline(at)
+            columns.append(_column(signals, fine[substeps], substeps, antiresonance, damping, acting))
+        return columns
+
+    return seen.table(relative, lag)
+
+
+def _column(
+    signals: Signals, speed: Array, substeps: int, antiresonance: float, damping: float, acting: Sequence[Acting]
+) -> Column:
+    """Terms of one coupling, driven by the motor's speed at substeps of the samples.
+
+    What acts on the load is brought in line with its motion turn by turn. Half of its steepest damping is counted to the
+    coupling's, so that a turn leaves less of an error than it found.
+    """
+    loss, spring, step = 2.0 * damping * antiresonance, antiresonance**2, signals.sample_period
+    damped = 0.5 * _steepest(signals, acting) if acting else 0.0
+    state = np.array([[0.0, 1.0], [-spring, -loss - damped]])
+    driven = speed - speed[0]
+    free, free_speed = _response(state, np.array([-1.0, loss]), driven, step / substeps, substeps)
+    twist, load_speed, torque = free, free_speed, np.zeros_like(free)
+    for _ in range(TURNS if acting else 0):
+        load = replace(signals, position=signals.position + twist, velocity=load_speed + speed[0])
+        torque = _torque(load, acting)
+        forced, forced_speed = _response(state, np.array([0.0, -1.0]), torque - damped * load_speed, step, 1)
+        before, twist, load_speed = twist, free + forced, free_speed + forced_speed
+        change = np.abs(twist - before).max()
+        if change < SETTLED * np.abs(free).max():
+            break
+        if change > ASTRAY * np.abs(free).max():
+            return [(free, 2)]
+    return [(twist, 2), (torque - _torque(signals, acting), 0)] if acting else [(twist, 2)]
+
+
+def _steepest(signals: Signals, acting: Sequence[Acting]) -> float:
+    """Largest rise of what acts on the load with its speed, over its inertia - 1/s."""
+    step = 1e-3 * float(np.abs(signals.velocity).max()) + 1e-12
+    faster = replace(signals, velocity=signals.velocity + step)
+    return max(float(np.max(_torque(faster, acting) - _torque(signals, acting))) / step, 0.0)
+
+
+def _response(state: Array, drive: Array, values: Array, step: float, every: int) -> tuple[Array, Array]:
+    """Both states of a second-order system driven from rest by values that run straight between steps."""
+    system = state, drive[:, None], np.eye(2), np.zeros((2, 1))
+    numerators, denominator = scipy.signal.ss2tf(*scipy.signal.cont2discrete(system, step, "foh")[:4])
+    first, second = (scipy.signal.lfilter(numerator, denominator, values)[::every] for numerator in numerators)
+    return first, second
+
+
+def _torque(signals: Signals, acting: Sequence[Acting]) -> Array:
+    """What acts on a load that moves so, over its inertia - rad/s**2 (m/s**2) - (n,)."""
+    total = np.zeros_like(signals.position)
+    for physics, shape, rates in acting:
+        for ((values, _),), rate in zip(physics.columns(signals, shape), rates, strict=True):
+            total = total + rate * values
+    return total
