@@ -57,9 +57,10 @@ def stored_model(fitted: Fit, beside: Sequence[Present], rig: Rig) -> StoredMode
 
 
 def present_of(name: str, values: Mapping[str, float]) -> Present:
-    """An effect with those of the values that it has quantities for."""
-    known = {quantity.name for quantity in Present(name, ()).effect.quantities}
-    return Present.of(name, {key: float(value) for key, value in values.items() if key in known})
+    """An effect with those of the values that it has quantities for; what noise left beyond a bound is put onto it."""
+    known = {quantity.name: quantity for quantity in Present(name, ()).effect.quantities}
+    bounded = {key: float(np.clip(values[key], known[key].lower, known[key].upper)) for key in values if key in known}
+    return Present.of(name, bounded)
 
 
 def without_events(model: AxisModel) -> AxisModel:

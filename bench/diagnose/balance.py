@@ -88,7 +88,9 @@ class Balance:
         theta = np.array([float(value) for value in table["coefficients"]])
         mains = tuple(float(line) for line in table.get("mains", []))
         levels = tuple(tuple(float(value) for value in entry["level"]) for entry in table.get("effects", []))
-        loads = [tuple(float(value) for value in entry["load"]) for entry in table.get("effects", []) if "load" in entry]
+        loads = [
+            tuple(float(value) for value in entry["load"]) for entry in table.get("effects", []) if "load" in entry
+        ]
         hypothesis = Hypothesis(effects, levels, mains, tuple(loads) if loads else None)
         return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
 

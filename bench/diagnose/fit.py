@@ -16,8 +16,8 @@ from bench.diagnose.hypothesis import (
     ELASTIC,
     Hypothesis,
 )
-from bench.diagnose.noise import noise_floor
 from bench.diagnose.load_side import loads_of
+from bench.diagnose.noise import noise_floor
 from bench.diagnose.outside import physics_of
 from bench.diagnose.transforms import two_mass
 from bench.diagnose.workbench import Workbench

@@ -68,8 +68,8 @@ def _column(
 ) -> Column:
     """Terms of one coupling, driven by the motor's speed at substeps of the samples.
 
-    What acts on the load is brought in line with its motion turn by turn. Half of its steepest damping is counted to the
-    coupling's, so that a turn leaves less of an error than it found.
+    What acts on the load is brought in line with its motion turn by turn. Half of its steepest damping is counted to
+    the coupling's, so that a turn leaves less of an error than it found.
     """
     loss, spring, step = 2.0 * damping * antiresonance, antiresonance**2, signals.sample_period
     damped = 0.5 * _steepest(signals, acting) if acting else 0.0

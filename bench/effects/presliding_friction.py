@@ -20,7 +20,6 @@ from bench.effects.mjcf import AXIS, PRESLIDING, passive_motor
 from bench.effects.physics import Axis, Friction, Number
 from bench.units import Quantity
 
-
 #: Share of critical damping, of the axis against its bristles, below which a negative damping may be noise.
 UNDAMPED = 0.1
 
@@ -47,7 +46,7 @@ class PreslidingFriction(Friction, Effect):
         return {"bristle_stiffness": shape[0] * base.coulomb, "bristle_damping": strengths[1]}
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
-        """The bristles carry Coulomb friction itself within a factor of two, and damp as far as noise lets that be seen."""
+        """The bristles carry Coulomb friction within a factor of two, and damp as far as noise lets that be seen."""
         if base.coulomb <= 0.0 or base.inertia <= 0.0:
             return False
         critical = 2.0 * np.sqrt(shape[0] * base.coulomb * base.inertia)

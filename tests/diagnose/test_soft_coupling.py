@@ -1,0 +1,79 @@
+"""The load behind a soft coupling: against its equation integrated elsewhere, and found in simulated recordings."""
+
+import numpy as np
+import pytest
+import scipy.integrate
+
+from bench.diagnose.fit import fit
+from bench.diagnose.hypothesis import ELASTIC, Hypothesis, Named
+from bench.diagnose.quantities import reported
+from bench.diagnose.search import search
+from bench.diagnose.soft_coupling import coupled_columns
+from bench.diagnose.workbench import Workbench
+from bench.effects.catalogue import catalogue
+from bench.rig.rig import Rig, load_rig
+from bench.trace.trace import Trace
+from tests.independent.effects.friction import PreslidingFriction
+from tests.independent.effects.transmission import ElasticCoupling
+from tests.independent.references import random_motion
+from tests.independent.rig import Axis, write_rig
+from tests.independent.sensors import Noise, Sensors
+from tests.independent.simulate import simulate
+
+PERIOD = 1e-3
+AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
+SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
+
+
+def recorded(effect, tmp_path, seed: int = 5) -> tuple[Trace, Rig]:
+    motion = random_motion(AXIS, np.random.default_rng(seed), 6.0)
+    write_rig(AXIS, tmp_path / "rig.toml")
+    return simulate([AXIS], [motion], [(effect,)], [SENSORS], seed)[0].trace, load_rig(tmp_path / "rig.toml")
+
+
+@pytest.mark.parametrize(("drag", "ends"), [(0.0, 4.0), (0.02, 4.0), (0.0, 3.7)])
+def test_the_load_moves_as_its_equation_says(tmp_path, drag, ends):
+    """A recording that ends in motion rings on behind its end, and none of that comes back at its start."""
+    antiresonance, damping = 150.0, 0.01
+    trace, rig = recorded(ElasticCoupling(15.0, 2e-3), tmp_path)
+    time = np.arange(0.0, ends, PERIOD)
+    turn, speed = 2.0 * np.pi / 4.0, 60.0
+    angle, velocity = speed / turn * (1.0 - np.cos(turn * time)), speed * np.sin(turn * time)
+    values = {"position": angle, "velocity": velocity, "current": np.interp(time, trace.time, trace["current"])}
+    bench = Workbench.of(Trace(time, values, {"position": "rad", "velocity": "rad/s", "current": "A"}, "swing"), rig)
+
+    def equation(t, state):
+        motor, rate = speed / turn * (1.0 - np.cos(turn * t)), speed * np.sin(turn * t)
+        pull = antiresonance**2 * (motor - state[0]) + 2.0 * damping * antiresonance * (rate - state[1])
+        return [state[1], pull - drag * state[1] * abs(state[1])]
+
+    load = scipy.integrate.solve_ivp(equation, (0.0, ends), [0.0, 0.0], t_eval=time, rtol=1e-9, atol=1e-10).y
+    acting = [(catalogue()["quadratic_drag"], (), (drag,))] if drag else []
+    found = coupled_columns(bench, [(antiresonance, damping)], acting, 0.0)[:, 0]
+    excess = drag * (load[1] * np.abs(load[1]) - velocity * np.abs(velocity))
+    expected = bench.rows(lambda s: [(load[0] - angle, 2), (excess, 0)])
+    assert found == pytest.approx(expected, abs=2e-3 * np.abs(expected).max())
+
+
+def test_a_soft_coupling_leaves_noise_alone(tmp_path):
+    effect = ElasticCoupling(14.0, 2.5e-3)
+    trace, rig = recorded(effect, tmp_path)
+    bench = Workbench.of(trace, rig)
+    antiresonance = np.sqrt(effect.stiffness / (AXIS.inertia - AXIS.rotor_inertia))
+    shape = float(antiresonance), 0.5 * effect.damping * float(antiresonance) / effect.stiffness
+    fitted = fit(bench, Hypothesis((Named(ELASTIC, shape),)))
+    assert 0.9 < fitted.chi < 1.1
+    assert fitted.theta[0] == pytest.approx(AXIS.inertia, rel=1e-3)
+    assert fitted.strengths(0)[0] == pytest.approx(AXIS.inertia - AXIS.rotor_inertia, rel=3e-3)
+
+
+def test_bristles_are_named_with_their_damping(tmp_path):
+    effect = PreslidingFriction(3.0, 8e-3)
+    trace, rig = recorded(effect, tmp_path)
+    fitted = search(Workbench.of(trace, rig), AXIS.rotor_inertia)[-1].fitted
+    assert fitted.hypothesis.names == ("presliding_friction",)
+    assert fitted.chi < 1.1
+    values = reported(fitted.hypothesis.effects[0], fitted.strengths(0), fitted.base)
+    assert values["bristle_stiffness"] == pytest.approx(effect.bristle_stiffness, rel=0.03)
+    assert values["bristle_damping"] == pytest.approx(effect.bristle_damping, rel=0.15)
+    assert fitted.theta[0] == pytest.approx(AXIS.inertia, rel=1e-3)
