@@ -162,7 +162,8 @@ def polished(bench: Workbench, fitted: Fit) -> Fit:
     if len(fitted.hypothesis.effects) < 2:
         return fitted
     for index in range(len(fitted.hypothesis.effects)):
-        fitted = shaped(bench, fitted.hypothesis, index)
+        tried = shaped(bench, fitted.hypothesis, index)
+        fitted = tried if physical(tried, bench.duration) else fitted
     return fitted
 
 

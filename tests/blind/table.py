@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from statistics import median
 
 from tests.blind.draw import STRENGTHS
-from tests.blind.parameters import WHOLE
+from tests.blind.parameters import ANGLES, WHOLE, Compared
 from tests.blind.score import Score, same, twins
 from tests.independent.effects import CATALOGUE
 
@@ -42,8 +42,8 @@ def headline(scores: Sequence[Score]) -> str:
     """Right by group, and medians over cases with something of the catalogue hidden."""
     groups = {g: [s for s in scores if s.group == g] for g in ("single", "pair", "null", "outside")}
     known = [*groups["single"], *groups["pair"]]
-    judged = [s for s in known if s.all_inside is not None]
-    quantities = [ok for s in known for those in s.inside.values() for key, ok in those.items() if key not in WHOLE]
+    judged = [s for s in known if s.intervals]
+    quantities = [ok for s in known for ok in s.intervals]
     lines = [
         ("single effects named exactly", ratio(groups["single"])),
         ("pairs named exactly", ratio(groups["pair"])),
@@ -56,7 +56,7 @@ def headline(scores: Sequence[Score]) -> str:
         ("holdout torque gap closed, median", middle([s.closed for s in known], ".3f")),
         ("inertia error, median", middle([100.0 * abs(s.inertia_error) for s in known], ".4f") + " %"),
         ("quantities within their 95 % interval", f"{sum(quantities)}/{len(quantities)}"),
-        ("cases with every quantity within", ratio(judged, lambda s: bool(s.all_inside))),
+        ("cases with every quantity within", ratio(judged, lambda s: all(s.intervals))),
         ("seconds a case, median and most", seconds(scores)),
     ]
     return "| what | |\n|---|---|\n" + "\n".join(f"| {name} | {value} |" for name, value in lines)
@@ -107,20 +107,22 @@ def by_strength(scores: Sequence[Score]) -> str:
 
 
 def coverage(scores: Sequence[Score]) -> str:
-    """How often the interval of each quantity holds the truth."""
-    held: dict[tuple[str, str], list[bool]] = {}
+    """How often the interval of each quantity holds the truth, and how far reported values are from it."""
+    found: dict[tuple[str, str], list[Compared]] = {}
     for score in scores:
-        for effect, those in score.inside.items():
-            for key, ok in those.items():
-                held.setdefault((effect, key), []).append(ok)
-    if not held:
+        for effect, those in score.quantities.items():
+            for key, one in those.items():
+                found.setdefault((effect, key), []).append(one)
+    if not found:
         return ""
-    rows = ["| hidden | quantity | truth within interval |", "|---|---|---|"]
+    rows = ["| hidden | quantity | truth within interval | error, median | furthest, half widths |", "|---" * 5 + "|"]
     order = list(CATALOGUE)
-    rows += [
-        f"| {effect} | {key} | {sum(ok)}/{len(ok)} |"
-        for (effect, key), ok in sorted(held.items(), key=lambda item: order.index(item[0][0]))
-    ]
+    for (effect, key), those in sorted(found.items(), key=lambda item: order.index(item[0][0])):
+        error = middle([one.error * (1.0 if key in ANGLES else 100.0) for one in those], ".2g")
+        unit = "" if error == "-" else " rad" if key in ANGLES else " %"
+        furthest = "" if key in WHOLE else f"{max(one.half_widths for one in those):.1f}"
+        within = f"{sum(one.inside for one in those)}/{len(those)}"
+        rows.append(f"| {effect} | {key} | {within} | {error}{unit} | {furthest} |")
     return "## Quantities\n\n" + "\n".join(rows)
 
 
@@ -153,7 +155,7 @@ def cases_csv(scores: Sequence[Score]) -> str:
     writer.writerow(HEADINGS)
     for score in scores:
         truth, outcome = score.truth, score.outcome
-        quantities = [(f"{e}.{key}", ok) for e, those in score.inside.items() for key, ok in those.items()]
+        quantities = [(f"{e}.{key}", one) for e, those in score.quantities.items() for key, one in those.items()]
         writer.writerow(
             (
                 score.name,
@@ -170,8 +172,8 @@ def cases_csv(scores: Sequence[Score]) -> str:
                 *(f"{chi:.3f}" for chi in outcome.chi),
                 f"{score.inertia_error:.2e}",
                 "" if score.closed is None else f"{score.closed:.4f}",
-                sum(ok for _, ok in quantities),
-                " ".join(name for name, ok in quantities if not ok),
+                sum(one.inside for _, one in quantities),
+                " ".join(f"{name}:{one.half_widths:.1f}" for name, one in quantities if not one.inside),
                 f"{outcome.seconds:.1f}",
                 outcome.refused,
             )
