@@ -102,7 +102,12 @@ def worth(without: Fit, having: Fit) -> float:
 
 
 def well_formed(bench: Workbench, fitted: Fit) -> Fit:
-    """Without the names whose relatives explain most of the remainder: right where it sits, wrong what it is."""
+    """Without the names whose relatives explain most of the remainder: right where it sits, wrong what it is.
+
+    What the unknown contact of a dead zone leaves speaks against no name.
+    """
+    if BACKLASH in fitted.hypothesis.names:
+        return fitted
     index = len(fitted.hypothesis.effects) - 1
     while index >= 0 and fitted.chi > REMAINDER:
         saved, count = _by_relatives(bench, fitted, index)

@@ -67,6 +67,7 @@ def search(bench: Workbench, rotor_inertia: float, excluded: frozenset[str] = fr
     if last.chi > REMAINDER and BACKLASH not in excluded:
         loose = loosened(bench, last, rotor_inertia)
         if loose is not None:
+            loose = eliminated(bench, loose)
             steps = grown(
                 bench, [*steps[:-1], Step(loose, ())] if len(steps) > 1 else [*steps, Step(loose, ())], excluded
             )
@@ -74,10 +75,14 @@ def search(bench: Workbench, rotor_inertia: float, excluded: frozenset[str] = fr
 
 
 def grown(bench: Workbench, steps: list[Step], excluded: frozenset[str]) -> list[Step]:
-    """Steps with effects of the catalogue added until none is worthwhile."""
+    """Steps with effects of the catalogue added until none is worthwhile.
+
+    Beside a dead zone no event is sought: what its unknown contact leaves comes in bursts, too.
+    """
     while len(steps) <= MOST:
         current = steps[-1].fitted
-        tried = candidates(bench, current, excluded | frozenset(OUTSIDE))
+        bursts = {EVENT} if BACKLASH in current.hypothesis.names else set()
+        tried = candidates(bench, current, excluded | frozenset(OUTSIDE) | bursts)
         threshold = SIGNIFICANT * row_correlation(bench) * current.floor**2
         promising = [candidate for candidate in tried if candidate.gain > max(threshold, 0.1 * current.excess)]
         finalists = [refined(bench, current, candidate) for candidate in promising[:FINALISTS]]
