@@ -33,6 +33,7 @@ class Score:
         right: names are exactly those hidden; none, and a remainder, if the physics is outside or taken away.
         inertia_error: relative, nan if refused.
         closed: share of the holdout torque gap above the noise floor that is closed, None if nothing stands above.
+        without_truth: whether the hidden effects were taken out of the catalogue.
         quantities: by effect and quantity, what is reported beside the truth.
     """
 
@@ -42,6 +43,7 @@ class Score:
     right: bool
     inertia_error: float
     closed: float | None
+    without_truth: bool
     quantities: dict[str, dict[str, Compared]] = field(default_factory=dict)
 
     @property
@@ -72,7 +74,8 @@ def score(name: str, truth: Mapping, outcome: Outcome, without_truth: bool = Fal
     for effect in truth["effects"]:
         for named in twins(effect) & set(outcome.named):
             held[effect] = compared(truth, effect, named, outcome.named[named])
-    return Score(name, truth, outcome, right, outcome.inertia / truth["inertia"] - 1.0, _closed(outcome), held)
+    error = outcome.inertia / truth["inertia"] - 1.0
+    return Score(name, truth, outcome, right, error, _closed(outcome), without_truth, held)
 
 
 def _closed(outcome: Outcome) -> float | None:

@@ -39,12 +39,32 @@ def markdown(scores: Sequence[Score], title: str, command: str) -> str:
 
 
 def headline(scores: Sequence[Score]) -> str:
+    """What the whole set comes to."""
+    lines = abstention(scores) if any(score.without_truth for score in scores) else naming(scores)
+    lines += [
+        ("refused", ratio(scores, lambda s: bool(s.outcome.refused))),
+        ("seconds a case, median and most", seconds(scores)),
+    ]
+    return "| what | |\n|---|---|\n" + "\n".join(f"| {name} | {value} |" for name, value in lines)
+
+
+def abstention(scores: Sequence[Score]) -> list[tuple[str, str]]:
+    """How often nothing is named when what is hidden is not in the catalogue."""
+    return [
+        ("left unnamed with a remainder", ratio([score for score in scores if score.hidden])),
+        ("a wrong name", ratio(scores, misnamed)),
+        ("a wrong name, and no remainder", ratio(scores, lambda s: misnamed(s) and not remains(s))),
+        ("nothing said to be missing", ratio(scores, lambda s: s.outcome.verdict == "nothing_missing")),
+    ]
+
+
+def naming(scores: Sequence[Score]) -> list[tuple[str, str]]:
     """Right by group, and medians over cases with something of the catalogue hidden."""
     groups = {g: [s for s in scores if s.group == g] for g in ("single", "pair", "null", "outside")}
     known = [*groups["single"], *groups["pair"]]
     judged = [s for s in known if s.intervals]
     quantities = [ok for s in known for ok in s.intervals]
-    lines = [
+    return [
         ("single effects named exactly", ratio(groups["single"])),
         ("pairs named exactly", ratio(groups["pair"])),
         ("nulls with a name", ratio(groups["null"], lambda s: bool(s.outcome.named))),
@@ -52,14 +72,11 @@ def headline(scores: Sequence[Score]) -> str:
         ("outside the catalogue, left unnamed with a remainder", ratio(groups["outside"])),
         ("cases with something hidden and a wrong name", ratio([*known, *groups["outside"]], misnamed)),
         ("singles and pairs with a remainder beside right names", ratio([s for s in known if s.right], remains)),
-        ("refused", ratio(scores, lambda s: bool(s.outcome.refused))),
         ("holdout torque gap closed, median", middle([s.closed for s in known], ".3f")),
         ("inertia error, median", middle([100.0 * abs(s.inertia_error) for s in known], ".4f") + " %"),
         ("quantities within their 95 % interval", f"{sum(quantities)}/{len(quantities)}"),
         ("cases with every quantity within", ratio(judged, lambda s: all(s.intervals))),
-        ("seconds a case, median and most", seconds(scores)),
     ]
-    return "| what | |\n|---|---|\n" + "\n".join(f"| {name} | {value} |" for name, value in lines)
 
 
 def seconds(scores: Sequence[Score]) -> str:
