@@ -1,7 +1,8 @@
 """Add the named effects to the MuJoCo model and keep what motion that was not fitted bears out.
 
 An effect is accepted if, with it, neither the torque gap nor the velocity gap of unseen motion grows. A change that
-the simulation's own floor hides - an offset that integral action takes up - is no verdict: then the torque gap alone
+the simulation's own floor hides - an offset that integral action takes up - is no verdict, nor is a simulation that is
+further off than the mean speed would be - a held motor that slips from cog to cog: then the torque gap alone
 decides. An effect of drive or sensor that torque and held velocity both leave as they were is judged where it shows:
 a voltage limit under the drive of the rig.
 """
@@ -149,7 +150,8 @@ def rejection(trial: Trial) -> tuple[int, str] | None:
             return index, _grows("torque", torque, judged.rig.effort_unit, unseen)
         velocity = trial.gaps.of(less.whole, unseen.recorded), trial.gaps.of(judged.whole, unseen.recorded)
         allowed = float(np.hypot(velocity[0], floor))
-        if velocity[1] > allowed and not _comes_closer(trial, allowed):
+        follows = min(velocity) < unseen.recorded.varies
+        if follows and velocity[1] > allowed and not _comes_closer(trial, allowed):
             return index, _grows("velocity", velocity, "m/s" if judged.rig.linear else "rad/s", unseen)
     return None
 

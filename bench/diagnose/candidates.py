@@ -100,6 +100,8 @@ def _linear(seen: Workbench, current: Fit, basis: Array, excluded: frozenset[str
         if physics.name in excluded or physics.name == EVENT or not physics.searched:
             continue
         grids = _grid(sought(seen, physics))
+        if not grids:
+            continue
         made = seen.table(lambda s, p=physics, g=grids: [c for shape in g for c in p.columns(s, shape)], resting)
         width = made.shape[1] // len(grids)
         worth = gains(made, width, current.residual, basis)
@@ -107,8 +109,10 @@ def _linear(seen: Workbench, current: Fit, basis: Array, excluded: frozenset[str
 
 
 def _grid(sought_along: tuple[tuple[float, ...], ...]) -> list[tuple[float, ...]]:
-    mesh = np.meshgrid(*sought_along, indexing="ij") if sought_along else []
-    return [tuple(float(value) for value in point) for point in zip(*(m.ravel() for m in mesh), strict=True)] or [()]
+    if not sought_along:
+        return [()]
+    mesh = np.meshgrid(*sought_along, indexing="ij")
+    return [tuple(float(value) for value in point) for point in zip(*(m.ravel() for m in mesh), strict=True)]
 
 
 def _transforms(

@@ -14,6 +14,7 @@ from bench.diagnose.fit import Fit, fit
 from bench.diagnose.found import Gap, NamedEffect, Rejected, Shrunk
 from bench.diagnose.hypothesis import Hypothesis
 from bench.diagnose.name import Suspects, name
+from bench.diagnose.next_experiment import NextExperiment, propose
 from bench.diagnose.quantities import base_parameters, uncertain
 from bench.diagnose.recordings import Recordings
 from bench.diagnose.search import REMAINDER
@@ -43,6 +44,7 @@ class Diagnosis:
         closed_loop: velocity gap under the rig's drive without and with what shows only there - rad/s (m/s).
         refined: velocity gap of unseen motion before and after values were refined by simulation; None if not kept.
         steps: the bare axis, then the model after each addition.
+        next_experiment: that tells apart what this recording does not.
         rejected: names that unseen motion spoke against.
         model, balance: with all effects; no model where MuJoCo cannot have them.
         warnings: what a user should know.
@@ -61,6 +63,7 @@ class Diagnosis:
     refined: tuple[float, float] | None
     steps: list[Shrunk]
     rejected: tuple[Rejected, ...]
+    next_experiment: NextExperiment | None
     model: StoredModel | None
     balance: Balance
     warnings: list[str] = field(default_factory=list)
@@ -131,6 +134,7 @@ def show(recordings: Recordings, gap: Fit, located: list[Where], suspects: Suspe
         refined=kept.gap,
         steps=steps,
         rejected=added.rejected,
+        next_experiment=propose(recordings, suspects, added),
         model=kept.model,
         balance=Balance.of(bench, whole).repeating(added.repeats),
         warnings=[*suspicions(recordings.trace, rig, kept.parameters), *untold(bench, rig.linear), *added.warnings],

@@ -15,6 +15,8 @@ from bench.effects.effect import Effect, Shape
 
 #: Cycles over the travel of a linear axis between which pitches are sought: fewer than two are no repetition.
 COARSEST, FINEST = 2.0, 128.0
+#: Angle of a cycle that the motion must cover - rad: over less, a wave is a mere curve, and a wave of torque copies it.
+PERIOD = 2.0 * np.pi
 #: Top speed of the rotary axes for which effects state their grids - rad/s.
 TOP = 100.0
 #: What has a meaning on a turning axis alone.
@@ -32,13 +34,15 @@ def is_pitch(bench: Workbench, shape: Shape) -> bool:
 
 
 def spacing(bench: Workbench) -> float:
-    """Distance of wave numbers that the travel just tells apart: half a cycle over it - rad/m."""
+    """Distance of wave numbers that the travel just tells apart: half a cycle over it - 1 (rad/m)."""
     positions = [part.signals.position for part in bench.stretches]
     travel = max(float(p.max()) for p in positions) - min(float(p.min()) for p in positions)
     return np.pi / travel
 
 
 def _grid(bench: Workbench, shape: Shape) -> tuple[float, ...]:
+    if shape.whole and not bench.linear:
+        return tuple(n for n in shape.grid if n * np.pi / spacing(bench) >= PERIOD)
     if is_pitch(bench, shape):
         return tuple((spacing(bench) * np.arange(2.0 * COARSEST, 2.0 * FINEST + 1.0)).tolist())
     power = {"rad/s": 1, "1/rad": -1}.get(shape.quantity.unit, 0)

@@ -54,6 +54,11 @@ class Recorded:
         """Simulated less measured velocity at the judged samples - rad/s (m/s)."""
         return (simulated - measured_velocity(self.trace))[self.judged]
 
+    @property
+    def varies(self) -> float:
+        """RMS deviation of measured velocity from its mean: a simulation further off follows nothing - rad/s (m/s)."""
+        return float(np.std(measured_velocity(self.trace)[self.judged]))
+
     def holding(self, stored: StoredModel, inertia: float) -> Held:
         """A model to be held to it by a cascade laid out for an inertia - kg*m**2 (kg)."""
         model = stored.model if self.events else without_events(stored.model)

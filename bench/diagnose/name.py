@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from bench.diagnose.chain import Grown
 from bench.diagnose.decidable import one_way
+from bench.diagnose.doubt import doubted
 from bench.diagnose.fit import fit
 from bench.diagnose.found import NamedEffect
 from bench.diagnose.hypothesis import CURRENT_LAG, DIRECTION, VELOCITY_LAG
@@ -65,7 +66,9 @@ def name(recordings: Recordings, excluded: frozenset[str]) -> Suspects:
         recordings: laid out.
         excluded: effects that are not tried.
     """
-    steps = search(recordings.bench, recordings.rig.motor.rotor_inertia or 0.0, unsearched(recordings, excluded))
+    bench, untried = recordings.bench, unsearched(recordings, excluded)
+    steps = search(bench, recordings.rig.motor.rotor_inertia or 0.0, untried)
+    steps = doubted(bench, recordings.other, steps, untried)
     lag, limit = recordings.lag, voltage_limit(recordings.trace, recordings.rig, recordings.bench)
     withheld = [lag is not None and VELOCITY_LAG in excluded, limit is not None and VOLTAGE_LIMIT in excluded]
     return Suspects(steps, None if withheld[0] else lag, None if withheld[1] else limit, any(withheld))

@@ -11,6 +11,8 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Base, Column, Effect, Shape, Signals
 from bench.units import Quantity
 
+NOTCH = "outside_notch"
+
 
 class Vibration(Effect):
     """A torque periodic in time, M = A*sin(2*pi*f*t + phi)."""
@@ -33,7 +35,7 @@ class Vibration(Effect):
 class Notch(Effect):
     """A bump of torque or friction at one angle of the revolution, of Gaussian shape."""
 
-    name = "outside_notch"
+    name = NOTCH
     summary = "a bump at one angle"
     quantities = (Quantity("angle", "q_0", "rad"), Quantity("width", "w", "rad", lower=0.0))
     shapes = (

@@ -16,16 +16,14 @@ from bench.diagnose.fit import Fit, fit
 from bench.diagnose.hypothesis import (
     BACKLASH,
     CURRENT_LAG,
-    DIRECTION,
     ELASTIC,
     TRANSFORMS,
     Hypothesis,
-    Named,
 )
 from bench.diagnose.load_side import outer_loads
 from bench.diagnose.mains import humming
 from bench.diagnose.outside import OUTSIDE
-from bench.diagnose.shapes import free_shapes, shaped
+from bench.diagnose.shapes import shaped
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue
 
@@ -33,12 +31,8 @@ SPRING, OFFSET = "torsion_spring", "torque_offset"
 
 #: Residual over noise floor above which what is left stands clearly above noise.
 REMAINDER = 1.12
-#: A large remainder, and the share of the first gap that names may leave in one; a dead zone's contact is never known.
-LARGE, REMAINING, REMAINING_BACKLASH = 3.0, 0.2, 0.35
-#: Longest event, as share of the recording; beyond, it is not an event but how the axis is.
+#: Longest events together, as share of the recording; beyond, it is not an event but how the axis is.
 LONGEST_EVENT = 0.6
-#: Share of its worth that a name keeps beside a rival from outside the catalogue that takes nothing of it.
-KEPT = 0.5
 #: Share of what stands above the floor that an effect must explain to be taken up.
 SHARE = 0.25
 #: The same for an event, which has a window of time to choose freely and so fits a part of anything.
@@ -74,21 +68,22 @@ def search(bench: Workbench, rotor_inertia: float, excluded: frozenset[str] = fr
     if last.chi > REMAINDER and BACKLASH not in excluded:
         loose = loosened(bench, last, rotor_inertia)
         if loose is not None:
+            loose = eliminated(bench, loose)
             steps = grown(
                 bench, [*steps[:-1], Step(loose, ())] if len(steps) > 1 else [*steps, Step(loose, ())], excluded
             )
-    final = simpler(bench, uncontested(bench, steps[-1].fitted, excluded))
-    final = believable(bench, steps[0].fitted, final)
-    if final.hypothesis != steps[-1].fitted.hypothesis:
-        steps = [*steps[:-1], Step(final, steps[-1].rivals)] if final.hypothesis.effects else steps[:1]
     return steps
 
 
 def grown(bench: Workbench, steps: list[Step], excluded: frozenset[str]) -> list[Step]:
-    """Steps with effects of the catalogue added until none is worthwhile."""
+    """Steps with effects of the catalogue added until none is worthwhile.
+
+    Beside a dead zone no event is sought: what its unknown contact leaves comes in bursts, too.
+    """
     while len(steps) <= MOST:
         current = steps[-1].fitted
-        tried = candidates(bench, current, excluded | frozenset(OUTSIDE))
+        bursts = {EVENT} if BACKLASH in current.hypothesis.names else set()
+        tried = candidates(bench, current, excluded | frozenset(OUTSIDE) | bursts)
         threshold = SIGNIFICANT * row_correlation(bench) * current.floor**2
         promising = [candidate for candidate in tried if candidate.gain > max(threshold, 0.1 * current.excess)]
         finalists = [refined(bench, current, candidate) for candidate in promising[:FINALISTS]]
@@ -122,62 +117,6 @@ def loosened(bench: Workbench, fitted: Fit, rotor_inertia: float) -> Fit | None:
     return found if clearly and found.told.mean() > 0.5 and 0.02 < share < 0.98 else None
 
 
-def uncontested(bench: Workbench, fitted: Fit, excluded: frozenset[str]) -> Fit:
-    """Without the names that something from outside the catalogue explains better, where a remainder is left.
-
-    A rival that explains more, but of something else, contests nothing: beside it the name keeps its worth.
-    """
-    if fitted.chi < REMAINDER or not fitted.hypothesis.effects:
-        return fitted
-    for index in range(len(fitted.hypothesis.effects) - 1, -1, -1):
-        less = fit(bench, fitted.hypothesis.without(index))
-        rivals = [candidate for candidate in candidates(bench, less, excluded) if candidate.named.name in OUTSIDE]
-        if not rivals:
-            continue
-        rival = refined(bench, less, rivals[0])
-        beside = fit(bench, rival.hypothesis.with_effect(fitted.hypothesis.effects[index]))
-        if outdone(bench, fitted, rival) and worth(rival, beside) < KEPT * worth(less, fitted):
-            fitted = less
-    return fitted
-
-
-def outdone(bench: Workbench, fitted: Fit, rival: Fit) -> bool:
-    """Whether a rival with a quantity or two more explains clearly more."""
-    added = max(_freedom(bench, rival) - _freedom(bench, fitted), 1)
-    least = max(SHARE * fitted.excess, SIGNIFICANT * added * row_correlation(bench) * fitted.floor**2)
-    return worth(fitted, rival) > least
-
-
-def _freedom(bench: Workbench, fitted: Fit) -> int:
-    return fitted.theta.size + sum(len(free_shapes(effect, bench)) for effect in fitted.hypothesis.effects)
-
-
-def worth(without: Fit, having: Fit) -> float:
-    """Squares that an effect saves, summed over rows - (N*m)**2 (N**2)."""
-    return float(np.sum(without.residual**2) - np.sum(having.residual**2))
-
-
-def believable(bench: Workbench, before: Fit, fitted: Fit) -> Fit:
-    """No names, or none of an event, where so much is left that they are likelier the nearest than the right ones."""
-    if fitted.chi < LARGE:
-        return fitted
-    bearable = REMAINING_BACKLASH if BACKLASH in fitted.hypothesis.names else REMAINING
-    if fitted.excess > bearable * before.excess:
-        return before
-    events = [index for index, name in enumerate(fitted.hypothesis.names) if name == EVENT]
-    return fit(bench, fitted.hypothesis.without(events[0])) if events else fitted
-
-
-def simpler(bench: Workbench, fitted: Fit) -> Fit:
-    """A torque offset instead of direction-dependent friction where viscous friction does not differ."""
-    names = fitted.hypothesis.names
-    if DIRECTION not in names:
-        return fitted
-    plain = fit(bench, fitted.hypothesis.without(names.index(DIRECTION)).with_effect(Named(OFFSET)))
-    lost = float(np.sum(plain.residual**2) - np.sum(fitted.residual**2))
-    return plain if lost < SIGNIFICANT * row_correlation(bench) * fitted.floor**2 else fitted
-
-
 def worthwhile(bench: Workbench, before: Fit, after: Fit) -> bool:
     """Whether an added effect explains enough, significantly, within what physics allows.
 
@@ -203,13 +142,14 @@ def row_correlation(bench: Workbench) -> float:
 
 def physical(fitted: Fit, duration: float) -> bool:
     """Whether every effect has values that physics allows, in a recording of a duration - s."""
+    events = sum(e.shape[1] - e.shape[0] for e in fitted.hypothesis.effects if e.name == EVENT)
+    if events > LONGEST_EVENT * duration:
+        return False
     for index, effect in enumerate(fitted.hypothesis.effects):
         strengths = fitted.strengths(index)
         if effect.name in (ELASTIC, BACKLASH) and not 0.02 < strengths[0] / fitted.theta[0] < 0.98:
             return False
         if effect.name == ELASTIC and effect.shape[1] >= OVERDAMPED:
-            return False
-        if effect.name == EVENT and effect.shape[1] - effect.shape[0] > LONGEST_EVENT * duration:
             return False
         if effect.name in TRANSFORMS or effect.name in OUTSIDE:
             continue
@@ -228,7 +168,8 @@ def polished(bench: Workbench, fitted: Fit) -> Fit:
     if len(fitted.hypothesis.effects) < 2:
         return fitted
     for index in range(len(fitted.hypothesis.effects)):
-        fitted = shaped(bench, fitted.hypothesis, index)
+        tried = shaped(bench, fitted.hypothesis, index)
+        fitted = tried if physical(tried, bench.duration) else fitted
     return fitted
 
 

@@ -18,7 +18,7 @@ from bench.diagnose.hypothesis import (
     Hypothesis,
     Named,
 )
-from bench.diagnose.outside import OUTSIDE, physics_of
+from bench.diagnose.outside import NOTCH, physics_of
 from bench.diagnose.workbench import Workbench
 
 
@@ -86,6 +86,8 @@ def _scale(effect: Named) -> float:
 
 
 def _moved(effect: Named, start: np.ndarray, offset: np.ndarray, pitch: bool) -> np.ndarray:
-    if pitch or effect.name in (EVENT, ECCENTRICITY) or (effect.name in OUTSIDE and effect.name == "outside_notch"):
+    if pitch or effect.name in (EVENT, ECCENTRICITY):
         return start + offset
+    if effect.name == NOTCH:  # an angle and a width
+        return np.array([start[0] + offset[0], start[1] * np.exp(offset[1])])
     return start * np.exp(offset)

@@ -14,6 +14,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.errors import SimulationError
 from bench.plant.drive import Cascade, add_pid
 from bench.plant.native import run_controls, sense_torque
 from bench.trace.trace import Trace
@@ -48,10 +49,17 @@ def step_of(trace: Trace) -> tuple[float, int]:
 
 
 def holding_model(spec: mujoco.MjSpec, cascade: Cascade) -> mujoco.MjModel:
-    """Compiled model whose actuator `drive` is the cascade with effort as feed-forward."""
+    """Compiled model whose actuator `drive` is the cascade with effort as feed-forward.
+
+    Raises:
+        SimulationError: MuJoCo refuses the model, for an inertia too small for one.
+    """
     add_pid(spec, cascade)
     sense_torque(spec)
-    return spec.compile()
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise SimulationError(f"MuJoCo refuses the model: {str(error).splitlines()[0]}") from error
 
 
 def track(model: mujoco.MjModel, trace: Trace, effort: Array, misalignment: float = 0.0) -> Array:

@@ -21,6 +21,8 @@ from bench.report.estimate import parameters_json
 from bench.report.figures import MEASURED, MODELLED, save
 
 SCHEMA = "bench.diagnose/1"
+#: Share of the gap above which the region that holds most of it is shaded.
+SHADED = 0.1
 
 
 def diagnosis_json(diagnosis: Diagnosis) -> str:
@@ -46,7 +48,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
         "gap": {"torque": _gap(diagnosis.torque), "velocity": _velocity_gap(diagnosis)},
         "steps": [_step(step) for step in diagnosis.steps[1:]],
         "rejected": [{"name": found.name, "reason": found.reason} for found in diagnosis.rejected],
-        "next_experiment": None,
+        "next_experiment": _experiment(diagnosis),
         "model": {"mjcf": "model.xml" if diagnosis.model is not None else None, "toml": "model.toml"},
         "warnings": diagnosis.warnings,
     }
@@ -85,6 +87,22 @@ def _velocity_gap(diagnosis: Diagnosis) -> dict[str, Any]:
     return content
 
 
+def _experiment(diagnosis: Diagnosis) -> dict[str, Any] | None:
+    found = diagnosis.next_experiment
+    if found is None:
+        return None
+    speed = diagnosis.velocity.unit
+    parameters = {"top_speed": (found.speed, speed), "acceleration": (found.acceleration, f"{speed}**2")}
+    parameters |= {"duration": (found.duration, "s"), "repetitions": (found.repetitions, "dimensionless")}
+    return {
+        "profile": found.profile,
+        "parameters": {key: {"value": value, "unit": unit} for key, (value, unit) in parameters.items()},
+        "tells_apart": list(found.tells_apart),
+        "separation": found.separation,
+        "reason": found.reason,
+    }
+
+
 def _step(step: Shrunk) -> dict[str, Any]:
     """Gaps after an addition, of the recording and of the holdout; null where there is none."""
     content: dict[str, Any] = {"effect": step.effect}
@@ -102,6 +120,18 @@ def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
             if pair is not None:
                 closed = f"{pair[0]:.4g} -> {pair[1]:.4g} {gap.unit}, noise floor {gap.noise_floor:.3g}"
                 caption.append(f"{name} gap, {recording}: {closed}")
+    caption.append(f"velocity gap: models held to the recording at {diagnosis.bandwidth:.3g} rad/s")
+    if diagnosis.closed_loop is not None:
+        before, after = diagnosis.closed_loop
+        caption.append(f"velocity gap under the rig's drive: {before:.4g} -> {after:.4g} {diagnosis.velocity.unit}")
+    caption += [f"rejected: {found.name}, {found.reason}" for found in diagnosis.rejected]
+    if diagnosis.next_experiment is not None:
+        following = diagnosis.next_experiment
+        caption.append(
+            f"record next: {following.repetitions} times {following.profile} to {following.speed:.3g} "
+            f"{diagnosis.velocity.unit}, which tells {' from '.join(following.tells_apart)} "
+            f"({following.separation:.0f} times the noise): {following.reason}"
+        )
     if diagnosis.unexplained_where:
         first = diagnosis.unexplained_where[0]
         low, high = first.region
@@ -140,6 +170,8 @@ def where_figure(diagnosis: Diagnosis, title: str) -> Figure:
             order = np.argsort(rest.centres)
             axis.plot(rest.centres[order], rest.means[order], ".-", ms=3, lw=0.8, color=MODELLED, label="after")
             axis.legend(frameon=False, fontsize=7)
+        if account.share > SHADED:
+            axis.axvspan(*account.region, color=MEASURED, alpha=0.08, lw=0.0)
         axis.set_title(f"{account.coordinate}: {account.share:.0%}", fontsize=9)
         axis.set_xlabel(account.unit, fontsize=8)
         axis.set_ylabel(f"gap / {diagnosis.torque.unit}", fontsize=8)
@@ -148,13 +180,41 @@ def where_figure(diagnosis: Diagnosis, title: str) -> Figure:
     return figure
 
 
+def gaps_figure(diagnosis: Diagnosis, title: str) -> Figure:
+    """Torque and velocity gap of the bare axis and after each addition, on both recordings, against the noise floor."""
+    figure = Figure(figsize=(12.0, 4.5), layout="constrained")
+    figure.suptitle(title, x=0.01, ha="left", weight="bold")
+    labels = [step.effect.replace("_", " ") or "J, friction" for step in diagnosis.steps]
+    labels = [label if k == 0 else f"+ {label}" for k, label in enumerate(labels)]
+    for axis, name, gap in zip(
+        figure.subplots(1, 2), ("torque", "velocity"), (diagnosis.torque, diagnosis.velocity), strict=True
+    ):
+        values = np.array([getattr(step, name) for step in diagnosis.steps])
+        places, count = np.arange(len(labels)), values.shape[1]
+        for k, (recording, colour) in enumerate(zip(("recording", "holdout"), (MEASURED, MODELLED), strict=True)):
+            if k < count:
+                offset = (k - 0.5 * (count - 1)) * 0.4
+                bars = axis.bar(places + offset, values[:, k], 0.38, color=colour, label=recording)
+                axis.bar_label(bars, fmt="%.3g", fontsize=7, padding=1)
+        axis.axhline(gap.noise_floor, color="0.3", lw=1.0, ls="--", label="noise floor")
+        axis.set_yscale("log")
+        axis.margins(y=0.15)
+        axis.set_xticks(places, labels, fontsize=8, rotation=20 if len(labels) > 2 else 0)
+        axis.set_ylabel(f"RMS {name} gap / {gap.unit}")
+        axis.grid(axis="y", alpha=0.25)
+        axis.set_axisbelow(True)
+        axis.legend(frameon=False, fontsize=8)
+    return figure
+
+
 def write_diagnosis(out: Path, diagnosis: Diagnosis, title: str) -> list[Path]:
-    """Write `diagnosis.json`, `where.png`, `model.toml` and, where MuJoCo has all of it, `model.xml`; returns paths."""
-    written = [out / "diagnosis.json", out / "where.png", out / "model.toml"]
+    """Write `diagnosis.json`, two figures, `model.toml` and, where MuJoCo has all of it, `model.xml`; returns paths."""
+    written = [out / "diagnosis.json", out / "where.png", out / "gaps.png", out / "model.toml"]
     write_text(written[0], diagnosis_json(diagnosis) + "\n")
     save(where_figure(diagnosis, title), written[1])
+    save(gaps_figure(diagnosis, title), written[2])
     stored = model_toml(diagnosis.model) if diagnosis.model is not None else _nameless(diagnosis)
-    write_text(written[2], stored + diagnosis.balance.toml())
+    write_text(written[3], stored + diagnosis.balance.toml())
     if diagnosis.model is not None:
         written.append(out / "model.xml")
         write_text(written[-1], model_xml(diagnosis.model.model))

@@ -105,16 +105,20 @@ def main(
         for case in drawn:
             tell(folder, case.name, without_truth)
     if out is not None:
-        write(out, scores, f"{counts}", seed, without_truth)
+        options = [
+            f"--seed {seed}",
+            *(f"--{name}s {count}".replace("outsides", "outside") for name, count in counts.items()),
+        ]
+        options += [f"--only '{only}'"] * (only != "*") + ["--without-truth"] * without_truth
+        write(out, scores, f"python -m tests.blind {' '.join(options)} --duration {duration:g}", seed, without_truth)
 
 
-def write(out: Path, scores: list[Score], counts: str, seed: int, without_truth: bool) -> None:
+def write(out: Path, scores: list[Score], command: str, seed: int, without_truth: bool) -> None:
     """Figure, table and cases into a folder."""
     out.mkdir(parents=True, exist_ok=True)
     what = "with the hidden effect taken out of the catalogue" if without_truth else "all effects in the catalogue"
     save_confusion(out / "confusion.png", scores, f"Blind set, seed {seed}: {what}", without_truth)
-    command = f"python -m tests.blind --seed {seed}" + " --without-truth" * without_truth
-    (out / "table.md").write_text(markdown(scores, f"Blind set, {what}", f"{command}, {counts}"), encoding="utf-8")
+    (out / "table.md").write_text(markdown(scores, f"Blind set, {what}", command), encoding="utf-8")
     (out / "cases.csv").write_text(cases_csv(scores), encoding="utf-8")
 
 

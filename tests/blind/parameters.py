@@ -3,15 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from tests.blind.run import Interval
 
-#: Angles repeat; a sine's amplitude may be reported with the opposite sign only if its phase says so.
+#: Angles repeat.
 ANGLES = ("phase",)
 #: Whole numbers: right or wrong, no interval.
 WHOLE = ("harmonic",)
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A reported quantity beside its true value; an angle's within half a turn of the reported one.
+
+    Attributes:
+        quantity: its name.
+        true, value, low, high: truth, and what is reported with its 95 % interval - SI.
+    """
+
+    quantity: str
+    true: float
+    value: float
+    low: float
+    high: float
+
+    @property
+    def inside(self) -> bool:
+        """Whether the interval holds the truth."""
+        if self.quantity in WHOLE:
+            return round(self.value) == round(self.true)
+        return self.low <= self.true <= self.high
+
+    @property
+    def half_widths(self) -> float:
+        """Error in half widths of the interval."""
+        return abs(self.value - self.true) / max(0.5 * (self.high - self.low), 1e-300)
+
+    @property
+    def error(self) -> float:
+        """Of an angle in rad, of all else relative to the true value; nan if that is zero."""
+        if self.quantity in ANGLES:
+            return abs(self.value - self.true)
+        return abs(self.value / self.true - 1.0) if self.true else float("nan")
 
 
 def expected(truth: Mapping, effect: str, named: str) -> dict[str, float]:
@@ -35,16 +71,13 @@ def expected(truth: Mapping, effect: str, named: str) -> dict[str, float]:
     return values
 
 
-def inside(truth: Mapping, effect: str, named: str, reported: Mapping[str, Interval]) -> dict[str, bool]:
-    """Whether the interval of each reported quantity holds the true value."""
+def compared(truth: Mapping, effect: str, named: str, reported: Mapping[str, Interval]) -> dict[str, Compared]:
+    """Each reported quantity that the truth has, beside its true value."""
     true = expected(truth, effect, named)
-    return {key: _holds(key, true[key], interval) for key, interval in reported.items() if key in true}
+    return {key: _beside(key, true[key], interval) for key, interval in reported.items() if key in true}
 
 
-def _holds(quantity: str, true: float, interval: Interval) -> bool:
-    value, low, high = interval
-    if quantity in WHOLE:
-        return round(value) == round(true)
+def _beside(quantity: str, true: float, interval: Interval) -> Compared:
     if quantity in ANGLES:
-        true = value + float(np.angle(np.exp(1j * (true - value))))
-    return low <= true <= high
+        true = interval[0] + float(np.angle(np.exp(1j * (true - interval[0]))))
+    return Compared(quantity, true, *interval)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from tests.blind.parameters import WHOLE, inside
+from tests.blind.parameters import WHOLE, Compared, compared
 from tests.blind.run import Outcome
 
 #: Names that the contract says no recording of the kind tells apart.
@@ -33,7 +33,8 @@ class Score:
         right: names are exactly those hidden; none, and a remainder, if the physics is outside or taken away.
         inertia_error: relative, nan if refused.
         closed: share of the holdout torque gap above the noise floor that is closed, None if nothing stands above.
-        inside: by effect and quantity, whether the interval holds the truth.
+        without_truth: whether the hidden effects were taken out of the catalogue.
+        quantities: by effect and quantity, what is reported beside the truth.
     """
 
     name: str
@@ -42,7 +43,8 @@ class Score:
     right: bool
     inertia_error: float
     closed: float | None
-    inside: dict[str, dict[str, bool]] = field(default_factory=dict)
+    without_truth: bool
+    quantities: dict[str, dict[str, Compared]] = field(default_factory=dict)
 
     @property
     def group(self) -> str:
@@ -55,10 +57,9 @@ class Score:
         return "+".join(self.truth["effects"])
 
     @property
-    def all_inside(self) -> bool | None:
-        """Whether every interval of the case holds; None if it has none."""
-        held = [ok for those in self.inside.values() for key, ok in those.items() if key not in WHOLE]
-        return all(held) if held else None
+    def intervals(self) -> list[bool]:
+        """Whether each interval holds the truth, of what has one."""
+        return [found.inside for those in self.quantities.values() for key, found in those.items() if key not in WHOLE]
 
 
 def score(name: str, truth: Mapping, outcome: Outcome, without_truth: bool = False) -> Score:
@@ -72,8 +73,9 @@ def score(name: str, truth: Mapping, outcome: Outcome, without_truth: bool = Fal
     held = {}
     for effect in truth["effects"]:
         for named in twins(effect) & set(outcome.named):
-            held[effect] = inside(truth, effect, named, outcome.named[named])
-    return Score(name, truth, outcome, right, outcome.inertia / truth["inertia"] - 1.0, _closed(outcome), held)
+            held[effect] = compared(truth, effect, named, outcome.named[named])
+    error = outcome.inertia / truth["inertia"] - 1.0
+    return Score(name, truth, outcome, right, error, _closed(outcome), without_truth, held)
 
 
 def _closed(outcome: Outcome) -> float | None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from statistics import median
 
 from tests.blind.draw import STRENGTHS
-from tests.blind.parameters import WHOLE
+from tests.blind.parameters import ANGLES, WHOLE, Compared
 from tests.blind.score import Score, same, twins
 from tests.independent.effects import CATALOGUE
 
@@ -39,12 +39,32 @@ def markdown(scores: Sequence[Score], title: str, command: str) -> str:
 
 
 def headline(scores: Sequence[Score]) -> str:
+    """What the whole set comes to."""
+    lines = abstention(scores) if any(score.without_truth for score in scores) else naming(scores)
+    lines += [
+        ("refused", ratio(scores, lambda s: bool(s.outcome.refused))),
+        ("seconds a case, median and most", seconds(scores)),
+    ]
+    return "| what | |\n|---|---|\n" + "\n".join(f"| {name} | {value} |" for name, value in lines)
+
+
+def abstention(scores: Sequence[Score]) -> list[tuple[str, str]]:
+    """How often nothing is named when what is hidden is not in the catalogue."""
+    return [
+        ("left unnamed with a remainder", ratio([score for score in scores if score.hidden])),
+        ("a wrong name", ratio(scores, misnamed)),
+        ("a wrong name, and no remainder", ratio(scores, lambda s: misnamed(s) and not remains(s))),
+        ("nothing said to be missing", ratio(scores, lambda s: s.outcome.verdict == "nothing_missing")),
+    ]
+
+
+def naming(scores: Sequence[Score]) -> list[tuple[str, str]]:
     """Right by group, and medians over cases with something of the catalogue hidden."""
     groups = {g: [s for s in scores if s.group == g] for g in ("single", "pair", "null", "outside")}
     known = [*groups["single"], *groups["pair"]]
-    judged = [s for s in known if s.all_inside is not None]
-    quantities = [ok for s in known for those in s.inside.values() for key, ok in those.items() if key not in WHOLE]
-    lines = [
+    judged = [s for s in known if s.intervals]
+    quantities = [ok for s in known for ok in s.intervals]
+    return [
         ("single effects named exactly", ratio(groups["single"])),
         ("pairs named exactly", ratio(groups["pair"])),
         ("nulls with a name", ratio(groups["null"], lambda s: bool(s.outcome.named))),
@@ -52,14 +72,11 @@ def headline(scores: Sequence[Score]) -> str:
         ("outside the catalogue, left unnamed with a remainder", ratio(groups["outside"])),
         ("cases with something hidden and a wrong name", ratio([*known, *groups["outside"]], misnamed)),
         ("singles and pairs with a remainder beside right names", ratio([s for s in known if s.right], remains)),
-        ("refused", ratio(scores, lambda s: bool(s.outcome.refused))),
         ("holdout torque gap closed, median", middle([s.closed for s in known], ".3f")),
         ("inertia error, median", middle([100.0 * abs(s.inertia_error) for s in known], ".4f") + " %"),
         ("quantities within their 95 % interval", f"{sum(quantities)}/{len(quantities)}"),
-        ("cases with every quantity within", ratio(judged, lambda s: bool(s.all_inside))),
-        ("seconds a case, median and most", seconds(scores)),
+        ("cases with every quantity within", ratio(judged, lambda s: all(s.intervals))),
     ]
-    return "| what | |\n|---|---|\n" + "\n".join(f"| {name} | {value} |" for name, value in lines)
 
 
 def seconds(scores: Sequence[Score]) -> str:
@@ -107,20 +124,22 @@ def by_strength(scores: Sequence[Score]) -> str:
 
 
 def coverage(scores: Sequence[Score]) -> str:
-    """How often the interval of each quantity holds the truth."""
-    held: dict[tuple[str, str], list[bool]] = {}
+    """How often the interval of each quantity holds the truth, and how far reported values are from it."""
+    found: dict[tuple[str, str], list[Compared]] = {}
     for score in scores:
-        for effect, those in score.inside.items():
-            for key, ok in those.items():
-                held.setdefault((effect, key), []).append(ok)
-    if not held:
+        for effect, those in score.quantities.items():
+            for key, one in those.items():
+                found.setdefault((effect, key), []).append(one)
+    if not found:
         return ""
-    rows = ["| hidden | quantity | truth within interval |", "|---|---|---|"]
+    rows = ["| hidden | quantity | truth within interval | error, median | furthest, half widths |", "|---" * 5 + "|"]
     order = list(CATALOGUE)
-    rows += [
-        f"| {effect} | {key} | {sum(ok)}/{len(ok)} |"
-        for (effect, key), ok in sorted(held.items(), key=lambda item: order.index(item[0][0]))
-    ]
+    for (effect, key), those in sorted(found.items(), key=lambda item: order.index(item[0][0])):
+        error = middle([one.error * (1.0 if key in ANGLES else 100.0) for one in those], ".2g")
+        unit = "" if error == "-" else " rad" if key in ANGLES else " %"
+        furthest = "" if key in WHOLE else f"{max(one.half_widths for one in those):.1f}"
+        within = f"{sum(one.inside for one in those)}/{len(those)}"
+        rows.append(f"| {effect} | {key} | {within} | {error}{unit} | {furthest} |")
     return "## Quantities\n\n" + "\n".join(rows)
 
 
@@ -153,7 +172,7 @@ def cases_csv(scores: Sequence[Score]) -> str:
     writer.writerow(HEADINGS)
     for score in scores:
         truth, outcome = score.truth, score.outcome
-        quantities = [(f"{e}.{key}", ok) for e, those in score.inside.items() for key, ok in those.items()]
+        quantities = [(f"{e}.{key}", one) for e, those in score.quantities.items() for key, one in those.items()]
         writer.writerow(
             (
                 score.name,
@@ -170,8 +189,8 @@ def cases_csv(scores: Sequence[Score]) -> str:
                 *(f"{chi:.3f}" for chi in outcome.chi),
                 f"{score.inertia_error:.2e}",
                 "" if score.closed is None else f"{score.closed:.4f}",
-                sum(ok for _, ok in quantities),
-                " ".join(name for name, ok in quantities if not ok),
+                sum(one.inside for _, one in quantities),
+                " ".join(f"{name}:{one.half_widths:.1f}" for name, one in quantities if not one.inside),
                 f"{outcome.seconds:.1f}",
                 outcome.refused,
             )

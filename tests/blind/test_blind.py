@@ -5,7 +5,7 @@ import pytest
 
 from tests.blind.confusion import REMAINDER, counted, given
 from tests.blind.draw import GROUPS, draw, one
-from tests.blind.parameters import expected, inside
+from tests.blind.parameters import compared, expected
 from tests.blind.run import Outcome
 from tests.blind.score import score
 from tests.blind.table import cases_csv, false_names, markdown
@@ -101,8 +101,11 @@ def test_intervals_hold_angles_a_turn_away_and_whole_numbers():
         "harmonic": (6.0, 6.0, 6.0),
         "phase": (turned, turned - 0.01, turned + 0.01),
     }
-    held = inside(cogging, "cogging_torque", "cogging_torque", reported)
-    assert held == {"amplitude": False, "harmonic": True, "phase": True}
+    found = compared(cogging, "cogging_torque", "cogging_torque", reported)
+    assert found["amplitude"].half_widths == pytest.approx(2.0)
+    assert found["amplitude"].error == pytest.approx(0.2)
+    assert found["phase"].error == pytest.approx(0.0, abs=1e-12)
+    assert {key: one.inside for key, one in found.items()} == {"amplitude": False, "harmonic": True, "phase": True}
 
 
 def test_confusion_counts_each_name_and_what_was_said_instead():

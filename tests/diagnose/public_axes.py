@@ -141,3 +141,33 @@ def holding_currents(harmonics):
     waves = [wave(n * position) for n in harmonics for wave in (np.sin, np.cos)]
     theta = np.linalg.lstsq(np.column_stack([forward, ~forward, *waves]).astype(float), current, rcond=None)[0]
     return {n: float(np.hypot(*theta[2 + 2 * k : 4 + 2 * k])) for k, n in enumerate(harmonics)}
+
+
+#: EPOS4 reports torque as a share of the motor's 9.84 mN*m.
+SCREWS = Rig.model_validate(
+    {
+        "name": "screw drive",
+        "kind": "rotary",
+        "motor": {"rated_torque": "9.84 mN*m"},
+        "trace": {
+            "columns": {
+                "velocity": "Velocity actual value averaged [rpm]",
+                "torque": "Torque actual value averaged [%]",
+            }
+        },
+    },
+    context={"linear": False},
+)
+
+
+def steady_speeds(drive):
+    """Recordings of one screw drive, each at one speed."""
+    files = sorted((DATA / f"tro2021_screw/driveNo{drive}/steady_state").rglob("*.csv"))
+    return [read(path, SCREWS.trace.columns) for path in files]
+
+
+#: As published with the recordings: kT 0.387 N*m/A, R 4.02 ohm; the pendulum is left for the diagnosis to find.
+XL330 = Rig.model_validate(
+    {"name": "XL330", "kind": "rotary", "motor": {"torque_constant": "0.387 N*m/A", "resistance": "4.02 ohm"}},
+    context={"linear": False},
+)

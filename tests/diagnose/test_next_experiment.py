@@ -1,0 +1,77 @@
+"""The experiment that is proposed tells the two explanations apart: recorded along it, each is named as it is.
+
+Truth comes from the independent integrator.
+"""
+
+import numpy as np
+import pytest
+
+from bench.diagnose.diagnosis import diagnose
+from bench.diagnose.next_experiment import motions
+from bench.diagnose.recordings import Recordings
+from bench.plant.references import References
+from bench.rig.rig import load_rig
+from tests.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
+from tests.independent.effects import KINDS
+from tests.independent.references import Motion, Ramps
+
+AXIS = Axis(
+    "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
+)
+SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
+
+
+@pytest.fixture(scope="module")
+def rig(tmp_path_factory):
+    path = tmp_path_factory.mktemp("rig") / "rig.toml"
+    write_rig(AXIS, path)
+    return load_rig(path)
+
+
+def recorded(effects, motion, seed=4):
+    (run,) = simulate([AXIS], [motion], [effects], [SENSORS], seed=seed)
+    return run.trace
+
+
+def one_way(seconds=6.0):
+    """Speeds between 20 and 120 rad/s, never reversed."""
+    rng = np.random.default_rng(0)
+    time = np.concatenate([[0.0, 0.1], 0.3 + np.arange(24) * (seconds - 0.6) / 24, [seconds - 0.1, seconds]])
+    speed = np.concatenate([[0.0, 0.0], rng.uniform(20.0, 120.0, 24), [0.0, 0.0]])
+    return Motion((Ramps(list(zip(time, speed, strict=True)), 0.02),))
+
+
+def along(references: References, repetitions: int) -> Motion:
+    """A planned motion as the independent drive follows it."""
+    points = list(zip(references.time[::20].tolist(), references.velocity[::20].tolist(), strict=True))
+    return Motion(tuple(Ramps([*points, (float(references.time[-1]) + 0.05, 0.0)], 0.005) for _ in range(repetitions)))
+
+
+@pytest.mark.parametrize("hidden", [(), ("torque_offset",)])
+def test_motion_in_one_direction_is_followed_by_reversals_that_tell(rig, hidden):
+    rng = np.random.default_rng(1)
+    effects = tuple(KINDS[name].draw(AXIS, 0.6, rng, 6.0) for name in hidden)
+    trace = recorded(effects, one_way())
+    first = diagnose(trace, rig)
+    assert first.next_experiment is not None and first.model is not None
+    assert first.next_experiment.tells_apart == ("coulomb_friction", "torque_offset")
+    assert first.next_experiment.speed <= 1.01 * np.abs(trace["velocity"]).max()
+    proposed = dict(motions(Recordings.of(trace, rig, None), first.model.model))[first.next_experiment.profile]
+    assert float(proposed.time[-1]) == pytest.approx(first.next_experiment.duration)
+    second = diagnose(recorded(effects, along(proposed, first.next_experiment.repetitions), seed=5), rig)
+    names = {"torque_offset" if e.name == "direction_dependent_friction" else e.name for e in second.effects}
+    assert names == set(hidden)
+    assert second.parameters["coulomb_friction_torque"].value == pytest.approx(AXIS.coulomb, rel=0.1)
+
+
+def test_names_that_no_motion_parts_have_no_experiment(rig):
+    effects = (KINDS["torque_offset"].draw(AXIS, 0.6, np.random.default_rng(1), 5.0),)
+    found = diagnose(recorded(effects, random_motion(AXIS, np.random.default_rng(2), 5.0)), rig)
+    assert found.effects[0].ambiguous_with
+    assert found.next_experiment is None
+
+
+def test_nothing_missing_needs_no_experiment(rig):
+    found = diagnose(recorded((), random_motion(AXIS, np.random.default_rng(3), 5.0)), rig)
+    assert found.verdict == "nothing_missing"
+    assert found.next_experiment is None
