@@ -131,7 +131,8 @@ def _transforms(
             yield Candidate(Named(name, (lag,)), worth)
     if ELASTIC not in excluded:
         shapes = [(antiresonance, damping) for antiresonance in ANTIRESONANCES for damping in DAMPINGS]
-        made = coupled_columns(seen, shapes, (), moving)
+        made_of = ("couplings", moving, current.hypothesis.shape_of(ECCENTRICITY))
+        made = seen.memory.get(made_of, lambda: coupled_columns(seen, shapes, (), moving))
         worth = gains(made, 1, current.residual, basis)
         yield from (Candidate(Named(ELASTIC, shape), float(w)) for shape, w in zip(shapes, worth, strict=True))
     if ECCENTRICITY not in excluded and ECCENTRICITY not in current.hypothesis.names:

@@ -69,13 +69,23 @@ def build(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np.i
     def motion(signals: Signals) -> list[Column]:
         return [[(getattr(signals, name), order)] for name, order in (acceleration, speed)]
 
-    parts = [seen.table(motion, moving), seen.table(lambda s: [[(s.sign, 0)], [(-s.effort, 1)]], resting)]
+    made_of = moving, resting, hypothesis.shape_of(ECCENTRICITY)
+    parts = [
+        seen.memory.get(("motion", *made_of), lambda: seen.table(motion, moving)),
+        seen.memory.get(("rest", *made_of), lambda: seen.table(lambda s: [[(s.sign, 0)], [(-s.effort, 1)]], resting)),
+    ]
     owners = [BASE] * 4
     if hypothesis.mains:
         parts.append(seen.table(lambda s: [wave for f in hypothesis.mains for wave in _hum(s, f)], resting))
         owners += [MAINS] * 2 * len(hypothesis.mains)
     for index, effect in enumerate(hypothesis.effects):
-        table = effect_columns(rubbing(seen, hypothesis, index), effect, moving, resting, acting(hypothesis))
+        rubbed, loads = rubbing(seen, hypothesis, index), acting(hypothesis) if effect.name == ELASTIC else ()
+
+        def table_of(rubbed: Workbench = rubbed, effect: Named = effect, loads: Sequence[Acting] = loads) -> Array:
+            return effect_columns(rubbed, effect, moving, resting, loads)
+
+        shared = rubbed is seen and not loads
+        table = seen.memory.get((effect, *made_of), table_of) if shared else table_of()
         parts.append(table)
         owners += [index] * table.shape[1]
     return np.concatenate(parts, axis=1), np.array(owners)
@@ -93,10 +103,7 @@ def effect_columns(
     if effect.name == ELASTIC:
         return coupled_columns(seen, [effect.shape], loads, moving)
     if effect.name == BACKLASH:
-        key = (effect, moving, seen.stretches[0].signals.position[-1])
-        if key not in seen.memory:
-            seen.memory[key] = dead_zone_columns(seen, np.array([effect.shape]), moving)
-        return seen.memory[key]
+        return dead_zone_columns(seen, np.array([effect.shape]), moving)
     if effect.name in TRANSFORMS:
         return np.empty((seen.effort.size, 0))
     physics = physics_of(effect.name)

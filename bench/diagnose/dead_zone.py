@@ -24,6 +24,8 @@ STEPS_PER_RADIAN = 6.0
 WINDOWS, SHORTEST = 128, 60
 #: Share of the gap to which a window's start agrees with the end of the window before.
 CLOSED = 1e-5
+#: Shapes whose motions are kept, as a lag tried beside them leaves the motion as it is.
+FEW = 8
 #: Factors of gap, frequency and damping within which a recording does not tell a contact from another.
 UNTOLD = (1.01, 1.1, 1.1)
 
@@ -119,7 +121,12 @@ def dead_zone_columns(seen: Workbench, shapes: Array, lag: float) -> Array:
             speed = signals.velocity
             steps = 0.5 * signals.sample_period * (speed[1:] + speed[:-1])
             angle = angle[0] + np.concatenate([[0.0], np.cumsum(steps)])
-        twist = (load_positions(angle, signals.sample_period, shapes) - angle[:, None]).T
+
+        def twisted() -> Array:
+            return (load_positions(angle, signals.sample_period, shapes) - angle[:, None]).T
+
+        made_of = ("twist", shapes.tobytes(), signals.time[0], seen.moved(signals))
+        twist = seen.memory.get(made_of, twisted) if len(shapes) <= FEW else twisted()
         return [[(load, 2), (rate * load, 0)] for load, rate in zip(twist, shapes[:, 3], strict=True)]
 
     return seen.table(relative, lag)

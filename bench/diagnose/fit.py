@@ -13,6 +13,7 @@ from bench.diagnose.dead_zone import sensitivity
 from bench.diagnose.friction_levels import alike, levels_of, multiply
 from bench.diagnose.hypothesis import (
     BACKLASH,
+    ECCENTRICITY,
     ELASTIC,
     Hypothesis,
 )
@@ -119,11 +120,10 @@ def _told(
     if effect is None:
         return np.ones(bench.effort.size, dtype=bool)
     seen, (moving, _) = prepared(bench, hypothesis), lags(bench, hypothesis)
-    key = ("sensitivity", effect, moving, seen.stretches[0].signals.position[-1])
-    if key not in seen.memory:
-        seen.memory[key] = sensitivity(seen, effect, moving)
+    made_of = ("sensitivity", effect, moving, hypothesis.shape_of(ECCENTRICITY))
+    moved = seen.memory.get(made_of, lambda: sensitivity(seen, effect, moving))
     load = abs(theta[owners == hypothesis.names.index(BACKLASH)][0])
-    return seen.memory[key] * load < UNTOLD_SHARE * floor
+    return moved * load < UNTOLD_SHARE * floor
 
 
 def _solved(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np.int64], Array]:

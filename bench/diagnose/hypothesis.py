@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CURRENT_LAG, VELOCITY_LAG = "current_loop_lag", "velocity_filter_lag"
-BACKLASH = "backlash"
+BACKLASH, SPRING = "backlash", "torsion_spring"
 ELASTIC, ECCENTRICITY, DIRECTION = "elastic_coupling", "encoder_eccentricity", "direction_dependent_friction"
 #: Effects that change how columns are made instead of adding columns of raw products.
 TRANSFORMS = (CURRENT_LAG, VELOCITY_LAG, ECCENTRICITY, ELASTIC, BACKLASH)

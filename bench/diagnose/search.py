@@ -17,6 +17,7 @@ from bench.diagnose.hypothesis import (
     BACKLASH,
     CURRENT_LAG,
     ELASTIC,
+    SPRING,
     TRANSFORMS,
     Hypothesis,
 )
@@ -27,7 +28,7 @@ from bench.diagnose.shapes import shaped
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue
 
-SPRING, OFFSET = "torsion_spring", "torque_offset"
+OFFSET = "torque_offset"
 
 #: Residual over noise floor above which what is left stands clearly above noise.
 REMAINDER = 1.12
@@ -174,8 +175,8 @@ def polished(bench: Workbench, fitted: Fit) -> Fit:
 
 
 def loaded(bench: Workbench, fitted: Fit) -> Fit:
-    """With outer loads on the side of a soft coupling, motor or load, on which they explain more."""
-    if not outer_loads(fitted.hypothesis):
+    """With outer loads on the side of a soft coupling, motor or load, on which they explain more, if much is left."""
+    if fitted.chi < REMAINDER or not outer_loads(fitted.hypothesis):
         return fitted
     other = replace(fitted.hypothesis, loads=() if fitted.hypothesis.loads is None else None)
     moved = shaped(bench, other, other.names.index(ELASTIC))

@@ -28,14 +28,17 @@ def shaped(bench: Workbench, hypothesis: Hypothesis, index: int) -> Fit:
     free = free_shapes(effect, bench)
     if not free:
         return fit(bench, hypothesis)
-    start = np.array(effect.shape)
+    start, held = np.array(effect.shape), bench
+    if effect.name == ECCENTRICITY and BACKLASH in hypothesis.names:
+        held = bench.held
+        fit(held, hypothesis)
     pitch = is_pitch_of(effect, bench)
     scale = spacing(bench) if pitch else _scale(effect)
 
     def misfit(offset: np.ndarray) -> float:
         shape = start.copy()
         shape[free] = _moved(effect, start[free], offset * scale, pitch)
-        found = fit(bench, hypothesis.reshaped(index, tuple(shape.tolist())))
+        found = fit(held, hypothesis.reshaped(index, tuple(shape.tolist())))
         return float(np.log(np.sum(found.residual**2)))
 
     if len(free) == 1:

@@ -10,9 +10,10 @@ against it. In time, not in frequency: there the ringing that a recording ends w
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.linalg
 import scipy.signal
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
@@ -75,12 +76,13 @@ def _column(
     damped = 0.5 * _steepest(signals, acting) if acting else 0.0
     state = np.array([[0.0, 1.0], [-spring, -loss - damped]])
     driven = speed - speed[0]
-    free, free_speed = _response(state, np.array([-1.0, loss]), driven, step / substeps, substeps)
+    free, free_speed = _Driven.of(state, np.array([-1.0, loss]), step / substeps)(driven, substeps)
+    forcing = _Driven.of(state, np.array([0.0, -1.0]), step)
     twist, load_speed, torque = free, free_speed, np.zeros_like(free)
     for _ in range(TURNS if acting else 0):
         load = replace(signals, position=signals.position + twist, velocity=load_speed + speed[0])
         torque = _torque(load, acting)
-        forced, forced_speed = _response(state, np.array([0.0, -1.0]), torque - damped * load_speed, step, 1)
+        forced, forced_speed = forcing(torque - damped * load_speed, 1)
         before, twist, load_speed = twist, free + forced, free_speed + forced_speed
         change = np.abs(twist - before).max()
         if change < SETTLED * np.abs(free).max():
@@ -97,12 +99,29 @@ def _steepest(signals: Signals, acting: Sequence[Acting]) -> float:
     return max(float(np.max(_torque(faster, acting) - _torque(signals, acting))) / step, 0.0)
 
 
-def _response(state: Array, drive: Array, values: Array, step: float, every: int) -> tuple[Array, Array]:
-    """Both states of a second-order system driven from rest by values that run straight between steps."""
-    system = state, drive[:, None], np.eye(2), np.zeros((2, 1))
-    numerators, denominator = scipy.signal.ss2tf(*scipy.signal.cont2discrete(system, step, "foh")[:4])
-    first, second = (scipy.signal.lfilter(numerator, denominator, values)[::every] for numerator in numerators)
-    return first, second
+@dataclass(frozen=True)
+class _Driven:
+    """Both states of x' = A*x + b*u, driven from rest by a u that runs straight between steps, as recursive filters."""
+
+    numerators: Array
+    denominator: Array
+
+    @classmethod
+    def of(cls, state: Array, drive: Array, step: float) -> _Driven:
+        """Exact over a step: x+ = F*x + (P - Q)*u + Q*u+."""
+        moved, inverse = scipy.linalg.expm(state * step), np.linalg.inv(state)
+        grown = inverse @ (moved - np.eye(2))
+        whole = grown @ drive
+        later = inverse @ (grown / step - np.eye(2)) @ drive
+        adjugate = np.array([[-moved[1, 1], moved[0, 1]], [moved[1, 0], -moved[0, 0]]])
+        first = whole - later
+        numerators = np.stack([later, adjugate @ later + first, adjugate @ first], axis=1)
+        return cls(numerators, np.array([1.0, -np.trace(moved), np.linalg.det(moved)]))
+
+    def __call__(self, values: Array, every: int) -> tuple[Array, Array]:
+        """Both states at every so many of the values."""
+        first, second = (scipy.signal.lfilter(row, self.denominator, values)[::every] for row in self.numerators)
+        return first, second
 
 
 def _torque(signals: Signals, acting: Sequence[Acting]) -> Array:

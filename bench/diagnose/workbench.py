@@ -10,6 +10,7 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from bench.diagnose.memory import Memory
 from bench.effects.effect import Column, Signals
 from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
@@ -43,7 +44,8 @@ class Workbench:
         origin: of the recording.
         latched: within what time torque and speed were taken: one tick of a drive, else one sample - s.
         linear: whether the axis moves in metres.
-        memory: columns that cost a simulation, by what they were made from.
+        memory: columns made before.
+        still: whether the motion behind a dead zone is kept while the angle's correction moves a little.
     """
 
     stretches: tuple[Stretch, ...]
@@ -51,7 +53,8 @@ class Workbench:
     origin: str
     latched: float
     linear: bool
-    memory: dict[tuple[object, ...], Array] = field(default_factory=dict, compare=False)
+    memory: Memory = field(default_factory=Memory, compare=False)
+    still: bool = False
 
     @classmethod
     def of(cls, trace: Trace, rig: Rig, width: float | None = None, every: bool = False) -> Workbench:
@@ -87,6 +90,15 @@ class Workbench:
         """The same rows over changed raw signals (a corrected angle, another friction level)."""
         stretches = tuple(replace(part, signals=change(part.signals)) for part in self.stretches)
         return replace(self, stretches=stretches)
+
+    def moved(self, signals: Signals) -> tuple[float, ...]:
+        """What tells one motion of a stretch from another, as far as a dead zone is to follow it."""
+        return () if self.still else (float(signals.position[-1]), float(signals.velocity[-1]))
+
+    @property
+    def held(self) -> Workbench:
+        """This recording with the motion behind its dead zones as it is first asked for."""
+        return replace(self, still=True, memory=Memory())
 
     @cached_property
     def duration(self) -> float:
