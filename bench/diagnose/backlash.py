@@ -84,20 +84,23 @@ def _around(start: Likely, factors: Array) -> Array:
 
 
 def _likely(current: Fit, shape: Array, column: Array) -> Likely:
-    """Cauchy's likelihood of a fit and one column beside it, by reweighted least squares."""
     columns = np.column_stack([current.columns, column])
+    theta, rows = cauchy(columns, current.residual + current.columns @ current.theta, SCALE * current.floor)
+    rate = float(shape[3])
+    if rate > 0.0:
+        stiffness = float(theta[:-1][current.owners == current.hypothesis.names.index(SPRING)][0])
+        rate = stiffness / float(theta[-1]) if theta[-1] > 0.0 and stiffness > 0.0 else rate
+    return Likely(shape, float(rows.sum()), rate)
+
+
+def cauchy(columns: Array, effort: Array, scale: float) -> tuple[Array, Array]:
+    """Coefficients (p,) by reweighted least squares, and each row's negative logarithm of Cauchy's likelihood (m,)."""
     size = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
-    columns, scale = columns / size, SCALE * current.floor
-    effort = current.residual + current.columns @ current.theta
+    columns = columns / size
     weight, left, theta = np.ones(effort.size), effort, np.zeros(size.size)
     for _ in range(REWEIGHTED):
         weighted = columns.T * weight
         theta = np.linalg.lstsq(weighted @ columns, weighted @ effort, rcond=1e-12)[0]
         left = effort - columns @ theta
         weight = 1.0 / (1.0 + (left / scale) ** 2)
-    rate = float(shape[3])
-    if rate > 0.0:
-        stiffness = (theta / size)[np.append(current.owners == current.hypothesis.names.index(SPRING), False)][0]
-        load = float(theta[-1] / size[-1])
-        rate = float(stiffness) / load if load > 0.0 and stiffness > 0.0 else rate
-    return Likely(shape, float(np.sum(np.log1p((left / scale) ** 2))), rate)
+    return theta / size, np.log1p((left / scale) ** 2)

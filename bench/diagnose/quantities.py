@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from bench.diagnose.backlash import SCALE
 from bench.diagnose.columns import build
-from bench.diagnose.dead_zone import UNTOLD
+from bench.diagnose.contact_spread import contact_spread
 from bench.diagnose.fit import Fit
 from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG, Named
 from bench.diagnose.shapes import free_shapes
@@ -69,10 +69,14 @@ def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
     middle, _ = long_run_covariance(np.add.reduceat(scores, edges, axis=0))
     covariance = inverse @ middle @ inverse / np.outer(scale, scale)
     shapes = np.array([fitted.hypothesis.effects[index].shape[k] for index, k in slots])
-    for place, (index, k) in enumerate(slots, fitted.theta.size):
-        if fitted.hypothesis.effects[index].name == BACKLASH:
-            covariance[place, place] += (0.5 * (UNTOLD[k] - 1.0) * fitted.hypothesis.effects[index].shape[k]) ** 2
+    loose = [place for place, (k, _) in enumerate(slots, fitted.theta.size) if _is_loose(fitted, k)]
+    if loose:
+        covariance[np.ix_(loose, loose)] += contact_spread(bench, fitted)
     return Uncertain(np.concatenate([fitted.theta, shapes]), covariance, slots)
+
+
+def _is_loose(fitted: Fit, index: int) -> bool:
+    return fitted.hypothesis.effects[index].name == BACKLASH
 
 
 def _uncertain_shapes(effect: Named, bench: Workbench) -> list[int]:
