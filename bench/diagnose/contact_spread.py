@@ -24,6 +24,9 @@ Array = NDArray[np.float64]
 GAPS, FREQUENCIES, DAMPINGS = np.linspace(-0.12, 0.12, 9), np.linspace(-0.6, 0.6, 7), np.linspace(-0.5, 0.5, 3)
 #: Length of what is drawn: longer than a load rings after an impact - s.
 STRETCH = 0.2
+#: Standard errors that all resampled recordings share, as shares: rebounds run faster than samples of 1 ms follow. Where
+#: the contact is known, gaps came out within 2 %, contacts 22 % too soft and damped 1.9 to 2.6 times too much.
+SHARED = np.array([0.01, 0.08, 0.32])
 #: Resampled recordings.
 DRAWS = 400
 
@@ -52,7 +55,7 @@ def _spread(bench: Workbench, fitted: Fit, index: int, shape: Array) -> Array:
     drawn = rng.multinomial(edges.size, np.full(edges.size, 1.0 / edges.size), size=DRAWS)
     likeliest = offsets[np.argmin(table @ drawn.T, axis=0)]
     step = np.array([axis[1] - axis[0] for axis in (GAPS, FREQUENCIES, DAMPINGS)])
-    relative = likeliest.T @ likeliest / DRAWS + np.diag(step**2 / 12.0)
+    relative = likeliest.T @ likeliest / DRAWS + np.diag(step**2 / 12.0 + SHARED**2)
     return relative * np.outer(shape[:3], shape[:3])
 
 

@@ -82,6 +82,18 @@ def untold(bench: Workbench, linear: bool) -> list[str]:
     ]
 
 
+def impacts(fitted: Fit, unit: str) -> list[str]:
+    """A warning of the rows that hang on the instants of impacts, if the fit was judged without some."""
+    share = 1.0 - float(fitted.told.mean())
+    if share == 0.0:
+        return []
+    return [
+        f"{100.0 * share:.0f} % of the rows follow impacts so closely that their torque hangs on instants which the "
+        f"recording does not tell: the verdict is by the others, on which {fitted.rms:.3g} {unit} are left; the torque "
+        "gap counts all"
+    ]
+
+
 def _mean_direction(bench: Workbench) -> float:
     return float(np.mean(bench.row_values(lambda s: s.sign)))
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from bench.diagnose.add import Added, add
 from bench.diagnose.balance import Balance
-from bench.diagnose.decidable import require_positive, untold
+from bench.diagnose.decidable import impacts, require_positive, untold
 from bench.diagnose.fit import Fit, fit
 from bench.diagnose.found import Gap, NamedEffect, Rejected, Shrunk
 from bench.diagnose.hypothesis import Hypothesis
@@ -127,7 +127,7 @@ def show(recordings: Recordings, gap: Fit, located: list[Where], suspects: Suspe
         unexplained_share=whole.excess / max(float(np.sum(gap.residual**2)), 1e-300),
         unexplained_where=where(bench, whole, rig.linear, unit)[:3] if remains else [],
         parameters=kept.parameters,
-        torque=torque_gap(steps, whole.floor, unit),
+        torque=torque_gap(steps, whole, unit),
         velocity=velocity_gap(recordings, steps),
         bandwidth=added.gaps.bandwidth,
         closed_loop=added.closed_loop,
@@ -137,5 +137,10 @@ def show(recordings: Recordings, gap: Fit, located: list[Where], suspects: Suspe
         next_experiment=propose(recordings, suspects, added),
         model=kept.model,
         balance=Balance.of(bench, whole).repeating(added.repeats),
-        warnings=[*suspicions(recordings.trace, rig, kept.parameters), *untold(bench, rig.linear), *added.warnings],
+        warnings=[
+            *suspicions(recordings.trace, rig, kept.parameters),
+            *untold(bench, rig.linear),
+            *impacts(whole, unit),
+            *added.warnings,
+        ],
     )

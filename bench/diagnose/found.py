@@ -30,13 +30,15 @@ class Gap:
     Attributes:
         unit: of all numbers.
         noise_floor: what sensor noise alone leaves.
-        identify, holdout: (before, after); None where it could not be had.
+        identify, holdout: (before, after) over all rows; None where it could not be had.
+        judged: share of the rows that the verdict is by, and what is left on them; None where it is by all.
     """
 
     unit: str
     noise_floor: float
     identify: tuple[float, float] | None
     holdout: tuple[float, float] | None
+    judged: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from bench.diagnose.add import Added
 from bench.diagnose.balance import Balance
+from bench.diagnose.fit import Fit
 from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.recordings import Recordings
 from bench.plant.track import measured_velocity
@@ -27,10 +28,11 @@ def shrinking(recordings: Recordings, added: Added) -> list[Shrunk]:
     return found
 
 
-def torque_gap(steps: list[Shrunk], floor: float, unit: str) -> Gap:
-    """Of all effects together."""
+def torque_gap(steps: list[Shrunk], whole: Fit, unit: str) -> Gap:
+    """Of all effects together, over all rows; beside it what is left on those that judge the fit, where not all do."""
     pairs = list(zip(steps[0].torque, steps[-1].torque, strict=True))
-    return Gap(unit, floor, pairs[0], pairs[1] if len(pairs) > 1 else None)
+    judged = None if whole.told.all() else (float(whole.told.mean()), whole.rms)
+    return Gap(unit, whole.floor, pairs[0], pairs[1] if len(pairs) > 1 else None, judged)
 
 
 def velocity_gap(recordings: Recordings, steps: list[Shrunk]) -> Gap:

@@ -68,12 +68,13 @@ def _gap(gap: Gap) -> dict[str, Any]:
     def pair(values: tuple[float, float] | None) -> dict[str, float] | None:
         return None if values is None else {"before": values[0], "after": values[1]}
 
-    return {
+    content = {
         "unit": gap.unit,
         "noise_floor": gap.noise_floor,
         "identify": pair(gap.identify),
         "holdout": pair(gap.holdout),
     }
+    return content if gap.judged is None else content | {"judged": {"share": gap.judged[0], "after": gap.judged[1]}}
 
 
 def _velocity_gap(diagnosis: Diagnosis) -> dict[str, Any]:
