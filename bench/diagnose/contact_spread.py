@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 GAPS, FREQUENCIES, DAMPINGS = np.linspace(-0.12, 0.12, 9), np.linspace(-0.6, 0.6, 7), np.linspace(-0.5, 0.5, 3)
 #: Length of what is drawn: longer than a load rings after an impact - s.
 STRETCH = 0.2
-#: Standard errors that all resampled recordings share, as shares: rebounds run faster than samples of 1 ms follow. Where
-#: the contact is known, gaps came out within 2 %, contacts 22 % too soft and damped 1.9 to 2.6 times too much.
+#: Standard errors that all resampled recordings share, as shares: rebounds run faster than samples of 1 ms follow.
+#: Where the contact is known, gaps came out within 2 %, contacts 22 % too soft and damped 1.9 to 2.6 times too much.
 SHARED = np.array([0.01, 0.08, 0.32])
 #: Resampled recordings.
 DRAWS = 400

@@ -25,6 +25,8 @@ Array = NDArray[np.float64]
 
 #: Longest step - rad of the antiresonance: speed that runs straight within it lacks step**2/12 of its swing.
 LONGEST_STEP = 0.1
+#: Steps of a sample at least and at most: a coupling that rings as fast as samples come is not told from a rigid one.
+LEAST, MOST = 2, 8
 #: Turns in which the load's motion and what acts on it are brought in line, the change that ends them and the one that
 #: no load beyond belief would make - shares of the twist under the load's own inertia.
 TURNS, SETTLED, ASTRAY = 40, 1e-6, 10.0
@@ -54,7 +56,8 @@ def coupled_columns(seen: Workbench, shapes: Sequence[Sequence[float]], acting: 
         fine: dict[int, Array] = {}
         columns: list[Column] = []
         for antiresonance, damping in (shape[:2] for shape in shapes):
-            substeps = max(2, int(np.ceil(antiresonance * signals.sample_period / LONGEST_STEP)))
+            substeps = int(np.ceil(antiresonance * signals.sample_period / LONGEST_STEP))
+            substeps = min(max(substeps, LEAST), MOST)
             if substeps not in fine:
                 at = np.arange((values.size - 1) * substeps + 1) / substeps
                 fine[substeps] = spline(at, 1) / signals.sample_period if source == "position" else spline(at)
