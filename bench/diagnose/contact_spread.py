@@ -21,7 +21,7 @@ from bench.diagnose.workbench import Workbench
 Array = NDArray[np.float64]
 
 #: Factors e**x around the fit's shape that are compared: of gap, frequency and damping.
-GAPS, FREQUENCIES, DAMPINGS = np.linspace(-0.12, 0.12, 9), np.linspace(-0.6, 0.6, 7), np.linspace(-0.5, 0.5, 3)
+GAPS, FREQUENCIES, DAMPINGS = np.linspace(-0.12, 0.12, 7), np.linspace(-0.6, 0.6, 5), np.linspace(-0.5, 0.5, 3)
 #: Length of what is drawn: longer than a load rings after an impact - s.
 STRETCH = 0.2
 #: Standard errors that all resampled recordings share, as shares: rebounds run faster than samples of 1 ms follow.

@@ -123,8 +123,8 @@ class _Driven:
 
     def __call__(self, values: Array, every: int) -> tuple[Array, Array]:
         """Both states at every so many of the values."""
-        first, second = (scipy.signal.lfilter(row, self.denominator, values)[::every] for row in self.numerators)
-        return first, second
+        moved = [np.asarray(scipy.signal.lfilter(row, self.denominator, values))[::every] for row in self.numerators]
+        return moved[0], moved[1]
 
 
 def _torque(signals: Signals, acting: Sequence[Acting]) -> Array:
