@@ -28,7 +28,7 @@ DAMPING = 0.4
 #: e**offset. Refinement starts from the likeliest shapes of several contacts, and ends with the likeliest of all.
 OFFSETS = np.stack([m.ravel() for m in np.meshgrid(np.linspace(-1, 1, 5), [-1, 0, 1], [-1, 0, 1], indexing="ij")], 1)
 SPREAD = (0.12, 0.4, 0.5)
-ROUNDS, STARTS, ALL_STARTS = 6, 3, 1
+ROUNDS, STARTS, ALL_STARTS = 6, 3, 2
 #: Residual in noise floors beyond which a row counts less and less, and reweightings of the least squares.
 SCALE, REWEIGHTED = 3.0, 6
 
