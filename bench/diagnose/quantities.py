@@ -7,20 +7,21 @@ torque; covariance by long-run scores as in identification; quantities by the de
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.diagnose.backlash import SCALE
+from bench.diagnose.candidates import EVENT
 from bench.diagnose.columns import build
 from bench.diagnose.dead_zone import UNTOLD
-from bench.diagnose.fit import Fit
+from bench.diagnose.fit import Fit, least_squares
 from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG, Named
 from bench.diagnose.shapes import free_shapes
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue, physics
-from bench.effects.effect import Base, amplitude_and_phase
+from bench.effects.effect import Base, Signals, amplitude_and_phase
 from bench.identify.covariance import long_run_covariance
 from bench.identify.estimate import Parameter
 
@@ -70,13 +71,43 @@ def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
     covariance = inverse @ middle @ inverse / np.outer(scale, scale)
     shapes = np.array([fitted.hypothesis.effects[index].shape[k] for index, k in slots])
     for place, (index, k) in enumerate(slots, fitted.theta.size):
-        if fitted.hypothesis.effects[index].name == BACKLASH:
-            covariance[place, place] += (0.5 * (UNTOLD[k] - 1.0) * fitted.hypothesis.effects[index].shape[k]) ** 2
+        covariance[place, place] += _untold(bench, fitted.hypothesis.effects[index], k) ** 2
+    shifted = _shifted(bench, fitted) / REACH
+    covariance[: shifted.size, : shifted.size] += np.outer(shifted, shifted)
     return Uncertain(np.concatenate([fitted.theta, shapes]), covariance, slots)
 
 
 def _uncertain_shapes(effect: Named, bench: Workbench) -> list[int]:
     return list(range(len(DEAD_ZONE_STEPS))) if effect.name == BACKLASH else free_shapes(effect, bench)
+
+
+def _untold(bench: Workbench, effect: Named, k: int) -> float:
+    """Standard deviation of a shape that no noise shows: of contacts, of instants between samples or ticks."""
+    if effect.name == BACKLASH:
+        return 0.5 * (UNTOLD[k] - 1.0) * effect.shape[k]
+    if effect.name == EVENT:
+        return 0.5 * bench.conditioning.filter.sample_period / REACH
+    return bench.latched / REACH if effect.name in (CURRENT_LAG, VELOCITY_LAG) else 0.0
+
+
+def _shifted(bench: Workbench, fitted: Fit) -> Array:
+    """Change of the strengths (p,) were what effects see half a tick older than what inertia sees.
+
+    A drive latches its signals within one tick; the alignment of torque is fitted, that of a wave of position is not.
+    """
+    if not fitted.hypothesis.effects or not fitted.told.all():
+        return np.zeros(fitted.theta.size)
+
+    def later(signals: Signals) -> Signals:
+        position, velocity = (
+            values + 0.5 * bench.latched * np.gradient(values, signals.sample_period)
+            for values in (signals.position, signals.velocity)
+        )
+        return replace(signals, position=position, velocity=velocity)
+
+    columns, owners = build(bench.with_signals(later), fitted.hypothesis)
+    columns = np.where(owners >= 0, columns, fitted.columns)
+    return least_squares(columns, bench.effort) - least_squares(fitted.columns, bench.effort)
 
 
 def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -> dict[str, Parameter]:
@@ -89,7 +120,7 @@ def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -
 
 
 def effect_parameters(
-    fitted: Fit, numbers: Uncertain, index: int, linear: bool, effort_unit: str, tick: float
+    fitted: Fit, numbers: Uncertain, index: int, linear: bool, effort_unit: str
 ) -> dict[str, Parameter]:
     """Quantities of one effect with their intervals.
 
@@ -99,7 +130,6 @@ def effect_parameters(
         index: of the effect.
         linear: whether the axis is linear.
         effort_unit: N*m, N, or what the rig allows.
-        tick: control period of the drive, by half of which a lag is uncertain - s.
     """
     effect = fitted.hypothesis.effects[index]
 
@@ -114,11 +144,8 @@ def effect_parameters(
 
     centre = values(numbers.values)
     deviations = _deviations(values, numbers)
-    extra = 0.5 * tick if effect.name in (CURRENT_LAG, VELOCITY_LAG) else 0.0
     return {
-        name: _parameter(
-            value, deviations[name] + extra / REACH, unit_of_quantity(effect.name, name, linear, effort_unit)
-        )
+        name: _parameter(value, deviations[name], unit_of_quantity(effect.name, name, linear, effort_unit))
         for name, value in centre.items()
     }
 
