@@ -13,16 +13,18 @@ import numpy as np
 from bench.diagnose.backlash import with_backlash
 from bench.diagnose.candidates import EVENT, Candidate, candidates
 from bench.diagnose.fit import Fit, fit
+from bench.diagnose.grids import spacing
 from bench.diagnose.hypothesis import (
     BACKLASH,
     CURRENT_LAG,
     ELASTIC,
     TRANSFORMS,
     Hypothesis,
+    Named,
 )
 from bench.diagnose.mains import humming
 from bench.diagnose.outside import OUTSIDE
-from bench.diagnose.shapes import shaped
+from bench.diagnose.shapes import is_pitch_of, shaped
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue
 
@@ -36,6 +38,9 @@ LONGEST_EVENT = 0.6
 SHARE = 0.25
 #: The same for an event, which has a window of time to choose freely and so fits a part of anything.
 EVENT_SHARE = 0.5
+#: The same for a pitch that repeats so many half cycles over the travel of a linear axis that no smooth error of the
+#: model copies it.
+PITCH_SHARE, MANY = 0.1, 20.0
 #: Gain over noise power per degree of freedom that chance does not reach in a search over some hundred candidates.
 SIGNIFICANT = 40.0
 #: Damping ratio from which a coupling no longer rings, so that nothing tells it from a lag.
@@ -129,8 +134,14 @@ def worthwhile(bench: Workbench, before: Fit, after: Fit) -> bool:
     correlation = row_correlation(bench)
     added = after.theta.size - before.theta.size + len(after.hypothesis.effects[-1].shape)
     significant = saved > SIGNIFICANT * added * correlation * noise
-    share = EVENT_SHARE if after.hypothesis.names[-1] == EVENT else SHARE
+    share = _share(bench, after.hypothesis.effects[-1])
     return significant and 0.0 < share * (before.excess or excess) < saved and physical(after, bench.duration)
+
+
+def _share(bench: Workbench, effect: Named) -> float:
+    if effect.name == EVENT:
+        return EVENT_SHARE
+    return PITCH_SHARE if is_pitch_of(effect, bench) and effect.shape[0] > MANY * spacing(bench) else SHARE
 
 
 def row_correlation(bench: Workbench) -> float:

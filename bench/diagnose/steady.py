@@ -111,7 +111,8 @@ def _fitted(name: str, shape: tuple[float, ...], velocity: Array, effort: Array)
         signals = Signals(zero, zero, velocity, sign, effort, effort, sign, 1.0, 1.0)
         columns += [sum((values for values, _ in column), zero) for column in catalogue()[name].columns(signals, shape)]
     table = np.column_stack(columns)
-    theta, _, rank, _ = np.linalg.lstsq(table, effort, rcond=1e-10)
+    solved, _, rank, _ = np.linalg.lstsq(table, effort, rcond=1e-10)
+    theta = np.asarray(solved, dtype=np.float64)
     squares = float(np.sum((effort - table @ theta) ** 2))
     base = Base(1.0, float(theta[0]), float(theta[1]))
     if name and not catalogue()[name].physical(theta[3:].tolist(), shape, base):

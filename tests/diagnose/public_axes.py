@@ -77,7 +77,7 @@ class Published:
     @classmethod
     def of(cls, trace):
         """The raw columns at 1 kHz."""
-        filtered = _both_ways(*scipy.signal.butter(4, 0.2), trace["position"])
+        filtered = _both_ways(scipy.signal.butter(4, 0.2), trace["position"])
         velocity = _central(filtered)
         columns = (filtered, velocity, _central(velocity), EMPS.effort(trace)[0])
         return cls(*(column[49:] for column in columns))
@@ -89,7 +89,8 @@ class Published:
         return np.linalg.norm(measured - modelled) / np.linalg.norm(measured)
 
 
-def _both_ways(b, a, values):
+def _both_ways(coefficients, values):
+    b, a = coefficients
     return scipy.signal.filtfilt(b, a, values, padlen=3 * (max(len(a), len(b)) - 1))
 
 
@@ -101,7 +102,7 @@ def _central(values):
 
 def decimated(values, factor=10):
     """Every tenth value of the filtered ones, the last one among them."""
-    smooth = _both_ways(*scipy.signal.cheby1(8, 0.05, 0.8 / factor), values)
+    smooth = _both_ways(scipy.signal.cheby1(8, 0.05, 0.8 / factor), values)
     return smooth[(values.size - 1) % factor :: factor]
 
 
@@ -125,7 +126,8 @@ def diagnosed_force(found):
     def force(q, v, a):
         asymmetric = 0.5 * direction["coulomb_difference"] + 0.5 * direction["viscous_difference"] * np.abs(v)
         periodic = cogging["amplitude"] * np.sin(cogging["harmonic"] * q + cogging["phase"])
-        return rigid(*base, 0.0)(q, v, a) + asymmetric + periodic
+        mass, viscous, coulomb = base
+        return rigid(mass, viscous, coulomb, 0.0)(q, v, a) + asymmetric + periodic
 
     return force
 
