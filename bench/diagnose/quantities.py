@@ -72,8 +72,8 @@ def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
     shapes = np.array([fitted.hypothesis.effects[index].shape[k] for index, k in slots])
     for place, (index, k) in enumerate(slots, fitted.theta.size):
         covariance[place, place] += _untold(bench, fitted.hypothesis.effects[index], k) ** 2
-    shifted = _shifted(bench, fitted) / REACH
-    covariance[: shifted.size, : shifted.size] += np.outer(shifted, shifted)
+    for moved in _misplaced(bench, fitted):
+        covariance[: moved.size, : moved.size] += np.outer(moved, moved)
     return Uncertain(np.concatenate([fitted.theta, shapes]), covariance, slots)
 
 
@@ -90,24 +90,27 @@ def _untold(bench: Workbench, effect: Named, k: int) -> float:
     return bench.latched / REACH if effect.name in (CURRENT_LAG, VELOCITY_LAG) else 0.0
 
 
-def _shifted(bench: Workbench, fitted: Fit) -> Array:
-    """Change of the strengths (p,) were what effects see half a tick older than what inertia sees.
+def _misplaced(bench: Workbench, fitted: Fit) -> list[Array]:
+    """Standard changes of the strengths (p,) were what effects see half a tick older, or a drift further on.
 
-    A drive latches its signals within one tick; the alignment of torque is fitted, that of a wave of position is not.
+    A drive latches its signals within one tick: the alignment of torque is fitted, that of a wave of position is not.
     """
     if not fitted.hypothesis.effects or not fitted.told.all():
-        return np.zeros(fitted.theta.size)
+        return []
+    plain = least_squares(fitted.columns, bench.effort)
 
-    def later(signals: Signals) -> Signals:
-        position, velocity = (
-            values + 0.5 * bench.latched * np.gradient(values, signals.sample_period)
-            for values in (signals.position, signals.velocity)
+    def refitted(change: Callable[[Signals], Signals]) -> Array:
+        columns, owners = build(bench.with_signals(change), fitted.hypothesis)
+        return least_squares(np.where(owners >= 0, columns, fitted.columns), bench.effort) - plain
+
+    def older(s: Signals) -> Signals:
+        moved = (
+            values + 0.5 * bench.latched * np.gradient(values, s.sample_period) for values in (s.position, s.velocity)
         )
-        return replace(signals, position=position, velocity=velocity)
+        return replace(s, **dict(zip(("position", "velocity"), moved, strict=True)))
 
-    columns, owners = build(bench.with_signals(later), fitted.hypothesis)
-    columns = np.where(owners >= 0, columns, fitted.columns)
-    return least_squares(columns, bench.effort) - least_squares(fitted.columns, bench.effort)
+    found = [refitted(older) / REACH]
+    return [*found, refitted(lambda s: replace(s, position=s.position + bench.drift))] if bench.drift else found
 
 
 def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -> dict[str, Parameter]:
