@@ -56,14 +56,33 @@ def doubted(bench: Workbench, other: Workbench | None, steps: list[Step], exclud
 
 
 def borne_out(bench: Workbench, other: Workbench | None, fitted: Fit) -> Fit:
-    """Without events whose absence the holdout does not explain: what they stood for happens there too."""
-    if other is None or EVENT not in fitted.hypothesis.names:
+    """Without events whose absence the holdout does not explain: what they stood for happens there too.
+
+    Unless it happens as an event there, at the same time of that recording.
+    """
+    events = [effect.shape for effect in fitted.hypothesis.effects if effect.name == EVENT]
+    if other is None or not events:
         return fitted
     quiet = fitted.hypothesis
     while EVENT in quiet.names:
         quiet = quiet.without(quiet.names.index(EVENT))
-    there = min(fit(other, hypothesis).chi for hypothesis in (quiet, fitted.hypothesis))
-    return fitted if there < BORNE_OUT * max(fitted.chi, 1.0) else fit(bench, quiet)
+    there = fit(other, quiet)
+    least = BORNE_OUT * max(fitted.chi, 1.0)
+    for event in events:
+        if there.chi > least:
+            there = _repeated(other, there, event)
+    return fitted if there.chi < least else fit(bench, quiet)
+
+
+def _repeated(other: Workbench, there: Fit, event: tuple[float, ...]) -> Fit:
+    """The holdout's fit with the event it shows, if that overlaps the recording's by half."""
+    shown = [found for found in candidates(other, there) if found.named.name == EVENT]
+    if not shown:
+        return there
+    again = refined(other, there, shown[0])
+    start, stop = again.hypothesis.effects[-1].shape
+    shared = min(stop, event[1]) - max(start, event[0])
+    return again if shared > 0.5 * min(stop - start, event[1] - event[0]) else there
 
 
 def uncontested(bench: Workbench, fitted: Fit, excluded: frozenset[str]) -> Fit:

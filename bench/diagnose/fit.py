@@ -133,15 +133,16 @@ def _solved(bench: Workbench, hypothesis: Hypothesis) -> tuple[Array, NDArray[np
 
 def _balanced(bench: Workbench, columns: Array, effort: Array) -> Array:
     """Least squares; torque and speed are no further apart in time than they were latched, else it is a lag."""
-    theta = _least_squares(columns, effort)
+    theta = least_squares(columns, effort)
     if abs(theta[MISALIGNMENT]) > bench.latched:
         held = np.copysign(bench.latched, theta[MISALIGNMENT])
-        rest = _least_squares(np.delete(columns, MISALIGNMENT, 1), effort - held * columns[:, MISALIGNMENT])
+        rest = least_squares(np.delete(columns, MISALIGNMENT, 1), effort - held * columns[:, MISALIGNMENT])
         theta = np.insert(rest, MISALIGNMENT, held)
     return theta
 
 
-def _least_squares(columns: Array, effort: Array) -> Array:
+def least_squares(columns: Array, effort: Array) -> Array:
+    """Strengths (p,) of columns (m, p), scaled before they are solved."""
     scale = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
     return np.linalg.lstsq(columns / scale, effort, rcond=1e-10)[0] / scale
 

@@ -102,7 +102,7 @@ def named(recordings: Recordings, grown: Grown, suspects: Suspects) -> tuple[lis
     for index, effect in enumerate(fitted.hypothesis.effects):
         less = fit(bench, fitted.hypothesis.without(index))
         evidence = {"residual_without": less.rms, "residual_with": fitted.rms, "noise_floor": fitted.floor}
-        found = effect_parameters(fitted, numbers, index, rig.linear, unit, tick)
+        found = effect_parameters(fitted, numbers, index, rig.linear, unit)
         ambiguous = AMBIGUOUS.get(effect.name, ())
         if effect.name == CURRENT_LAG and told_apart:
             ambiguous = ()

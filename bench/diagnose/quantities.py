@@ -7,20 +7,21 @@ torque; covariance by long-run scores as in identification; quantities by the de
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.diagnose.backlash import SCALE
+from bench.diagnose.candidates import EVENT
 from bench.diagnose.columns import build
 from bench.diagnose.contact_spread import contact_spread
-from bench.diagnose.fit import Fit
+from bench.diagnose.fit import Fit, least_squares
 from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG, Named
 from bench.diagnose.shapes import free_shapes
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue, physics
-from bench.effects.effect import Base, amplitude_and_phase
+from bench.effects.effect import Base, Signals, amplitude_and_phase
 from bench.identify.covariance import long_run_covariance
 from bench.identify.estimate import Parameter
 
@@ -69,6 +70,10 @@ def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
     middle, _ = long_run_covariance(np.add.reduceat(scores, edges, axis=0))
     covariance = inverse @ middle @ inverse / np.outer(scale, scale)
     shapes = np.array([fitted.hypothesis.effects[index].shape[k] for index, k in slots])
+    for place, (index, _) in enumerate(slots, fitted.theta.size):
+        covariance[place, place] += _untold(bench, fitted.hypothesis.effects[index]) ** 2
+    for moved in _misplaced(bench, fitted):
+        covariance[: moved.size, : moved.size] += np.outer(moved, moved)
     loose = [place for place, (k, _) in enumerate(slots, fitted.theta.size) if _is_loose(fitted, k)]
     if loose:
         covariance[np.ix_(loose, loose)] += contact_spread(bench, fitted)
@@ -83,6 +88,36 @@ def _uncertain_shapes(effect: Named, bench: Workbench) -> list[int]:
     return list(range(len(DEAD_ZONE_STEPS))) if effect.name == BACKLASH else free_shapes(effect, bench)
 
 
+def _untold(bench: Workbench, effect: Named) -> float:
+    """Standard deviation of a shape that no noise shows: of instants between samples or ticks."""
+    if effect.name == EVENT:
+        return 0.5 * bench.conditioning.filter.sample_period / REACH
+    return bench.latched / REACH if effect.name in (CURRENT_LAG, VELOCITY_LAG) else 0.0
+
+
+def _misplaced(bench: Workbench, fitted: Fit) -> list[Array]:
+    """Standard changes of the strengths (p,) were what effects see half a tick older, or a drift further on.
+
+    A drive latches its signals within one tick: the alignment of torque is fitted, that of a wave of position is not.
+    """
+    if not fitted.hypothesis.effects or not fitted.told.all():
+        return []
+    plain = least_squares(fitted.columns, bench.effort)
+
+    def refitted(change: Callable[[Signals], Signals]) -> Array:
+        columns, owners = build(bench.with_signals(change), fitted.hypothesis)
+        return least_squares(np.where(owners >= 0, columns, fitted.columns), bench.effort) - plain
+
+    def older(s: Signals) -> Signals:
+        moved = (
+            values + 0.5 * bench.latched * np.gradient(values, s.sample_period) for values in (s.position, s.velocity)
+        )
+        return replace(s, **dict(zip(("position", "velocity"), moved, strict=True)))
+
+    found = [refitted(older) / REACH]
+    return [*found, refitted(lambda s: replace(s, position=s.position + bench.drift))] if bench.drift else found
+
+
 def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -> dict[str, Parameter]:
     """J, K_w and K_0 with their intervals; `units` by their names, in this order."""
     deviation = np.sqrt(np.maximum(np.diag(numbers.covariance), 0.0))
@@ -93,7 +128,7 @@ def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -
 
 
 def effect_parameters(
-    fitted: Fit, numbers: Uncertain, index: int, linear: bool, effort_unit: str, tick: float
+    fitted: Fit, numbers: Uncertain, index: int, linear: bool, effort_unit: str
 ) -> dict[str, Parameter]:
     """Quantities of one effect with their intervals.
 
@@ -103,7 +138,6 @@ def effect_parameters(
         index: of the effect.
         linear: whether the axis is linear.
         effort_unit: N*m, N, or what the rig allows.
-        tick: control period of the drive, by half of which a lag is uncertain - s.
     """
     effect = fitted.hypothesis.effects[index]
 
@@ -118,11 +152,8 @@ def effect_parameters(
 
     centre = values(numbers.values)
     deviations = _deviations(values, numbers)
-    extra = 0.5 * tick if effect.name in (CURRENT_LAG, VELOCITY_LAG) else 0.0
     return {
-        name: _parameter(
-            value, deviations[name] + extra / REACH, unit_of_quantity(effect.name, name, linear, effort_unit)
-        )
+        name: _parameter(value, deviations[name], unit_of_quantity(effect.name, name, linear, effort_unit))
         for name, value in centre.items()
     }
 

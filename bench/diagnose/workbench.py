@@ -44,6 +44,7 @@ class Workbench:
         origin: of the recording.
         latched: within what time torque and speed were taken: one tick of a drive, else one sample - s.
         linear: whether the axis moves in metres.
+        drift: standard deviation of a position that was integrated from noisy speed, 0 of a recorded one - rad (m).
         memory: columns made before.
         still: whether the motion behind a dead zone is kept while the angle's correction moves a little.
     """
@@ -53,6 +54,7 @@ class Workbench:
     origin: str
     latched: float
     linear: bool
+    drift: float
     memory: Memory = field(default_factory=Memory, compare=False)
     still: bool = False
 
@@ -84,7 +86,8 @@ class Workbench:
             reason = f"no filtered sample of {trace.origin} moves clearly in one direction"
             raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, trace.linear))
         latched = rig.drive.control_period if rig.drive is not None else trace.sample_period
-        return cls(stretches, conditioning, trace.origin, latched, trace.linear)
+        drift = 0.0 if "position" in trace else _drift(conditioning.source_noise, trace)
+        return cls(stretches, conditioning, trace.origin, latched, trace.linear, drift)
 
     def with_signals(self, change: Callable[[Signals], Signals]) -> Workbench:
         """The same rows over changed raw signals (a corrected angle, another friction level)."""
@@ -153,6 +156,11 @@ def clear_motion(conditioning: Conditioning, linear: bool) -> str:
         f"runs that keep one direction well over {reach:.2g} s, "
         f"at speeds well above {speed:.3g} {'m/s' if linear else 'rad/s'}, where noise no longer makes the sign"
     )
+
+
+def _drift(speed_noise: float, trace: Trace) -> float:
+    """Standard deviation of the mean of integrated white noise, sigma*sqrt(T_s*T/3) - rad (m)."""
+    return speed_noise * float(np.sqrt(trace.sample_period * (trace.time[-1] - trace.time[0]) / 3.0))
 
 
 def _stretch(trace: Trace, effort: Array, part: slice, conditioning: Conditioning, peak_effort: float) -> Stretch:
