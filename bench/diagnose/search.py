@@ -128,10 +128,10 @@ def worthwhile(bench: Workbench, before: Fit, after: Fit) -> bool:
 
     Noise is what the less coloured of the two floors says: an effect that never pauses, such as the cogging of a steady
     speed, passes for coloured noise until it is named. White noise is that of the model before: an effect that filters
-    speed or copies torque lowers its own, and explains nothing by that; what it leaves counts as if it had not.
+    speed or copies torque lowers its own, and what it damps of noise it does not explain.
     """
-    damped = max(before.white / after.white, 1.0)
-    saved = float(np.sum(before.residual**2) - damped**2 * np.sum(after.residual**2))
+    damped = np.count_nonzero(before.told) * max(before.white**2 - after.white**2, 0.0)
+    saved = float(np.sum(before.residual**2) - np.sum(after.residual**2)) - damped
     noise = min(before.floor, after.floor * before.white / after.white) ** 2
     excess = max(float(np.sum(before.residual**2)) - np.count_nonzero(before.told) * noise, 0.0)
     correlation = row_correlation(bench)
