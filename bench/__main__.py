@@ -6,7 +6,7 @@ import os
 # to 26 s with two on two cores). Read when numpy is first imported, so it stands before everything else.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from bench.cli import main  # noqa: E402
+from bench.cli import main
 
 if __name__ == "__main__":
     main()
