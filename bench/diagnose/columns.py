@@ -45,7 +45,9 @@ def prepared(bench: Workbench, hypothesis: Hypothesis) -> Workbench:
         effort = lagged(signals.effort, lag, signals.sample_period) if lag else signals.effort
         return replace(signals, torque=effort)
 
-    return bench.with_signals(change) if eccentricity or lag else bench
+    if not (eccentricity or lag):
+        return bench
+    return replace(bench.with_signals(change), memory=bench.memory)  # its keys name eccentricity and lag
 
 
 def kinematic(bench: Workbench, order: int) -> tuple[str, int]:

@@ -27,6 +27,9 @@ from bench.identify.estimate import Parameter
 
 Array = NDArray[np.float64]
 
+#: Effect and index of each free shape.
+Slots = tuple[tuple[int, int], ...]
+
 #: Step of a numerical derivative, relative, and 95 % of a normal distribution.
 STEP, REACH = 1e-4, 1.96
 #: The same of a dead zone's gap, frequency and damping: impacts move in jumps, a smaller step would see only one.
@@ -41,7 +44,7 @@ class Uncertain:
 
     values: Array
     covariance: Array
-    shapes: tuple[tuple[int, int], ...]
+    shapes: Slots
 
 
 def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
@@ -49,15 +52,7 @@ def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
     slots = tuple(
         (index, k) for index, effect in enumerate(fitted.hypothesis.effects) for k in _uncertain_shapes(effect, bench)
     )
-    columns = [fitted.columns]
-    for index, k in slots:
-        shape = fitted.hypothesis.effects[index].shape
-        backlash = fitted.hypothesis.effects[index].name == BACKLASH
-        step = (DEAD_ZONE_STEPS[k] if backlash else STEP) * max(abs(shape[k]), 1e-3)
-        moved = tuple(value + step * (j == k) for j, value in enumerate(shape))
-        other, _ = build(bench, fitted.hypothesis.reshaped(index, moved))
-        columns.append((((other - fitted.columns) @ fitted.theta) / step)[:, None])
-    jacobian = np.concatenate(columns, axis=1)
+    jacobian = _jacobian(bench, fitted, slots)
     scale = np.sqrt(np.mean(jacobian**2, axis=0))
     scale = np.where(scale > 0.0, scale, 1.0)
     jacobian = jacobian / scale
@@ -70,14 +65,27 @@ def uncertain(bench: Workbench, fitted: Fit) -> Uncertain:
     middle, _ = long_run_covariance(np.add.reduceat(scores, edges, axis=0))
     covariance = inverse @ middle @ inverse / np.outer(scale, scale)
     shapes = np.array([fitted.hypothesis.effects[index].shape[k] for index, k in slots])
-    for place, (index, _) in enumerate(slots, fitted.theta.size):
-        covariance[place, place] += _untold(bench, fitted.hypothesis.effects[index]) ** 2
-    for moved in _misplaced(bench, fitted):
+    for place, (index, k) in enumerate(slots, fitted.theta.size):
+        covariance[place, place] += _untold(bench, fitted.hypothesis.effects[index], k) ** 2
+    for moved in (*_misplaced(bench, fitted), *_louder(bench, fitted, slots)):
         covariance[: moved.size, : moved.size] += np.outer(moved, moved)
     loose = [place for place, (k, _) in enumerate(slots, fitted.theta.size) if _is_loose(fitted, k)]
     if loose:
         covariance[np.ix_(loose, loose)] += contact_spread(bench, fitted)
     return Uncertain(np.concatenate([fitted.theta, shapes]), covariance, slots)
+
+
+def _jacobian(bench: Workbench, fitted: Fit, slots: Slots) -> Array:
+    """Derivative of the modelled torque by strengths and shapes (m, p + s)."""
+    columns = [fitted.columns]
+    for index, k in slots:
+        shape = fitted.hypothesis.effects[index].shape
+        backlash = fitted.hypothesis.effects[index].name == BACKLASH
+        step = (DEAD_ZONE_STEPS[k] if backlash else STEP) * max(abs(shape[k]), 1e-3)
+        moved = tuple(value + step * (j == k) for j, value in enumerate(shape))
+        other, _ = build(bench, fitted.hypothesis.reshaped(index, moved))
+        columns.append((((other - fitted.columns) @ fitted.theta) / step)[:, None])
+    return np.concatenate(columns, axis=1)
 
 
 def _is_loose(fitted: Fit, index: int) -> bool:
@@ -88,10 +96,15 @@ def _uncertain_shapes(effect: Named, bench: Workbench) -> list[int]:
     return list(range(len(DEAD_ZONE_STEPS))) if effect.name == BACKLASH else free_shapes(effect, bench)
 
 
-def _untold(bench: Workbench, effect: Named) -> float:
-    """Standard deviation of a shape that no noise shows: of instants between samples or ticks."""
+def _untold(bench: Workbench, effect: Named, k: int) -> float:
+    """Standard deviation of a shape that no noise shows: of instants between rows or ticks, of an angle's origin."""
+    if effect.name == ECCENTRICITY:
+        speed = float(np.sqrt(np.mean(bench.row_values(lambda s: s.velocity) ** 2)))
+        return float(np.hypot(effect.shape[0], effect.shape[1])) * (bench.drift + 0.5 * bench.latched * speed / REACH)
     if effect.name == EVENT:
-        return 0.5 * bench.conditioning.filter.sample_period / REACH
+        time = bench.row_values(lambda s: s.time)
+        after = min(max(int(np.searchsorted(time, effect.shape[k])), 1), time.size - 1)
+        return float(time[after] - time[after - 1]) / REACH
     return bench.latched / REACH if effect.name in (CURRENT_LAG, VELOCITY_LAG) else 0.0
 
 
@@ -116,6 +129,30 @@ def _misplaced(bench: Workbench, fitted: Fit) -> list[Array]:
 
     found = [refitted(older) / REACH]
     return [*found, refitted(lambda s: replace(s, position=s.position + bench.drift))] if bench.drift else found
+
+
+def _louder(bench: Workbench, fitted: Fit, slots: Slots) -> list[Array]:
+    """Change of strengths and shapes of a soft coupling were noise twice as strong, by one step of Gauss and Newton.
+
+    The coupling's column is made of the noisy motion, so noise biases it; that of the noise itself is as large.
+    J. R. Cook, L. A. Stefanski, Journal of the American Statistical Association 89, 1994, 1314-1328.
+    """
+    if ELASTIC not in fitted.hypothesis.names or not fitted.told.all():
+        return []
+    rng, conditioning = np.random.default_rng(0), bench.conditioning
+
+    def louder(s: Signals) -> Signals:
+        noise = conditioning.source_noise * rng.standard_normal(s.time.size)
+        effort = s.effort + conditioning.effort_noise * rng.standard_normal(s.time.size)
+        s = replace(s, effort=effort, torque=effort)
+        if conditioning.source == "velocity":
+            return replace(s, velocity=s.velocity + noise)
+        return replace(s, position=s.position + noise, velocity=s.velocity + np.gradient(noise, s.sample_period))
+
+    loud = bench.with_signals(louder)
+    columns, _ = build(loud, fitted.hypothesis)
+    jacobian = _jacobian(loud, replace(fitted, columns=columns), slots)
+    return [least_squares(jacobian, loud.effort - columns @ fitted.theta)]
 
 
 def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -> dict[str, Parameter]:

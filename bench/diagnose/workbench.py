@@ -92,7 +92,7 @@ class Workbench:
     def with_signals(self, change: Callable[[Signals], Signals]) -> Workbench:
         """The same rows over changed raw signals (a corrected angle, another friction level)."""
         stretches = tuple(replace(part, signals=change(part.signals)) for part in self.stretches)
-        return replace(self, stretches=stretches)
+        return replace(self, stretches=stretches, memory=Memory())
 
     def moved(self, signals: Signals) -> tuple[float, ...]:
         """What tells one motion of a stretch from another, as far as a dead zone is to follow it."""
