@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from typer.exceptions import TyperException
 
 from bench import __version__
+from bench.console import JsonOption, RigOption, console, tell_files, tell_warnings, write_json
 from bench.demo import demo as run_demo
 from bench.diagnose.diagnosis import diagnose as run_diagnosis
 from bench.diagnose.replay import replay as run_replay
+from bench.diagnose.steady import steady_friction
 from bench.effects.present import named, parse_effect
 from bench.errors import BenchError, InputError
 from bench.files import write_text
@@ -32,6 +32,7 @@ from bench.report.course import course_table, report_course
 from bench.report.diagnosis import diagnosis_json, diagnosis_table, write_diagnosis
 from bench.report.effects import effect_page, effects_table
 from bench.report.estimate import estimate_json, estimate_table, refinement_line
+from bench.report.friction import draw_friction, friction_json, friction_table
 from bench.report.identification import write_identification
 from bench.report.limits import draw_operating_range, operating_range
 from bench.report.progress import progress
@@ -44,9 +45,6 @@ from bench.trace.stream import stream
 from bench.trace.write import write
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
-
-RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
-JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 
 
 class Estimator(StrEnum):
@@ -75,9 +73,9 @@ def demo(
     """Simulate the embedded rig, identify it, and set truth beside estimate."""
     with progress("demo") as done:
         result = run_demo(out, done)
-    _console().print(estimate_table(result.estimate, result.title, result.truth))
-    _tell_warnings(result.estimate.warnings)
-    _tell_files(result.files)
+    console().print(estimate_table(result.estimate, result.title, result.truth))
+    tell_warnings(result.estimate.warnings)
+    tell_files(result.files)
 
 
 @app.command()
@@ -96,7 +94,7 @@ def simulate(
         present = [parse_effect(text, axis.linear) for text in effect or ()]
         simulated = run_simulation(axis, profile, seed, progress=done, effects=present)
     write(simulated.trace, out)
-    _tell_files([out, write_truth(out, simulated.truth)])
+    tell_files([out, write_truth(out, simulated.truth)])
 
 
 @app.command()
@@ -107,7 +105,7 @@ def effects(
 ) -> None:
     """List the physical effects the bench knows, or print the page of one: equation, quantities, source."""
     if name is None:
-        _console().print(effects_table())
+        console().print(effects_table())
     else:
         typer.echo(effect_page(name))
 
@@ -121,9 +119,9 @@ def inspect(
     """Say what a recording holds: rate, jitter, holes, signals with their range and resolution."""
     found = look(trace, load_rig(rig).trace.columns if rig else None)
     if json is not None:
-        _write_json(json, inspection_json(found))
+        write_json(json, inspection_json(found))
     else:
-        _console().print(inspection_table(found))
+        console().print(inspection_table(found))
 
 
 @app.command()
@@ -148,14 +146,14 @@ def identify(
         raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
     estimate, refinement = _estimate(trace, axis, estimator, refine, cutoff)
     if json is not None:
-        _write_json(json, estimate_json(estimate, refinement))
+        write_json(json, estimate_json(estimate, refinement))
     files = write_identification(out, trace, axis, estimate, refinement) if out is not None else []
     if json != Path("-"):
-        _console().print(estimate_table(estimate, f"{axis.name}: {trace.name}"))
+        console().print(estimate_table(estimate, f"{axis.name}: {trace.name}"))
         if refinement is not None:
             typer.echo(refinement_line(refinement, axis.linear))
-        _tell_files(files)
-    _tell_warnings(estimate.warnings)
+        tell_files(files)
+    tell_warnings(estimate.warnings)
 
 
 @app.command()
@@ -174,12 +172,12 @@ def diagnose(
     with progress(f"diagnosing {trace.name}") as done:
         found = run_diagnosis(read(trace, axis.trace.columns), axis, other, excluded, done)
     if json is not None:
-        _write_json(json, diagnosis_json(found))
+        write_json(json, diagnosis_json(found))
     files = write_diagnosis(out, found, f"{axis.name}: {trace.name}") if out is not None else []
     if json != Path("-"):
-        _console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
-        _tell_files(files)
-    _tell_warnings(found.warnings)
+        console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
+        tell_files(files)
+    tell_warnings(found.warnings)
 
 
 @app.command()
@@ -194,8 +192,27 @@ def replay(
     replayed = run_replay(model, read(trace, axis.trace.columns), axis)
     write_text(out, replayed.csv())
     typer.echo(replayed.says)
-    _tell_files([out])
-    _tell_warnings(replayed.warnings)
+    tell_files([out])
+    tell_warnings(replayed.warnings)
+
+
+@app.command()
+def friction(
+    traces: Annotated[list[Path], typer.Argument(metavar="TRACE...", help="Recordings, each at one steady speed.")],
+    rig: RigOption,
+    json: JsonOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Figure to write: .png, .pdf or .svg.")] = None,
+) -> None:
+    """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
+    axis = load_rig(rig)
+    found = steady_friction([read(trace, axis.trace.columns) for trace in traces], axis)
+    if out is not None:
+        draw_friction(found, axis.name, out)
+    if json is not None:
+        write_json(json, friction_json(found))
+    if json != Path("-"):
+        console().print(friction_table(found, axis.name))
+        tell_files([out] if out is not None else [])
 
 
 def _estimate(
@@ -223,12 +240,12 @@ def lab(
     """Do all tasks of the lab course; write one report as HTML and PDF."""
     if synthetic is not None:
         with progress("recording") as done:
-            _tell_files(record(synthetic, progress=done))
+            tell_files(record(synthetic, progress=done))
         return
     with progress("lab course") as done:
         report = report_course(data, out, done)
-    _console().print(course_table(report.results))
-    _tell_files(report.files)
+    console().print(course_table(report.results))
+    tell_files(report.files)
 
 
 @app.command()
@@ -242,30 +259,7 @@ def limits(
     found = operating_range(read(trace, axis.trace.columns), axis)
     draw_operating_range(found, out)
     typer.echo("\n".join(found.says))
-    _tell_files([out])
-
-
-def _write_json(path: Path, text: str) -> None:
-    if path == Path("-"):
-        typer.echo(text)
-    else:
-        write_text(path, text + "\n")
-
-
-def _console() -> Console:
-    """Console no narrower than the bench's tables, so that a log shows them whole."""
-    console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=110)
-
-
-def _tell_warnings(warnings: Iterable[str]) -> None:
-    for warning in warnings:
-        typer.echo(f"warning: {warning}", err=True)
-
-
-def _tell_files(files: list[Path]) -> None:
-    for path in files:
-        typer.echo(f"wrote {path}")
+    tell_files([out])
 
 
 def main() -> None:

@@ -21,6 +21,7 @@ LAYERS = (
     {"lab"},
     {"report"},
     {"demo"},
+    {"console"},
     {"cli", "__main__"},
 )
 

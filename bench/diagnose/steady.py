@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Base, Signals
-from bench.errors import UndeterminedError
+from bench.errors import InputError, UndeterminedError
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -29,8 +29,36 @@ Array = NDArray[np.float64]
 OF_SPEED = ("stribeck_friction", "quadratic_drag", "direction_dependent_friction")
 #: Chance that a map without an effect gets a name, for all shapes of all effects tried together.
 CHANCE = 1e-3
-#: Points in each direction below which curvature is not told from scatter.
+#: Speeds in each direction below which curvature is not told from scatter.
 LEAST = 8
+#: Parts of a recording whose mean speeds tell whether it keeps one, and how far apart they may lie as share of it: a
+#: screw drive at its slowest, published as steady, has 0.35, a ramp from rest 1.75.
+PARTS, STEADY = 8, 0.5
+#: Share of all squares that rounding leaves of a map without scatter.
+ROUNDING = 1e-24
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Friction over speed as fitted, with one effect or, where the name is empty, without.
+
+    Attributes:
+        name: of the effect.
+        shape: what enters nonlinearly - SI.
+        theta: K_w, K_0, M_0, strengths of the effect - SI. M_0 is 0 where the effect holds a constant torque itself.
+        squares: sum of what it leaves - effort squared.
+        freedom: numbers fitted.
+    """
+
+    name: str
+    shape: tuple[float, ...]
+    theta: Array
+    squares: float
+    freedom: int
+
+    def effort(self, velocity: Array) -> Array:
+        """Effort (n,) at speeds - rad/s (m/s) - (n,)."""
+        return _columns(self.name, self.shape, velocity) @ self.theta
 
 
 @dataclass(frozen=True)
@@ -39,7 +67,11 @@ class SteadyFriction:
 
     Attributes:
         velocity, effort: a point for each recording - rad/s (m/s), N*m (N) - (n,).
-        base: K_w and K_0; inertia nan.
+        effort_unit: N*m, N, or what the rig allows.
+        linear: whether the axis moves in metres.
+        plain, best: curves without an effect and with the one that explains most; the same where physics allows none.
+        base: K_w and K_0 of the curve that holds; inertia nan.
+        offset: M_0 of that curve; None where the named effect holds a constant torque, which no map tells from it.
         name: of the effect, None where chance explains as much.
         values: of the effect's quantities - SI.
         probability: that chance saves as many squares, for the best effect.
@@ -48,50 +80,95 @@ class SteadyFriction:
 
     velocity: Array
     effort: Array
+    effort_unit: str
+    linear: bool
+    plain: Curve
+    best: Curve
     base: Base
+    offset: float | None
     name: str | None
     values: dict[str, float]
     probability: float
     unexplained: tuple[float, float]
 
 
-@dataclass(frozen=True)
-class _Tried:
-    name: str
-    shape: tuple[float, ...]
-    theta: Array
-    squares: float
-    freedom: int
-
-
 def steady_friction(recordings: Sequence[Trace], rig: Rig) -> SteadyFriction:
     """Friction over the speeds of recordings at one speed each.
 
     Raises:
-        UndeterminedError: fewer than LEAST speeds in a direction.
-        InputError: a recording holds no torque or speed.
+        UndeterminedError: fewer than LEAST speeds in a direction, or none twice as fast as another.
+        InputError: a recording holds no torque or speed, keeps no speed or was given twice, recordings give efforts in
+            different units, or torque and speed are counted in opposite directions.
     """
-    velocity = np.array([float(trace["velocity"].mean()) for trace in recordings])
-    effort = np.array([float(rig.effort(trace)[0].mean()) for trace in recordings])
-    fewest = int(min((velocity > 0.0).sum(), (velocity < 0.0).sum()))
-    if fewest < LEAST:
-        reason = f"found {fewest} steady speeds in one of the directions"
-        raise UndeterminedError("friction over speed", reason, f"at least {LEAST} different speeds in each direction")
-    plain = _fitted("", (), velocity, effort)
-    tried = [_best(name, velocity, effort) for name in OF_SPEED]
-    chances = [_chance(plain, one, effort.size) for one in tried]
-    best = int(np.argmin(chances))
-    probability = min(1.0, len(OF_SPEED) * chances[best])
-    name = tried[best].name if probability < CHANCE else None
-    kept = tried[best] if name else plain
-    base = Base(float("nan"), float(kept.theta[0]), float(kept.theta[1]))
-    values = dict(catalogue()[name].values(kept.theta[3:].tolist(), kept.shape, base)) if name else {}
+    velocity, effort, unit = _points(recordings, rig)
     total = float(effort @ effort)
-    left = (float(np.sqrt(plain.squares / total)), float(np.sqrt(tried[best].squares / total)))
-    return SteadyFriction(velocity, effort, base, name, values, probability, left)
+    plain = _fitted("", (), velocity, effort)
+    if plain.theta[0] * (velocity @ velocity) + plain.theta[1] * np.abs(velocity).sum() < 0.0:
+        raise InputError(
+            "friction over speed",
+            "found friction that drives the axis: torque and motion have opposite signs",
+            "allowed: both counted the same way (a leading - in the rig's [trace.columns] turns one)",
+        )
+    tried = [_best(name, velocity, effort) for name in OF_SPEED]
+    chances = [_chance(plain, one, effort.size, ROUNDING * total) for one in tried]
+    least = int(np.argmin(chances))
+    best = tried[least] if np.isfinite(tried[least].squares) else plain
+    probability = min(1.0, len(OF_SPEED) * chances[least])
+    kept = best if probability < CHANCE else plain
+    base = Base(float("nan"), float(kept.theta[0]), float(kept.theta[1]))
+    offset = None if _holds_constant(_columns(kept.name, kept.shape, velocity)) else float(kept.theta[2])
+    name = kept.name or None
+    values = dict(catalogue()[name].values(kept.theta[3:].tolist(), kept.shape, base)) if name else {}
+    left = (float(np.sqrt(plain.squares / total)), float(np.sqrt(best.squares / total)))
+    return SteadyFriction(
+        velocity, effort, unit, rig.linear, plain, best, base, offset, name, values, probability, left
+    )
 
 
-def _best(name: str, velocity: Array, effort: Array) -> _Tried:
+def _points(recordings: Sequence[Trace], rig: Rig) -> tuple[Array, Array, str]:
+    """Mean speed and effort of each recording, and the unit of the efforts."""
+    points: dict[tuple[float, float], str] = {}
+    units: dict[str, str] = {}
+    for trace in recordings:
+        effort, unit = rig.effort(trace)
+        units[unit] = trace.origin
+        point = (_steady_speed(trace), float(effort.mean()))
+        if point in points:
+            raise InputError(trace.origin, f"found the recording {points[point]} again", "allowed: each once")
+        points[point] = trace.origin
+    if len(units) > 1:
+        found = ", ".join(f"{unit} in {origin}" for unit, origin in units.items())
+        raise InputError(rig.source, f"gives efforts in different units ({found})", "allowed: one unit")
+    table = np.array(list(points)).reshape(-1, 2)
+    velocity = table[:, 0]
+    fewest = min(_different(velocity[velocity > 0.0]), _different(-velocity[velocity < 0.0]))
+    wanted = f"at least {LEAST} different speeds in each direction"
+    if fewest < LEAST:
+        raise UndeterminedError("friction over speed", f"found {fewest} steady speeds in one of the directions", wanted)
+    if np.abs(velocity).max() <= 2.0 * np.abs(velocity).min():
+        raise UndeterminedError(
+            "friction over speed", "found no speed twice another", f"{wanted}, the fastest well over twice the slowest"
+        )
+    return velocity, table[:, 1], next(iter(units))
+
+
+def _steady_speed(trace: Trace) -> float:
+    velocity = trace["velocity"]
+    parts = [float(part.mean()) for part in np.array_split(velocity, min(PARTS, velocity.size))]
+    mean = float(velocity.mean())
+    if not max(parts) - min(parts) < STEADY * abs(mean):
+        unit = trace.units["velocity"]
+        found = f"keeps no speed: parts of it have means from {min(parts):.3g} to {max(parts):.3g} {unit}"
+        raise InputError(trace.origin, found, "allowed: one steady speed, cut from where the axis speeds up")
+    return mean
+
+
+def _different(speeds: Array) -> int:
+    """Speeds more than a hundredth apart: repetitions of one tell scatter, not curvature."""
+    return 1 + int((np.diff(np.log(np.sort(speeds))) > 0.01).sum()) if speeds.size else 0
+
+
+def _best(name: str, velocity: Array, effort: Array) -> Curve:
     """The effect with the shape that leaves least, within what physics allows."""
     effect = catalogue()[name]
     if not effect.shapes:
@@ -103,27 +180,37 @@ def _best(name: str, velocity: Array, effort: Array) -> _Tried:
     return _fitted(name, (float(np.exp(found)),), velocity, effort)
 
 
-def _fitted(name: str, shape: tuple[float, ...], velocity: Array, effort: Array) -> _Tried:
-    sign = np.sign(velocity)
+def _columns(name: str, shape: tuple[float, ...], velocity: Array) -> Array:
+    """Columns (n, 3 + strengths) of speed, its sign, a constant and the effect."""
+    zero, sign = np.zeros_like(velocity), np.sign(velocity)
     columns = [velocity, sign, np.ones_like(velocity)]
     if name:
-        zero = np.zeros_like(velocity)
-        signals = Signals(zero, zero, velocity, sign, effort, effort, sign, 1.0, 1.0)
+        signals = Signals(zero, zero, velocity, sign, zero, zero, sign, 1.0, 1.0)
         columns += [sum((values for values, _ in column), zero) for column in catalogue()[name].columns(signals, shape)]
-    table = np.column_stack(columns)
+    return np.column_stack(columns)
+
+
+def _holds_constant(table: Array) -> bool:
+    return bool((np.ptp(table[:, 3:], axis=0) == 0.0).any())
+
+
+def _fitted(name: str, shape: tuple[float, ...], velocity: Array, effort: Array) -> Curve:
+    table = _columns(name, shape, velocity)
+    if _holds_constant(table):
+        table[:, 2] = 0.0
     solved, _, rank, _ = np.linalg.lstsq(table, effort, rcond=1e-10)
     theta = np.asarray(solved, dtype=np.float64)
     squares = float(np.sum((effort - table @ theta) ** 2))
     base = Base(1.0, float(theta[0]), float(theta[1]))
     if name and not catalogue()[name].physical(theta[3:].tolist(), shape, base):
         squares = float("inf")
-    return _Tried(name, shape, theta, squares, int(rank) + len(shape))
+    return Curve(name, shape, theta, squares, int(rank) + len(shape))
 
 
-def _chance(plain: _Tried, tried: _Tried, points: int) -> float:
-    """Probability of the F-test that an effect's columns and shape save nothing."""
+def _chance(plain: Curve, tried: Curve, points: int, rounding: float) -> float:
+    """Probability of the F-test that an effect's columns and shape save nothing; squares below `rounding` are none."""
     added, left = tried.freedom - plain.freedom, points - tried.freedom
     if not np.isfinite(tried.squares) or added < 1:
         return 1.0
-    ratio = (plain.squares - tried.squares) / added / (tried.squares / left)
+    ratio = (plain.squares - tried.squares) / added / (max(tried.squares, rounding) / left)
     return float(scipy.stats.f.sf(ratio, added, left))

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from bench.errors import InputError
 from bench.files import whole
 from bench.identify.estimate import Estimate
 from bench.identify.modelled import modelled_effort
@@ -23,6 +24,17 @@ def save(figure: Figure, path: str | Path) -> None:
     """Write a figure whole or not at all; the ending decides the format."""
     with whole(path) as temporary:
         figure.savefig(temporary, dpi=120)
+
+
+def save_as_named(figure: Figure, path: Path) -> None:
+    """Write a figure to the file a person named.
+
+    Raises:
+        InputError: another ending than .png, .pdf or .svg, or a place that cannot be written to.
+    """
+    if path.suffix.lower() not in (".png", ".pdf", ".svg"):
+        raise InputError(path, f"found the ending '{path.suffix}'", "allowed: .png, .pdf, .svg")
+    save(figure, path)
 
 
 def thinned(*columns: NDArray[np.float64]) -> list[NDArray[np.float64]]:

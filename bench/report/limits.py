@@ -10,7 +10,7 @@ from bench.errors import InputError
 from bench.lab.operating_range import task
 from bench.lab.result import Task
 from bench.report.charts import chart_figure
-from bench.report.figures import save
+from bench.report.figures import save_as_named
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -35,6 +35,4 @@ def draw_operating_range(found: Task, path: Path) -> None:
     Raises:
         InputError: another ending, or a place that cannot be written to.
     """
-    if path.suffix.lower() not in (".png", ".pdf", ".svg"):
-        raise InputError(path, f"found the ending '{path.suffix}'", "allowed: .png, .pdf, .svg")
-    save(chart_figure(found.charts[0]), path)
+    save_as_named(chart_figure(found.charts[0]), path)

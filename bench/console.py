@@ -1,0 +1,45 @@
+"""What commands share: options that mean the same everywhere, and how results reach a person or a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from bench.files import write_text
+
+RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
+JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
+
+
+def write_json(path: Path, text: str) -> None:
+    """Write JSON to a file, or to standard output where `path` is -.
+
+    Raises:
+        InputError: a place that cannot be written to.
+    """
+    if path == Path("-"):
+        typer.echo(text)
+    else:
+        write_text(path, text + "\n")
+
+
+def console() -> Console:
+    """Console no narrower than the bench's tables, so that a log shows them whole."""
+    found = Console(highlight=False)
+    return found if found.is_terminal else Console(highlight=False, width=110)
+
+
+def tell_warnings(warnings: Iterable[str]) -> None:
+    """A line on standard error for each warning."""
+    for warning in warnings:
+        typer.echo(f"warning: {warning}", err=True)
+
+
+def tell_files(files: Iterable[Path]) -> None:
+    """A line for each file written."""
+    for path in files:
+        typer.echo(f"wrote {path}")

@@ -1,0 +1,129 @@
+"""`bench friction`: friction over steady speeds as JSON (`bench.friction/1`), as a table and as a figure."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from rich import box
+from rich.table import Table
+
+from bench.diagnose.quantities import unit_of_quantity
+from bench.diagnose.steady import CHANCE, SteadyFriction
+from bench.identify.names import parameter_name, parameter_unit
+from bench.identify.regressors import COULOMB, OFFSET, VISCOUS
+from bench.report.figures import MEASURED, MODELLED, REST, save_as_named
+
+SCHEMA = "bench.friction/1"
+#: Speeds at which a curve is drawn, in each direction.
+DRAWN = 400
+
+
+def friction_json(found: SteadyFriction) -> str:
+    """The map, what holds of it and how sure that is."""
+    effect = None if found.name is None else {"name": found.name, "parameters": _numbers(_values(found))}
+    before, after = found.unexplained
+    content = {
+        "schema": SCHEMA,
+        "parameters": _numbers(_base(found)),
+        "effect": effect,
+        "best": found.best.name or None,
+        "chance": found.probability,
+        "unexplained": {"before": before, "after": after},
+        "velocity": {"unit": _speed_unit(found), "values": found.velocity.tolist()},
+        "effort": {"unit": found.effort_unit, "values": found.effort.tolist()},
+    }
+    return json.dumps(content, indent=2)
+
+
+def friction_table(found: SteadyFriction, title: str) -> Table:
+    """Quantities of the curve that holds; below it how sure the effect is and what it explains."""
+    before, after = found.unexplained
+    label = found.best.name.replace("_", " ")
+    if found.name is not None:
+        verdict = f"named: {label}; chance saves as much with probability {found.probability:.2g}"
+    elif label:
+        verdict = f"no effect named: {label} is best, chance saves as much with probability {found.probability:.2g}"
+    else:
+        verdict = "no effect named: physics allows none of them here"
+    low, high = np.abs(found.velocity).min(), np.abs(found.velocity).max()
+    caption = [
+        f"{verdict} (named below {CHANCE:g})",
+        f"unexplained share of the effort: {before:.4f} without, {after:.4f} with it",
+        f"{found.velocity.size} recordings, {low:.3g} to {high:.3g} {_speed_unit(found)}",
+    ]
+    if found.offset is None:
+        caption.append("a constant offset is counted in the effect: no such recordings tell them apart")
+    table = Table(
+        title=title, caption="\n".join(caption), title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD
+    )
+    for heading in ("effect", "quantity"):
+        table.add_column(heading, no_wrap=True)
+    table.add_column("value", justify="right", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for owner, quantities in (("", _base(found)), (found.name or "", _values(found))):
+        for name, (value, unit) in quantities.items():
+            table.add_row(owner, name.replace("_", " "), f"{value:.5g}", unit)
+            owner = ""
+    return table
+
+
+def draw_friction(found: SteadyFriction, title: str, path: Path) -> None:
+    """Write effort over speed: the recordings, the curve without an effect and, where one is named, the curve with it.
+
+    Raises:
+        InputError: an ending that is no figure's, or a place that cannot be written to.
+    """
+    effort = {"N*m": "torque", "N": "force", "A": "current", "V": "voltage"}.get(found.effort_unit, "effort")
+    figure = Figure(figsize=(9.0, 7.0), layout="constrained")
+    figure.suptitle(title, x=0.01, ha="left", weight="bold")
+    over, rest = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
+    over.plot(found.velocity, found.effort, "o", ms=4.5, color=MEASURED, label="recordings")
+    curves = [(found.plain, "no effect", REST, "s")]
+    if found.name is not None:
+        curves.append((found.best, found.name.replace("_", " "), MODELLED, "o"))
+    for curve, label, colour, marker in curves:
+        for direction in (-1.0, 1.0):
+            speeds = direction * np.abs(found.velocity[direction * found.velocity > 0.0])
+            drawn = direction * np.geomspace(np.abs(speeds).min(), np.abs(speeds).max(), DRAWN)
+            over.plot(drawn, curve.effort(drawn), lw=1.3, color=colour, label=label if direction > 0.0 else None)
+        left = found.effort - curve.effort(found.velocity)
+        rest.plot(found.velocity, left, marker, ms=4.0, color=colour, label=label)
+    rest.axhline(0.0, color="0.3", lw=0.8)
+    over.set_ylabel(f"{effort} / {found.effort_unit}")
+    rest.set_ylabel(f"left / {found.effort_unit}")
+    rest.set_xlabel(f"speed / ({_speed_unit(found)})")
+    for axis in (over, rest):
+        axis.grid(alpha=0.25)
+        axis.legend(frameon=False, fontsize=8)
+    save_as_named(figure, path)
+
+
+def _speed_unit(found: SteadyFriction) -> str:
+    return "m/s" if found.linear else "rad/s"
+
+
+def _base(found: SteadyFriction) -> dict[str, tuple[float, str]]:
+    columns = {VISCOUS: found.base.viscous, COULOMB: found.base.coulomb}
+    if found.offset is not None:
+        columns[OFFSET] = found.offset
+    return {
+        parameter_name(column, found.linear): (value, parameter_unit(column, found.linear, found.effort_unit))
+        for column, value in columns.items()
+    }
+
+
+def _values(found: SteadyFriction) -> dict[str, tuple[float, str]]:
+    if found.name is None:
+        return {}
+    return {
+        name: (value, unit_of_quantity(found.name, name, found.linear, found.effort_unit))
+        for name, value in found.values.items()
+    }
+
+
+def _numbers(quantities: dict[str, tuple[float, str]]) -> dict[str, Any]:
+    return {name: {"value": value, "unit": unit} for name, (value, unit) in quantities.items()}
