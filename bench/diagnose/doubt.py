@@ -49,7 +49,7 @@ def doubted(bench: Workbench, other: Workbench | None, steps: list[Step], exclud
         excluded: effects that were not tried.
     """
     fitted = borne_out(bench, other, steps[-1].fitted)
-    fitted = well_formed(bench, uncontested(bench, fitted, excluded))
+    fitted = economical(bench, well_formed(bench, uncontested(bench, fitted, excluded)))
     final = believable(bench, steps[0].fitted, simpler(bench, fitted))
     if final.hypothesis.effects == steps[-1].fitted.hypothesis.effects:
         return steps
@@ -137,6 +137,25 @@ def well_formed(bench: Workbench, fitted: Fit) -> Fit:
             fitted = fit(bench, fitted.hypothesis.without(index))
             index = len(fitted.hypothesis.effects)
         index -= 1
+    return fitted
+
+
+def economical(bench: Workbench, fitted: Fit) -> Fit:
+    """Without two waves of one period where a single wave of another form, in their place, leaves only noise."""
+    waves = [index for index, name in enumerate(fitted.hypothesis.names) if name in WAVES]
+    for late, early in ((late, early) for late in reversed(waves) for early in waves if early < late):
+        effects = fitted.hypothesis.effects
+        number = _wave_number(effects[late])
+        if number != _wave_number(effects[early]):
+            continue
+        less = fit(bench, fitted.hypothesis.without(late).without(early))
+        seen, (_, resting) = prepared(bench, less.hypothesis), lags(bench, less.hypothesis)
+        columns = seen.table(lambda s, n=number: _waves(s, n), resting)
+        half = columns.shape[1] // 2
+        pairs = columns[:, np.stack([np.arange(half), half + np.arange(half)], axis=1).ravel()] * less.told[:, None]
+        left = float(np.sum(less.residual**2) - gains(pairs, 2, less.residual, less.span).max())
+        if left < np.count_nonzero(less.told) * (REMAINDER * fitted.floor) ** 2:
+            return economical(bench, less)
     return fitted
 
 
