@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.diagnose.held import Recorded
+from bench.diagnose.memory import Memory
 from bench.diagnose.recordings import Recordings
 from bench.diagnose.workbench import Stretch, Workbench
 from bench.trace.filter import GaussianFilter
@@ -66,4 +67,4 @@ def _part(bench: Workbench, split: float, late: bool) -> Workbench:
         time = part.signals.time[smooth.margin : -smooth.margin : smooth.stride][: part.used.size]
         kept = time >= split + away if late else time < split - away
         parts.append(Stretch(part.signals, part.used & np.asarray(kept)))
-    return replace(bench, stretches=tuple(parts), memory={})
+    return replace(bench, stretches=tuple(parts), memory=Memory())
