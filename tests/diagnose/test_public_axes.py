@@ -124,7 +124,6 @@ def test_few_steady_speeds_tell_nothing():
         steady_friction(steady_speeds(1)[:6], SCREWS)
 
 
-@pytest.mark.xfail(reason="friction of the gear under load leaves so much unexplained that the names are doubted")
 def test_the_pendulum_of_a_servo_is_named_by_its_weight():
     """0.49 kg at 0.1 m: 0.4805 N*m; m*l**2 and armature 6.7e-3 kg*m**2, which the interval holds."""
     found = diagnose(read(DATA / "bam_xl330/2026-01-15_10h29m37.json"), XL330)
