@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from bench.diagnose.outside import OUTSIDE, physics_of
 from bench.diagnose.workbench import Workbench
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError, UndeterminedError
-from bench.plant.model_file import load_model
+from bench.plant.model_file import load_model, read_table
 from bench.plant.track import measured_velocity
 from bench.plant.track_effects import track_effects
 from bench.rig.rig import Rig
@@ -78,7 +77,7 @@ def replay(path: Path, trace: Trace, rig: Rig) -> Replay:
         UndeterminedError: the recording is too short for the model's filter, or never moves clearly.
         SimulationError: the model diverged.
     """
-    table = _table(path)
+    table = read_table(path)
     balance = load_balance(path)
     kind = table.get("kind", rig.kind)
     if kind != rig.kind:
@@ -123,7 +122,7 @@ def load_balance(path: Path) -> Balance:
     Raises:
         InputError: no such file, no TOML, or no torque balance in it.
     """
-    table = _table(path)
+    table = read_table(path)
     if "torque_balance" not in table:
         raise InputError(f"{path}: torque_balance", "missing", "allowed: a model.toml that bench diagnose wrote")
     where = f"{path}: torque_balance"
@@ -153,12 +152,3 @@ def _require_sound(balance: Balance, where: str) -> None:
         if len(effect.shape) != size or not np.isfinite(effect.shape).all():
             found = f"found {list(effect.shape)}"
             raise InputError(f"{where}.effects: {effect.name}.shape", found, f"allowed: {size} finite numbers")
-
-
-def _table(path: Path) -> dict:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(path, f"cannot be read ({error.strerror})", "name the model.toml of a diagnosis") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(path, f"not TOML ({error})", "allowed: a model.toml that bench diagnose wrote") from error

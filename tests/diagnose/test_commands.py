@@ -4,7 +4,6 @@ import csv
 import json
 import os
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,12 +11,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from bench.cli import main
 from bench.trace.trace import Trace
 from bench.trace.write import write
+from tests.diagnose.command import started
 from tests.identify.motions import UNITS, Truth, recording
 
-RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nrotor_inertia = "2 kg*cm**2"\n'
 PENDULUM = 0.12
 
 
@@ -46,23 +44,6 @@ def moving(speed, seconds=4.0):
     return Trace(time, noisy, UNITS, "closed form")
 
 
-def started(folder):
-    """Runs `bench` and returns its status."""
-
-    def run(*arguments):
-        old, sys.argv = sys.argv, ["bench", *map(str, arguments)]
-        try:
-            main()
-        except SystemExit as stop:
-            return stop.code
-        finally:
-            sys.argv = old
-
-    os.chdir(folder)
-    (folder / "rig.toml").write_text(RIG, encoding="utf-8")
-    return run
-
-
 @pytest.fixture(scope="module")
 def diagnosed(tmp_path_factory):
     """Folder with two recordings of one axis, an unbalance in them, and what `bench diagnose` made of them."""
@@ -75,20 +56,6 @@ def diagnosed(tmp_path_factory):
     finally:
         os.chdir(before)
     return folder
-
-
-@pytest.fixture
-def bench(capsys, monkeypatch, tmp_path):
-    """Runs `bench` in a folder of its own and returns status, standard output and standard error."""
-    monkeypatch.chdir(tmp_path)
-    run = started(tmp_path)
-
-    def told(*arguments):
-        status = run(*arguments)
-        printed = capsys.readouterr()
-        return status, printed.out, printed.err
-
-    return told
 
 
 def test_the_json_follows_the_contract_key_by_key(diagnosed):

@@ -7,27 +7,12 @@ import pytest
 
 from bench.trace.trace import Trace
 from bench.trace.write import write
-from tests.diagnose.test_commands import started
 from tests.identify.motions import UNITS
 
 VISCOUS, COULOMB, OFFSET = 8e-4, 0.06, 0.004
 STATIC, STRIBECK = 0.075, 4.0
 #: Speeds of both directions.
 SPEEDS = np.concatenate([sign * np.geomspace(0.5, 60.0, 14) for sign in (-1.0, 1.0)])
-
-
-@pytest.fixture
-def bench(capsys, monkeypatch, tmp_path):
-    """Runs `bench` in a folder of its own and returns status, standard output and standard error."""
-    monkeypatch.chdir(tmp_path)
-    run = started(tmp_path)
-
-    def told(*arguments):
-        status = run(*arguments)
-        printed = capsys.readouterr()
-        return status, printed.out, printed.err
-
-    return told
 
 
 def friction(speed, rise):
