@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+#: Samples (n,) and the order of the time derivative to be taken of them; a column is a sum of such terms. So products
+#: are formed on raw samples and differentiated exactly: q''*sin(q) = (q'*sin(q))' - q'**2*cos(q).
+Term = tuple[Array, int]
+Column = Sequence[Term]
 
 #: The impulse response and its derivatives are below 1e-6 of their peak beyond this many widths.
 REACH = 6.0
@@ -61,41 +68,58 @@ class GaussianFilter:
         power = math.gamma(order + 0.5) / (2.0 * math.pi * self.width ** (2 * order + 1))
         return math.sqrt(self.sample_period * power)
 
-    def __call__(self, values: NDArray[np.floating], *orders: int) -> NDArray[np.float64]:
+    def __call__(self, values: Array, *orders: int, lag: float = 0.0) -> Array:
         """Filtered derivatives of one signal over a stretch without holes.
 
         Args:
             values: (n,) samples, n > 2*margin.
             orders: which derivatives, 0 for the smoothed signal.
+            lag: time constant of a first-order lag to undo, 1 + j*omega*lag - s.
 
         Returns:
             (orders, m), at samples margin, margin + stride, ... below n - margin.
         """
-        return self.columns(values[None], *((0, order) for order in orders))
+        return self.columns([[(values, order)] for order in orders], lag)
 
-    def columns(self, signals: NDArray[np.floating], *wanted: tuple[int, int]) -> NDArray[np.float64]:
-        """Filtered derivatives of several signals at once, which costs half as much as one after the other.
+    def columns(self, columns: Sequence[Column], lag: float = 0.0) -> Array:
+        """Filtered sums of derivatives of several signals; a signal that occurs again is transformed once.
+
+        The line between the ends of a signal is filtered by itself, in closed form: a transform takes the stretch for
+        one period, and the step from its end back to its start has power at every frequency, of which the filter's
+        rest at the Nyquist frequency, 1.5e-5, is not little where a position has run for minutes. Without the line
+        clean recordings in one direction, of 1 s and of 300 s left 1.16, 1.30 and 1.39 noise floors, with it 0.96 to
+        1.07.
 
         Args:
-            signals: (k, n) samples.
-            wanted: index of the signal and order of its derivative, for each row that comes out.
+            columns: each a sum of terms, samples (n,) and the order of the derivative to be taken of them.
+            lag: time constant of a first-order lag to undo, 1 + j*omega*lag - s.
 
         Returns:
-            (wanted, m), at the samples of `__call__`.
+            (columns, m), at the samples of `__call__`.
         """
+        distinct = {id(values): values for column in columns for values, _ in column}
+        place = {key: row for row, key in enumerate(distinct)}
+        signals = np.stack(list(distinct.values()))
         count = signals.shape[1]
+        slope = (signals[:, -1] - signals[:, 0]) / (count - 1)
+        signals -= signals[:, :1] + slope[:, None] * np.arange(count)
         size = self.stride * fast_length(math.ceil(count / self.stride))
         kept = size // self.stride // 2 + 1
-        spectra = _transform(signals, size)[:, :kept]
-        frequency = 2.0 * math.pi / (size * self.sample_period) * np.arange(kept)
-        spectra = spectra * (np.exp(-0.5 * (frequency * self.width) ** 2) / self.stride)
-        rows = np.stack([spectra[k] * (1j * frequency) ** order if order else spectra[k] for k, order in wanted])
+        spectra = np.asarray(scipy.fft.rfft(signals, size, overwrite_x=True))[:, :kept]
+        jw = 2j * math.pi / (size * self.sample_period) * np.arange(kept)
+        spectra *= np.exp(-0.5 * (jw.imag * self.width) ** 2) * (1.0 + jw * lag) / self.stride
         first, last = self.margin // self.stride, -(-(count - self.margin) // self.stride)
-        return np.asarray(scipy.fft.irfft(rows, size // self.stride))[:, first:last]
-
-
-def _transform(signals: NDArray[np.floating], size: int) -> NDArray[np.complex128]:
-    return np.asarray(scipy.fft.rfft(signals, size))
+        at = self.stride * np.arange(first, last)
+        sums = np.zeros((len(columns), kept), dtype=complex)
+        lines = np.zeros((len(columns), at.size))
+        for row, column in enumerate(columns):
+            for values, order in column:
+                k = place[id(values)]
+                sums[row] += spectra[k] * jw**order if order else spectra[k]
+                if order < 2:
+                    rate = float(slope[k]) / self.sample_period
+                    lines[row] += rate if order else values[0] + slope[k] * at + lag * rate
+        return lines + np.asarray(scipy.fft.irfft(sums, size // self.stride))[:, first:last]
 
 
 def fast_length(length: int) -> int:

@@ -67,7 +67,9 @@ def _filtered(
     source = trace[conditioning.source][block]
     speed = raw_speed(source, conditioning.source, trace.sample_period)
     sign = known_sign(speed, conditioning.sign_threshold)
-    rows = smooth.columns(np.stack([source, effort[block], sign]), (0, order), (0, order + 1), (1, 0), (1, 1), (2, 0))
+    torque = effort[block]
+    made = ((source, order), (source, order + 1), (torque, 0), (torque, 1), (sign, 0))
+    rows = smooth.columns([[term] for term in made])
     velocity, acceleration, torque, rate, direction = rows
     direction[np.abs(direction) < 1.0 - ONE_SIGN] = 0.0
     time = trace.time[block][smooth.margin : (block.stop - block.start) - smooth.margin : smooth.stride]
