@@ -30,12 +30,27 @@ def seen_by_drive(encoders: Sequence[Rows[Sensing]], position: Array, velocity: 
 
 def reported(model: AxisModel, position: Array, velocity: Array, step: float) -> tuple[Array, Array]:
     """What sensors report of one axis' true motion, (n,) each at a constant step - s."""
-    sensing = model.of_kind(Sensing)
-    for present, effect in _pairs(sensing):
+    position, velocity = seen(model, position, velocity)
+    return position, filtered(model, velocity, step)
+
+
+def seen(model: AxisModel, position: Array, velocity: Array) -> tuple[Array, Array]:
+    """What the encoder of one axis sees of its true motion, (n,) each, instant by instant."""
+    for present, effect in _pairs(model.of_kind(Sensing)):
         position, velocity = effect.seen(dict(present.values), position, velocity)
-    for present, effect in _pairs(sensing):
-        velocity = effect.filtered(dict(present.values), velocity, step)
     return position, velocity
+
+
+def filters(model: AxisModel) -> bool:
+    """Whether the velocity that is recorded depends on what came before."""
+    return any(effect.acts_through("filtered") for _, effect in _pairs(model.of_kind(Sensing)))
+
+
+def filtered(model: AxisModel, velocity: Array, step: float) -> Array:
+    """What is recorded of the velocity that the encoder sees, (n,) at a constant step - s."""
+    for present, effect in _pairs(model.of_kind(Sensing)):
+        velocity = effect.filtered(dict(present.values), velocity, step)
+    return velocity
 
 
 def true_velocity(model: AxisModel, velocity: Array, step: float) -> Array:

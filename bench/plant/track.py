@@ -9,14 +9,17 @@ well below it is held down. State it beside every velocity gap.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.errors import SimulationError
+from bench.plant.blocks import samples_in
 from bench.plant.drive import Cascade, add_pid
-from bench.plant.native import run_controls, sense_torque
+from bench.plant.native import OpenLoop, run_blocks, sense_torque
+from bench.plant.quiet import quiet
 from bench.trace.trace import Trace
 
 Array = NDArray[np.float64]
@@ -71,23 +74,55 @@ def track(model: mujoco.MjModel, trace: Trace, effort: Array, misalignment: floa
         effort: (n,) torque - N*m (force - N) over it.
         misalignment: by how much the effort is reported late - s.
 
+    Returns:
+        nan outside of `stretches_of`.
+
     Raises:
         SimulationError: the model diverged.
     """
-    velocity = measured_velocity(trace)
-    simulated = np.empty_like(velocity)
-    for part in trace.segments:
+    timestep, velocity = model.opt.timestep, measured_velocity(trace)
+    substeps = round(trace.sample_period / timestep)
+    simulated = np.full(len(trace), np.nan)
+    for part in stretches_of(trace):
         position = trace["position"][part] if "position" in trace else integrated(velocity[part], trace.sample_period)
-        simulated[part] = _track_stretch(model, trace.time[part], position, velocity[part], effort[part], misalignment)
+        motion = trace.time[part], position, velocity[part]
+        inputs = HoldingInputs(*motion, effort[part], timestep, substeps, misalignment)
+        samples = simulated[part]
+        with quiet():
+            for block in run_blocks(OpenLoop(model, inputs, inputs.steps, position[0], velocity[part][0])):
+                rows, found = samples_in(block.start, block.start + block.velocity.size, substeps)
+                samples[found] = block.velocity[rows]
     return simulated
 
 
+def stretches_of(trace: Trace) -> tuple[slice, ...]:
+    """Stretches without holes that a model can be held to; a lone sample shows no motion."""
+    return tuple(part for part in trace.segments if part.stop - part.start > 1)
+
+
+def in_stretches(trace: Trace) -> NDArray[np.bool_]:
+    """Samples at which a model held to a recording says something, (n,): those of `stretches_of`."""
+    found = np.zeros(len(trace), dtype=np.bool_)
+    for part in stretches_of(trace):
+        found[part] = True
+    return found
+
+
 def measured_velocity(trace: Trace) -> Array:
-    """Reported velocity, or the central difference of a reported position - rad/s (m/s) - (n,)."""
+    """Reported velocity, or the central difference of a reported position - rad/s (m/s) - (n,).
+
+    A lone sample between holes has none of its own; it takes the mean speed between its neighbours.
+    """
     if "velocity" in trace:
         return trace["velocity"]
-    parts = [np.gradient(trace["position"][part], trace.sample_period) for part in trace.segments]
-    return np.concatenate(parts)
+    position, velocity = trace["position"], np.empty(len(trace))
+    for part in trace.segments:
+        if part.stop - part.start > 1:
+            velocity[part] = np.gradient(position[part], trace.sample_period)
+        else:
+            around = [max(part.start - 1, 0), min(part.stop, len(trace) - 1)]
+            velocity[part] = np.diff(position[around]) / np.diff(trace.time[around])
+    return velocity
 
 
 def integrated(velocity: Array, sample_period: float) -> Array:
@@ -95,21 +130,43 @@ def integrated(velocity: Array, sample_period: float) -> Array:
     return np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2.0) * sample_period])
 
 
-def _track_stretch(
-    model: mujoco.MjModel, time: Array, position: Array, velocity: Array, effort: Array, misalignment: float
-) -> Array:
-    controls, substeps = holding_controls(model.opt.timestep, time, position, velocity, effort, misalignment)
-    return run_controls(model, controls, position[0], velocity[0]).velocity[::substeps, 0]
+@dataclass(frozen=True)
+class HoldingInputs:
+    """Inputs pos, vel, ff of the actuator of `holding_model` along one stretch, read between samples when needed.
 
+    Attributes:
+        time: of the samples - s - (n,).
+        position, velocity: of the motion that holds the model - rad (m), rad/s (m/s) - (n,).
+        effort: that drives it - N*m (N) - (n,).
+        timestep: of the model - s.
+        substeps: timesteps that make a sample period.
+        misalignment: by how much the effort is reported late - s.
+    """
 
-def holding_controls(
-    timestep: float, time: Array, position: Array, velocity: Array, effort: Array, misalignment: float
-) -> tuple[Array, int]:
-    """Inputs pos, vel, ff of the actuator of `holding_model` at its steps, (steps, 3), and how many make a sample."""
-    substeps = round((time[1] - time[0]) / timestep) if time.size > 1 else 1
-    ticks = time[0] + np.arange((time.size - 1) * substeps + 1) * timestep
-    wanted = np.interp(ticks, time, velocity)
-    # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts.
-    lead = np.interp(ticks, time, position) + timestep / 2.0 * wanted
-    feedforward = np.interp(ticks + timestep / 2.0 + misalignment, time, effort)
-    return np.stack([lead, wanted, feedforward], axis=-1), substeps
+    time: Array
+    position: Array
+    velocity: Array
+    effort: Array
+    timestep: float
+    substeps: int
+    misalignment: float
+
+    @property
+    def steps(self) -> int:
+        """Steps from the first sample to the last, both counted."""
+        return (self.time.size - 1) * self.substeps + 1
+
+    def __call__(self, start: int, stop: int) -> Array:
+        """Inputs from a step to before another, (steps, 3)."""
+        ticks = self._ticks(start, stop)
+        wanted = np.interp(ticks, self.time, self.velocity)
+        # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts.
+        lead = np.interp(ticks, self.time, self.position) + self.timestep / 2.0 * wanted
+        return np.stack([lead, wanted, self.feedforward(start, stop)], axis=-1)
+
+    def feedforward(self, start: int, stop: int) -> Array:
+        """The effort alone, (steps,)."""
+        return np.interp(self._ticks(start, stop) + self.timestep / 2.0 + self.misalignment, self.time, self.effort)
+
+    def _ticks(self, start: int, stop: int) -> Array:
+        return self.time[0] + np.arange(start, stop) * self.timestep
