@@ -91,7 +91,7 @@ def simulate(
     """Simulate the axis of a rig in MuJoCo; write its trace and, beside it, the truth."""
     axis = load_rig(rig)
     with progress(f"simulating {axis.name}") as done:
-        present = [parse_effect(text, axis.linear) for text in effect or ()]
+        present = [parse_effect(text, axis.axis_kind) for text in effect or ()]
         simulated = run_simulation(axis, profile, seed, progress=done, effects=present)
     write(simulated.trace, out)
     tell_files([out, write_truth(out, simulated.truth)])
@@ -151,7 +151,7 @@ def identify(
     if json != Path("-"):
         console().print(estimate_table(estimate, f"{axis.name}: {trace.name}"))
         if refinement is not None:
-            typer.echo(refinement_line(refinement, axis.linear))
+            typer.echo(refinement_line(refinement, axis.axis_kind))
         tell_files(files)
     tell_warnings(estimate.warnings)
 

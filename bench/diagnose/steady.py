@@ -17,6 +17,7 @@ import scipy.optimize
 import scipy.stats
 from numpy.typing import NDArray
 
+from bench.axis_kind import AxisKind
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Base, Signals
 from bench.errors import InputError, UndeterminedError
@@ -68,7 +69,7 @@ class SteadyFriction:
     Attributes:
         velocity, effort: a point for each recording - rad/s (m/s), N*m (N) - (n,).
         effort_unit: N*m, N, or what the rig allows.
-        linear: whether the axis moves in metres.
+        kind: of the axis.
         plain, best: curves without an effect and with the one that explains most; the same where physics allows none.
         base: K_w and K_0 of the curve that holds; inertia nan.
         offset: M_0 of that curve; None where the named effect holds a constant torque, which no map tells from it.
@@ -81,7 +82,7 @@ class SteadyFriction:
     velocity: Array
     effort: Array
     effort_unit: str
-    linear: bool
+    kind: AxisKind
     plain: Curve
     best: Curve
     base: Base
@@ -121,7 +122,7 @@ def steady_friction(recordings: Sequence[Trace], rig: Rig) -> SteadyFriction:
     values = dict(catalogue()[name].values(kept.theta[3:].tolist(), kept.shape, base)) if name else {}
     left = (float(np.sqrt(plain.squares / total)), float(np.sqrt(best.squares / total)))
     return SteadyFriction(
-        velocity, effort, unit, rig.linear, plain, best, base, offset, name, values, probability, left
+        velocity, effort, unit, rig.axis_kind, plain, best, base, offset, name, values, probability, left
     )
 
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from rich import box
 from rich.table import Table
 
+from bench.axis_kind import KINDS
 from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where import Where
@@ -223,5 +224,5 @@ def write_diagnosis(out: Path, diagnosis: Diagnosis, title: str) -> list[Path]:
 
 
 def _nameless(diagnosis: Diagnosis) -> str:
-    kind = "linear" if diagnosis.velocity.unit == "m/s" else "rotary"
-    return f'schema = "bench.model/1"\nkind = "{kind}"\n'
+    kind = next(kind for kind in KINDS if kind.speed_unit == diagnosis.velocity.unit)
+    return f'schema = "bench.model/1"\nkind = "{kind.name}"\n'

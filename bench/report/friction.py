@@ -13,7 +13,6 @@ from rich.table import Table
 
 from bench.diagnose.quantities import unit_of_quantity
 from bench.diagnose.steady import CHANCE, SteadyFriction
-from bench.identify.names import parameter_name, parameter_unit
 from bench.identify.regressors import COULOMB, OFFSET, VISCOUS
 from bench.report.figures import MEASURED, MODELLED, REST, save_as_named
 
@@ -103,7 +102,7 @@ def draw_friction(found: SteadyFriction, title: str, path: Path) -> None:
 
 
 def _speed_unit(found: SteadyFriction) -> str:
-    return "m/s" if found.linear else "rad/s"
+    return found.kind.speed_unit
 
 
 def _base(found: SteadyFriction) -> dict[str, tuple[float, str]]:
@@ -111,7 +110,7 @@ def _base(found: SteadyFriction) -> dict[str, tuple[float, str]]:
     if found.offset is not None:
         columns[OFFSET] = found.offset
     return {
-        parameter_name(column, found.linear): (value, parameter_unit(column, found.linear, found.effort_unit))
+        found.kind.parameter(column): (value, found.kind.parameter_unit(column, found.effort_unit))
         for column, value in columns.items()
     }
 
@@ -120,7 +119,7 @@ def _values(found: SteadyFriction) -> dict[str, tuple[float, str]]:
     if found.name is None:
         return {}
     return {
-        name: (value, unit_of_quantity(found.name, name, found.linear, found.effort_unit))
+        name: (value, unit_of_quantity(found.name, name, found.kind, found.effort_unit))
         for name, value in found.values.items()
     }
 

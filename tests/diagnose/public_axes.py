@@ -13,7 +13,7 @@ from tests.shared import SHARED
 
 DATA = SHARED / "data"
 
-EMPS = Rig.model_validate(
+EMPS = Rig.of(
     {
         "name": "EMPS",
         "kind": "linear",
@@ -33,11 +33,10 @@ EMPS = Rig.model_validate(
                 "position_reference": "qg [m]",
             }
         },
-    },
-    context={"linear": True},
+    }
 )
 
-LAAS = Rig.model_validate(
+LAAS = Rig.of(
     {
         "name": "LAAS",
         "kind": "rotary",
@@ -50,8 +49,7 @@ LAAS = Rig.model_validate(
                 "velocity_reference": "Reference Velocity [rad/s]",
             }
         },
-    },
-    context={"linear": False},
+    }
 )
 
 
@@ -146,7 +144,7 @@ def holding_currents(harmonics):
 
 
 #: EPOS4 reports torque as a share of the motor's 9.84 mN*m.
-SCREWS = Rig.model_validate(
+SCREWS = Rig.of(
     {
         "name": "screw drive",
         "kind": "rotary",
@@ -157,8 +155,7 @@ SCREWS = Rig.model_validate(
                 "torque": "Torque actual value averaged [%]",
             }
         },
-    },
-    context={"linear": False},
+    }
 )
 
 
@@ -169,7 +166,6 @@ def steady_speeds(drive):
 
 
 #: As published with the recordings: kT 0.387 N*m/A, R 4.02 ohm; the pendulum is left for the diagnosis to find.
-XL330 = Rig.model_validate(
-    {"name": "XL330", "kind": "rotary", "motor": {"torque_constant": "0.387 N*m/A", "resistance": "4.02 ohm"}},
-    context={"linear": False},
+XL330 = Rig.of(
+    {"name": "XL330", "kind": "rotary", "motor": {"torque_constant": "0.387 N*m/A", "resistance": "4.02 ohm"}}
 )

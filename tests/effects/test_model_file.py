@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from bench.axis_kind import LINEAR
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel
@@ -26,7 +27,7 @@ def test_everything_comes_back(tmp_path):
 
 def test_linear_axis_without_winding_comes_back(tmp_path):
     effects = (Present.of("cogging_torque", {"amplitude": 1.0, "harmonic": 2513.0}),)
-    parameters = AxisParameters(95.1, 203.5, 20.4, -3.2, 0.0, linear=True)
+    parameters = AxisParameters(95.1, 203.5, 20.4, -3.2, 0.0, kind=LINEAR)
     stored = StoredModel("slide", AxisModel(parameters, effects))
     toml, _ = write_model(tmp_path, stored)
     assert load_model(toml) == stored
