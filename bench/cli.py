@@ -15,10 +15,10 @@ from bench.console import JsonOption, RigOption, console, tell_files, tell_warni
 from bench.demo import demo as run_demo
 from bench.diagnose.diagnosis import diagnose as run_diagnosis
 from bench.diagnose.replay import replay as run_replay
-from bench.diagnose.steady import steady_friction
 from bench.effects.present import named, parse_effect
 from bench.errors import BenchError, InputError
 from bench.files import write_text
+from bench.friction_map.map import friction_map
 from bench.identify.estimate import Estimate
 from bench.identify.lab import identify_as_in_the_lab
 from bench.identify.refine import Refinement
@@ -205,7 +205,7 @@ def friction(
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
     axis = load_rig(rig)
-    found = steady_friction([read(trace, axis.trace.columns) for trace in traces], axis)
+    found = friction_map([read(trace, axis.trace.columns) for trace in traces], axis)
     if out is not None:
         draw_friction(found, axis.name, out)
     if json is not None:

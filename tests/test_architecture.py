@@ -16,6 +16,7 @@ LAYERS = (
     {"effects"},
     {"plant"},
     {"identify"},
+    {"friction_map"},
     {"diagnose"},
     {"validate"},
     {"lab"},

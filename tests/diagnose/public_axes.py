@@ -144,27 +144,6 @@ def holding_currents(harmonics):
 
 
 #: EPOS4 reports torque as a share of the motor's 9.84 mN*m.
-SCREWS = Rig.of(
-    {
-        "name": "screw drive",
-        "kind": "rotary",
-        "motor": {"rated_torque": "9.84 mN*m"},
-        "trace": {
-            "columns": {
-                "velocity": "Velocity actual value averaged [rpm]",
-                "torque": "Torque actual value averaged [%]",
-            }
-        },
-    }
-)
-
-
-def steady_speeds(drive):
-    """Recordings of one screw drive, each at one speed."""
-    files = sorted((DATA / f"tro2021_screw/driveNo{drive}/steady_state").rglob("*.csv"))
-    return [read(path, SCREWS.trace.columns) for path in files]
-
-
 #: As published with the recordings: kT 0.387 N*m/A, R 4.02 ohm; the pendulum is left for the diagnosis to find.
 XL330 = Rig.of(
     {"name": "XL330", "kind": "rotary", "motor": {"torque_constant": "0.387 N*m/A", "resistance": "4.02 ohm"}}
