@@ -1,5 +1,4 @@
-"""A recording of the lab in SI units: speed and current as recorded, acceleration and torque as the course makes "
-"them."""
+"""A recording of the lab in SI: speed and current as recorded, acceleration and torque as the course makes them."""
 
 from __future__ import annotations
 
