@@ -15,10 +15,10 @@ from bench.console import JsonOption, RigOption, console, tell_files, tell_warni
 from bench.demo import demo as run_demo
 from bench.diagnose.diagnosis import diagnose as run_diagnosis
 from bench.diagnose.replay import replay as run_replay
-from bench.diagnose.steady import steady_friction
 from bench.effects.present import named, parse_effect
 from bench.errors import BenchError, InputError
 from bench.files import write_text
+from bench.friction_map.map import friction_map
 from bench.identify.estimate import Estimate
 from bench.identify.lab import identify_as_in_the_lab
 from bench.identify.refine import Refinement
@@ -91,7 +91,7 @@ def simulate(
     """Simulate the axis of a rig in MuJoCo; write its trace and, beside it, the truth."""
     axis = load_rig(rig)
     with progress(f"simulating {axis.name}") as done:
-        present = [parse_effect(text, axis.linear) for text in effect or ()]
+        present = [parse_effect(text, axis.axis_kind) for text in effect or ()]
         simulated = run_simulation(axis, profile, seed, progress=done, effects=present)
     write(simulated.trace, out)
     tell_files([out, write_truth(out, simulated.truth)])
@@ -151,7 +151,7 @@ def identify(
     if json != Path("-"):
         console().print(estimate_table(estimate, f"{axis.name}: {trace.name}"))
         if refinement is not None:
-            typer.echo(refinement_line(refinement, axis.linear))
+            typer.echo(refinement_line(refinement, axis.axis_kind))
         tell_files(files)
     tell_warnings(estimate.warnings)
 
@@ -205,7 +205,7 @@ def friction(
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
     axis = load_rig(rig)
-    found = steady_friction([read(trace, axis.trace.columns) for trace in traces], axis)
+    found = friction_map([read(trace, axis.trace.columns) for trace in traces], axis)
     if out is not None:
         draw_friction(found, axis.name, out)
     if json is not None:

@@ -37,6 +37,8 @@ class Quantity:
         symbol: its letter in equations, e.g. `J`.
         unit: SI unit as pint reads it, e.g. `kg*m**2`.
         lower, upper: closed bounds in that unit.
+        angle: whether it stays an angle on a linear axis, where other angles become lengths.
+        linear_unit: SI unit on a linear axis, where it is not the rotary one with metres and newtons in it.
     """
 
     name: str
@@ -44,6 +46,8 @@ class Quantity:
     unit: str
     lower: float = -math.inf
     upper: float = math.inf
+    angle: bool = False
+    linear_unit: str | None = None
 
 
 @cache

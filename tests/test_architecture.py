@@ -10,12 +10,13 @@ SOURCES = sorted((ROOT / "bench").rglob("*.py"))
 
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
-    {"__init__", "errors", "units", "assets", "files"},
+    {"__init__", "errors", "units", "axis_kind", "assets", "files"},
     {"trace"},
     {"rig"},
     {"effects"},
     {"plant"},
     {"identify"},
+    {"friction_map"},
     {"diagnose"},
     {"validate"},
     {"lab"},

@@ -45,7 +45,7 @@ def stored_model(fitted: Fit, beside: Sequence[Present], rig: Rig) -> StoredMode
     for index, effect in enumerate(fitted.hypothesis.effects):
         if effect.name in (ELASTIC, BACKLASH):
             motor = inertia - float(fitted.strengths(index)[0])
-    base = AxisParameters(inertia, max(viscous, 0.0), max(coulomb, 0.0), 0.0, min(motor, inertia), rig.linear)
+    base = AxisParameters(inertia, max(viscous, 0.0), max(coulomb, 0.0), 0.0, min(motor, inertia), rig.axis_kind)
     present = [
         present_of(effect.name, reported(effect, fitted.strengths(index), fitted.base))
         for index, effect in enumerate(fitted.hypothesis.effects)

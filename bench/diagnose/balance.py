@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,27 +61,25 @@ class Balance:
         """RMS of measured less modelled torque along a recording - N*m (N)."""
         return float(np.sqrt(np.mean((bench.effort - self.torque(bench)) ** 2)))
 
-    def toml(self) -> str:
-        """The table `[torque_balance]` of a `model.toml`."""
-        lines = [
-            "",
-            "# The same model as coefficients of the torque balance, for `bench replay`; SI.",
-            "[torque_balance]",
-            f"recording = {_quoted(self.recording)}",
-            f"filter_width = {self.width!r}",
-            f"mains = [{_listed(self.hypothesis.mains)}]",
-            f"coefficients = [{_listed(self.theta)}]",
-        ]
+    def table(self) -> dict[str, Any]:
+        """The table `torque_balance` of a `model.toml`: the model as coefficients, for `bench replay` - SI."""
         loads = self.hypothesis.loads
-        for index, (effect, level) in enumerate(zip(self.hypothesis.effects, self.hypothesis.levels, strict=True)):
-            lines += ["", "[[torque_balance.effects]]", f'name = "{effect.name}"']
-            lines += [f"shape = [{_listed(effect.shape)}]", f"level = [{_listed(level)}]"]
-            lines += [] if loads is None else [f"load = [{_listed(loads[index])}]"]
-        return "\n".join(lines) + "\n"
+        effects = [
+            {"name": effect.name, "shape": _listed(effect.shape), "level": _listed(level)}
+            | ({} if loads is None else {"load": _listed(loads[index])})
+            for index, (effect, level) in enumerate(zip(self.hypothesis.effects, self.hypothesis.levels, strict=True))
+        ]
+        return {
+            "recording": self.recording,
+            "filter_width": float(self.width),
+            "mains": _listed(self.hypothesis.mains),
+            "coefficients": _listed(self.theta),
+            "effects": effects,
+        }
 
     @classmethod
     def from_table(cls, table: dict) -> Balance:
-        """Balance of the table that `toml` wrote; KeyError, TypeError or ValueError if it is none."""
+        """Balance of the table that `table` gave; KeyError, TypeError or ValueError if it is none."""
         effects = tuple(
             Named(str(entry["name"]), tuple(float(value) for value in entry["shape"]))
             for entry in table.get("effects", [])
@@ -95,9 +94,5 @@ class Balance:
         return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
 
 
-def _listed(values: Iterable[float]) -> str:
-    return ", ".join(repr(float(value)) for value in values)
-
-
-def _quoted(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+def _listed(values: Iterable[float]) -> list[float]:
+    return [float(value) for value in values]

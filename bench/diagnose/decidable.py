@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from bench.axis_kind import AxisKind
 from bench.diagnose.fit import Fit, fit
 from bench.diagnose.hypothesis import Hypothesis
 from bench.diagnose.search import SIGNIFICANT, row_correlation
@@ -13,7 +14,6 @@ from bench.diagnose.workbench import Workbench, clear_motion
 from bench.errors import InputError, UndeterminedError
 from bench.identify.determined import DIRECTION_SHARE, require_friction, require_inertia
 from bench.identify.estimate import Parameter
-from bench.identify.names import parameter_name
 from bench.identify.normal_equations import normal_equations
 from bench.identify.regressors import COULOMB, OFFSET, regressors
 from bench.rig.rig import Rig
@@ -61,8 +61,8 @@ def require_decidable(trace: Trace, rig: Rig, bench: Workbench) -> None:
     effort, unit = rig.net_effort(trace)
     rows = regressors(motion(trace, effort, bench.conditioning))
     equations = normal_equations(rows, 8.0 * bench.conditioning.filter.width, 512)
-    require_inertia(equations, rig.linear)
-    require_friction(equations, rig.linear)
+    require_inertia(equations, rig.axis_kind)
+    require_friction(equations, rig.axis_kind)
     require_audible(bench, fit(bench, Hypothesis()), unit, rig.linear)
 
 
@@ -71,11 +71,11 @@ def one_way(bench: Workbench) -> bool:
     return 0.5 * (1.0 - abs(_mean_direction(bench))) < DIRECTION_SHARE
 
 
-def untold(bench: Workbench, linear: bool) -> list[str]:
+def untold(bench: Workbench, kind: AxisKind) -> list[str]:
     """A warning of what a motion in one direction leaves open; what else it tells stays told."""
     if not one_way(bench):
         return []
-    offset, friction = parameter_name(OFFSET, linear), parameter_name(COULOMB, linear)
+    offset, friction = kind.parameter(OFFSET), kind.parameter(COULOMB)
     return [
         f"the axis moves {'forward' if _mean_direction(bench) > 0.0 else 'backward'} only: {friction} holds any "
         f"{offset} too, and no effect on friction was sought; record both directions for that"

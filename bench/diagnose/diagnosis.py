@@ -23,7 +23,6 @@ from bench.diagnose.suspicious import suspicions
 from bench.diagnose.where import Where, where
 from bench.identify.determined import require_significant
 from bench.identify.estimate import Parameter
-from bench.identify.names import parameter_name, parameter_unit
 from bench.identify.regressors import INERTIA
 from bench.plant.model_file import StoredModel
 from bench.rig.rig import Rig
@@ -107,10 +106,10 @@ def require_weight(recordings: Recordings, fitted: Fit) -> None:
         UndeterminedError: its interval holds zero.
         InputError: it is negative.
     """
-    linear = recordings.rig.linear
-    units = {parameter_name(INERTIA, linear): parameter_unit(INERTIA, linear, recordings.unit)}
+    kind = recordings.rig.axis_kind
+    units = {kind.parameter(INERTIA): kind.parameter_unit(INERTIA, recordings.unit)}
     (inertia,) = base_parameters(fitted, uncertain(recordings.bench, fitted), units).values()
-    require_significant(inertia, linear)
+    require_significant(inertia, kind)
     require_positive(inertia, recordings.trace.origin)
 
 
@@ -139,7 +138,7 @@ def show(recordings: Recordings, gap: Fit, located: list[Where], suspects: Suspe
         balance=Balance.of(bench, whole).repeating(added.repeats),
         warnings=[
             *suspicions(recordings.trace, rig, kept.parameters),
-            *untold(bench, rig.linear),
+            *untold(bench, rig.axis_kind),
             *impacts(whole, unit),
             *added.warnings,
         ],

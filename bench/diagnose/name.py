@@ -20,7 +20,6 @@ from bench.effects.physics import Friction
 from bench.effects.present import Present
 from bench.identify.estimate import Parameter
 from bench.identify.load_inertia import load_inertia
-from bench.identify.names import parameter_name, parameter_unit
 from bench.identify.regressors import COULOMB, INERTIA, VISCOUS
 
 #: Names that no recording of torque and motion tells apart.
@@ -93,7 +92,7 @@ def named(recordings: Recordings, grown: Grown, suspects: Suspects) -> tuple[lis
     limit = suspects.limit if VOLTAGE_LIMIT in beside else None
     numbers = uncertain(bench, fitted)
     columns = (INERTIA, VISCOUS, COULOMB)
-    units = {parameter_name(c, rig.linear): parameter_unit(c, rig.linear, unit) for c in columns}
+    units = {rig.axis_kind.parameter(c): rig.axis_kind.parameter_unit(c, unit) for c in columns}
     parameters = base_parameters(fitted, numbers, units)
     parameters |= load_inertia(parameters, rig)
     tick = rig.drive.control_period if rig.drive is not None else 0.0
@@ -102,7 +101,7 @@ def named(recordings: Recordings, grown: Grown, suspects: Suspects) -> tuple[lis
     for index, effect in enumerate(fitted.hypothesis.effects):
         less = fit(bench, fitted.hypothesis.without(index))
         evidence = {"residual_without": less.rms, "residual_with": fitted.rms, "noise_floor": fitted.floor}
-        found = effect_parameters(fitted, numbers, index, rig.linear, unit)
+        found = effect_parameters(fitted, numbers, index, rig.axis_kind, unit)
         ambiguous = AMBIGUOUS.get(effect.name, ())
         if effect.name == CURRENT_LAG and told_apart:
             ambiguous = ()

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.axis_kind import AxisKind
 from bench.diagnose.backlash import SCALE
 from bench.diagnose.candidates import EVENT
 from bench.diagnose.columns import build
@@ -165,7 +166,7 @@ def base_parameters(fitted: Fit, numbers: Uncertain, units: Mapping[str, str]) -
 
 
 def effect_parameters(
-    fitted: Fit, numbers: Uncertain, index: int, linear: bool, effort_unit: str
+    fitted: Fit, numbers: Uncertain, index: int, kind: AxisKind, effort_unit: str
 ) -> dict[str, Parameter]:
     """Quantities of one effect with their intervals.
 
@@ -173,7 +174,7 @@ def effect_parameters(
         fitted: the fit.
         numbers: its free numbers.
         index: of the effect.
-        linear: whether the axis is linear.
+        kind: of the axis.
         effort_unit: N*m, N, or what the rig allows.
     """
     effect = fitted.hypothesis.effects[index]
@@ -190,7 +191,7 @@ def effect_parameters(
     centre = values(numbers.values)
     deviations = _deviations(values, numbers)
     return {
-        name: _parameter(value, deviations[name], unit_of_quantity(effect.name, name, linear, effort_unit))
+        name: _parameter(value, deviations[name], unit_of_quantity(effect.name, name, kind, effort_unit))
         for name, value in centre.items()
     }
 
@@ -230,16 +231,12 @@ def reported(effect: Named, strengths: Array, base: Base) -> Mapping[str, float]
     return catalogue()[effect.name].values(strengths.tolist(), effect.shape, base)
 
 
-def unit_of_quantity(effect: str, quantity: str, linear: bool, effort_unit: str) -> str:
+def unit_of_quantity(effect: str, quantity: str, kind: AxisKind, effort_unit: str) -> str:
     """Unit of a reported quantity."""
     if quantity == "resonance_frequency":
         return "Hz"
-    if quantity == "harmonic" and linear:
-        return "rad/m"
-    known = {q.name: q.unit for q in physics()[effect].quantities} if effect in physics() else {}
-    unit = known.get(quantity, "dimensionless")
-    unit = unit.replace("rad", "m") if linear and quantity != "phase" else unit
-    return unit.replace("N*m", effort_unit)
+    known = {q.name: q for q in physics()[effect].quantities} if effect in physics() else {}
+    return kind.unit(known[quantity], effort_unit) if quantity in known else "dimensionless"
 
 
 def _parameter(value: float, deviation: float, unit: str) -> Parameter:

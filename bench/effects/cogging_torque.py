@@ -26,8 +26,8 @@ class CoggingTorque(Mechanism, Effect):
     summary = "torque periodic in position, independent of current"
     quantities = (
         Quantity("amplitude", "A", "N*m", lower=0.0),
-        Quantity("harmonic", "n", "dimensionless", lower=2.0),
-        Quantity("phase", "phi", "rad"),
+        Quantity("harmonic", "n", "dimensionless", lower=2.0, linear_unit="rad/m"),
+        Quantity("phase", "phi", "rad", angle=True),
     )
     shapes = (Shape(quantities[1], tuple(float(n) for n in range(2, 81)), whole=True),)
 

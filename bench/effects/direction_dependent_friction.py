@@ -29,6 +29,7 @@ class DirectionDependentFriction(Friction, Effect):
         Quantity("coulomb_difference", "D_0", "N*m"),
         Quantity("viscous_difference", "D_w", "N*m*s/rad"),
     )
+    of_speed_alone = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """1/2 and |omega|/2."""

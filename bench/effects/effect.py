@@ -87,6 +87,7 @@ class Effect(ABC):
         searched: whether a search may try its columns over the grids of its shapes.
         scales_friction: whether it multiplies the level of dry friction, what other effects add to it included.
         may_load: whether it may act on the load of a coupling rather than on the motor.
+        of_speed_alone: whether its torque follows from speed alone, so that a map of friction over speed may hold it.
     """
 
     name: str
@@ -96,6 +97,7 @@ class Effect(ABC):
     searched: bool = True
     scales_friction: bool = False
     may_load: bool = False
+    of_speed_alone: bool = False
 
     @abstractmethod
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

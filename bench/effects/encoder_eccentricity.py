@@ -24,7 +24,7 @@ class EncoderEccentricity(Sensing):
 
     name = "encoder_eccentricity"
     summary = "measured position errs once per revolution"
-    quantities = (Quantity("amplitude", "e", "rad", lower=0.0, upper=0.5), Quantity("phase", "phi", "rad"))
+    quantities = (Quantity("amplitude", "e", "rad", lower=0.0, upper=0.5), Quantity("phase", "phi", "rad", angle=True))
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

@@ -23,7 +23,7 @@ class PositionDependentFriction(Friction, Effect):
     summary = "friction level varies with position"
     quantities = (
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.5),
-        Quantity("phase", "phi", "rad"),
+        Quantity("phase", "phi", "rad", angle=True),
     )
 
     scales_friction = True

@@ -24,8 +24,8 @@ class PositionDependentInertia(Mechanism, Effect):
     summary = "inertia varies with position, with its velocity-squared torque"
     quantities = (
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.0),
-        Quantity("harmonic", "n", "dimensionless", lower=1.0),
-        Quantity("phase", "phi", "rad"),
+        Quantity("harmonic", "n", "dimensionless", lower=1.0, linear_unit="rad/m"),
+        Quantity("phase", "phi", "rad", angle=True),
     )
     shapes = (Shape(quantities[1], (1.0, 2.0, 3.0, 4.0), whole=True),)
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from bench.axis_kind import ROTARY, AxisKind
 from bench.effects.catalogue import physics
 from bench.effects.physics import Axis, Physics
 from bench.errors import InputError
@@ -92,14 +93,7 @@ def known_quantity(effect: Physics, key: str, where: str) -> Quantity:
     return effect.quantities[names.index(key)]
 
 
-def unit_of(quantity: Quantity, linear: bool) -> str:
-    """Unit on a rotary or linear axis: metres for radians, newtons for newton metres; a phase stays an angle."""
-    if not linear or quantity.name == "phase":
-        return quantity.unit
-    return quantity.unit.replace("N*m", "N").replace("rad", "m")
-
-
-def parse_effect(text: str, linear: bool = False) -> Present:
+def parse_effect(text: str, kind: AxisKind = ROTARY) -> Present:
     """`NAME:key=value,key=value` as on the command line; a value without a unit is SI.
 
     Raises:
@@ -114,7 +108,7 @@ def parse_effect(text: str, linear: bool = False) -> Present:
         if not sign:
             raise InputError(where, f"found '{part}'", "allowed: key=value, separated by commas")
         quantity = known_quantity(effect, key, where)
-        values[key] = parse_value(value.strip("\"'"), unit_of(quantity, linear), f"{where}: {key}")
+        values[key] = parse_value(value.strip("\"'"), kind.unit(quantity), f"{where}: {key}")
     return Present.of(effect.name, values, where)
 
 

@@ -25,6 +25,7 @@ class QuadraticDrag(Mechanism, Effect):
     summary = "resisting torque grows with velocity*|velocity|"
     quantities = (Quantity("quadratic_drag", "k_q", "N*m*s**2/rad**2", lower=0.0),)
     may_load = True
+    of_speed_alone = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """omega*|omega|."""

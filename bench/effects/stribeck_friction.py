@@ -27,6 +27,7 @@ class StribeckFriction(Friction, Effect):
         Quantity("stribeck_velocity", "omega_s", "rad/s", lower=0.0),
     )
     shapes = (Shape(quantities[1], (0.3, 0.6, 1.2, 2.5, 5.0, 10.0, 20.0)),)
+    of_speed_alone = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """exp(-(omega/omega_s)**2) against the motion."""

@@ -25,8 +25,8 @@ class TorqueRipple(Mechanism, Effect):
     summary = "torque periodic in position, proportional to current"
     quantities = (
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.0),
-        Quantity("harmonic", "n", "dimensionless", lower=1.0),
-        Quantity("phase", "phi", "rad"),
+        Quantity("harmonic", "n", "dimensionless", lower=1.0, linear_unit="rad/m"),
+        Quantity("phase", "phi", "rad", angle=True),
     )
     shapes = (Shape(quantities[1], tuple(float(n) for n in range(1, 41)), whole=True),)
 

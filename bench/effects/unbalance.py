@@ -23,7 +23,7 @@ class Unbalance(Mechanism, Effect):
 
     name = "unbalance"
     summary = "an eccentric mass under gravity, once per revolution"
-    quantities = (Quantity("amplitude", "A", "N*m", lower=0.0), Quantity("phase", "phi", "rad"))
+    quantities = (Quantity("amplitude", "A", "N*m", lower=0.0), Quantity("phase", "phi", "rad", angle=True))
     may_load = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS, AxisKind
 from bench.errors import UndeterminedError
 from bench.identify.estimate import Parameter
-from bench.identify.names import parameter_name
 from bench.identify.normal_equations import NormalEquations
-from bench.identify.regressors import COULOMB, INERTIA, OFFSET, VISCOUS
 
 #: Rows that the regression must have for each of its columns.
 ROWS_PER_COLUMN = 20
@@ -25,34 +24,34 @@ RECORD = {
 }
 
 
-def require_determined(equations: NormalEquations, linear: bool) -> None:
+def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
     """UndeterminedError naming the first quantity that the rows leave open.
 
     Args:
         equations: of every column, the constant one among them.
-        linear: whether the axis is linear.
+        kind: of the axis.
     """
-    require_inertia(equations, linear)
+    require_inertia(equations, kind)
     side = only_direction(equations)
     if side is not None:
-        name = f"{parameter_name(COULOMB, linear)} apart from {parameter_name(OFFSET, linear)}".replace("_", " ")
+        name = f"{kind.spoken(COULOMB)} apart from {kind.spoken(OFFSET)}"
         raise UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
-    require_friction(equations, linear)
+    require_friction(equations, kind)
 
 
-def require_inertia(equations: NormalEquations, linear: bool) -> None:
+def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
     """UndeterminedError where the rows are too few or leave the inertia open."""
     least = ROWS_PER_COLUMN * len(equations.names)
     if equations.count < least:
         reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
-        raise UndeterminedError(parameter_name(INERTIA, linear).replace("_", " "), reason, RECORD[INERTIA])
-    _require_excited(equations, INERTIA, linear)
+        raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])
+    _require_excited(equations, INERTIA, kind)
 
 
-def require_friction(equations: NormalEquations, linear: bool) -> None:
+def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
     """UndeterminedError where the rows leave viscous or Coulomb friction open beside the inertia."""
     for column in (VISCOUS, COULOMB):
-        _require_excited(equations, column, linear)
+        _require_excited(equations, column, kind)
 
 
 def only_direction(equations: NormalEquations) -> str | None:
@@ -64,7 +63,7 @@ def only_direction(equations: NormalEquations) -> str | None:
     return "forward" if mean_direction > 0.0 else "backward"
 
 
-def _require_excited(equations: NormalEquations, column: str, linear: bool) -> None:
+def _require_excited(equations: NormalEquations, column: str, kind: AxisKind) -> None:
     """A column must keep power above its noise, and enough of it beside the others."""
     chosen = equations.select([column, *(name for name in (INERTIA, VISCOUS, COULOMB) if name != column)])
     power = np.diag(chosen.gram.sum(axis=0))
@@ -73,12 +72,12 @@ def _require_excited(equations: NormalEquations, column: str, linear: bool) -> N
     share = matrix[0, 0] - matrix[0, 1:] @ np.linalg.lstsq(matrix[1:, 1:], matrix[1:, 0], rcond=1e-9)[0]
     if not share >= INDEPENDENT_SHARE:
         reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
-        raise UndeterminedError(parameter_name(column, linear).replace("_", " "), reason, RECORD[column])
+        raise UndeterminedError(kind.spoken(column), reason, RECORD[column])
 
 
-def require_significant(inertia: Parameter, linear: bool) -> None:
+def require_significant(inertia: Parameter, kind: AxisKind) -> None:
     """UndeterminedError unless the interval of the inertia lies away from zero; the effort may be anything's then."""
     low, high = inertia.ci95
     if low <= 0.0 <= high:
         reason = f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero"
-        raise UndeterminedError(parameter_name(INERTIA, linear).replace("_", " "), reason, RECORD[INERTIA])
+        raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])

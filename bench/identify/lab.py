@@ -16,7 +16,6 @@ from bench.errors import InputError, UndeterminedError
 from bench.identify.determined import RECORD
 from bench.identify.estimate import Estimate, Parameter, Residual
 from bench.identify.load_inertia import load_inertia
-from bench.identify.names import parameter_name, parameter_unit
 from bench.identify.regressors import COULOMB, INERTIA, VISCOUS
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
@@ -98,17 +97,18 @@ def identify_as_in_the_lab(trace: Trace, rig: Rig) -> Estimate:
         InputError: a linear axis, or no velocity.
         UndeterminedError: too few samples faster than 20 rad/s.
     """
-    if rig.linear:
-        raise InputError(rig.source, "found a linear axis", "allowed: rotary; the course's thresholds are in rad/s")
+    if not rig.axis_kind.turns:
+        allowed = "allowed: rotary; the course's thresholds are in rad/s"
+        raise InputError(rig.source, f"found a {rig.kind} axis", allowed)
     torque, unit = rig.net_effort(trace)
     velocity = trace["velocity"]
     acceleration = np.concatenate([backward_difference(velocity[part], trace.sample_period) for part in trace.segments])
     fast = np.abs(velocity) >= LEAST_SPEED
     theta, std_error, error = least_squares(acceleration[fast], velocity[fast], torque[fast])
     parameters = {
-        parameter_name(column, False): Parameter(
+        rig.axis_kind.parameter(column): Parameter(
             float(value),
-            parameter_unit(column, False, unit),
+            rig.axis_kind.parameter_unit(column, unit),
             float(deviation),
             (float(value - reach), float(value + reach)),
         )

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from bench.errors import InputError
 from bench.identify.estimate import Estimate
 from bench.identify.load_inertia import load_inertia
-from bench.identify.names import parameter_name
 from bench.identify.regression import identify
 from bench.identify.regressors import COULOMB, INERTIA, OFFSET, VISCOUS
 from bench.plant.model import AxisParameters, build_spec
@@ -91,7 +90,7 @@ class _Tracking:
     def __init__(self, trace: Trace, rig: Rig) -> None:
         self.trace, self.rig = trace, rig
         self.columns = [INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else [])]
-        self.names = [parameter_name(column, rig.linear) for column in self.columns]
+        self.names = [rig.axis_kind.parameter(column) for column in self.columns]
         self.effort, _ = rig.net_effort(trace)
         self.velocity = measured_velocity(trace)
 
@@ -135,7 +134,7 @@ def _model(theta: Array, trace: Trace, rig: Rig, start: Estimate) -> mujoco.MjMo
         viscous_friction_coefficient=max(theta[1], 0.0),
         coulomb_friction=max(theta[2], 0.0),
         load_torque=theta[3] if theta.size > 3 else 0.0,
-        linear=rig.linear,
+        kind=rig.axis_kind,
     )
-    inertia = start[parameter_name(INERTIA, rig.linear)].value
+    inertia = start[rig.axis_kind.parameter(INERTIA)].value
     return holding_model(build_spec(axis, timestep), holding_cascade(inertia, timestep))

@@ -13,7 +13,6 @@ from bench.identify.covariance import long_run_covariance
 from bench.identify.determined import require_determined, require_significant
 from bench.identify.estimate import Estimate, Parameter, Residual
 from bench.identify.load_inertia import load_inertia
-from bench.identify.names import parameter_name, parameter_unit
 from bench.identify.normal_equations import NormalEquations, join, normal_equations
 from bench.identify.parallel import in_parallel
 from bench.identify.regressors import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, regressors
@@ -62,7 +61,8 @@ def solve(
     Intervals come from the residuals' own correlation, never narrower than the effort's white noise alone makes them,
     with Student's t at as many degrees of freedom as there are independent stretches.
     """
-    require_determined(equations, rig.linear)
+    kind = rig.axis_kind
+    require_determined(equations, kind)
     columns = [INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else []), MISALIGNMENT]
     chosen = equations.select(columns)
     inverse = np.linalg.inv(chosen.matrix)
@@ -75,15 +75,15 @@ def solve(
     std_error = np.sqrt(np.maximum(correlated, least))
     reach = stats.t.ppf(0.975, degrees) * std_error
     parameters = {
-        parameter_name(column, rig.linear): Parameter(
+        kind.parameter(column): Parameter(
             float(value),
-            parameter_unit(column, rig.linear, effort_unit),
+            kind.parameter_unit(column, effort_unit),
             float(error),
             (float(value - r), float(value + r)),
         )
         for column, value, error, r in zip(columns, theta, std_error, reach, strict=True)
     }
-    require_significant(parameters[parameter_name(INERTIA, rig.linear)], rig.linear)
+    require_significant(parameters[kind.parameter(INERTIA)], kind)
     parameters |= load_inertia(parameters, rig)
     power = max(chosen.residual_power(theta), 0.0)
     residual = Residual(
@@ -122,7 +122,7 @@ def _warnings(parameters: dict[str, Parameter], rig: Rig, conditioning: Conditio
             "a lag in the drive or its filters, which bench diagnose can tell"
         )
     for column in (INERTIA, VISCOUS, COULOMB):
-        name = parameter_name(column, rig.linear)
+        name = rig.axis_kind.parameter(column)
         found = parameters[name]
         if found.ci95[1] < 0.0:
             value = f"{found.value:.3g} {found.unit}"

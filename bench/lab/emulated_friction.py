@@ -41,8 +41,7 @@ def task(rig: Rig) -> Task:
     (viscous, coulomb), (other_viscous, other_coulomb) = by_place
     says = (
         f"Emulated, K_fric_w is {abs(viscous / other_viscous - 1.0):.2%} and K_fric_0 "
-        f"{abs(coulomb / other_coulomb - 1.0):.2%} "
-        "off what "
-        "the same friction in the mechanics gives: whoever reads current and speed cannot tell where friction sits.",
+        f"{abs(coulomb / other_coulomb - 1.0):.2%} off what the same friction in the mechanics gives: whoever reads "
+        "current and speed cannot tell where friction sits.",
     )
     return Task(KEY, TITLE, says, tuple(numbers))

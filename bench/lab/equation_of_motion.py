@@ -54,7 +54,6 @@ def task(rig: Rig) -> Task:
     )
     says = (
         f"With i = {RATIO:g} the motor feels J_load/i² and M_load/i. Simulated with {LOAD_TORQUE:g} N·m on the load "
-        "and identified "
-        "with a constant torque beside inertia and friction.",
+        "and identified with a constant torque beside inertia and friction.",
     )
     return Task(KEY, TITLE, says, numbers)

@@ -49,13 +49,11 @@ def task(rig: Rig) -> Task:
     late, step, bench = (errors[words] for words in ("least squares, out of step", "least squares, in step", "bench"))
     says = (
         f"RMS error over {REPETITIONS} recordings of the fast run. The backward difference is half a sample late: "
-        "taken as it "
-        f"is, J·α of that half sample goes into friction ({late[1]:.0f} % and {late[2]:.0f} %). In step (t_sync) "
-        f"{step[1]:.2g} % and {step[2]:.2g} % remain.",
+        f"taken as it is, J·α of that half sample goes into friction ({late[1]:.0f} % and {late[2]:.0f} %). In step "
+        f"(t_sync) {step[1]:.2g} % and {step[2]:.2g} % remain.",
         f"The bench's own is better still, J within {bench[0]:.2g} % against {step[0]:.2g} %, as one filter serves "
-        "torque, speed, "
-        "acceleration and sign alike: smoothing α alone shortens its peaks against the torque's, and its noise draws J "
-        "towards zero (or, in the mean of M/α, away from it, as 1/α is convex).",
+        "torque, speed, acceleration and sign alike: smoothing α alone shortens its peaks against the torque's, and "
+        "its noise draws J towards zero (or, in the mean of M/α, away from it, as 1/α is convex).",
     )
     return Task(KEY, TITLE, says, tuple(numbers))
 

@@ -35,9 +35,8 @@ def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
         says.append(
             f"At {volts}: least reserve to the peak torque {left.peak:.3g} N·m ({left.peak_share:.0%}) at "
             f"{speed[left.at] * RPM:.0f} rpm{beyond}. RMS torque {left.rms_torque:.3g} N·m at "
-            f"{left.mean_speed * RPM:.0f} rpm "
-            f"on average leaves {left.thermal:.3g} N·m ({left.thermal_share:.0%}) to the continuous torque"
-            f"{', the motor would overheat if this repeats' if left.thermal < 0.0 else ''}."
+            f"{left.mean_speed * RPM:.0f} rpm on average leaves {left.thermal:.3g} N·m ({left.thermal_share:.0%}) to "
+            f"the continuous torque{', the motor would overheat if this repeats' if left.thermal < 0.0 else ''}."
         )
         numbers += [
             Number(f"peak reserve, {volts}", left.peak, "N·m"),

@@ -1,5 +1,4 @@
-"""A recording of the lab in SI units: speed and current as recorded, acceleration and torque as the course makes "
-"them."""
+"""A recording of the lab in SI: speed and current as recorded, acceleration and torque as the course makes them."""
 
 from __future__ import annotations
 
@@ -49,8 +48,9 @@ def run_of(trace: Trace, rig: Rig, truth: Mapping[str, float] | None = None) -> 
     Raises:
         InputError: no velocity or current in it, a linear axis, or no torque constant in the rig.
     """
-    if trace.linear:
-        raise InputError(trace.origin, "found a linear axis", "allowed: a rotary one, velocity in deg/s, rad/s or rpm")
+    if not trace.axis_kind.turns:
+        allowed = "allowed: a rotary one, velocity in deg/s, rad/s or rpm"
+        raise InputError(trace.origin, f"found a {trace.axis_kind.name} axis", allowed)
     part = max(trace.segments, key=lambda segment: segment.stop - segment.start)
     velocity, current = trace["velocity"][part], trace["current"][part]
     return Run(

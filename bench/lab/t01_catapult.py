@@ -25,8 +25,10 @@ def by_normal_equations(matrix: Array, b: Array) -> Array:
 
 
 def by_orthogonal_solver(matrix: Array, b: Array) -> Array:
-    """R^-1 Q'b with A = QR: its error grows with the condition number itself (Golub, Van Loan, Matrix Computations, "
-    "5.3)."""
+    """R^-1 Q'b with A = QR: its error grows with the condition number itself.
+
+    Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 5.3.
+    """
     q, r = np.linalg.qr(matrix)
     return np.asarray(np.linalg.solve(r, q.T @ b), dtype=np.float64)
 
@@ -78,10 +80,8 @@ def compare_solvers(y: Array, z: Array) -> tuple[str, Chart]:
     )
     worst = next((k for k, value in enumerate(apart) if value > 1e-3), len(SHIFTS) - 1)
     says = (
-        f"(AᵀA)⁻¹Aᵀb and QR agree within {apart[0]:.1g} m here (condition number {condition[0]:.0f}). They part when A "
-        "is badly "
-        f"conditioned, for AᵀA has its square: with y measured from {SHIFTS[worst]:g} m away ({condition[worst]:.1g}) "
-        "the "
-        f"paths are {apart[worst]:.1g} m apart."
+        f"(AᵀA)⁻¹Aᵀb and QR agree within {apart[0]:.1g} m here (condition number {condition[0]:.0f}). They part when "
+        f"A is badly conditioned, for AᵀA has its square: with y measured from {SHIFTS[worst]:g} m away "
+        f"({condition[worst]:.1g}) the paths are {apart[worst]:.1g} m apart."
     )
     return says, chart

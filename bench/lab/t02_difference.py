@@ -34,8 +34,8 @@ def task() -> Task:
         TITLE,
         (
             f"On sin(t) at {SAMPLE_PERIOD * 1e3:g} ms the backward difference is at most {worst[0]:.2g} away from "
-            "cos(t), "
-            f"half a sample of delay; the bench's own derivative {worst[1]:.2g}. Its first value is 0 by definition.",
+            f"cos(t), half a sample of delay; the bench's own derivative {worst[1]:.2g}. Its first value is 0 by "
+            "definition.",
         ),
         (
             Number("largest error of the backward difference", worst[0], "1/s", SAMPLE_PERIOD / 2.0),

@@ -22,10 +22,8 @@ def task(rig: Rig) -> Task:
         TITLE,
         (
             f"From stall to peak the torque per ampere falls from {stall:.4g} to {peak:.4g} N·m/A, by "
-            f"{1 - peak / stall:.0%}. "
-            "The stator's iron saturates: more current no longer raises the flux in proportion, so torque grows more "
-            "slowly "
-            "than current.",
+            f"{1 - peak / stall:.0%}. The stator's iron saturates: more current no longer raises the flux in "
+            "proportion, so torque grows more slowly than current.",
         ),
         (Number("kT from stall", stall, "N·m/A"), Number("kT from peak", peak, "N·m/A")),
     )

@@ -89,10 +89,8 @@ def task(run: Run) -> Task:
         TITLE,
         (
             f"alpha_filt is the mean of {WIDTH} backward differences. It is {DELAY} samples late, half a sample of "
-            "that from "
-            "the difference itself; t_sync takes that back. Below 20 rad/s the sign of the speed is left out, as "
-            "friction is "
-            "no constant there.",
+            "that from the difference itself; t_sync takes that back. Below 20 rad/s the sign of the speed is left "
+            "out, as friction is no constant there.",
         ),
         (
             Number("samples remaining", float(kept.time.size), "1"),

@@ -57,9 +57,8 @@ def task(run: Run, rig: Rig, mains: float = 230.0) -> Task:
         TITLE,
         (
             f"The measured corner lies at {corner * RPM:.0f} rpm, {(corner - limit[1]) * RPM:+.0f} rpm from the "
-            "datasheet's; "
-            "task 11 says why. The corner is where the line through the falling current, from 90 to 50 % of its top, "
-            "meets the top.",
+            "datasheet's; task 11 says why. The corner is where the line through the falling current, from 90 to "
+            "50 % of its top, meets the top.",
         ),
         (
             Number("peak torque", float(torque.max()), "N·m", rig.motor.peak_torque if run.truth else None),

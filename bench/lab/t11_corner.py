@@ -111,14 +111,13 @@ def task(
     by_temperature, by_inductance = (found.cold - found.hot) * RPM, (found.inductive - found.cold) * RPM
     says = [
         f"Simulated hot and quasi-static the corner lies at {found.hot * RPM:.0f} rpm, cold at {found.cold * RPM:.0f} "
-        "rpm, cold "
-        f"with inductance at {found.inductive * RPM:.0f} rpm: {by_temperature:.0f} rpm come from the cold winding, "
-        f"{by_inductance:.0f} rpm from the inductance. A cold winding takes less voltage, so more is left for the "
-        "back-EMF; "
-        "and at the corner the inductance keeps the current up for L/R, in which speed rises by α·L/R.",
-        f"The winding warms by {found.runs[0].warming:.1f} K (hot) and {found.runs[1].warming:.1f} K (cold) during the "
-        "run-up, "
-        f"which keeps the hot corner {(found.hot - sheet) * RPM:+.0f} rpm from the datasheet's {sheet * RPM:.0f} rpm.",
+        f"rpm, cold with inductance at {found.inductive * RPM:.0f} rpm: {by_temperature:.0f} rpm come from the cold "
+        f"winding, {by_inductance:.0f} rpm from the inductance. A cold winding takes less voltage, so more is left "
+        "for the back-EMF; and at the corner the inductance keeps the current up for L/R, in which speed rises by "
+        "α·L/R.",
+        f"The winding warms by {found.runs[0].warming:.1f} K (hot) and {found.runs[1].warming:.1f} K (cold) during "
+        f"the run-up, which keeps the hot corner {(found.hot - sheet) * RPM:+.0f} rpm from the datasheet's "
+        f"{sheet * RPM:.0f} rpm.",
         _voltage_says(rig, mains),
     ]
     if measured is not None:
@@ -151,13 +150,10 @@ def _voltage_says(rig: Rig, mains: float) -> str:
     return (
         f"At {other.mains_voltage:g} V the same circuit has its corner at {predicted * RPM:.0f} rpm, the datasheet at "
         f"{other.corner_speed * RPM:.0f} rpm: the course's equation leaves out the voltage ω·p·L·Iq at a right angle "
-        "to the "
-        "back-EMF, which grows with speed. So part of what it counts as resistance is inductance. With both curves of "
-        "the "
-        f"datasheet met by U² = (R·Iq + Ke·ω)² + (ω·p·L·Iq)², the cold winding shifts the corner by {shift * RPM:.0f} "
-        "rpm "
-        f"only, and L/R at {COLD:g} °C is {time_constant * 1e3:.3g} ms over the number of pole pairs: the assumed "
-        f"{circuit.time_constant * 1e3:g} ms are of the right size."
+        "to the back-EMF, which grows with speed. So part of what it counts as resistance is inductance. With both "
+        "curves of the datasheet met by U² = (R·Iq + Ke·ω)² + (ω·p·L·Iq)², the cold winding shifts the corner by "
+        f"{shift * RPM:.0f} rpm only, and L/R at {COLD:g} °C is {time_constant * 1e3:.3g} ms over the number of pole "
+        f"pairs: the assumed {circuit.time_constant * 1e3:g} ms are of the right size."
     )
 
 

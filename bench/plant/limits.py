@@ -73,7 +73,7 @@ class MotionLimits:
         if viscous > 0.0:
             speed = min(speed, (RESISTING_SHARE * torque - standing) / viscous)
         acceleration = ACCELERATION_SHARE * (torque - standing - viscous * speed) / parameters.inertia
-        travel = math.inf if not rig.linear else (rig.load and rig.load.stroke) or TRAVEL
+        travel = math.inf if rig.axis_kind.turns else (rig.load and rig.load.stroke) or TRAVEL
         return cls(speed, acceleration, full, travel, period)
 
     @property

@@ -24,6 +24,7 @@ from dataclasses import dataclass, replace
 import mujoco
 
 from bench.assets import asset
+from bench.axis_kind import COULOMB, ROTARY, VISCOUS, AxisKind
 from bench.effects.mjcf import AXIS, LOAD, LOAD_TORQUE, MOTOR
 from bench.effects.mjcf import DRIVE as DRIVE
 from bench.errors import InputError
@@ -48,7 +49,7 @@ class AxisParameters:
         coulomb_friction: K_0 - N*m (N).
         load_torque: M_L, resists positive motion - N*m (N).
         motor_inertia: the part of J on the motor's side of a coupling - kg*m**2 (kg).
-        linear: whether the axis moves in metres.
+        kind: of the axis.
     """
 
     inertia: float
@@ -56,7 +57,7 @@ class AxisParameters:
     coulomb_friction: float = 0.0
     load_torque: float = 0.0
     motor_inertia: float = 0.0
-    linear: bool = False
+    kind: AxisKind = ROTARY
 
     @classmethod
     def from_rig(cls, rig: Rig) -> AxisParameters:
@@ -69,13 +70,11 @@ class AxisParameters:
         if simulation is None:
             raise InputError(f"{rig.source}: simulation", "missing", "a simulated axis needs a table [simulation]")
         load = rig.load or Load()
-        key = "moving_mass" if rig.linear else "moment_of_inertia"
-        motor = (rig.motor.moving_mass if rig.linear else rig.motor.rotor_inertia) or 0.0
-        motor += load.gear_inertia or 0.0
+        key = rig.axis_kind.inertia
+        motor = rig.motor.inertia + (load.gear_inertia or 0.0)
         inertia = getattr(simulation, key)
         if inertia is None:
-            carried = (load.disk_mass if rig.linear else load.disk_inertia) or 0.0
-            inertia = motor + load.reflected(carried)
+            inertia = motor + load.reflected(load.disk(rig.axis_kind))
         if inertia <= 0.0 or motor > inertia:
             raise InputError(
                 f"{rig.source}: simulation.{key}",
@@ -88,7 +87,7 @@ class AxisParameters:
             coulomb_friction=simulation.coulomb_friction,
             load_torque=simulation.load_torque / load.gear_ratio,
             motor_inertia=motor,
-            linear=rig.linear,
+            kind=rig.axis_kind,
         )
 
     @property
@@ -97,17 +96,15 @@ class AxisParameters:
         return replace(self, viscous_friction_coefficient=0.0, coulomb_friction=0.0)
 
 
-def parameter_quantities(linear: bool) -> dict[str, Quantity]:
-    """What the fields of `AxisParameters` are called in files, with unit and bounds."""
-    inertia, kilograms = ("moving_mass", "kg") if linear else ("moment_of_inertia", "kg*m**2")
-    effort, newton = ("force", "N") if linear else ("torque", "N*m")
-    viscous = "N*s/m" if linear else "N*m*s/rad"
+def parameter_quantities(kind: AxisKind) -> dict[str, Quantity]:
+    """What the fields of `AxisParameters` are called in files on a kind of axis, with unit there and bounds."""
+    viscous, viscous_unit = kind.parameter(VISCOUS), kind.parameter_unit(VISCOUS)
     return {
-        "inertia": Quantity(inertia, "J", kilograms, lower=0.0),
-        "viscous_friction_coefficient": Quantity("viscous_friction_coefficient", "K_w", viscous, lower=0.0),
-        "coulomb_friction": Quantity(f"coulomb_friction_{effort}", "K_0", newton, lower=0.0),
-        "load_torque": Quantity(f"load_{effort}", "M_L", newton),
-        "motor_inertia": Quantity(f"motor_{inertia}", "J_m", kilograms, lower=0.0),
+        "inertia": Quantity(kind.inertia, "J", kind.inertia_unit, lower=0.0),
+        "viscous_friction_coefficient": Quantity(viscous, "K_w", viscous_unit, lower=0.0),
+        "coulomb_friction": Quantity(kind.parameter(COULOMB), "K_0", kind.effort_unit, lower=0.0),
+        "load_torque": Quantity(f"load_{kind.effort}", "M_L", kind.effort_unit),
+        "motor_inertia": Quantity(f"motor_{kind.inertia}", "J_m", kind.inertia_unit, lower=0.0),
     }
 
 
@@ -123,14 +120,13 @@ def half_step_inertia(inertia: float, damping: float, timestep: float) -> float:
 
 def build_spec(parameters: AxisParameters, timestep: float, load: Load | None = None) -> mujoco.MjSpec:
     """Editable model of an axis; `timestep` - s. `load` only draws the disk to size."""
-    kind = "linear" if parameters.linear else "rotary"
-    spec = mujoco.MjSpec.from_file(str(asset("mjcf", f"{kind}_axis.xml")))
+    spec = mujoco.MjSpec.from_file(str(asset("mjcf", f"{parameters.kind.name}_axis.xml")))
     spec.option.timestep = timestep
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
     _set_inertia(spec, parameters)
     _set_friction(spec.joint(AXIS), parameters, timestep)
     spec.actuator(LOAD_TORQUE).biasprm[0] = -parameters.load_torque
-    if load is not None and not parameters.linear:
+    if load is not None and parameters.kind.turns:
         _draw_disk(spec, load)
     return spec
 
@@ -144,10 +140,10 @@ def _set_inertia(spec: mujoco.MjSpec, parameters: AxisParameters) -> None:
     parts = {MOTOR: parameters.motor_inertia, LOAD: parameters.inertia - parameters.motor_inertia}
     for name, inertia in parts.items():
         body = spec.body(name)
-        if parameters.linear:
-            body.mass = inertia
-        else:
+        if parameters.kind.turns:
             body.inertia = [inertia] * 3
+        else:
+            body.mass = inertia
 
 
 def _set_friction(joint: mujoco.MjsJoint, parameters: AxisParameters, timestep: float) -> None:

@@ -5,11 +5,9 @@ name = "axis"
 kind = "rotary"
 misalignment = "1.27e-05 s"
 peak_effort = "3.5 N*m"
+effects = [{ name = "cogging_torque", amplitude = "0.05 N*m", harmonic = 6.0 }]
 [parameters]
 moment_of_inertia = "0.0022 kg*m**2"
-[[effects]]
-name = "cogging_torque"
-amplitude = "0.05 N*m"
 """
 
 from __future__ import annotations
@@ -21,8 +19,11 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import tomli_w
+
+from bench.axis_kind import AxisKind, axis_kind
 from bench.effects.physics import Winding
-from bench.effects.present import Present, known_quantity, named, parse_value, unit_of
+from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.errors import InputError
 from bench.files import write_text
 from bench.plant.axis_model import AxisModel
@@ -70,24 +71,32 @@ def model_xml(model: AxisModel, timestep: float = TIMESTEP) -> str:
     return f"<!-- Axis at steps of {timestep:g} s, torque as input{rest}. -->\n{spec.to_xml()}"
 
 
-def model_toml(stored: StoredModel) -> str:
-    """The whole model as TOML, every value with its unit."""
-    model, linear = stored.model, stored.model.parameters.linear
-    lines = [f'schema = "{SCHEMA}"', f"name = {_text(stored.name)}", f'kind = "{"linear" if linear else "rotary"}"']
-    lines.append(_line("misalignment", stored.misalignment, "s"))
+def model_toml(stored: StoredModel, beside: Mapping[str, Any] | None = None) -> str:
+    """The whole model as TOML, every value with its unit.
+
+    Args:
+        stored: the model.
+        beside: further tables of the same file, by name.
+    """
+    model, kind = stored.model, stored.model.parameters.kind
+    content: dict[str, Any] = {"name": stored.name, "misalignment": _told(stored.misalignment, "s")}
     if math.isfinite(model.peak_effort):
-        lines.append(_line("peak_effort", model.peak_effort, "N" if linear else "N*m"))
-    lines += ["", "[parameters]"]
-    for field, quantity in parameter_quantities(linear).items():
-        lines.append(_line(quantity.name, getattr(model.parameters, field), quantity.unit))
+        content["peak_effort"] = _told(model.peak_effort, kind.effort_unit)
+    content["parameters"] = {
+        quantity.name: _told(getattr(model.parameters, field), quantity.unit)
+        for field, quantity in parameter_quantities(kind).items()
+    }
     if model.winding is not None:
-        lines += ["", "[winding]"]
-        lines += [_line(key, getattr(model.winding, key), unit) for key, unit in _winding_units(linear).items()]
-    for present in model.effects:
-        lines += ["", "[[effects]]", f'name = "{present.name}"']
-        units = {quantity.name: unit_of(quantity, linear) for quantity in present.effect.quantities}
-        lines += [_line(key, value, units[key]) for key, value in present.values]
-    return "\n".join(lines) + "\n"
+        units = _winding_units(kind)
+        content["winding"] = {key: _told(getattr(model.winding, key), unit) for key, unit in units.items()}
+    if model.effects:
+        content["effects"] = [_effect_table(present, kind) for present in model.effects]
+    return tables_toml(kind, {**content, **(beside or {})})
+
+
+def tables_toml(kind: AxisKind, tables: Mapping[str, Any]) -> str:
+    """A `model.toml` of tables as they are, which is all there is where MuJoCo cannot have the model."""
+    return tomli_w.dumps({"schema": SCHEMA, "kind": kind.name, **tables})
 
 
 def load_model(path: str | Path) -> StoredModel:
@@ -99,29 +108,22 @@ def load_model(path: str | Path) -> StoredModel:
     table = read_table(Path(path))
     if table.get("schema") != SCHEMA:
         raise InputError(f"{path}: schema", f"found {table.get('schema')!r}", f"allowed: '{SCHEMA}'")
-    kind = table.get("kind")
-    if kind not in ("rotary", "linear"):
-        raise InputError(f"{path}: kind", f"found {kind!r}", "allowed: rotary, linear")
-    linear = kind == "linear"
-    quantities = parameter_quantities(linear)
+    kind = axis_kind(table.get("kind"), f"{path}: kind")
+    quantities = parameter_quantities(kind)
     units = {quantity.name: quantity.unit for quantity in quantities.values()}
     values = _values(table.get("parameters"), units, f"{path}: parameters")
     for field, quantity in quantities.items():
         value = values[quantity.name]
         if value < quantity.lower or (field == "inertia" and value == 0.0):
             raise InputError(f"{path}: parameters.{quantity.name}", f"found {value:g}", "allowed: above zero")
-    parameters = AxisParameters(
-        **{field: values[quantity.name] for field, quantity in quantities.items()}, linear=linear
-    )
+    parameters = AxisParameters(**{field: values[quantity.name] for field, quantity in quantities.items()}, kind=kind)
     winding = None
     if "winding" in table:
-        winding = Winding(**_values(table["winding"], _winding_units(linear), f"{path}: winding"))
+        winding = Winding(**_values(table["winding"], _winding_units(kind), f"{path}: winding"))
     peak = (
-        _number(table["peak_effort"], "N" if linear else "N*m", f"{path}: peak_effort")
-        if "peak_effort" in table
-        else math.inf
+        _number(table["peak_effort"], kind.effort_unit, f"{path}: peak_effort") if "peak_effort" in table else math.inf
     )
-    effects = tuple(_effect(entry, linear, f"{path}: effects") for entry in table.get("effects", []))
+    effects = _effects(table.get("effects", []), kind, f"{path}: effects")
     misalignment = _number(table.get("misalignment", 0.0), "s", f"{path}: misalignment")
     return StoredModel(str(table.get("name", "axis")), AxisModel(parameters, effects, peak, winding), misalignment)
 
@@ -149,14 +151,25 @@ def _values(table: object, units: Mapping[str, str], where: str) -> dict[str, fl
     return {key: _number(table[key], unit, f"{where}.{key}") for key, unit in units.items()}
 
 
-def _effect(entry: object, linear: bool, where: str) -> Present:
+def _effect_table(present: Present, kind: AxisKind) -> dict[str, float | str]:
+    units = {quantity.name: kind.unit(quantity) for quantity in present.effect.quantities}
+    return {"name": present.name, **{key: _told(value, units[key]) for key, value in present.values}}
+
+
+def _effects(entries: object, kind: AxisKind, where: str) -> tuple[Present, ...]:
+    if not isinstance(entries, list):
+        raise InputError(where, f"found {entries!r}", "allowed: a list of tables with a name")
+    return tuple(_effect(entry, kind, where) for entry in entries)
+
+
+def _effect(entry: object, kind: AxisKind, where: str) -> Present:
     if not isinstance(entry, dict) or "name" not in entry:
         raise InputError(where, f"found {entry!r}", "allowed: tables with a name")
     effect = named(str(entry["name"]), where)
     values = {}
     for key, value in entry.items():
         if key != "name":
-            unit = unit_of(known_quantity(effect, key, where), linear)
+            unit = kind.unit(known_quantity(effect, key, where))
             values[key] = _number(value, unit, f"{where}: {effect.name}.{key}")
     return Present.of(effect.name, values, where)
 
@@ -165,15 +178,10 @@ def _number(value: object, unit: str, where: str) -> float:
     return parse_value(str(value), unit, where)
 
 
-def _winding_units(linear: bool) -> dict[str, str]:
-    constants = ("N/A", "V*s/m") if linear else ("N*m/A", "V*s/rad")
+def _winding_units(kind: AxisKind) -> dict[str, str]:
     names = [field.name for field in fields(Winding)]
-    return dict(zip(names, (constants[0], "ohm", "H", constants[1]), strict=True))
+    return dict(zip(names, (kind.translated("N*m/A"), "ohm", "H", kind.translated("V*s/rad")), strict=True))
 
 
-def _line(key: str, value: float, unit: str) -> str:
-    return f"{key} = {float(value)!r}" if unit == "dimensionless" else f'{key} = "{float(value)!r} {unit}"'
-
-
-def _text(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ") + '"'
+def _told(value: float, unit: str) -> float | str:
+    return float(value) if unit == "dimensionless" else f"{float(value)!r} {unit}"

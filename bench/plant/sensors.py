@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from bench.axis_kind import ROTARY, AxisKind
 from bench.errors import InputError
 from bench.plant.references import References
 from bench.plant.states import States
 from bench.rig.rig import Rig
 from bench.rig.torque_constant import TorqueConstant
-from bench.trace.signals import SI_UNITS
+from bench.trace.signals import unit_on
 from bench.trace.trace import Trace
 
 Array = NDArray[np.float64]
@@ -29,7 +30,7 @@ class Sensors:
         velocity_noise: standard deviation of the reported speed - rad/s (m/s), white.
         current_noise: standard deviation of the reported current - A (torque - N*m, N - without `torque_constant`).
         torque_constant: turns torque into the current reported; None reports torque (force).
-        linear: whether the axis moves in metres.
+        kind: of the axis.
     """
 
     sample_period: float
@@ -37,7 +38,7 @@ class Sensors:
     velocity_noise: float = 0.0
     current_noise: float = 0.0
     torque_constant: TorqueConstant | None = None
-    linear: bool = False
+    kind: AxisKind = ROTARY
 
     @classmethod
     def from_rig(cls, rig: Rig) -> Sensors:
@@ -54,7 +55,7 @@ class Sensors:
             velocity_noise=rig.simulation.velocity_noise,
             current_noise=rig.simulation.current_noise,
             torque_constant=rig.motor.torque_per_ampere,
-            linear=rig.linear,
+            kind=rig.axis_kind,
         )
 
     def stride(self, period: float) -> int:
@@ -95,12 +96,12 @@ class Sensors:
             "position_reference": references.position[rows],
             "velocity_reference": references.velocity[rows],
         }
-        units = {name: SI_UNITS[name][int(self.linear)] for name in signals}
+        units = {name: unit_on(self.kind, name) for name in signals}
         return Trace(time, signals, units, origin)
 
     @property
     def _effort_name(self) -> str:
-        return "current" if self.torque_constant is not None else "force" if self.linear else "torque"
+        return "current" if self.torque_constant is not None else self.kind.effort
 
     def _effort(self, states: States, time: Array) -> Array:
         """Current (torque) of one axis at some times - (n,)."""

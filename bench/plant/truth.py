@@ -6,7 +6,8 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench.effects.present import Present, unit_of
+from bench.axis_kind import AxisKind
+from bench.effects.present import Present
 from bench.files import write_text
 from bench.plant.model import AxisParameters, parameter_quantities
 from bench.plant.sensors import Sensors
@@ -38,33 +39,32 @@ class Truth:
 
     def as_json(self) -> str:
         """Truth as text, quantities under the names that `bench identify --json` gives them."""
-        linear = self.parameters.linear
-        newton, speed, angle = ("N", "m/s", "m") if linear else ("N*m", "rad/s", "rad")
+        kind = self.parameters.kind
         parameters = {
-            q.name: (getattr(self.parameters, field), q.unit) for field, q in parameter_quantities(linear).items()
+            q.name: (getattr(self.parameters, field), q.unit) for field, q in parameter_quantities(kind).items()
         }
         sensors = {
             "sample_period": (self.sensors.sample_period, "s"),
-            "encoder_resolution": (self.sensors.encoder_resolution, angle),
-            "velocity_noise": (self.sensors.velocity_noise, speed),
-            "current_noise": (self.sensors.current_noise, "A" if self.sensors.torque_constant else newton),
+            "encoder_resolution": (self.sensors.encoder_resolution, kind.length_unit),
+            "velocity_noise": (self.sensors.velocity_noise, kind.speed_unit),
+            "current_noise": (self.sensors.current_noise, "A" if self.sensors.torque_constant else kind.effort_unit),
         }
         content = {
             "schema": SCHEMA,
             "rig": self.rig,
-            "kind": "linear" if linear else "rotary",
+            "kind": kind.name,
             "profile": self.profile,
             "seed": self.seed,
             "friction": self.friction,
             "parameters": _with_units(parameters),
             "sensors": _with_units(sensors),
-            "effects": [{"name": p.name, "parameters": _with_units(_parameters(p, linear))} for p in self.effects],
+            "effects": [{"name": p.name, "parameters": _with_units(_parameters(p, kind))} for p in self.effects],
         }
         return json.dumps(content, indent=2) + "\n"
 
 
-def _parameters(present: Present, linear: bool) -> dict[str, tuple[float, str]]:
-    units = {quantity.name: unit_of(quantity, linear) for quantity in present.effect.quantities}
+def _parameters(present: Present, kind: AxisKind) -> dict[str, tuple[float, str]]:
+    units = {quantity.name: kind.unit(quantity) for quantity in present.effect.quantities}
     return {key: (value, units[key]) for key, value in present.values}
 
 

@@ -12,11 +12,12 @@ from matplotlib.figure import Figure
 from rich import box
 from rich.table import Table
 
+from bench.axis_kind import KINDS
 from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where import Where
 from bench.files import write_text
-from bench.plant.model_file import model_toml, model_xml
+from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report.estimate import parameters_json
 from bench.report.figures import MEASURED, MODELLED, save
 
@@ -214,14 +215,15 @@ def write_diagnosis(out: Path, diagnosis: Diagnosis, title: str) -> list[Path]:
     write_text(written[0], diagnosis_json(diagnosis) + "\n")
     save(where_figure(diagnosis, title), written[1])
     save(gaps_figure(diagnosis, title), written[2])
-    stored = model_toml(diagnosis.model) if diagnosis.model is not None else _nameless(diagnosis)
-    write_text(written[3], stored + diagnosis.balance.toml())
+    write_text(written[3], _model_toml(diagnosis))
     if diagnosis.model is not None:
         written.append(out / "model.xml")
         write_text(written[-1], model_xml(diagnosis.model.model))
     return written
 
 
-def _nameless(diagnosis: Diagnosis) -> str:
-    kind = "linear" if diagnosis.velocity.unit == "m/s" else "rotary"
-    return f'schema = "bench.model/1"\nkind = "{kind}"\n'
+def _model_toml(diagnosis: Diagnosis) -> str:
+    tables = {"torque_balance": diagnosis.balance.table()}
+    if diagnosis.model is not None:
+        return model_toml(diagnosis.model, tables)
+    return tables_toml(next(kind for kind in KINDS if kind.speed_unit == diagnosis.velocity.unit), tables)

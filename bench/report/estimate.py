@@ -11,6 +11,7 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
+from bench.axis_kind import AxisKind
 from bench.identify.estimate import Estimate, Parameter
 from bench.identify.refine import Refinement
 
@@ -59,11 +60,11 @@ def estimate_json(estimate: Estimate, refinement: Refinement | None = None) -> s
     )
 
 
-def refinement_line(refinement: Refinement, linear: bool) -> str:
+def refinement_line(refinement: Refinement, kind: AxisKind) -> str:
     """What polishing by simulation did, for a person."""
     before, after = refinement.held_out
     return (
-        f"simulation error on held-out motion {before:.4g} -> {after:.4g} {'m/s' if linear else 'rad/s'} "
+        f"simulation error on held-out motion {before:.4g} -> {after:.4g} {kind.speed_unit} "
         f"(held at {refinement.bandwidth:g} rad/s): {'polish kept' if refinement.accepted else 'polish not kept'}"
     )
 

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from bench.axis_kind import AxisKind
 from bench.errors import InputError
 from bench.files import whole
 from bench.identify.estimate import Estimate
@@ -49,18 +50,18 @@ def thinned(*columns: NDArray[np.float64]) -> list[NDArray[np.float64]]:
     return [column[index] for column in columns]
 
 
-def identification_figure(motion: Motion, estimate: Estimate, linear: bool, title: str) -> Figure:
+def identification_figure(motion: Motion, estimate: Estimate, kind: AxisKind, title: str) -> Figure:
     """Speed, acceleration, torque measured and modelled, and the residual over speed and time.
 
     Args:
         motion: filtered recording.
         estimate: what was identified from it.
-        linear: whether the axis moves in metres.
+        kind: of the axis.
         title: of the figure.
     """
-    unit, length = estimate.residual.unit, "m" if linear else "rad"
+    unit, length = estimate.residual.unit, kind.length_unit
     effort = {"N*m": "torque", "N": "force", "A": "current", "V": "voltage"}.get(unit, "effort")
-    modelled = modelled_effort(motion, estimate, linear)
+    modelled = modelled_effort(motion, estimate, kind)
     residual = motion.effort - modelled
     figure = Figure(figsize=(11.0, 8.5), layout="constrained")
     figure.suptitle(title, x=0.01, ha="left", weight="bold")

@@ -11,9 +11,8 @@ from matplotlib.figure import Figure
 from rich import box
 from rich.table import Table
 
-from bench.diagnose.quantities import unit_of_quantity
-from bench.diagnose.steady import CHANCE, SteadyFriction
-from bench.identify.names import parameter_name, parameter_unit
+from bench.effects.catalogue import catalogue
+from bench.friction_map.map import CHANCE, FrictionMap
 from bench.identify.regressors import COULOMB, OFFSET, VISCOUS
 from bench.report.figures import MEASURED, MODELLED, REST, save_as_named
 
@@ -22,7 +21,7 @@ SCHEMA = "bench.friction/1"
 DRAWN = 400
 
 
-def friction_json(found: SteadyFriction) -> str:
+def friction_json(found: FrictionMap) -> str:
     """The map, what holds of it and how sure that is."""
     effect = None if found.name is None else {"name": found.name, "parameters": _numbers(_values(found))}
     before, after = found.unexplained
@@ -39,7 +38,7 @@ def friction_json(found: SteadyFriction) -> str:
     return json.dumps(content, indent=2)
 
 
-def friction_table(found: SteadyFriction, title: str) -> Table:
+def friction_table(found: FrictionMap, title: str) -> Table:
     """Quantities of the curve that holds; below it how sure the effect is and what it explains."""
     before, after = found.unexplained
     label = found.best.name.replace("_", " ")
@@ -71,7 +70,7 @@ def friction_table(found: SteadyFriction, title: str) -> Table:
     return table
 
 
-def draw_friction(found: SteadyFriction, title: str, path: Path) -> None:
+def draw_friction(found: FrictionMap, title: str, path: Path) -> None:
     """Write effort over speed: the recordings, the curve without an effect and, where one is named, the curve with it.
 
     Raises:
@@ -102,27 +101,25 @@ def draw_friction(found: SteadyFriction, title: str, path: Path) -> None:
     save_as_named(figure, path)
 
 
-def _speed_unit(found: SteadyFriction) -> str:
-    return "m/s" if found.linear else "rad/s"
+def _speed_unit(found: FrictionMap) -> str:
+    return found.kind.speed_unit
 
 
-def _base(found: SteadyFriction) -> dict[str, tuple[float, str]]:
+def _base(found: FrictionMap) -> dict[str, tuple[float, str]]:
     columns = {VISCOUS: found.base.viscous, COULOMB: found.base.coulomb}
     if found.offset is not None:
         columns[OFFSET] = found.offset
     return {
-        parameter_name(column, found.linear): (value, parameter_unit(column, found.linear, found.effort_unit))
+        found.kind.parameter(column): (value, found.kind.parameter_unit(column, found.effort_unit))
         for column, value in columns.items()
     }
 
 
-def _values(found: SteadyFriction) -> dict[str, tuple[float, str]]:
+def _values(found: FrictionMap) -> dict[str, tuple[float, str]]:
     if found.name is None:
         return {}
-    return {
-        name: (value, unit_of_quantity(found.name, name, found.linear, found.effort_unit))
-        for name, value in found.values.items()
-    }
+    quantities = {quantity.name: quantity for quantity in catalogue()[found.name].quantities}
+    return {name: (value, found.kind.unit(quantities[name], found.effort_unit)) for name, value in found.values.items()}
 
 
 def _numbers(quantities: dict[str, tuple[float, str]]) -> dict[str, Any]:

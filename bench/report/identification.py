@@ -35,6 +35,6 @@ def write_identification(
     cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
     moved = motion(first, effort, condition(first, effort, cutoff))
     figure, text = out / "identification.png", out / "identify.json"
-    save(identification_figure(moved, estimate, rig.linear, f"{rig.name}: {trace.name}"), figure)
+    save(identification_figure(moved, estimate, rig.axis_kind, f"{rig.name}: {trace.name}"), figure)
     write_text(text, estimate_json(estimate, refinement) + "\n")
     return [figure, text]

@@ -21,8 +21,8 @@ def operating_range(trace: Trace, rig: Rig) -> Task:
     Raises:
         InputError: a linear axis, no velocity, no torque in N*m to be had, or no limits in the rig.
     """
-    if rig.linear:
-        raise InputError(rig.source, "found a linear axis", "allowed: a rotary one, whose motor has peak_curves")
+    if not rig.axis_kind.turns:
+        raise InputError(rig.source, f"found a {rig.kind} axis", "allowed: a rotary one, whose motor has peak_curves")
     effort, unit = rig.effort(trace)
     if unit != "N*m":
         raise InputError(rig.source, f"gives the effort in {unit}", "the operating range needs it in N*m")

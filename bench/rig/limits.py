@@ -1,5 +1,4 @@
-"""Operating range of a motor: what torque it can give at a speed, briefly and for good, and what a motion leaves of "
-"it."""
+"""Operating range of a motor: its torque at a speed, briefly and for good, and what a motion leaves of it."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812
 
+from bench.axis_kind import AxisKind
 from bench.rig.values import Angle, Density, Inertia, Length, Mass, Table
 
 
@@ -67,6 +68,10 @@ class Load(Table):
         if mass is None or self.outer_diameter is None:
             return None
         return mass / 8.0 * (self.outer_diameter**2 + (self.inner_diameter or 0.0) ** 2)
+
+    def disk(self, kind: AxisKind) -> float:
+        """What the disk adds to the inertia of an axis of a kind, on the load's side - kg*m**2 (kg); 0 without one."""
+        return (self.disk_inertia if kind.turns else self.disk_mass) or 0.0
 
     def gravity_torque(self, position: NDArray[np.float64]) -> NDArray[np.float64] | None:
         """M_load = m*g*r*sin(q/i - q_0)/i at motor angles q - rad - (n,), at the motor - N*m; None without."""

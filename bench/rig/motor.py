@@ -92,6 +92,16 @@ class Motor(Table):
         return self
 
     @property
+    def inertia(self) -> float:
+        """Of what moves in the motor - kg*m**2 (kg); 0 when the rig does not tell."""
+        return self.rotor_inertia or self.moving_mass or 0.0
+
+    @property
+    def rated_effort(self) -> float | None:
+        """What 100 % of a relative torque means - N*m (N); None when the rig does not tell."""
+        return self.rated_torque if self.rated_torque is not None else self.rated_force
+
+    @property
     def torque_per_ampere(self) -> TorqueConstant | None:
         """kT(Iq) - N*m/A (N/A on a linear axis); None when the rig does not tell."""
         constant = self.torque_constant or self.force_constant

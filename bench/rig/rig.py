@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, ValidationError, model_validator
 
+from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
 from bench.rig.catalogue import catalogue_motor
 from bench.rig.drive import Drive
@@ -52,10 +54,21 @@ class Rig(Table):
     simulation: Simulation | None = None
     source: Annotated[str, Field(exclude=True)] = "rig"
 
+    @classmethod
+    def of(cls, table: Mapping[str, Any], source: str = "rig") -> Rig:
+        """Checked from the table of a rig file, values with their units; pydantic's ValidationError where it is none.
+
+        Args:
+            table: as TOML gives it.
+            source: that it comes from, for messages.
+        """
+        kind = LINEAR if table.get("kind") == LINEAR.name else ROTARY
+        return cls.model_validate({**table, "source": source}, context={"kind": kind})
+
     @model_validator(mode="after")
     def _values_fit_the_kind(self) -> Rig:
         wrong = ("moving_mass", "force_constant", "force_per_volt", "rated_force")
-        if self.kind == "linear":
+        if not self.axis_kind.turns:
             wrong = ("rotor_inertia", "torque_constant", "torque_per_volt", "rated_torque", "continuous_stall_torque")
         for name in wrong:
             if getattr(self.motor, name) is not None:
@@ -63,9 +76,14 @@ class Rig(Table):
         return self
 
     @property
+    def axis_kind(self) -> AxisKind:
+        """What its quantities are called, and their units."""
+        return axis_kind(self.kind, self.source)
+
+    @property
     def linear(self) -> bool:
         """Whether the axis moves in metres."""
-        return self.kind == "linear"
+        return not self.axis_kind.turns
 
     def effort(self, trace: Trace) -> tuple[NDArray[np.float64], str]:
         """What drives the axis in a trace, and its unit: motor torque - N*m (force - N) wherever the rig tells how.
@@ -77,14 +95,12 @@ class Rig(Table):
         Raises:
             InputError: the trace holds none of the signals, or motor and trace disagree on the kind of axis.
         """
-        if trace.linear != self.linear and ("velocity" in trace or "position" in trace):
-            other = "linear" if trace.linear else "rotary"
-            raise InputError(
-                trace.origin, f"found a {other} axis", f"allowed: a {self.kind} one, as {self.source} says"
-            )
-        direct = "force" if self.linear else "torque"
+        if trace.axis_kind != self.axis_kind and ("velocity" in trace or "position" in trace):
+            found = f"found a {trace.axis_kind.name} axis"
+            raise InputError(trace.origin, found, f"allowed: a {self.kind} one, as {self.source} says")
+        direct = self.axis_kind.effort
         if direct in trace:
-            rated = self.motor.rated_force if self.linear else self.motor.rated_torque
+            rated = self.motor.rated_effort
             if trace.units[direct] == "dimensionless" and rated is not None:
                 return trace[direct] * rated, self.effort_unit
             return trace[direct], trace.units[direct]
@@ -125,7 +141,7 @@ class Rig(Table):
     @property
     def effort_unit(self) -> str:
         """Unit of the motor's effort: N*m, or N on a linear axis."""
-        return "N" if self.linear else "N*m"
+        return self.axis_kind.effort_unit
 
 
 def load_rig(path: str | Path) -> Rig:
@@ -147,7 +163,7 @@ def load_rig(path: str | Path) -> Rig:
     if isinstance(motor, dict) and "model" in motor:
         table["motor"] = {**catalogue_motor(motor["model"], f"{path}: motor.model"), **motor}
     try:
-        return Rig.model_validate({**table, "source": str(path)}, context={"linear": table.get("kind") == "linear"})
+        return Rig.of(table, str(path))
     except ValidationError as error:
         raise _input_error(path, error) from error
 

@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
 
+from bench.axis_kind import ROTARY, AxisKind
 from bench.errors import InputError
 from bench.units import parse
 
@@ -17,16 +18,19 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-def si(rotary: str, linear: str | None = None) -> BeforeValidator:
-    """Validator that turns `"22.4 kg*cm**2"` into a number in the SI unit, which a linear axis may have of its own.
+def si(unit: str, translated: bool = False) -> BeforeValidator:
+    """Validator that turns `"22.4 kg*cm**2"` into a number in an SI unit.
 
-    The kind of axis comes as `linear` in the validation context.
+    Args:
+        unit: of the value on a rotary axis.
+        translated: whether a linear axis has the value in metres and newtons; the kind of axis comes as `kind` in the
+            validation context.
     """
 
     def read(text: object, info: ValidationInfo) -> float:
-        on_linear_axis = info.context is not None and info.context["linear"]
+        kind: AxisKind = ROTARY if info.context is None or not translated else info.context["kind"]
         try:
-            return parse(text, linear if linear and on_linear_axis else rotary, "")
+            return parse(text, kind.translated(unit), "")
         except InputError as error:
             raise PydanticCustomError("unit", "{found}; {allowed}", vars(error)) from error
 
@@ -46,20 +50,20 @@ Current = Annotated[float, si("A"), _positive]
 Voltage = Annotated[float, si("V"), _positive]
 Resistance = Annotated[float, si("ohm"), _positive]
 Inductance = Annotated[float, si("H"), _positive]
-BackEmf = Annotated[float, si("V*s/rad", "V*s/m"), _positive]
+BackEmf = Annotated[float, si("V*s/rad", translated=True), _positive]
 Torque = Annotated[float, si("N*m"), _positive]
 Force = Annotated[float, si("N"), _positive]
 TorquePerAmpere = Annotated[float, si("N*m/A"), _positive]
 ForcePerAmpere = Annotated[float, si("N/A"), _positive]
 TorquePerVolt = Annotated[float, si("N*m/V"), _positive]
 ForcePerVolt = Annotated[float, si("N/V"), _positive]
-Speed = Annotated[float, si("rad/s", "m/s"), _positive]
-VelocityNoise = Annotated[float, si("rad/s", "m/s"), _not_negative]
+Speed = Annotated[float, si("rad/s", translated=True), _positive]
+VelocityNoise = Annotated[float, si("rad/s", translated=True), _not_negative]
 CurrentNoise = Annotated[float, si("A"), _not_negative]
-Resolution = Annotated[float, si("rad", "m"), _not_negative]
-Viscous = Annotated[float, si("N*m*s/rad", "N*s/m"), _not_negative]
-Coulomb = Annotated[float, si("N*m", "N"), _not_negative]
-Effort = Annotated[float, si("N*m", "N")]
-IntegralGain = Annotated[float, si("N*m/rad", "N/m"), _not_negative]
-Feedforward = Annotated[float, si("kg*m**2", "kg"), _not_negative]
+Resolution = Annotated[float, si("rad", translated=True), _not_negative]
+Viscous = Annotated[float, si("N*m*s/rad", translated=True), _not_negative]
+Coulomb = Annotated[float, si("N*m", translated=True), _not_negative]
+Effort = Annotated[float, si("N*m", translated=True)]
+IntegralGain = Annotated[float, si("N*m/rad", translated=True), _not_negative]
+Feedforward = Annotated[float, si("kg*m**2", translated=True), _not_negative]
 Temperature = Annotated[float, si("K")]

@@ -8,6 +8,7 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
+from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, GaussianFilter
 from bench.trace.noise import white_noise
@@ -88,7 +89,7 @@ def condition(trace: Trace, effort: NDArray[np.float64], cutoff: float | None = 
     least = GaussianFilter(LEAST_WIDTH * trace.sample_period, trace.sample_period)
     if part.stop - part.start < 8 * least.margin:
         raise UndeterminedError(
-            "moment of inertia" if not trace.linear else "moving mass",
+            trace.axis_kind.spoken(INERTIA),
             f"the longest stretch without a hole has {part.stop - part.start} samples",
             f"at least {8 * least.margin} samples without a hole",
         )

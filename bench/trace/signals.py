@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from bench.axis_kind import KINDS, AxisKind
 from bench.units import dimensionality
 
-#: SI unit of each known signal, for a rotary axis and a linear one.
+#: SI unit of each known signal, one for each of KINDS.
 SI_UNITS: dict[str, tuple[str, str]] = {
     "position": ("rad", "m"),
     "velocity": ("rad/s", "m/s"),
@@ -21,6 +22,11 @@ SI_UNITS: dict[str, tuple[str, str]] = {
 
 #: Torque may also come as a share of the rated torque (EPOS reports %); a rig's `rated_torque` makes it N*m.
 RELATIVE_TORQUE = "dimensionless"
+
+
+def unit_on(kind: AxisKind, name: str) -> str:
+    """SI unit of signal `name` on an axis of a kind."""
+    return SI_UNITS[name][KINDS.index(kind)]
 
 
 def si_unit(name: str, unit: str) -> str | None:

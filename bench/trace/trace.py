@@ -11,6 +11,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
 
 #: A step this many sample periods long is a hole, not jitter: no signal of a servo is known inside it.
@@ -123,9 +124,15 @@ class Trace:
         return tuple(slice(start, stop) for start, stop in pairwise(edges))
 
     @property
+    def axis_kind(self) -> AxisKind:
+        """Linear where position or velocity stands in metres, else rotary."""
+        lengths = (LINEAR.length_unit, LINEAR.speed_unit)
+        return LINEAR if any(self.units.get(name) in lengths for name in ("position", "velocity")) else ROTARY
+
+    @property
     def linear(self) -> bool:
         """Whether the axis moves in metres rather than radians."""
-        return any(self.units.get(name) in ("m", "m/s") for name in ("position", "velocity"))
+        return not self.axis_kind.turns
 
     def with_signals(self, signals: Mapping[str, NDArray[np.float64]], units: Mapping[str, str]) -> Trace:
         """The same recording with signals added or replaced."""

@@ -39,7 +39,8 @@ def write(trace: Trace, path: str | Path, units: Mapping[str, str] | None = None
         raise InputError(path, f"found the ending '{ending}'", f"allowed: {', '.join(WRITERS)}")
     defaults = {name: LAB_UNITS[name] for name in trace.signals if name in LAB_UNITS} if ending == ".trace" else {}
     labels = {"time": "s", **trace.units}
-    labels |= {name: unit for name, unit in defaults.items() if same_dimension(unit, labels[name]) and not trace.linear}
+    if trace.axis_kind.turns:
+        labels |= {name: unit for name, unit in defaults.items() if same_dimension(unit, labels[name])}
     labels |= _checked(units or {}, labels, path)
     columns = {f"time [{labels['time']}]": convert(trace.time, "s", labels["time"])}
     for name, values in trace.signals.items():

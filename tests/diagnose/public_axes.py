@@ -13,7 +13,7 @@ from tests.shared import SHARED
 
 DATA = SHARED / "data"
 
-EMPS = Rig.model_validate(
+EMPS = Rig.of(
     {
         "name": "EMPS",
         "kind": "linear",
@@ -33,11 +33,10 @@ EMPS = Rig.model_validate(
                 "position_reference": "qg [m]",
             }
         },
-    },
-    context={"linear": True},
+    }
 )
 
-LAAS = Rig.model_validate(
+LAAS = Rig.of(
     {
         "name": "LAAS",
         "kind": "rotary",
@@ -50,8 +49,7 @@ LAAS = Rig.model_validate(
                 "velocity_reference": "Reference Velocity [rad/s]",
             }
         },
-    },
-    context={"linear": False},
+    }
 )
 
 
@@ -146,30 +144,7 @@ def holding_currents(harmonics):
 
 
 #: EPOS4 reports torque as a share of the motor's 9.84 mN*m.
-SCREWS = Rig.model_validate(
-    {
-        "name": "screw drive",
-        "kind": "rotary",
-        "motor": {"rated_torque": "9.84 mN*m"},
-        "trace": {
-            "columns": {
-                "velocity": "Velocity actual value averaged [rpm]",
-                "torque": "Torque actual value averaged [%]",
-            }
-        },
-    },
-    context={"linear": False},
-)
-
-
-def steady_speeds(drive):
-    """Recordings of one screw drive, each at one speed."""
-    files = sorted((DATA / f"tro2021_screw/driveNo{drive}/steady_state").rglob("*.csv"))
-    return [read(path, SCREWS.trace.columns) for path in files]
-
-
 #: As published with the recordings: kT 0.387 N*m/A, R 4.02 ohm; the pendulum is left for the diagnosis to find.
-XL330 = Rig.model_validate(
-    {"name": "XL330", "kind": "rotary", "motor": {"torque_constant": "0.387 N*m/A", "resistance": "4.02 ohm"}},
-    context={"linear": False},
+XL330 = Rig.of(
+    {"name": "XL330", "kind": "rotary", "motor": {"torque_constant": "0.387 N*m/A", "resistance": "4.02 ohm"}}
 )

@@ -7,15 +7,12 @@ import numpy as np
 import pytest
 
 from bench.diagnose.diagnosis import diagnose
-from bench.diagnose.steady import steady_friction
-from bench.errors import UndeterminedError
 from bench.plant.follow import follow_references
 from bench.trace.read import read
 from tests.diagnose.public_axes import (
     DATA,
     EMPS,
     LAAS,
-    SCREWS,
     XL330,
     Published,
     diagnosed_force,
@@ -23,7 +20,6 @@ from tests.diagnose.public_axes import (
     holding_currents,
     rigid,
     rigid_by_direction,
-    steady_speeds,
 )
 from tests.shared import needs_shared
 
@@ -104,24 +100,6 @@ def test_the_laas_motor_cogs_as_its_holding_currents_say():
     assert {72, 18} <= set(amplitudes) <= {72, 18, 12, 24, 36}
     assert {effect.name for effect in found.effects} == {"cogging_torque", "velocity_filter_lag"}
     assert any("forward only" in warning for warning in found.warnings)
-
-
-@pytest.mark.parametrize(("drive", "name"), [(1, "stribeck_friction"), (2, None), (3, None)])
-def test_the_lead_screw_alone_has_stribeck_friction(drive, name):
-    """IEEE T-RO 37(4), 2021: drive 1 has it, drives 2 and 3 have none."""
-    found = steady_friction(steady_speeds(drive), SCREWS)
-    before, after = found.unexplained
-    print(f"\nscrew drive {drive}: {found.name} {found.values}, unexplained {before:.4f} -> {after:.4f},", end=" ")
-    print(f"chance {found.probability:.2g}", end="")
-    assert found.name == name
-    if name is not None:
-        assert found.probability < 1e-9
-        assert 2.0 < found.values["stribeck_velocity"] < 7.0
-
-
-def test_few_steady_speeds_tell_nothing():
-    with pytest.raises(UndeterminedError, match="at least 8 different speeds in each direction"):
-        steady_friction(steady_speeds(1)[:6], SCREWS)
 
 
 def test_the_pendulum_of_a_servo_is_named_by_its_weight():

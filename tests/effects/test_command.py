@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from bench.axis_kind import LINEAR
 from bench.cli import main
 from bench.effects.catalogue import physics
 from bench.effects.present import parse_effect
@@ -37,7 +38,7 @@ def test_values_with_and_without_units(text, values):
 
 
 def test_linear_axes_take_metres_and_newtons():
-    found = parse_effect("stribeck_friction:static_friction=30 N,stribeck_velocity=5 mm/s", linear=True)
+    found = parse_effect("stribeck_friction:static_friction=30 N,stribeck_velocity=5 mm/s", LINEAR)
     assert dict(found.values) == pytest.approx({"static_friction": 30.0, "stribeck_velocity": 5e-3})
 
 

@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from bench.axis_kind import LINEAR
 from bench.effects.present import Present
 from bench.plant.model import AxisParameters
 from tests.effects.axes import moved, signals
 
-SLIDE = AxisParameters(3.0, motor_inertia=1.0, linear=True)
+SLIDE = AxisParameters(3.0, motor_inertia=1.0, kind=LINEAR)
 
 
 def test_two_masses_and_a_spring():

@@ -1,14 +1,28 @@
 """A model goes to disk and comes back as it was; what is native in it opens in MuJoCo alone."""
 
+import tomllib
+
 import mujoco
 import numpy as np
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
+from bench.axis_kind import LINEAR
 from bench.effects.present import Present
 from bench.errors import InputError
+from bench.files import write_text
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import AxisParameters
-from bench.plant.model_file import TIMESTEP, StoredModel, load_model, model_toml, write_model
+from bench.plant.model_file import (
+    TIMESTEP,
+    StoredModel,
+    load_model,
+    model_toml,
+    read_table,
+    tables_toml,
+    write_model,
+)
 from bench.plant.native import run_controls, sense_torque
 from bench.plant.track_effects import track_effects
 from bench.trace.trace import Trace
@@ -26,7 +40,7 @@ def test_everything_comes_back(tmp_path):
 
 def test_linear_axis_without_winding_comes_back(tmp_path):
     effects = (Present.of("cogging_torque", {"amplitude": 1.0, "harmonic": 2513.0}),)
-    parameters = AxisParameters(95.1, 203.5, 20.4, -3.2, 0.0, linear=True)
+    parameters = AxisParameters(95.1, 203.5, 20.4, -3.2, 0.0, kind=LINEAR)
     stored = StoredModel("slide", AxisModel(parameters, effects))
     toml, _ = write_model(tmp_path, stored)
     assert load_model(toml) == stored
@@ -34,6 +48,36 @@ def test_linear_axis_without_winding_comes_back(tmp_path):
     assert 'moving_mass = "95.1 kg"' in text
     assert 'amplitude = "1.0 N"' in text
     assert 'phase = "0.0 rad"' in text
+
+
+@given(st.text(st.characters(exclude_categories=["Cs"])))
+@example("cr\rlf\ncrlf\r\ntab\t")
+@example("\x00\x01\x1f\x7f\x85\u2028\ufeff")
+@example("\"\"\"quotes'''and \\ backslashes\\")
+@example("] = [[effects]]\nname = 1 # no comment")
+def test_any_name_comes_back(tmp_path_factory, name):
+    stored = StoredModel(name, model("cogging_torque"), -3.1e-4)
+    path = tmp_path_factory.mktemp("named") / "model.toml"
+    write_text(path, model_toml(stored, {"balance": {"recording": name, name or "empty": [{"shape": [0.1, 1e-300]}]}}))
+    assert load_model(path) == stored
+    beside = read_table(path)["balance"]
+    assert beside == {"recording": name, name or "empty": [{"shape": [0.1, 1e-300]}]}
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_every_number_comes_back_to_the_last_bit(value):
+    text = model_toml(StoredModel("axis", model(), value), {"beside": {"numbers": [value, -value]}})
+    table = tomllib.loads(text)
+    assert table["beside"]["numbers"] == [value, -value]
+    assert float(table["misalignment"].removesuffix(" s")) == value
+
+
+def test_tables_stand_alone_where_there_is_no_model(tmp_path):
+    path = tmp_path / "model.toml"
+    write_text(path, tables_toml(LINEAR, {"balance": {"mains": [50.0]}}))
+    assert read_table(path) == {"schema": "bench.model/1", "kind": "linear", "balance": {"mains": [50.0]}}
+    with pytest.raises(InputError, match="parameters: missing"):
+        load_model(path)
 
 
 @pytest.mark.parametrize("names", [("elastic_coupling", "cogging_torque", "quadratic_drag"), ("presliding_friction",)])
@@ -66,9 +110,10 @@ def test_xml_names_what_it_lacks(tmp_path):
         ('name = "cogging_torque"', 'name = "coging_torque"', "did you mean 'cogging_torque'"),
         ("amplitude =", "amplitud =", "did you mean 'amplitude'"),
         ('"0.08 N*m"', '"-0.08 N*m"', "0 to inf"),
-        ("harmonic = 6.0\n", "", "harmonic missing"),
+        ("harmonic = 6.0, ", "", "harmonic missing"),
         ("[parameters]", "[parameters", "not TOML"),
-        ("[[effects]]", "[effects]", "effects"),
+        ("effects = [", "effects = [1, ", "effects: found 1"),
+        ("effects = [", "effects = 1\nunused = [", "found 1; allowed: a list"),
         ('"1e-05 s"', "nan", "finite"),
         ('"0.0012 kg*m**2"', '"0 kg*m**2"', "moment_of_inertia"),
     ],

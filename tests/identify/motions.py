@@ -11,9 +11,8 @@ from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
 UNITS = {"velocity": "rad/s", "current": "A", "position": "rad"}
-RIG = Rig.model_validate(
-    {"name": "closed form", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A", "rotor_inertia": "2 kg*cm**2"}},
-    context={"linear": False},
+RIG = Rig.of(
+    {"name": "closed form", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A", "rotor_inertia": "2 kg*cm**2"}}
 )
 NAMES = ("moment_of_inertia", "viscous_friction_coefficient", "coulomb_friction_torque")
 

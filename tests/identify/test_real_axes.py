@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bench.identify.names import parameter_name
 from bench.identify.regression import identify
 from bench.identify.regressors import regressors
 from bench.rig.rig import Rig, load_rig
@@ -17,15 +16,14 @@ pytestmark = needs_shared
 
 LIMITS = (1e-3, 1.5e-2, 5e-3)
 
-EMPS = Rig.model_validate(
+EMPS = Rig.of(
     {
         "name": "EMPS",
         "kind": "linear",
         "offset": True,
         "motor": {"force_per_volt": "35.15065188248547 N/V"},
         "trace": {"columns": {"time": "t [s]", "position": "qm [m]", "voltage": "vir [V]"}},
-    },
-    context={"linear": True},
+    }
 )
 #: Value and three standard deviations, A. Janot, M. Gautier, M. Brunot, NSIB workshop 2019.
 PUBLISHED = {
@@ -65,7 +63,7 @@ def test_pulses_are_explained_by_the_parameters_of_emps():
     trace = read(SHARED / "data/emps/DATA_EMPS_PULSES.mat", EMPS.trace.columns)
     effort, _ = EMPS.effort(trace)
     rows = regressors(motion(trace, effort, condition(trace, effort)))
-    theta = np.array([found[parameter_name(column, linear=True)].value for column in rows.names])
+    theta = np.array([found[EMPS.axis_kind.parameter(column)].value for column in rows.names])
     residual = rows.effort - rows.columns @ theta
     relative = np.linalg.norm(residual) / np.linalg.norm(rows.effort)
     print(f"\nPULSES force error with the parameters of EMPS {relative:.4%} (published 5.9824 %)")
@@ -80,9 +78,7 @@ def test_an_axis_of_unknown_torque_constant_is_identified_in_amperes():
         "current": "Iq [A]",
         "voltage": "Uq [V]",
     }
-    rig = Rig.model_validate(
-        {"name": "LAAS", "kind": "rotary", "trace": {"columns": columns}}, context={"linear": False}
-    )
+    rig = Rig.of({"name": "LAAS", "kind": "rotary", "trace": {"columns": columns}})
     trace = read(SHARED / "data/laas_anticogging/acc_current.txt", columns)
     assert trace.time_base is not None
     found = identify(trace, rig)
@@ -96,7 +92,7 @@ def test_a_servo_that_reports_its_duty_is_identified_through_its_winding():
     motor = {"torque_constant": "0.387 N*m/A", "resistance": "4.02 ohm"}
     pendulum = {"eccentric_mass": "0.49 kg", "eccentric_radius": "0.1 m"}
     table = {"name": "XL330", "kind": "rotary", "motor": motor, "load": pendulum}
-    rig = Rig.model_validate(table, context={"linear": False})
+    rig = Rig.of(table)
     trace = read(SHARED / "data/bam_xl330/2026-01-15_10h29m37.json")
     found = identify(trace, rig)
     print(f"\nXL330 {[(name, p.value, p.unit) for name, p in found.parameters.items()]}; {trace.time_base}")

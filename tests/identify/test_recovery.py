@@ -46,7 +46,7 @@ def rig(inertia, viscous, coulomb, friction="mechanics", kt="0.8 N*m/A", peak="6
         },
         **more,
     }
-    return Rig.model_validate(table, context={"linear": False})
+    return Rig.of(table)
 
 
 RIGS = {

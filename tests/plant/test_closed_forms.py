@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from bench.axis_kind import LINEAR
 from bench.plant.model import AxisParameters, build_spec
 from bench.plant.native import run_controls, sense_torque
 
@@ -13,7 +14,7 @@ AXES = {
     "coarse step": (AxisParameters(2.2e-3, 1.1e-3, 0.085), 144.0, 1e-3),
     "strongly damped": (AxisParameters(1e-3, 5e-2, 0.01), 200.0, 1e-3),
     "undamped": (AxisParameters(1e-3, 0.0, 0.05), 100.0, 250e-6),
-    "linear": (AxisParameters(95.1, 203.5, 20.4, linear=True), 0.8, 1e-3),
+    "linear": (AxisParameters(95.1, 203.5, 20.4, kind=LINEAR), 0.8, 1e-3),
 }
 
 

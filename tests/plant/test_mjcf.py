@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from bench.assets import asset
+from bench.axis_kind import axis_kind
 from bench.plant.model import AxisParameters, build_model, build_spec
 from bench.rig.load import Load
 
@@ -26,7 +27,7 @@ def test_loads_alone_and_moves_under_torque(kind):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_visible_geometry_adds_no_inertia(kind):
-    parameters = AxisParameters(inertia=3.3e-3, motor_inertia=1e-4, linear=kind == "linear")
+    parameters = AxisParameters(inertia=3.3e-3, motor_inertia=1e-4, kind=axis_kind(kind, "test"))
     spec = build_spec(parameters, 250e-6, Load.model_construct(outer_diameter=0.2, thickness=0.02, gear_ratio=1.0))
     with_geometry = spec.compile()
     for geom in list(spec.geoms):

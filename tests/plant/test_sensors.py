@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bench.axis_kind import LINEAR
 from bench.errors import InputError
 from bench.plant.model import AxisParameters, build_spec
 from bench.plant.native import run_controls, sense_torque
@@ -103,7 +104,7 @@ def test_apparent_inertia_differs_from_the_true_one_only_by_the_hold():
 
 
 def test_linear_axes_record_force_in_newton():
-    _, trace = record(Sensors(1e-3, linear=True))
+    _, trace = record(Sensors(1e-3, kind=LINEAR))
     assert trace.units["force"] == "N"
     assert trace.linear
 

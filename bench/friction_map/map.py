@@ -13,20 +13,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
-import scipy.stats
 from numpy.typing import NDArray
 
+from bench.axis_kind import AxisKind
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Base, Signals
+from bench.effects.effect import Base
 from bench.errors import InputError, UndeterminedError
+from bench.friction_map.curve import Curve, bent_curve, chance, plain_curve
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
 Array = NDArray[np.float64]
 
-#: Effects that depend on speed alone.
-OF_SPEED = ("stribeck_friction", "quadratic_drag", "direction_dependent_friction")
 #: Chance that a map without an effect gets a name, for all shapes of all effects tried together.
 CHANCE = 1e-3
 #: Speeds in each direction below which curvature is not told from scatter.
@@ -39,36 +37,13 @@ ROUNDING = 1e-24
 
 
 @dataclass(frozen=True)
-class Curve:
-    """Friction over speed as fitted, with one effect or, where the name is empty, without.
-
-    Attributes:
-        name: of the effect.
-        shape: what enters nonlinearly - SI.
-        theta: K_w, K_0, M_0, strengths of the effect - SI. M_0 is 0 where the effect holds a constant torque itself.
-        squares: sum of what it leaves - effort squared.
-        freedom: numbers fitted.
-    """
-
-    name: str
-    shape: tuple[float, ...]
-    theta: Array
-    squares: float
-    freedom: int
-
-    def effort(self, velocity: Array) -> Array:
-        """Effort (n,) at speeds - rad/s (m/s) - (n,)."""
-        return _columns(self.name, self.shape, velocity) @ self.theta
-
-
-@dataclass(frozen=True)
-class SteadyFriction:
+class FrictionMap:
     """What a map of friction over speed shows.
 
     Attributes:
         velocity, effort: a point for each recording - rad/s (m/s), N*m (N) - (n,).
         effort_unit: N*m, N, or what the rig allows.
-        linear: whether the axis moves in metres.
+        kind: of the axis.
         plain, best: curves without an effect and with the one that explains most; the same where physics allows none.
         base: K_w and K_0 of the curve that holds; inertia nan.
         offset: M_0 of that curve; None where the named effect holds a constant torque, which no map tells from it.
@@ -81,7 +56,7 @@ class SteadyFriction:
     velocity: Array
     effort: Array
     effort_unit: str
-    linear: bool
+    kind: AxisKind
     plain: Curve
     best: Curve
     base: Base
@@ -92,7 +67,7 @@ class SteadyFriction:
     unexplained: tuple[float, float]
 
 
-def steady_friction(recordings: Sequence[Trace], rig: Rig) -> SteadyFriction:
+def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
     """Friction over the speeds of recordings at one speed each.
 
     Raises:
@@ -102,26 +77,27 @@ def steady_friction(recordings: Sequence[Trace], rig: Rig) -> SteadyFriction:
     """
     velocity, effort, unit = _points(recordings, rig)
     total = float(effort @ effort)
-    plain = _fitted("", (), velocity, effort)
+    plain = plain_curve(velocity, effort)
     if plain.theta[0] * (velocity @ velocity) + plain.theta[1] * np.abs(velocity).sum() < 0.0:
         raise InputError(
             "friction over speed",
             "found friction that drives the axis: torque and motion have opposite signs",
             "allowed: both counted the same way (a leading - in the rig's [trace.columns] turns one)",
         )
-    tried = [_best(name, velocity, effort) for name in OF_SPEED]
-    chances = [_chance(plain, one, effort.size, ROUNDING * total) for one in tried]
+    names = [name for name, effect in catalogue().items() if effect.of_speed_alone]
+    tried = [bent_curve(name, velocity, effort) for name in names]
+    chances = [chance(plain, one, effort.size, ROUNDING * total) for one in tried]
     least = int(np.argmin(chances))
     best = tried[least] if np.isfinite(tried[least].squares) else plain
-    probability = min(1.0, len(OF_SPEED) * chances[least])
+    probability = min(1.0, len(names) * chances[least])
     kept = best if probability < CHANCE else plain
     base = Base(float("nan"), float(kept.theta[0]), float(kept.theta[1]))
-    offset = None if _holds_constant(_columns(kept.name, kept.shape, velocity)) else float(kept.theta[2])
+    offset = float(kept.theta[2]) if kept.constant else None
     name = kept.name or None
     values = dict(catalogue()[name].values(kept.theta[3:].tolist(), kept.shape, base)) if name else {}
     left = (float(np.sqrt(plain.squares / total)), float(np.sqrt(best.squares / total)))
-    return SteadyFriction(
-        velocity, effort, unit, rig.linear, plain, best, base, offset, name, values, probability, left
+    return FrictionMap(
+        velocity, effort, unit, rig.axis_kind, plain, best, base, offset, name, values, probability, left
     )
 
 
@@ -166,51 +142,3 @@ def _steady_speed(trace: Trace) -> float:
 def _different(speeds: Array) -> int:
     """Speeds more than a hundredth apart: repetitions of one tell scatter, not curvature."""
     return 1 + int((np.diff(np.log(np.sort(speeds))) > 0.01).sum()) if speeds.size else 0
-
-
-def _best(name: str, velocity: Array, effort: Array) -> Curve:
-    """The effect with the shape that leaves least, within what physics allows."""
-    effect = catalogue()[name]
-    if not effect.shapes:
-        return _fitted(name, (), velocity, effort)
-    low, high = np.log(np.abs(velocity).min()), np.log(0.5 * np.abs(velocity).max())
-    found = scipy.optimize.brute(
-        lambda x: _fitted(name, (float(np.exp(x[0])),), velocity, effort).squares, ((low, high),), Ns=60, finish=None
-    )
-    return _fitted(name, (float(np.exp(found)),), velocity, effort)
-
-
-def _columns(name: str, shape: tuple[float, ...], velocity: Array) -> Array:
-    """Columns (n, 3 + strengths) of speed, its sign, a constant and the effect."""
-    zero, sign = np.zeros_like(velocity), np.sign(velocity)
-    columns = [velocity, sign, np.ones_like(velocity)]
-    if name:
-        signals = Signals(zero, zero, velocity, sign, zero, zero, sign, 1.0, 1.0)
-        columns += [sum((values for values, _ in column), zero) for column in catalogue()[name].columns(signals, shape)]
-    return np.column_stack(columns)
-
-
-def _holds_constant(table: Array) -> bool:
-    return bool((np.ptp(table[:, 3:], axis=0) == 0.0).any())
-
-
-def _fitted(name: str, shape: tuple[float, ...], velocity: Array, effort: Array) -> Curve:
-    table = _columns(name, shape, velocity)
-    if _holds_constant(table):
-        table[:, 2] = 0.0
-    solved, _, rank, _ = np.linalg.lstsq(table, effort, rcond=1e-10)
-    theta = np.asarray(solved, dtype=np.float64)
-    squares = float(np.sum((effort - table @ theta) ** 2))
-    base = Base(1.0, float(theta[0]), float(theta[1]))
-    if name and not catalogue()[name].physical(theta[3:].tolist(), shape, base):
-        squares = float("inf")
-    return Curve(name, shape, theta, squares, int(rank) + len(shape))
-
-
-def _chance(plain: Curve, tried: Curve, points: int, rounding: float) -> float:
-    """Probability of the F-test that an effect's columns and shape save nothing; squares below `rounding` are none."""
-    added, left = tried.freedom - plain.freedom, points - tried.freedom
-    if not np.isfinite(tried.squares) or added < 1:
-        return 1.0
-    ratio = (plain.squares - tried.squares) / added / (max(tried.squares, rounding) / left)
-    return float(scipy.stats.f.sf(ratio, added, left))

@@ -1,0 +1,1 @@
+"""Friction over steady speeds: several recordings, each at one speed."""
