@@ -10,7 +10,7 @@ SOURCES = sorted((ROOT / "bench").rglob("*.py"))
 
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
-    {"__init__", "errors", "units", "assets", "files"},
+    {"errors", "units", "usual_units", "unit_registry", "assets", "files"},
     {"trace"},
     {"rig"},
     {"effects"},
@@ -23,6 +23,7 @@ LAYERS = (
     {"demo"},
     {"console"},
     {"cli", "__main__"},
+    {"__init__"},  # the front door: `import bench`
 )
 
 
