@@ -150,7 +150,7 @@ def _coherence(
     power = np.sum(np.abs(one) ** 2, axis=0) * np.sum(np.abs(other) ** 2, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):  # a signal that never changes has no power to share
         coherence = np.nan_to_num(shared / power)
-    return np.fft.rfftfreq(length, sample_period)[1:-1], coherence[1:-1]
+    return np.arange(1, length // 2) / (length * sample_period), coherence[1:-1]
 
 
 def _spectra(values: NDArray[np.float64], length: int) -> NDArray[np.complex128]:
