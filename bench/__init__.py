@@ -1,3 +1,79 @@
-"""servobench: a physics-backed test bench for a servo axis."""
+"""servobench: a physics-backed test bench for a servo axis.
 
+The front door: what most users need is a name of this module, and costs its import only when it is first asked for.
+"""
+
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from bench.errors import BenchError, InputError, UndeterminedError
+
+if TYPE_CHECKING:
+    from bench.diagnose.diagnosis import Diagnosis, diagnose
+    from bench.diagnose.replay import replay
+    from bench.identify.estimate import Estimate
+    from bench.identify.regression import identify
+    from bench.plant.simulate import simulate
+    from bench.rig.rig import Rig, load_rig
+    from bench.trace.read import read
+    from bench.trace.trace import Trace
+
+__all__ = [
+    "BenchError",
+    "Diagnosis",
+    "Estimate",
+    "InputError",
+    "Rig",
+    "Trace",
+    "UndeterminedError",
+    "__version__",
+    "diagnose",
+    "identify",
+    "load_rig",
+    "read",
+    "replay",
+    "simulate",
+]
 __version__ = "0.1.0"
+
+#: Module that each name comes from; a test holds it against the imports above, which are what type checkers read.
+_HOMES = {
+    "Diagnosis": "bench.diagnose.diagnosis",
+    "Estimate": "bench.identify.estimate",
+    "Rig": "bench.rig.rig",
+    "Trace": "bench.trace.trace",
+    "diagnose": "bench.diagnose.diagnosis",
+    "identify": "bench.identify.regression",
+    "load_rig": "bench.rig.rig",
+    "read": "bench.trace.read",
+    "replay": "bench.diagnose.replay",
+    "simulate": "bench.plant.simulate",
+}
+
+
+class _FrontDoor(ModuleType):
+    """Loads a name when it is asked for, and keeps it though a package has the same one.
+
+    `identify` and `diagnose` are functions here and packages below. Loading a package, whoever does it first, ends with
+    the import system's `setattr(bench, "identify", <package>)`, after which `bench.identify(...)` would call a module.
+    That one binding is declined, so `bench.identify` is the function whatever was imported before or after, while
+    `from bench.identify.regression import ...` finds the package in `sys.modules` as ever. (Only the spelling
+    `import bench.identify.regression as r` is lost: it goes through the attribute.)
+    """
+
+    def __getattr__(self, name: str) -> object:
+        if name not in _HOMES:
+            raise AttributeError(f"module 'bench' has no attribute '{name}'")
+        return getattr(import_module(_HOMES[name]), name)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (name in _HOMES and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *__all__})
+
+
+sys.modules[__name__].__class__ = _FrontDoor

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 
 from bench.files import write_text
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
@@ -29,6 +31,8 @@ def write_json(path: Path, text: str) -> None:
 
 def console() -> Console:
     """Console no narrower than the bench's tables, so that a log shows them whole."""
+    from rich.console import Console  # 0.04 s, which --version and --help need not pay
+
     found = Console(highlight=False)
     return found if found.is_terminal else Console(highlight=False, width=110)
 

@@ -7,24 +7,13 @@ import math
 import re
 from dataclasses import dataclass
 from functools import cache
-from tokenize import TokenError
 
 import numpy as np
-import pint
 from numpy.typing import NDArray
 
 from bench.errors import InputError
+from bench.usual_units import USUAL_UNITS
 
-#: What pint raises on texts that are no unit.
-_NO_UNIT = (
-    pint.errors.PintError,
-    AttributeError,
-    TypeError,
-    ValueError,
-    AssertionError,
-    ArithmeticError,
-    TokenError,
-)
 _VALUE = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
 
 
@@ -51,39 +40,26 @@ class Quantity:
 
 
 @cache
-def _registry() -> pint.UnitRegistry:
-    registry = pint.UnitRegistry(cache_folder=None)
-    registry.define("rpm = revolution / minute")
-    return registry
-
-
-@cache
-def _unit(unit: str) -> pint.Unit:
-    return _registry().Unit(unit)
-
-
-@cache
 def dimensionality(unit: str) -> str:
     """Dimension of a unit, e.g. `[length] / [time]`; ValueError if `unit` is no unit.
 
     pint counts angles as dimensionless; the bench follows it, so rad/s and 1/s are one dimension.
     """
-    try:
-        return str(_unit(unit).dimensionality)
-    except _NO_UNIT as error:
-        raise ValueError(f"'{unit}' is not a unit") from error
+    if unit in USUAL_UNITS:
+        return USUAL_UNITS[unit].dimensionality
+    from bench import unit_registry
+
+    return unit_registry.dimensionality(unit)
 
 
 @cache
 def base_units(unit: str) -> frozenset[str]:
     """Names of the units that `unit` is made of, without prefixes, e.g. {degree, second} for `mdeg/s`."""
-    dimensionality(unit)
-    registry = _registry()
-    return frozenset(
-        name
-        for full, _ in _registry().Quantity(1.0, _unit(unit)).unit_items()
-        for _, name, _ in registry.parse_unit_name(full)
-    )
+    if unit in USUAL_UNITS:
+        return frozenset(USUAL_UNITS[unit].base_units.split())
+    from bench import unit_registry
+
+    return unit_registry.base_units(unit)
 
 
 def same_dimension(unit: str, other: str) -> bool:
@@ -94,10 +70,13 @@ def same_dimension(unit: str, other: str) -> bool:
 @cache
 def _affine(unit: str, to: str) -> tuple[float, float]:
     """Factor and offset that turn a number in `unit` into a number in `to`."""
-    registry = _registry()
-    zero = registry.Quantity(0.0, _unit(unit)).to(_unit(to)).magnitude
-    one = registry.Quantity(1.0, _unit(unit)).to(_unit(to)).magnitude
-    return float(one - zero), float(zero)
+    if unit in USUAL_UNITS and to in USUAL_UNITS:
+        given, wanted = USUAL_UNITS[unit], USUAL_UNITS[to]
+        if wanted.factor == 1.0 and given.dimensionality == wanted.dimensionality:
+            return given.factor, 0.0
+    from bench import unit_registry
+
+    return unit_registry.affine(unit, to)
 
 
 def convert(values: NDArray[np.float64], unit: str, to: str) -> NDArray[np.float64]:

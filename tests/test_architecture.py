@@ -10,7 +10,7 @@ SOURCES = sorted((ROOT / "bench").rglob("*.py"))
 
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
-    {"__init__", "errors", "units", "axis_kind", "assets", "files"},
+    {"errors", "units", "usual_units", "unit_registry", "axis_kind", "arrays", "statistics", "assets", "files"},
     {"trace"},
     {"rig"},
     {"effects"},
@@ -24,6 +24,7 @@ LAYERS = (
     {"demo"},
     {"console"},
     {"cli", "__main__"},
+    {"__init__"},  # the front door: `import bench`
 )
 
 

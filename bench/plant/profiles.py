@@ -77,8 +77,6 @@ def identification(limits: MotionLimits) -> References:
     return reduce(References.then, (part(limits) for part in parts))
 
 
-DEFAULT = "identification"
-
 PROFILES: dict[str, Profile] = {
     profile.__name__: profile
     for profile in (identification, fast_reversals, full_torque, speed_staircase, slow_reversals, multisine)

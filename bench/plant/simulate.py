@@ -10,7 +10,8 @@ import numpy as np
 from bench.effects.present import Present
 from bench.plant.limits import MotionLimits
 from bench.plant.plant import Plant
-from bench.plant.profiles import DEFAULT, plan
+from bench.plant.profile_names import DEFAULT
+from bench.plant.profiles import plan
 from bench.plant.references import References
 from bench.plant.run import run
 from bench.plant.sensing import reported_states

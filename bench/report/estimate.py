@@ -6,14 +6,16 @@ import dataclasses
 import json
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich import box
 from rich.table import Table
 
 from bench.axis_kind import AxisKind
 from bench.identify.estimate import Estimate, Parameter
-from bench.identify.refine import Refinement
+
+if TYPE_CHECKING:  # MuJoCo: 0.1 s
+    from bench.identify.refine import Refinement
 
 SCHEMA = "bench.identify/1"
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from bench.files import write_text
 from bench.identify.estimate import Estimate
-from bench.identify.refine import Refinement
 from bench.report.estimate import estimate_json
 from bench.report.figures import identification_figure, save
 from bench.rig.rig import Rig
 from bench.trace.conditioning import condition
 from bench.trace.motion import motion
 from bench.trace.stream import stream
+
+if TYPE_CHECKING:  # MuJoCo: 0.1 s
+    from bench.identify.refine import Refinement
 
 
 def write_identification(

@@ -19,7 +19,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import Akima1DInterpolator
 
 from bench.errors import InputError
 from bench.trace.clock import Array, Clock, Sampled, without_duplicates
@@ -93,6 +92,8 @@ def interpolate(at: Array, time: Array, values: Array) -> Array:
     """
     if time.size < _AKIMA:
         return np.interp(at, time, values)
+    from scipy.interpolate import Akima1DInterpolator  # 0.15 s, which regular recordings need not pay
+
     return Akima1DInterpolator(time, values)(np.clip(at, time[0], time[-1]))
 
 

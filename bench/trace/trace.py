@@ -7,12 +7,16 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
+
+if TYPE_CHECKING:
+    from bench.trace.from_arrays import Arrays
 
 #: A step this many sample periods long is a hole, not jitter: no signal of a servo is known inside it.
 HOLE = 1.5
@@ -96,6 +100,33 @@ class Trace:
                 f"does not increase at sample {first} ({self.time[first - 1]:g} s, then {self.time[first]:g} s)",
                 "allowed: increasing times",
             )
+
+    @classmethod
+    def from_arrays(
+        cls,
+        signals: Arrays,
+        units: Mapping[str, str] | None = None,
+        sample_period: float | str | None = None,
+        columns: Mapping[str, str] | None = None,
+        origin: str = "arrays",
+    ) -> Trace:
+        """Trace of samples in memory, on the same regular time base that a file's samples are brought to.
+
+        Args:
+            signals: name -> (n,) samples, or a data frame (pandas, polars, Arrow): `time`, and signals under the names
+                of `bench.trace.signals`. A name may carry its unit, `velocity [deg/s]`. Samples are copied.
+            units: unit of each column whose name carries none; `time` among them.
+            sample_period: where there is no `time` - s, or a text with its unit such as `1 ms`.
+            columns: signal -> column with unit, as in a rig's `[trace.columns]`, for foreign names.
+            origin: what messages call it.
+
+        Raises:
+            InputError: as `bench.trace.assemble.assemble`; a unit for a column that is not there; neither time nor
+                sample period, or both.
+        """
+        from bench.trace.from_arrays import trace_of  # which imports this module
+
+        return trace_of(signals, units or {}, sample_period, columns or {}, origin)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         """Values of a signal; InputError naming it when the trace does not hold it."""

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from io import BytesIO
 
 import numpy as np
-from scipy.io import loadmat
 
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording
@@ -30,6 +29,8 @@ def read(source: Source) -> Recording:
     Raises:
         InputError: version 7.3 (HDF5), truncated, damaged, or without a numeric vector.
     """
+    from scipy.io import loadmat  # 0.05 s, for one format of ten
+
     if source.content.startswith(b"MATLAB 7.3") or source.content.startswith(b"\x89HDF"):
         raise InputError(source.path, "found MAT version 7.3 (HDF5)", "allowed: version 7 or older; save with '-v7'")
     try:

@@ -1,0 +1,40 @@
+"""`bench diagnose`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from bench.console import JsonOption, RigOption, console, tell_files, tell_warnings, write_json
+
+
+def diagnose(
+    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    rig: RigOption,
+    holdout: Annotated[Path | None, typer.Option("--holdout", help="Another recording of the axis.")] = None,
+    json: JsonOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
+    without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
+) -> None:
+    """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
+    from bench.diagnose.diagnosis import diagnose as run_diagnosis
+    from bench.effects.present import named
+    from bench.report.diagnosis import diagnosis_json, diagnosis_table, write_diagnosis
+    from bench.report.progress import progress
+    from bench.rig.rig import load_rig
+    from bench.trace.read import read
+
+    axis = load_rig(rig)
+    excluded = frozenset(named(name, "--without").name for name in without or [])
+    other = read(holdout, axis.trace.columns) if holdout else None
+    with progress(f"diagnosing {trace.name}") as done:
+        found = run_diagnosis(read(trace, axis.trace.columns), axis, other, excluded, done)
+    if json is not None:
+        write_json(json, diagnosis_json(found))
+    files = write_diagnosis(out, found, f"{axis.name}: {trace.name}") if out is not None else []
+    if json != Path("-"):
+        console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
+        tell_files(files)
+    tell_warnings(found.warnings)

@@ -1,0 +1,33 @@
+"""`bench friction`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from bench.console import JsonOption, RigOption, console, tell_files, write_json
+
+
+def friction(
+    traces: Annotated[list[Path], typer.Argument(metavar="TRACE...", help="Recordings, each at one steady speed.")],
+    rig: RigOption,
+    json: JsonOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Figure to write: .png, .pdf or .svg.")] = None,
+) -> None:
+    """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
+    from bench.diagnose.steady import steady_friction
+    from bench.report.friction import draw_friction, friction_json, friction_table
+    from bench.rig.rig import load_rig
+    from bench.trace.read import read
+
+    axis = load_rig(rig)
+    found = steady_friction([read(trace, axis.trace.columns) for trace in traces], axis)
+    if out is not None:
+        draw_friction(found, axis.name, out)
+    if json is not None:
+        write_json(json, friction_json(found))
+    if json != Path("-"):
+        console().print(friction_table(found, axis.name))
+        tell_files([out] if out is not None else [])

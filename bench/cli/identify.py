@@ -1,0 +1,86 @@
+"""`bench identify`."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from bench.console import JsonOption, RigOption, console, tell_files, tell_warnings, write_json
+from bench.errors import InputError
+
+if TYPE_CHECKING:
+    from bench.identify.estimate import Estimate
+    from bench.identify.refine import Refinement
+    from bench.rig.rig import Rig
+
+
+class Estimator(StrEnum):
+    """Ways to identify."""
+
+    REGRESSION = "regression"
+    LAB = "lab"
+
+
+def identify(
+    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    rig: RigOption,
+    json: JsonOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for figures and JSON.")] = None,
+    estimator: Annotated[
+        Estimator, typer.Option("--estimator", help="lab: as the course does.")
+    ] = Estimator.REGRESSION,
+    refine: Annotated[bool, typer.Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
+    offset: Annotated[bool, typer.Option("--offset", help="Fit a constant torque (force) too.")] = False,
+    cutoff: Annotated[
+        float | None, typer.Option("--cutoff", help="Filter's half-power frequency in Hz.", min=1e-6)
+    ] = None,
+) -> None:
+    """Identify inertia, viscous and Coulomb friction of a recording, with 95 % intervals."""
+    from bench.report.estimate import estimate_json, estimate_table, refinement_line
+    from bench.rig.rig import load_rig
+
+    axis = load_rig(rig)
+    axis = axis.model_copy(update={"offset": axis.offset or offset})
+    if estimator is Estimator.LAB and (refine or offset or cutoff):
+        raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
+    estimate, refinement = _estimate(trace, axis, estimator, refine, cutoff)
+    if json is not None:
+        write_json(json, estimate_json(estimate, refinement))
+    files = []
+    if out is not None:
+        from bench.report.identification import write_identification  # matplotlib: 0.35 s
+
+        files = write_identification(out, trace, axis, estimate, refinement)
+    if json != Path("-"):
+        console().print(estimate_table(estimate, f"{axis.name}: {trace.name}"))
+        if refinement is not None:
+            typer.echo(refinement_line(refinement, axis.linear))
+        tell_files(files)
+    tell_warnings(estimate.warnings)
+
+
+def _estimate(
+    trace: Path, rig: Rig, estimator: Estimator, refine: bool, cutoff: float | None
+) -> tuple[Estimate, Refinement | None]:
+    """Estimate by the method asked for, and what polishing did to it."""
+    from bench.trace.read import read
+
+    columns = rig.trace.columns
+    if estimator is Estimator.LAB:
+        from bench.identify.lab import identify_as_in_the_lab
+
+        return identify_as_in_the_lab(read(trace, columns), rig), None
+    from bench.identify.regression import identify as regress
+    from bench.report.progress import progress
+    from bench.trace.stream import stream
+
+    with progress(f"identifying {trace.name}") as done:
+        if not refine:
+            return regress(stream(trace, columns), rig, cutoff), None
+        from bench.identify.refine import refine as polish  # MuJoCo: 0.1 s
+
+        recording = read(trace, columns)
+        return polish(recording, rig, regress(recording, rig, cutoff), done)

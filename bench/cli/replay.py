@@ -1,0 +1,30 @@
+"""`bench replay`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from bench.console import RigOption, tell_files, tell_warnings
+from bench.files import write_text
+
+
+def replay(
+    model: Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")],
+    trace: Annotated[Path, typer.Argument(help="Recording to run it along.")],
+    rig: RigOption,
+    out: Annotated[Path, typer.Option("--out", help="CSV to write.")],
+) -> None:
+    """Run a diagnosed model along a recording; write measured and simulated signals."""
+    from bench.diagnose.replay import replay as run_replay
+    from bench.rig.rig import load_rig
+    from bench.trace.read import read
+
+    axis = load_rig(rig)
+    replayed = run_replay(model, read(trace, axis.trace.columns), axis)
+    write_text(out, replayed.csv())
+    typer.echo(replayed.says)
+    tell_files([out])
+    tell_warnings(replayed.warnings)

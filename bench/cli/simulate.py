@@ -1,0 +1,36 @@
+"""`bench simulate`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from bench.console import tell_files
+from bench.plant.profile_names import DEFAULT, NAMES
+
+
+def simulate(
+    rig: Annotated[Path, typer.Argument(help="Rig file with [drive] and [simulation].")],
+    out: Annotated[Path, typer.Option("--out", help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
+    profile: Annotated[str, typer.Option("--profile", help=f"Motion: {', '.join(NAMES)}.")] = DEFAULT,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of the sensors' noise.", min=0)] = 0,
+    effect: Annotated[
+        list[str] | None, typer.Option("--effect", help="NAME:key=value,... to add; see bench effects. Repeatable.")
+    ] = None,
+) -> None:
+    """Simulate the axis of a rig in MuJoCo; write its trace and, beside it, the truth."""
+    from bench.effects.present import parse_effect
+    from bench.plant.simulate import simulate as run_simulation
+    from bench.plant.truth import write_truth
+    from bench.report.progress import progress
+    from bench.rig.rig import load_rig
+    from bench.trace.write import write
+
+    axis = load_rig(rig)
+    with progress(f"simulating {axis.name}") as done:
+        present = [parse_effect(text, axis.linear) for text in effect or ()]
+        simulated = run_simulation(axis, profile, seed, progress=done, effects=present)
+    write(simulated.trace, out)
+    tell_files([out, write_truth(out, simulated.truth)])

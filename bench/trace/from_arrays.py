@@ -1,0 +1,117 @@
+"""From arrays or a data frame to a trace: columns as a reader returns them, assembled as any recording is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import ArrayLike
+
+from bench.errors import InputError
+from bench.trace.assemble import assemble
+from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.known_names import signal_of
+from bench.trace.readers.parquet import channel_of
+from bench.trace.signals import SI_UNITS
+from bench.trace.trace import Trace
+from bench.units import nearest, parse
+
+FORMAT = "arrays"
+
+
+class ArrowStream(Protocol):
+    """A data frame that hands out its columns by Arrow's protocol, as pandas, polars and Arrow itself do."""
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """Columns as a stream of Arrow arrays."""
+        ...
+
+
+Arrays = Mapping[str, ArrayLike] | ArrowStream
+
+
+def trace_of(
+    signals: Arrays,
+    units: Mapping[str, str],
+    sample_period: float | str | None,
+    columns: Mapping[str, str],
+    origin: str,
+) -> Trace:
+    """See `Trace.from_arrays`."""
+    channels = list(_channels(signals, origin))
+    names = [channel.name for channel in channels]
+    for name in units:
+        if name not in names:
+            raise InputError(
+                f"{origin}: unit of {name}", f"no such column{nearest(name, names)}", f"found: {', '.join(names)}"
+            )
+    channels = [replace(channel, unit=units.get(channel.name, channel.unit)) for channel in channels]
+    _require_units(channels, columns)
+    timed = "time" in columns or any(signal_of(name) == "time" for name in names)
+    if timed == (sample_period is not None):
+        found = "found a column of it and a sample_period" if timed else "found no column of it and no sample_period"
+        raise InputError(f"{origin}: time", found, "allowed: one of them")
+    if sample_period is not None:
+        samples = max((channel.values.size for channel in channels), default=0)
+        channels.append(
+            Channel("time", "s", np.arange(samples, dtype=np.float64) * _period(sample_period, origin), origin)
+        )
+    return assemble(Recording(tuple(channels), FORMAT, origin), columns)
+
+
+def _channels(signals: Arrays, origin: str) -> Iterator[Channel]:
+    """Columns with samples of their own, which nobody else can change."""
+    if isinstance(signals, Mapping):
+        found = (_channel(label, values, origin) for label, values in signals.items())
+    else:
+        table = _table(signals, origin)
+        found = (channel_of(*column, origin) for column in zip(table.schema, table.columns, strict=True))
+    return (replace(channel, values=channel.values.copy()) for channel in found)
+
+
+def _channel(label: str, values: ArrayLike, origin: str) -> Channel:
+    """Channel of one array; a defect where it holds anything but a number for each sample."""
+    channel = Channel(*split_label(label), np.empty(0), origin)
+    try:
+        array = np.asarray(values)
+        if array.ndim == 1:
+            column = pa.array(array)
+            return channel_of(pa.field(label, column.type), column, origin)
+        found = f"shape {array.shape}"
+    except (ValueError, pa.ArrowException):  # rows of different lengths; objects that Arrow has no type for
+        found = "what is no number"
+    return replace(channel, defect=InputError(channel.place(), f"found {found}", "allowed: one number a sample"))
+
+
+def _table(frame: ArrowStream, origin: str) -> pa.Table:
+    try:
+        return pa.table(frame)
+    except TypeError as error:
+        allowed = "allowed: arrays by their names, or a data frame"
+        raise InputError(origin, f"found {type(frame).__name__}", allowed) from error
+    except pa.ArrowException as error:
+        raise InputError(origin, f"its columns cannot be read ({error})", "allowed: columns of numbers") from error
+
+
+def _require_units(channels: Sequence[Channel], columns: Mapping[str, str]) -> None:
+    """InputError naming the first signal of no unit, neither in its column's name nor told."""
+    names = {channel.name for channel in channels}
+    for channel in channels:
+        signal = signal_of(channel.name)
+        needed = signal is not None and signal not in columns and (signal == channel.name or signal not in names)
+        if signal is not None and needed and channel.unit is None:
+            usual = "s" if signal == "time" else SI_UNITS[signal][0]
+            allowed = f'allowed: units={{"{channel.name}": "{usual}"}} or another unit of it'
+            raise InputError(f"{channel.origin}: {channel.name}", "has no unit", allowed)
+
+
+def _period(given: float | str, origin: str) -> float:
+    where = f"{origin}: sample_period"
+    period = parse(given, "s", where) if isinstance(given, str) else float(given)
+    if not (math.isfinite(period) and period > 0.0):
+        raise InputError(where, f"found {given}", "allowed: a positive time, in s where no unit is told")
+    return period
