@@ -1,28 +1,52 @@
-"""The catalogue: every effect there is a file of."""
+"""The catalogue: every effect there is a file of, here and in packages that offer some.
+
+Another package offers effects as entry points of the group `servobench.effects`, each an effect:
+
+    [project.entry-points."servobench.effects"]
+    belt_creep = "their_package.belt_creep:EFFECT"
+"""
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
 from functools import cache
+from importlib.metadata import entry_points
 from types import MappingProxyType
 
 import bench.effects
 from bench.effects.effect import Effect
-from bench.effects.physics import Physics
+from bench.effects.rivals import RIVALS
+from bench.errors import InputError
 
-
-@cache
-def physics() -> MappingProxyType[str, Physics]:
-    """All effects by name, each from the module of that name."""
-    modules = (
-        importlib.import_module(f"bench.effects.{info.name}") for info in pkgutil.iter_modules(bench.effects.__path__)
-    )
-    found = [vars(module)["EFFECT"] for module in modules if "EFFECT" in vars(module)]
-    return MappingProxyType({effect.name: effect for effect in found})
+GROUP = "servobench.effects"
 
 
 @cache
 def catalogue() -> MappingProxyType[str, Effect]:
-    """Effects that add columns to the torque balance, by name."""
-    return MappingProxyType({name: effect for name, effect in physics().items() if isinstance(effect, Effect)})
+    """All effects by name, each from the module or folder of that name, then those of other packages.
+
+    Raises:
+        InputError: what another package offers is no effect, or has the name of one.
+    """
+    modules = (
+        importlib.import_module(f"bench.effects.{info.name}") for info in pkgutil.iter_modules(bench.effects.__path__)
+    )
+    found: dict[str, Effect] = {}
+    for module in modules:
+        if "EFFECT" in vars(module):
+            effect = vars(module)["EFFECT"]
+            found[effect.name] = effect
+    for offered in entry_points(group=GROUP):
+        effect = offered.load()
+        if not isinstance(effect, Effect):
+            raise InputError(f"{GROUP}: {offered.value}", f"found {effect!r}", "allowed: an effect of the bench")
+        if effect.name in found:
+            raise InputError(f"{GROUP}: {offered.value}", f"found '{effect.name}' again", "allowed: a name of its own")
+        found[effect.name] = effect
+    return MappingProxyType(found)
+
+
+def rivals() -> tuple[Effect, ...]:
+    """Effects from outside the catalogue, which compete with its names."""
+    return RIVALS

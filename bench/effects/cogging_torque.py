@@ -13,13 +13,15 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Shape, Signals, amplitude_and_phase
+from bench.effects.effect import amplitude_and_phase
 from bench.effects.mjcf import add_periodic_torque
-from bench.effects.physics import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.signals import Base, Shape, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class CoggingTorque(Mechanism, Effect):
+class CoggingTorque(Mechanism):
     """See the module."""
 
     name = "cogging_torque"
@@ -30,16 +32,22 @@ class CoggingTorque(Mechanism, Effect):
         Quantity("phase", "phi", "rad", angle=True),
     )
     shapes = (Shape(quantities[1], tuple(float(n) for n in range(2, 81)), whole=True),)
+    repeatable = True
+    fixed_in_simulation = frozenset({"harmonic"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """sin(n*q) and cos(n*q), nothing where the wave is faster than the samples can follow."""
         angle, slow = shape[0] * signals.position, followed(signals, shape[0])
         return [[(np.sin(angle) * slow, 0)], [(np.cos(angle) * slow, 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude, harmonic and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"amplitude": amplitude, "harmonic": shape[0], "phase": phase}
+
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """The harmonic."""
+        return shape[0]
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

@@ -8,13 +8,20 @@ Source: D. Schröder, Elektrische Antriebe - Regelung von Antriebssystemen (clos
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
-from scipy.signal import lfilter
 
-from bench.effects.physics import Array, Axis, Electronics, Number, Values
+from bench.effects.first_order import lagged
+from bench.effects.kinds import Axis, Electronics, Number, Values
+from bench.effects.signals import Scope, Shape, Signals
+from bench.statistics import NORMAL95
+from bench.trace.filter import Array
 from bench.units import Quantity
+
+#: Lags that a search tries first - s.
+LAGS = (3e-4, 8e-4, 2e-3, 4e-3, 8e-3)
 
 
 class CurrentLoopLag(Electronics):
@@ -23,6 +30,29 @@ class CurrentLoopLag(Electronics):
     name = "current_loop_lag"
     summary = "torque acts later than the reported current"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0),)
+    shapes = (Shape(quantities[0], LAGS, reach=1.0),)
+    not_beside = frozenset({"velocity_filter_lag"})
+
+    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+        """The torque that acts; what is made of it sees that."""
+        return replace(signals, torque=lagged(signals.torque, shape[0], signals.sample_period))
+
+    def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
+        """All columns, against the reported torque."""
+        return shape[0], shape[0]
+
+    def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
+        """By the tick within which current and speed were taken."""
+        return [scope.latched / NORMAL95]
+
+    def ambiguous(self, scope: Scope) -> tuple[str, ...]:
+        """A lag of the speed, unless position tells that."""
+        told = scope.source == "position" or {"position", "velocity"} <= scope.signals
+        return () if told else ("velocity_filter_lag",)
+
+    def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float]:
+        """A lag of the speed by as much."""
+        return {"time_constant": values["time_constant"]}
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""
@@ -34,12 +64,8 @@ class CurrentLoopLag(Electronics):
         return reported + (before - reported) * half, reported + (before - reported) * half**2
 
     def acting_along(self, values: Mapping[str, float], reported: Array, step: float) -> Array:
-        """The same, started in equilibrium."""
-        half = np.exp(-0.5 * step / values["time_constant"])
-        decay = half**2
-        ends, _ = lfilter([1.0 - decay], [1.0, -decay], reported, zi=[decay * reported[0]])
-        before = np.concatenate([reported[:1], ends[:-1]])
-        return reported + (before - reported) * half
+        """Exact for a current that runs straight between the steps."""
+        return lagged(reported, values["time_constant"], step)
 
 
 EFFECT = CurrentLoopLag()

@@ -14,13 +14,14 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Signals
 from bench.effects.mjcf import AXIS, add_resisting_torque
-from bench.effects.physics import Axis, Friction, Moment, Number, Values
+from bench.effects.kinds import Axis, Friction, Moment, Number, Values
+from bench.effects.signals import Base, Scope, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class DirectionDependentFriction(Friction, Effect):
+class DirectionDependentFriction(Friction):
     """See the module."""
 
     name = "direction_dependent_friction"
@@ -39,9 +40,17 @@ class DirectionDependentFriction(Friction, Effect):
         """Half of the dry difference."""
         return 0.5 * strengths[0]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Differences forward less backward."""
         return {"coulomb_difference": strengths[0], "viscous_difference": strengths[1]}
+
+    def simpler_forms(self) -> tuple[str, ...]:
+        """A constant torque, where viscous friction does not differ."""
+        return ("torque_offset",)
+
+    def ambiguous(self, scope: Scope) -> tuple[str, ...]:
+        """A constant torque, wherever the axis moves."""
+        return ("torque_offset",)
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

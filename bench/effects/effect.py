@@ -1,120 +1,324 @@
-"""What an effect is: quantities with units and bounds, and the columns by which it enters the torque balance.
+"""What an effect is: one piece of physics, or one fault of the measurement, with all that anybody has to know of it.
 
     motor torque = J*alpha + K_w*omega + K_0*sgn(omega) + sum over effects of strength_k * column_k(signals, shape)
 
-Strengths enter linearly; shapes (a Stribeck speed, a harmonic, a time constant) do not and are profiled.
+Strengths enter linearly; shapes (a Stribeck speed, a harmonic, a time constant) do not and are profiled. An effect
+overrides what is not neutral in it, and whoever deals with effects asks the object. How it acts in a simulation:
+`bench.effects.kinds`.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.rig.rig import Rig
+from bench.trace.filter import Array, Column
+from bench.trace.trace import Trace
 from bench.units import Quantity
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from bench.effects.kinds import Axis, Number
 
-#: Raw samples (n,) and the order of the time derivative to be taken of them by the filter; a column is a sum of terms.
-#: So products are formed on raw samples and differentiated exactly: q''*sin(q) = (q'*sin(q))' - q'**2*cos(q).
-Term = tuple[Array, int]
-Column = Sequence[Term]
+#: Share of what stands above the noise floor that an effect must explain to be taken up. Shares of the right effect on
+#: the shared cases: 0.38 and more; of the nearest wrong one where the right one was left out: see docs/thresholds.md.
+SHARE = 0.25
+#: The same for a pitch that repeats so many half cycles over the travel of a linear axis that no smooth error of the
+#: model copies it.
+PITCH_SHARE, MANY = 0.1, 20.0
+#: Top speed of the rotary axes for which effects state their grids - rad/s.
+TOP = 100.0
+#: Angle of a cycle that the motion must cover - rad: over less, a wave is a mere curve, and a wave of torque copies it.
+PERIOD = 2.0 * np.pi
+#: Cycles over the travel of a linear axis between which pitches are sought: fewer than two are no repetition.
+COARSEST, FINEST = 2.0, 128.0
+
+#: What acts on the load behind a coupling: effect, its shape, its strengths over load inertia.
+Load = tuple["Effect", tuple[float, ...], tuple[float, ...]]
 
 
 @dataclass(frozen=True)
-class Signals:
-    """Raw samples of one stretch of a recording, all (n,).
+class Proposal:
+    """A shape of an effect that was tried beside a fit, and the squares it would take from the residual."""
+
+    shape: tuple[float, ...]
+    gain: float
+
+
+@dataclass(frozen=True)
+class Detected:
+    """An effect read from signals that the torque balance does not hold.
 
     Attributes:
-        time: since the recording's start - s.
-        position: rad (m); from speed by the trapezoidal rule where it is not recorded.
-        velocity: rad/s (m/s).
-        sign: sgn(omega), 0 where noise may have made it.
-        effort: motor torque as reported - N*m (N).
-        torque: motor torque as it acts, which a lag of the current loop delays - N*m (N).
-        friction: level of dry friction with its sign, as share of K_0: sgn(omega), or what a named effect makes of it;
-            effects that scale dry friction multiply it.
-        peak_effort: effort at the motor's peak current - N*m (N); the recording's largest where the rig tells none.
-        sample_period: s.
+        values, errors: of its quantities, and their half widths at 95 % - SI.
+        evidence: figures that speak for it, by what they are.
     """
 
-    time: Array
-    position: Array
-    velocity: Array
-    sign: Array
-    effort: Array
-    torque: Array
-    friction: Array
-    peak_effort: float
-    sample_period: float
+    values: Mapping[str, float]
+    errors: Mapping[str, float]
+    evidence: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class Base:
-    """What the torque balance without effects has: J - kg*m**2 (kg), K_w - N*m*s/rad (N*s/m), K_0 - N*m (N)."""
+class FittedTerm(Protocol):
+    """A term of a fitted balance: an effect of a shape."""
 
-    inertia: float
-    viscous: float
-    coulomb: float
+    @property
+    def effect(self) -> Effect: ...  # noqa: D102
+    @property
+    def shape(self) -> tuple[float, ...]: ...  # noqa: D102
 
 
-@dataclass(frozen=True)
-class Shape:
-    """A quantity that enters nonlinearly.
+class Fitted(Protocol):
+    """A torque balance fitted to a recording, as effects may ask it; see `bench.balance.fit.Fit`."""
 
-    Attributes:
-        quantity: name, unit, bounds.
-        grid: where a search looks first.
-        whole: whether only whole numbers make sense (a harmonic).
-    """
+    theta: Array
+    owners: NDArray[np.int64]
+    told: NDArray[np.bool_]
 
-    quantity: Quantity
-    grid: tuple[float, ...]
-    whole: bool = False
+    @property
+    def scope(self) -> Scope: ...  # noqa: D102
+    @property
+    def terms(self) -> Sequence[FittedTerm]: ...  # noqa: D102
+    @property
+    def columns(self) -> Array: ...  # noqa: D102
+    @property
+    def effort(self) -> Array: ...  # noqa: D102
+    @property
+    def residual(self) -> Array: ...  # noqa: D102
+    @property
+    def floor(self) -> float: ...  # noqa: D102
+    @property
+    def time(self) -> Array: ...  # noqa: D102
+    @property
+    def span(self) -> Array: ...  # noqa: D102
+    def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array: ...  # noqa: D102
+    def gains(self, columns: Array, width: int) -> Array: ...  # noqa: D102
+    def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]: ...  # noqa: D102
 
 
 class Effect(ABC):
-    """One piece of physics that adds columns to the torque balance.
+    """Anything the catalogue lists.
 
     Attributes:
         name: as in the contract.
         summary: one line.
-        quantities: what is reported of it, with unit and bounds.
-        shapes: the nonlinear ones, in the order in which `columns` takes them.
-        searched: whether a search may try its columns over the grids of its shapes.
+        quantities: its parameters, with unit and bounds.
+        derived: what is reported beside them, and follows from them.
+        shapes: the nonlinear quantities, in the order in which all methods take them.
+        of_motion: whether its columns are accelerations, which a lag of the reported speed delays as J's.
+        copies_torque: whether its columns are made of the measured torque, and so hold its noise.
         scales_friction: whether it multiplies the level of dry friction, what other effects add to it included.
         may_load: whether it may act on the load of a coupling rather than on the motor.
-        of_speed_alone: whether its torque follows from speed alone, so that a map of friction over speed may hold it.
+        couples: whether it joins motor and load; an axis has one such effect.
+        turning_only: whether it has no meaning on a linear axis.
+        of_speed_alone: whether its torque depends on speed alone.
+        repeatable: whether an axis may have several of it, each of another shape (harmonics, events).
+        occasional: whether it happens in one recording and not in another.
+        bursts: whether what it leaves unexplained comes in bursts.
+        biased_by_noise: whether noise of the motion biases its strength, and not only scatters it.
+        not_beside: names of effects beside which it is not sought, as a recording tells but one of them.
+        replaces: names of effects that it is tried in the place of, once nothing else explains more.
+        shows_under_drive: whether it shows where the drive runs the model, and hardly where the recording holds it.
+        tolerates: share of the first gap that may be left beside it, if it is unlike that of other effects.
+        fixed_in_simulation: quantities that a fit by simulation leaves alone: whole numbers, instants between samples.
     """
 
-    name: str
-    summary: str
-    quantities: tuple[Quantity, ...]
-    shapes: tuple[Shape, ...] = ()
-    searched: bool = True
-    scales_friction: bool = False
-    may_load: bool = False
-    of_speed_alone: bool = False
+    name: ClassVar[str]
+    summary: ClassVar[str]
+    quantities: ClassVar[tuple[Quantity, ...]]
+    derived: ClassVar[tuple[Quantity, ...]] = ()
+    shapes: ClassVar[tuple[Shape, ...]] = ()
+    of_motion: ClassVar[bool] = False
+    copies_torque: ClassVar[bool] = False
+    scales_friction: ClassVar[bool] = False
+    may_load: ClassVar[bool] = False
+    couples: ClassVar[bool] = False
+    turning_only: ClassVar[bool] = False
+    of_speed_alone: ClassVar[bool] = False
+    repeatable: ClassVar[bool] = False
+    occasional: ClassVar[bool] = False
+    bursts: ClassVar[bool] = False
+    biased_by_noise: ClassVar[bool] = False
+    not_beside: ClassVar[frozenset[str]] = frozenset()
+    replaces: ClassVar[frozenset[str]] = frozenset()
+    shows_under_drive: ClassVar[bool] = False
+    tolerates: ClassVar[float | None] = None
+    fixed_in_simulation: ClassVar[frozenset[str]] = frozenset()
+
+    # How it is told absent, and what need not be said of it.
 
     @abstractmethod
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """Values of some quantities at which the effect is exactly absent."""
+
+    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+        """Values of quantities that need not be given."""
+        return {}
+
+    # How it enters the torque balance.
+
+    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+        """The recording as it is without this fault of its sensors."""
+        return signals
+
+    def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
+        """Lags to undo on the columns of motion, and on all others, where speed comes from `source` - s."""
+        return 0.0, 0.0
+
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Resisting torque per unit of each strength - N*m (N) per unit, raw samples before the filter."""
+        return []
 
-    @abstractmethod
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """The effect's quantities from fitted strengths and shape - SI."""
+    def columns_of(
+        self, signals: Signals, shapes: Sequence[Sequence[float]], loads: Sequence[Load] = ()
+    ) -> list[Column]:
+        """Columns of several shapes, one shape after the other; `loads` act behind it if it couples."""
+        return [column for shape in shapes for column in self.columns(signals, shape)]
 
     def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array | float:
         """Dry friction beside Coulomb's, with its sign, that strengths make - the strengths' unit - (n,)."""
         return 0.0
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+    def stiffness(self, strengths: Sequence[float]) -> float:
+        """Torque per position by which it pulls the load back - N*m/rad (N/m)."""
+        return 0.0
+
+    def load_inertia(self, strengths: Sequence[float]) -> float:
+        """Inertia behind it, if it couples - kg*m**2 (kg)."""
+        return 0.0
+
+    def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array | NDArray[np.complex128]:
+        """What white noise of the acceleration becomes in its first column, over angular frequency."""
+        return np.zeros_like(omega)
+
+    def open_torque(self, fitted: Fitted, index: int) -> Array | None:
+        """Per row, how far its torque moves within what the recording does not tell - N*m (N) - (m,)."""
+        return None
+
+    # How it is suspected.
+
+    def sought(self, scope: Scope) -> bool:
+        """Whether such a recording can show it in the torque balance."""
+        return scope.kind.turns or not self.turning_only
+
+    def grid(self, scope: Scope) -> list[tuple[float, ...]]:
+        """Shapes that a search tries first."""
+        return list(product(*(places(shape, scope) for shape in self.shapes)))
+
+    def propose(self, fitted: Fitted) -> list[Proposal]:
+        """Shapes beside a fit, with what each would take from its residual; by default those of the grid."""
+        return fitted.tried(self, self.grid(fitted.scope))
+
+    def in_place_of(self, fitted: Fitted) -> tuple[float, ...] | None:
+        """The likeliest shape beside a fit that lacks what this effect replaces."""
+        return None
+
+    def reach(self, shape: Sequence[float], k: int) -> float:
+        """How far a search of the k-th quantity goes at first; see `Shape.reach`."""
+        return self.shapes[k].reach
+
+    def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
+        """Share of what stands above the noise floor that it must explain to be taken up."""
+        pitches = [value for slot, value in zip(self.shapes, shape, strict=True) if is_pitch(slot, scope)]
+        return PITCH_SHARE if any(value > MANY * scope.spacing for value in pitches) else SHARE
+
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base, scope: Scope) -> bool:
         """Whether physics allows these values: every quantity within its bounds."""
-        found = self.values(strengths, shape, base)
+        found = self.report(strengths, shape, base)
         return all(q.lower <= found[q.name] <= q.upper for q in self.quantities if q.name in found)
+
+    def plausible(self, shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+        """Whether all of them may be there together, if it is repeatable."""
+        return True
+
+    def wave_number(self, shape: Sequence[float]) -> float | None:
+        """Of its torque over position, if it is a wave - 1 (rad/m)."""
+        return None
+
+    def simpler_forms(self) -> tuple[str, ...]:
+        """Names of effects that it becomes where some of its strengths are nil."""
+        return ()
+
+    # How it is told.
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """The effect's quantities from fitted strengths and shape - SI."""
+        return {slot.quantity.name: value for slot, value in zip(self.shapes, shape, strict=True)}
+
+    def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
+        """Standard deviations of its shape that no noise shows: of an instant between rows (m,), of an angle's origin."""
+        return [0.0] * len(self.shapes)
+
+    def spread(self, fitted: Fitted, index: int) -> Array | None:
+        """Covariance of its free shapes beyond what scores tell, where the likelihood's curvature tells too little."""
+        return None
+
+    def ambiguous(self, scope: Scope) -> tuple[str, ...]:
+        """Names of effects that such a recording cannot tell from it."""
+        return ()
+
+    # Where the torque balance does not hold it.
+
+    def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
+        """The effect read from signals directly, through a filter of a width - s; None if they do not show it."""
+        return None
+
+    def corrected(self, trace: Trace, values: Mapping[str, float]) -> Trace:
+        """The recording with its fault undone."""
+        return trace
+
+    def shown_in(self, trace: Trace, rig: Rig, values: Mapping[str, float]) -> Trace:
+        """The part of a recording in which it shows, if it `shows_under_drive`."""
+        return trace
+
+    # What motion tells it from another explanation.
+
+    def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float] | None:
+        """Values of an effect it is `ambiguous` with that looks the same in this motion; None if in every motion."""
+        return None
+
+    def instead_of_dry_friction(self, torque: float) -> Mapping[str, float] | None:
+        """Values at which it looks as dry friction does in one direction, torque as signed there - N*m (N)."""
+        return None
+
+    @property
+    def kind(self) -> str:
+        """`physics`, or `measurement` of a sensor's fault."""
+        return "physics"
+
+    @classmethod
+    def overrides(cls, hook: str) -> bool:
+        """Whether the effect has a hook of its own rather than the neutral one of its kind."""
+        neutral: Any = next(vars(base)[hook] for base in cls.__mro__[::-1] if hook in vars(base))
+        return getattr(cls, hook) is not neutral
+
+
+def is_pitch(shape: Shape, scope: Scope) -> bool:
+    """Whether a harmonic is the wave number of a pitch.
+
+    A linear axis has no revolution that all share: screw, belt and magnets each have a pitch of their own, so a
+    harmonic is 2*pi over the pitch there - rad/m -, varies continuously and is sought by the travel.
+    """
+    return shape.whole and not scope.kind.turns
+
+
+def places(shape: Shape, scope: Scope) -> tuple[float, ...]:
+    """Where a shape is sought first: on a linear axis as on a rotary one whose top speed is TOP."""
+    if is_pitch(shape, scope):
+        return tuple((scope.spacing * np.arange(2.0 * COARSEST, 2.0 * FINEST + 1.0)).tolist())
+    if shape.whole:
+        return tuple(n for n in shape.grid if n * scope.travel >= PERIOD)
+    power = {"rad/s": 1, "1/rad": -1}.get(shape.quantity.unit, 0)
+    if scope.kind.turns or not power:
+        return shape.grid
+    return tuple(value * (scope.top_speed / TOP) ** power for value in shape.grid)
 
 
 def amplitude_and_phase(sine: float, cosine: float) -> tuple[float, float]:

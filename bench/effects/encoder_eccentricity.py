@@ -2,21 +2,27 @@
 
     q_m = q + e*sin(q + phi),  omega_m = omega*(1 + e*cos(q + phi))
 
-e - amplitude - rad: eccentricity over radius of the graduation; q - angle of the motor - rad.
+e - amplitude - rad: eccentricity over radius of the graduation; q - angle of the motor - rad. In the balance
+e*sin(q + phi) = s*sin(q) + c*cos(q), and the acceleration errs by d/dt(omega*(s*cos(q) - c*sin(q))).
 Source: A. Ernst, Digital Linear and Angular Metrology, 1998 (eccentricity of graduations).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from bench.effects.physics import Array, Axis, Number, Sensing, Values
+from bench.effects.effect import Fitted, Proposal, amplitude_and_phase
+from bench.effects.kinds import Axis, Number, Sensing, Values
+from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.statistics import NORMAL95
+from bench.trace.filter import Array, Column
 from bench.units import Quantity
 
-#: Fixed-point steps that turn a measured into a true angle: each multiplies the error by e, which is far below 1.
-STEPS = 12
+#: Newton steps that turn a measured into a true angle: the error after k of them is below e**(2**k).
+STEPS = 5
 
 
 class EncoderEccentricity(Sensing):
@@ -25,6 +31,45 @@ class EncoderEccentricity(Sensing):
     name = "encoder_eccentricity"
     summary = "measured position errs once per revolution"
     quantities = (Quantity("amplitude", "e", "rad", lower=0.0, upper=0.5), Quantity("phase", "phi", "rad", angle=True))
+    shapes = (
+        Shape(Quantity("sine", "s", "rad"), additive=True),
+        Shape(Quantity("cosine", "c", "rad"), additive=True),
+    )
+    turning_only = True
+
+    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+        """The true motion."""
+        angle, velocity = true_motion(signals.position, signals.velocity, *shape)
+        return replace(signals, position=angle, velocity=velocity)
+
+    def propose(self, fitted: Fitted) -> list[Proposal]:
+        """To first order, where the balance is linear in both shapes: it lacks J times the acceleration's error."""
+
+        def errors(signals: Signals) -> list[Column]:
+            angle, speed = signals.position, signals.velocity
+            return [[(speed * np.cos(angle), 1)], [(-speed * np.sin(angle), 1)]]
+
+        columns = fitted.seen(errors, of_motion=True)
+        gain = float(fitted.gains(columns, 2)[0])
+        sine, cosine = np.linalg.lstsq(columns, fitted.residual, rcond=None)[0] / -fitted.theta[0]
+        return [Proposal((float(sine), float(cosine)), gain)]
+
+    def reach(self, shape: Sequence[float], k: int) -> float:
+        """A third of the amplitude."""
+        return 0.3 * max(float(np.hypot(*shape)), 1e-4)
+
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """One cycle a revolution."""
+        return 1.0
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Amplitude and phase."""
+        amplitude, phase = amplitude_and_phase(*shape)
+        return {"amplitude": amplitude, "phase": phase}
+
+    def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
+        """By the drift of an integrated position, and by the half tick within which it was taken."""
+        return [float(np.hypot(*shape)) * (scope.drift + 0.5 * scope.latched * scope.rms_speed / NORMAL95)] * 2
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""
@@ -40,11 +85,18 @@ class EncoderEccentricity(Sensing):
         return position + amplitude * np.sin(angle), velocity * (1.0 + amplitude * np.cos(angle))
 
     def unseen(self, values: Mapping[str, float], position: Array, velocity: Array) -> tuple[Array, Array]:
-        """By fixed-point iteration of q = q_m - e*sin(q + phi)."""
-        amplitude, true = values["amplitude"], position
-        for _ in range(STEPS):
-            true = position - amplitude * np.sin(true + values["phase"])
-        return true, velocity / (1.0 + amplitude * np.cos(true + values["phase"]))
+        """The equations solved for the true motion."""
+        amplitude, phase = values["amplitude"], values["phase"]
+        return true_motion(position, velocity, amplitude * np.cos(phase), amplitude * np.sin(phase))
+
+
+def true_motion(position: Array, velocity: Array, sine: float, cosine: float) -> tuple[Array, Array]:
+    """Angle and speed (n,) of the motor from measured ones, by Newton's method - rad, rad/s."""
+    angle = position
+    for _ in range(STEPS):
+        sin, cos = np.sin(angle), np.cos(angle)
+        angle = angle - (angle + sine * sin + cosine * cos - position) / (1.0 + sine * cos - cosine * sin)
+    return angle, velocity / (1.0 + sine * np.cos(angle) - cosine * np.sin(angle))
 
 
 EFFECT = EncoderEccentricity()

@@ -12,12 +12,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.effect import Array, Base, Column, Effect, Shape, Signals
-from bench.effects.physics import Axis, Friction, Moment, Number, Values
+from bench.effects.kinds import Axis, Friction, Moment, Number, Values
+from bench.effects.signals import Base, Shape, Signals
+from bench.trace.filter import Array, Column
 from bench.units import Quantity
 
 
-class FrictionWarmup(Friction, Effect):
+class FrictionWarmup(Friction):
     """See the module."""
 
     name = "friction_warmup"
@@ -40,7 +41,7 @@ class FrictionWarmup(Friction, Effect):
         """Of the dry part."""
         return strengths[0] * signals.friction * np.exp(-signals.time / shape[0])
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude relative to the Coulomb friction of the warm axis."""
         return {"relative_amplitude": strengths[0] / base.coulomb, "time_constant": shape[0]}
 

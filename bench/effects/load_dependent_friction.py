@@ -12,17 +12,19 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.effect import Array, Base, Column, Effect, Signals
-from bench.effects.physics import Axis, Friction, Moment, Number, Values
+from bench.effects.kinds import Axis, Friction, Moment, Number, Values
+from bench.effects.signals import Base, Signals
+from bench.trace.filter import Array, Column
 from bench.units import Quantity
 
 
-class LoadDependentFriction(Friction, Effect):
+class LoadDependentFriction(Friction):
     """See the module."""
 
     name = "load_dependent_friction"
     summary = "friction grows with the magnitude of the transmitted torque"
     quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0),)
+    copies_torque = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Magnitude of the torque, against the motion."""
@@ -32,7 +34,7 @@ class LoadDependentFriction(Friction, Effect):
         """All of it."""
         return strengths[0] * signals.sign * np.abs(signals.torque)
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"load_friction_coefficient": strengths[0]}
 

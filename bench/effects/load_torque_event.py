@@ -11,12 +11,24 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Shape, Signals
-from bench.effects.physics import Axis, Mechanism, Moment, Number, Values
+from bench.effects.effect import Fitted, Proposal
+from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
+from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.statistics import NORMAL95
+from bench.trace.filter import Array, Column
 from bench.units import Quantity
 
+#: Points in time between which events are sought.
+EDGES = 240
+#: Longest events together, as share of the recording.
+LONGEST = 0.6
+#: Share of what stands above the noise floor that an event must explain.
+NEEDED = 0.5
+#: Widths of the filter that an event lasts at least: the full width at half maximum of its impulse response.
+RESOLVED = 2.355
 
-class LoadTorqueEvent(Mechanism, Effect):
+
+class LoadTorqueEvent(Mechanism):
     """See the module."""
 
     name = "load_torque_event"
@@ -26,21 +38,55 @@ class LoadTorqueEvent(Mechanism, Effect):
         Quantity("start", "t_1", "s", lower=0.0),
         Quantity("end", "t_2", "s", lower=0.0),
     )
+    shapes = tuple(Shape(instant, reach=0.05, additive=True) for instant in quantities[1:])
     may_load = True
-    shapes = (Shape(quantities[1], ()), Shape(quantities[2], ()))
+    repeatable = True
+    occasional = True
+    fixed_in_simulation = frozenset({"start", "end"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """One within the stretch; its edges shared between the samples around them."""
         start, end = ((signals.time - edge) / signals.sample_period + 0.5 for edge in shape)
         return [[(np.clip(start, 0.0, 1.0) - np.clip(end, 0.0, 1.0), 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Torque and stretch."""
         return {"torque": strengths[0], "start": shape[0], "end": shape[1]}
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
-        """It ends after it starts."""
-        return shape[1] > shape[0]
+    def propose(self, fitted: Fitted) -> list[Proposal]:
+        """The best window of time, all of them compared through cumulative sums; none beside what leaves bursts."""
+        if any(term.effect.bursts for term in fitted.terms):
+            return []
+        time, basis = fitted.time, fitted.span
+        edges = np.unique(np.linspace(0, time.size, EDGES + 1).astype(int))
+        summed = np.concatenate([[0.0], np.cumsum(fitted.residual)])[edges]
+        spanned = np.concatenate([np.zeros((1, basis.shape[1])), np.cumsum(basis, axis=0)])[edges]
+        first, last = np.triu_indices(edges.size, 1)
+        kept = (edges[last] - edges[first]) < LONGEST * time.size
+        first, last = first[kept], last[kept]
+        count = edges[last] - edges[first]
+        power = count - np.sum((spanned[last] - spanned[first]) ** 2, axis=1)
+        gain = np.where(power > 0.02 * count, (summed[last] - summed[first]) ** 2 / np.maximum(power, 1e-9), 0.0)
+        best = int(np.argmax(gain))
+        stop = min(int(edges[last[best]]), time.size - 1)
+        return [Proposal((float(time[edges[first[best]]]), float(time[stop])), float(gain[best]))]
+
+    def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
+        """More than of others: with a window of time to choose freely, an event fits a part of anything."""
+        return NEEDED
+
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base, scope: Scope) -> bool:
+        """It ends after it starts, by more than the filter blurs both."""
+        return shape[1] - shape[0] > RESOLVED * scope.width
+
+    def plausible(self, shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+        """Together they last for less than most of the recording; beyond, that is how the axis is."""
+        return sum(stop - start for start, stop in shapes) <= LONGEST * scope.duration
+
+    def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
+        """Of its edges by the distance of the rows around them, which an instant lies within at 95 %."""
+        after = np.clip(np.searchsorted(time, shape), 1, time.size - 1)
+        return ((time[after] - time[after - 1]) / NORMAL95).tolist()
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

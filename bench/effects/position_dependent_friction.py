@@ -11,12 +11,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.effect import Array, Base, Column, Effect, Signals, amplitude_and_phase
-from bench.effects.physics import Axis, Friction, Moment, Number, Values
+from bench.effects.effect import amplitude_and_phase
+from bench.effects.kinds import Axis, Friction, Moment, Number, Values
+from bench.effects.signals import Base, Signals
+from bench.trace.filter import Array, Column
 from bench.units import Quantity
 
 
-class PositionDependentFriction(Friction, Effect):
+class PositionDependentFriction(Friction):
     """See the module."""
 
     name = "position_dependent_friction"
@@ -36,10 +38,14 @@ class PositionDependentFriction(Friction, Effect):
         """The wave of the friction level."""
         return signals.friction * (strengths[0] * np.sin(signals.position) + strengths[1] * np.cos(signals.position))
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude relative to Coulomb friction, and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"relative_amplitude": amplitude / base.coulomb, "phase": phase}
+
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """One cycle a revolution."""
+        return 1.0
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

@@ -12,12 +12,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Shape, Signals, amplitude_and_phase
-from bench.effects.physics import Axis, Mechanism, Moment, Number, Values
+from bench.effects.effect import amplitude_and_phase
+from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
+from bench.effects.signals import Base, Shape, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class PositionDependentInertia(Mechanism, Effect):
+class PositionDependentInertia(Mechanism):
     """See the module."""
 
     name = "position_dependent_inertia"
@@ -28,6 +30,7 @@ class PositionDependentInertia(Mechanism, Effect):
         Quantity("phase", "phi", "rad", angle=True),
     )
     shapes = (Shape(quantities[1], (1.0, 2.0, 3.0, 4.0), whole=True),)
+    fixed_in_simulation = frozenset({"harmonic"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Sine and cosine variation."""
@@ -38,10 +41,14 @@ class PositionDependentInertia(Mechanism, Effect):
             [(omega * np.cos(angle), 1), (half * np.sin(angle), 0)],
         ]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude relative to the mean inertia, and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"relative_amplitude": amplitude / base.inertia, "harmonic": shape[0], "phase": phase}
+
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """The harmonic."""
+        return shape[0]
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

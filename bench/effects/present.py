@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from bench.axis_kind import ROTARY, AxisKind
-from bench.effects.catalogue import physics
-from bench.effects.physics import Axis, Physics
+from bench.effects.catalogue import catalogue
+from bench.effects.effect import Effect
+from bench.effects.kinds import Axis
 from bench.errors import InputError
 from bench.units import Quantity, nearest, parse
 
@@ -44,9 +45,9 @@ class Present:
         return cls(name, tuple((key, float(values[key])) for key in known if key in values))
 
     @property
-    def effect(self) -> Physics:
+    def effect(self) -> Effect:
         """What the catalogue has under the name."""
-        return physics()[self.name]
+        return catalogue()[self.name]
 
     def resolved(self, axis: Axis) -> dict[str, float]:
         """All quantities, those that are not given by their defaults - SI.
@@ -67,19 +68,19 @@ class Present:
         return all(values[key] == value for key, value in self.effect.null(axis).items())
 
 
-def named(name: str, where: str = "effect") -> Physics:
+def named(name: str, where: str = "effect") -> Effect:
     """The effect of a name.
 
     Raises:
         InputError: there is none.
     """
-    if name not in physics():
-        names = sorted(physics())
+    if name not in catalogue():
+        names = sorted(catalogue())
         raise InputError(where, f"found '{name}'{nearest(name, names)}", f"allowed: {', '.join(names)}")
-    return physics()[name]
+    return catalogue()[name]
 
 
-def known_quantity(effect: Physics, key: str, where: str) -> Quantity:
+def known_quantity(effect: Effect, key: str, where: str) -> Quantity:
     """The quantity of an effect under a name.
 
     Raises:

@@ -15,16 +15,17 @@ from itertools import pairwise
 import mujoco
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Shape, Signals
 from bench.effects.mjcf import AXIS, PRESLIDING, passive_motor
-from bench.effects.physics import Axis, Friction, Number
+from bench.effects.kinds import Axis, Friction, Number
+from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 #: Share of critical damping, of the axis against its bristles, below which a negative damping may be noise.
 UNDAMPED = 0.1
 
 
-class PreslidingFriction(Friction, Effect):
+class PreslidingFriction(Friction):
     """See the module."""
 
     name = "presliding_friction"
@@ -41,11 +42,11 @@ class PreslidingFriction(Friction, Effect):
         bending = signals.velocity - np.abs(signals.velocity) * share
         return [[(share - signals.sign, 0)], [(bending, 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """sigma is its rate over displacement times Coulomb friction, sigma_1 the strength of the bending."""
         return {"bristle_stiffness": shape[0] * base.coulomb, "bristle_damping": strengths[1]}
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base, scope: Scope) -> bool:
         """The bristles carry Coulomb friction within a factor of two, and damp as far as noise lets that be seen."""
         if base.coulomb <= 0.0 or base.inertia <= 0.0:
             return False

@@ -12,13 +12,14 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Signals
 from bench.effects.mjcf import AXIS
-from bench.effects.physics import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.signals import Base, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class QuadraticDrag(Mechanism, Effect):
+class QuadraticDrag(Mechanism):
     """See the module."""
 
     name = "quadratic_drag"
@@ -31,7 +32,7 @@ class QuadraticDrag(Mechanism, Effect):
         """omega*|omega|."""
         return [[(signals.velocity * np.abs(signals.velocity), 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"quadratic_drag": strengths[0]}
 

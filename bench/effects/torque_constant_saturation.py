@@ -9,23 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from bench.effects.effect import Base, Column, Effect, Signals
-from bench.effects.physics import Array, Axis, Electronics, Number, Values
+from bench.effects.kinds import Array, Axis, Electronics, Number, Values
+from bench.effects.signals import Base, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class TorqueConstantSaturation(Electronics, Effect):
+class TorqueConstantSaturation(Electronics):
     """See the module."""
 
     name = "torque_constant_saturation"
     summary = "torque per ampere falls at high current"
     quantities = (Quantity("drop_at_peak", "d", "dimensionless", lower=0.0, upper=1.0),)
+    copies_torque = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """M*(M/M_peak)**2: what the rig's constant overstates."""
         return [[(signals.torque * (signals.torque / signals.peak_effort) ** 2, 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"drop_at_peak": strengths[0]}
 

@@ -12,13 +12,14 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Signals
 from bench.effects.mjcf import add_resisting_torque
-from bench.effects.physics import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.signals import Base, Scope, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class TorqueOffset(Mechanism, Effect):
+class TorqueOffset(Mechanism):
     """See the module."""
 
     name = "torque_offset"
@@ -29,9 +30,17 @@ class TorqueOffset(Mechanism, Effect):
         """One."""
         return [[(np.ones_like(signals.time), 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"torque": strengths[0]}
+
+    def ambiguous(self, scope: Scope) -> tuple[str, ...]:
+        """Friction that differs between the directions by a constant, wherever the axis moves."""
+        return ("direction_dependent_friction",)
+
+    def instead_of_dry_friction(self, torque: float) -> Mapping[str, float]:
+        """The torque itself."""
+        return {"torque": torque}
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

@@ -13,12 +13,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.cogging_torque import followed
-from bench.effects.effect import Base, Column, Effect, Shape, Signals, amplitude_and_phase
-from bench.effects.physics import Axis, Mechanism, Moment, Number, Values
+from bench.effects.effect import amplitude_and_phase
+from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
+from bench.effects.signals import Base, Shape, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class TorqueRipple(Mechanism, Effect):
+class TorqueRipple(Mechanism):
     """See the module."""
 
     name = "torque_ripple"
@@ -29,16 +31,23 @@ class TorqueRipple(Mechanism, Effect):
         Quantity("phase", "phi", "rad", angle=True),
     )
     shapes = (Shape(quantities[1], tuple(float(n) for n in range(1, 41)), whole=True),)
+    copies_torque = True
+    repeatable = True
+    fixed_in_simulation = frozenset({"harmonic"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """M*sin(n*q) and M*cos(n*q), nothing where the wave is faster than the samples can follow."""
         angle, torque = shape[0] * signals.position, signals.torque * followed(signals, shape[0])
         return [[(torque * np.sin(angle), 0)], [(torque * np.cos(angle), 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude, harmonic and phase; what resists is taken off the motor's torque, so the sign turns."""
         amplitude, phase = amplitude_and_phase(-strengths[0], -strengths[1])
         return {"relative_amplitude": amplitude, "harmonic": shape[0], "phase": phase}
+
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """The harmonic."""
+        return shape[0]
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

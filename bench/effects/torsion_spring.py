@@ -11,13 +11,14 @@ from collections.abc import Mapping, Sequence
 
 import mujoco
 
-from bench.effects.effect import Base, Column, Effect, Signals
 from bench.effects.mjcf import AXIS
-from bench.effects.physics import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.signals import Base, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class TorsionSpring(Mechanism, Effect):
+class TorsionSpring(Mechanism):
     """See the module."""
 
     name = "torsion_spring"
@@ -29,9 +30,13 @@ class TorsionSpring(Mechanism, Effect):
         """q."""
         return [[(signals.position, 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"stiffness": strengths[0]}
+
+    def stiffness(self, strengths: Sequence[float]) -> float:
+        """The strength itself."""
+        return strengths[0]
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

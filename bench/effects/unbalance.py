@@ -12,28 +12,35 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.effect import Base, Column, Effect, Signals, amplitude_and_phase
+from bench.effects.effect import amplitude_and_phase
 from bench.effects.mjcf import add_periodic_torque
-from bench.effects.physics import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.signals import Base, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class Unbalance(Mechanism, Effect):
+class Unbalance(Mechanism):
     """See the module."""
 
     name = "unbalance"
     summary = "an eccentric mass under gravity, once per revolution"
     quantities = (Quantity("amplitude", "A", "N*m", lower=0.0), Quantity("phase", "phi", "rad", angle=True))
     may_load = True
+    turning_only = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """sin(q) and cos(q)."""
         return [[(np.sin(signals.position), 0)], [(np.cos(signals.position), 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"amplitude": amplitude, "phase": phase}
+
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """One cycle a revolution."""
+        return 1.0
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

@@ -2,20 +2,34 @@
 
     T*dv/dt + v = omega
 
-T - time constant - s; v - reported velocity, omega - velocity of the motion - rad/s (m/s). v is what
-is recorded; the drive has a velocity of its own, without the filter.
+T - time constant - s; v - reported velocity, omega - velocity of the motion - rad/s (m/s). v is what is recorded; the
+drive has a velocity of its own, without the filter. Where position is recorded too, T is the slope of dq/dt - v over
+dv/dt.
 Source: W. Leonhard, Control of Electrical Drives (filtered speed feedback).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
-from scipy.signal import lfilter
 
-from bench.effects.physics import Array, Axis, Number, Sensing
+from bench.effects.current_loop_lag import LAGS
+from bench.effects.effect import Detected
+from bench.effects.first_order import lagged
+from bench.effects.kinds import Axis, Number, Sensing
+from bench.effects.signals import Scope, Shape
+from bench.rig.rig import Rig
+from bench.statistics import NORMAL95
+from bench.trace.filter import Array, GaussianFilter
+from bench.trace.noise import white_noise
+from bench.trace.trace import Trace
 from bench.units import Quantity
+
+#: A lag shorter than this share of the sample period is how a drive differences its encoder, not a filter.
+LEAST_SHARE = 0.6
+#: Disagreement of speed and position above what their noise makes, and the share of it that a lag must explain.
+DISAGREE, EXPLAINED = 1.5, 0.7
 
 
 class VelocityFilterLag(Sensing):
@@ -24,6 +38,65 @@ class VelocityFilterLag(Sensing):
     name = "velocity_filter_lag"
     summary = "reported velocity lags the motion"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0),)
+    shapes = (Shape(quantities[0], LAGS, reach=1.0),)
+    not_beside = frozenset({"current_loop_lag"})
+
+    def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
+        """What is made of the reported speed."""
+        return (shape[0] if source == "velocity" else 0.0), 0.0
+
+    def sought(self, scope: Scope) -> bool:
+        """Where speed alone is recorded; beside it, position tells the lag by itself."""
+        return scope.source == "velocity" and "position" not in scope.signals
+
+    def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
+        """By the tick within which current and speed were taken."""
+        return [scope.latched / NORMAL95]
+
+    def ambiguous(self, scope: Scope) -> tuple[str, ...]:
+        """A lag of the torque, unless position tells that."""
+        return () if "position" in scope.signals else ("current_loop_lag",)
+
+    def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float]:
+        """A lag of the torque by as much."""
+        return {"time_constant": values["time_constant"]}
+
+    def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
+        """The lag, where both position and speed are recorded and disagree by one."""
+        if not {"position", "velocity"} <= set(trace.signals):
+            return None
+        smooth = GaussianFilter(max(width, 1.5 * trace.sample_period), trace.sample_period)
+        parts = [part for part in trace.segments if part.stop - part.start > 4 * smooth.margin]
+        if not parts:
+            return None
+        moved = np.concatenate([smooth(trace["position"][part], 1)[0] for part in parts])
+        reported, rate = np.concatenate([smooth(trace["velocity"][part], 0, 1) for part in parts], axis=1)
+        difference = moved - reported
+        difference = difference - difference.mean()
+        noise = {name: white_noise(trace[name]) for name in ("position", "velocity")}
+        floor = float(np.hypot(noise["position"] * smooth.noise_gain(1), noise["velocity"] * smooth.noise_gain(0)))
+        power = float(rate @ rate) - rate.size * (noise["velocity"] * smooth.noise_gain(1)) ** 2
+        lag = float(rate @ difference) / max(power, 1e-300)
+        rest = difference - lag * rate
+        rest_floor = float(np.hypot(floor, lag * noise["velocity"] * smooth.noise_gain(1)))
+        before, after = (
+            float(np.sqrt(np.mean(off**2))) / max(least, 1e-300)
+            for off, least in ((difference, floor), (rest, rest_floor))
+        )
+        explained = 1.0 - float(rest @ rest) / max(float(difference @ difference), 1e-300)
+        if before < DISAGREE or explained < EXPLAINED or lag < LEAST_SHARE * trace.sample_period:
+            return None
+        error = float(np.sqrt(np.mean(rest**2) / max(power, 1e-300) * 4.0))
+        tick = rig.drive.control_period if rig.drive is not None else 0.0
+        evidence = {"speed_against_position_before": before, "speed_against_position_after": after}
+        return Detected({"time_constant": lag}, {"time_constant": NORMAL95 * error + 0.5 * tick}, evidence)
+
+    def corrected(self, trace: Trace, values: Mapping[str, float]) -> Trace:
+        """With the speed that the reported one lags behind, omega = v + T*dv/dt."""
+        speed = trace["velocity"].copy()
+        for part in trace.segments:
+            speed[part] = self.unfiltered(values, speed[part], trace.sample_period)
+        return trace.with_signals({"velocity": speed}, {})
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""
@@ -31,20 +104,11 @@ class VelocityFilterLag(Sensing):
 
     def filtered(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
         """Exact for a velocity that changes linearly within the step; started where the velocity is."""
-        decay, of_before, of_now = _weights(values["time_constant"], step)
-        start = np.array([(1.0 - of_now) * velocity[0]])
-        return lfilter([of_now, of_before], [1.0, -decay], velocity, zi=start)[0]
+        return lagged(velocity, values["time_constant"], step)
 
     def unfiltered(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
         """v + T*dv/dt by central differences: what holds a model to a recording needs no more."""
         return velocity + values["time_constant"] * np.gradient(velocity, step) if velocity.size > 1 else velocity
-
-
-def _weights(time_constant: Number, step: float) -> tuple[Number, Number, Number]:
-    """Weights of the reported velocity, and of the seen one before and after the step."""
-    decay = np.exp(-step / time_constant)
-    mean = time_constant / step * (1.0 - decay)
-    return decay, mean - decay, 1.0 - mean
 
 
 EFFECT = VelocityFilterLag()

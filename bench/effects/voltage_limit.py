@@ -13,12 +13,27 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from bench.effects.physics import Array, Axis, Electronics, Number, Values, Winding
+from bench.effects.effect import Detected
+from bench.effects.kinds import Array, Axis, Electronics, Number, Values, Winding
 from bench.errors import InputError
+from bench.rig.rig import Rig
+from bench.statistics import NORMAL95
+from bench.trace.filter import GaussianFilter
+from bench.trace.trace import Trace
 from bench.units import Quantity
 
 #: Time constant of a winding without inductance - s: none, but for a division.
-SHORTEST = 1e-12
+QUICKEST = 1e-12
+#: Speed behind its reference that counts as falling behind, as share of the largest reference.
+BEHIND = 0.02
+#: Share of the top within which the voltage counts as standing at it, share of the samples behind that do, and samples.
+TOP, STANDING, SAMPLES = 0.015, 0.5, 20
+#: Share of the top speed below which an axis rests.
+RESTING = 0.02
+#: Share of the limit above which the voltage counts as all that there is, and samples in a row that it must.
+NEARLY, STEADY = 0.97, 5
+#: Length of the motion in which the limit is shown - s: the drive is ticked; and of what follows its first reaching it.
+LONGEST, SHORTEST = 3.0, 0.5
 
 
 class VoltageLimit(Electronics):
@@ -27,6 +42,51 @@ class VoltageLimit(Electronics):
     name = "voltage_limit"
     summary = "the drive runs out of voltage at speed"
     quantities = (Quantity("voltage", "U_max", "V", lower=0.0),)
+    shows_under_drive = True
+
+    def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
+        """The top of U = R*I + K_e*omega + L*dI/dt at which speed falls behind its reference.
+
+        None where speed never falls behind, the rig lacks the winding or the recording the reference.
+        """
+        motor = rig.motor
+        known = motor.resistance is not None and motor.back_emf_constant is not None
+        if not known or not {"current", "velocity_reference", "velocity"} <= set(trace.signals):
+            return None
+        smooth = GaussianFilter(max(width, 1.5 * trace.sample_period), trace.sample_period)
+        parts = [part for part in trace.segments if part.stop - part.start > 4 * smooth.margin]
+        if not parts:
+            return None
+        current, slope = np.concatenate([smooth(trace["current"][part], 0, 1) for part in parts], axis=1)
+        speed = np.concatenate([smooth(trace["velocity"][part], 0)[0] for part in parts])
+        wanted = np.concatenate([smooth(trace["velocity_reference"][part], 0)[0] for part in parts])
+        needed = motor.resistance * current + motor.back_emf_constant * speed + (motor.inductance or 0.0) * slope
+        voltage, lack = np.abs(needed), np.sign(wanted) * (wanted - speed)
+        behind = lack > BEHIND * float(np.abs(trace["velocity_reference"]).max())
+        if np.count_nonzero(behind) < SAMPLES:
+            return None
+        top = float(np.median(np.sort(voltage)[-max(SAMPLES, np.count_nonzero(behind) // 4) :]))
+        standing = behind & (np.abs(voltage / top - 1.0) < TOP)
+        count = int(np.count_nonzero(standing))
+        if count < SAMPLES or count < STANDING * np.count_nonzero(behind):
+            return None
+        level = voltage[standing]
+        error = float(level.std() / np.sqrt(max(1.0, count * smooth.sample_period / (4.0 * smooth.width))))
+        evidence = {"samples_at_the_limit": float(count), "speed_behind": float(lack[standing].max())}
+        return Detected({"voltage": float(np.median(level))}, {"voltage": NORMAL95 * error}, evidence)
+
+    def shown_in(self, trace: Trace, rig: Rig, values: Mapping[str, float]) -> Trace:
+        """From the last rest before the motor first needs all of the voltage, for at most LONGEST."""
+        motor = rig.motor
+        emf = (motor.back_emf_constant or 0.0) * trace["velocity"]
+        needed = np.abs((motor.resistance or 0.0) * trace["current"] + emf)
+        steadily = np.convolve(needed > NEARLY * values["voltage"], np.ones(STEADY), "valid") >= STEADY
+        first = int(np.argmax(steadily))
+        reference = trace["velocity_reference"]
+        resting = np.abs(reference) + np.abs(trace["velocity"]) < RESTING * np.abs(reference).max()
+        rests = np.flatnonzero(resting[: first + 1])
+        start = float(trace.time[rests[-1] if rests.size else 0])
+        return trace.between(start, max(start + LONGEST, float(trace.time[first]) + SHORTEST))
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent: any voltage."""
@@ -38,7 +98,7 @@ class VoltageLimit(Electronics):
         """Full voltage until the current is what is demanded, then what holds it there, if the limit allows."""
         winding = _winding(axis)
         constant = winding.torque_constant
-        tau = np.maximum(winding.inductance / winding.resistance, SHORTEST)
+        tau = np.maximum(winding.inductance / winding.resistance, QUICKEST)
         wanted, start = demand / constant, before / constant
         emf = winding.back_emf_constant * velocity
         limit = values["voltage"]

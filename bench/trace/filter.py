@@ -10,7 +10,8 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from bench.arrays import Array
+
 #: Samples (n,) and the order of the time derivative to be taken of them; a column is a sum of such terms. So products
 #: are formed on raw samples and differentiated exactly: q''*sin(q) = (q'*sin(q))' - q'**2*cos(q).
 Term = tuple[Array, int]

@@ -15,13 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.linalg
 import scipy.signal
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from bench.diagnose.workbench import Workbench
-from bench.effects.effect import Column, Effect, Signals
-
-Array = NDArray[np.float64]
+from bench.effects.effect import Load
+from bench.effects.signals import Signals
+from bench.trace.filter import Array, Column
 
 #: Longest step - rad of the antiresonance: speed that runs straight within it lacks step**2/12 of its swing.
 LONGEST_STEP = 0.1
@@ -31,44 +29,32 @@ LEAST, MOST = 2, 8
 #: no load beyond belief would make - shares of the twist under the load's own inertia.
 TURNS, SETTLED, ASTRAY = 40, 1e-6, 10.0
 
-#: An effect that acts on the load, its shape, its strengths over load inertia.
-Acting = tuple[Effect, tuple[float, ...], tuple[float, ...]]
 
-
-def coupled_columns(seen: Workbench, shapes: Sequence[Sequence[float]], acting: Sequence[Acting], lag: float) -> Array:
-    """Load's acceleration less the motor's behind several couplings, with what acts on the load, filtered.
+def twist_columns(signals: Signals, shapes: Sequence[Sequence[float]], loads: Sequence[Load]) -> list[Column]:
+    """Load's acceleration less the motor's behind several couplings, with what acts on the load - rad/s**2 (m/s**2).
 
     Args:
-        seen: the recording as the hypothesis sees it.
+        signals: of one stretch.
         shapes: antiresonance - rad/s - and damping ratio of each.
-        acting: on the load; its own column in the balance is that of an effect on the motor, so only the difference of
-            the two enters here.
-        lag: to undo on the motion - s.
-
-    Returns:
-        (m, k) - rad/s**2 (m/s**2).
+        loads: what acts on the load; its own column in the balance is that of an effect on the motor, so only the
+            difference of the two enters here.
     """
-    source = seen.conditioning.source
-
-    def relative(signals: Signals) -> list[Column]:
-        values = signals.position if source == "position" else signals.velocity
-        spline = CubicSpline(np.arange(values.size), values)
-        fine: dict[int, Array] = {}
-        columns: list[Column] = []
-        for antiresonance, damping in (shape[:2] for shape in shapes):
-            substeps = int(np.ceil(antiresonance * signals.sample_period / LONGEST_STEP))
-            substeps = min(max(substeps, LEAST), MOST)
-            if substeps not in fine:
-                at = np.arange((values.size - 1) * substeps + 1) / substeps
-                fine[substeps] = spline(at, 1) / signals.sample_period if source == "position" else spline(at)
-            columns.append(_column(signals, fine[substeps], substeps, antiresonance, damping, acting))
-        return columns
-
-    return seen.table(relative, lag)
+    values = signals.position if signals.source == "position" else signals.velocity
+    spline = CubicSpline(np.arange(values.size), values)
+    fine: dict[int, Array] = {}
+    columns: list[Column] = []
+    for antiresonance, damping in shapes:
+        substeps = int(np.ceil(antiresonance * signals.sample_period / LONGEST_STEP))
+        substeps = min(max(substeps, LEAST), MOST)
+        if substeps not in fine:
+            at = np.arange((values.size - 1) * substeps + 1) / substeps
+            fine[substeps] = spline(at, 1) / signals.sample_period if signals.source == "position" else spline(at)
+        columns.append(_column(signals, fine[substeps], substeps, antiresonance, damping, loads))
+    return columns
 
 
 def _column(
-    signals: Signals, speed: Array, substeps: int, antiresonance: float, damping: float, acting: Sequence[Acting]
+    signals: Signals, speed: Array, substeps: int, antiresonance: float, damping: float, loads: Sequence[Load]
 ) -> Column:
     """Terms of one coupling, driven by the motor's speed at substeps of the samples.
 
@@ -76,15 +62,15 @@ def _column(
     the coupling's, so that a turn leaves less of an error than it found.
     """
     loss, spring, step = 2.0 * damping * antiresonance, antiresonance**2, signals.sample_period
-    damped = 0.5 * _steepest(signals, acting) if acting else 0.0
+    damped = 0.5 * _steepest(signals, loads) if loads else 0.0
     state = np.array([[0.0, 1.0], [-spring, -loss - damped]])
     driven = speed - speed[0]
     free, free_speed = _Driven.of(state, np.array([-1.0, loss]), step / substeps)(driven, substeps)
     forcing = _Driven.of(state, np.array([0.0, -1.0]), step)
     twist, load_speed, torque = free, free_speed, np.zeros_like(free)
-    for _ in range(TURNS if acting else 0):
+    for _ in range(TURNS if loads else 0):
         load = replace(signals, position=signals.position + twist, velocity=load_speed + speed[0])
-        torque = _torque(load, acting)
+        torque = _torque(load, loads)
         forced, forced_speed = forcing(torque - damped * load_speed, 1)
         before, twist, load_speed = twist, free + forced, free_speed + forced_speed
         change = np.abs(twist - before).max()
@@ -92,14 +78,14 @@ def _column(
             break
         if change > ASTRAY * np.abs(free).max():
             return [(free, 2)]
-    return [(twist, 2), (torque - _torque(signals, acting), 0)] if acting else [(twist, 2)]
+    return [(twist, 2), (torque - _torque(signals, loads), 0)] if loads else [(twist, 2)]
 
 
-def _steepest(signals: Signals, acting: Sequence[Acting]) -> float:
+def _steepest(signals: Signals, loads: Sequence[Load]) -> float:
     """Largest rise of what acts on the load with its speed, over its inertia - 1/s."""
     step = 1e-3 * float(np.abs(signals.velocity).max()) + 1e-12
     faster = replace(signals, velocity=signals.velocity + step)
-    return max(float(np.max(_torque(faster, acting) - _torque(signals, acting))) / step, 0.0)
+    return max(float(np.max(_torque(faster, loads) - _torque(signals, loads))) / step, 0.0)
 
 
 @dataclass(frozen=True)
@@ -127,10 +113,10 @@ class _Driven:
         return moved[0], moved[1]
 
 
-def _torque(signals: Signals, acting: Sequence[Acting]) -> Array:
+def _torque(signals: Signals, loads: Sequence[Load]) -> Array:
     """What acts on a load that moves so, over its inertia - rad/s**2 (m/s**2) - (n,)."""
     total = np.zeros_like(signals.position)
-    for physics, shape, rates in acting:
-        for ((values, _),), rate in zip(physics.columns(signals, shape), rates, strict=True):
+    for effect, shape, rates in loads:
+        for ((values, _),), rate in zip(effect.columns(signals, shape), rates, strict=True):
             total = total + rate * values
     return total

@@ -11,14 +11,16 @@ lowest tenth over windows of time is taken at each frequency, and a first-order 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.diagnose.workbench import Workbench
-
-Array = NDArray[np.float64]
+from bench.balance.hypothesis import Hypothesis
+from bench.balance.layout import INERTIA, MISALIGNMENT, VISCOUS, Layout, delays
+from bench.balance.rows import Rows
+from bench.trace.filter import Array
 
 #: Rows of a window, longer ones first, and windows of a length that it takes; else white noise is assumed.
 LENGTHS, ENOUGH = (128, 64), 24
@@ -34,33 +36,84 @@ EXCESSES = np.r_[0.0, np.geomspace(CHANCE, 1e4, 60)]
 CORNERS, BEYOND = 16, 3.0
 
 
-def noise_floor(bench: Workbench, power: Callable[[Array], Array], residual: Array) -> tuple[float, float]:
-    """RMS of noise in a residual, and of its white part - N*m (N).
+@dataclass(frozen=True)
+class Floor:
+    """RMS of noise in a residual, and of its white part - N*m (N)."""
+
+    coloured: float
+    white: float
+
+
+def noise_floor(rows: Rows, power: Callable[[Array], Array], residual: Array) -> Floor:
+    """RMS of noise in a residual.
 
     Args:
-        bench: the recording.
+        rows: the recording.
         power: of white noise in the torque balance before the filter, over angular frequency - (N*m)**2 (N**2).
         residual: (m,) of the used rows - N*m (N).
     """
-    smooth = bench.conditioning.filter
+    smooth = rows.conditioning.filter
     omega = np.linspace(0.0, np.pi / smooth.sample_period, 2048)
 
     def density(at: Array) -> Array:
         return np.exp(-((at * smooth.width) ** 2)) * power(at)
 
-    excess, corner = colour(bench, density, residual)
+    excess, corner = colour(rows, density, residual)
     white = density(omega)
     coloured = white * (1.0 + excess / (1.0 + (omega / corner) ** 2))
     scale = smooth.sample_period / np.pi
     floor, least = (float(np.sqrt(scale * np.trapezoid(spectrum, omega))) for spectrum in (coloured, white))
-    return floor, least
+    return Floor(floor, least)
 
 
-def colour(bench: Workbench, density: Callable[[Array], Array], residual: Array) -> tuple[float, float]:
+def white_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> Callable[[Array], Array]:
+    """Power of white noise of effort and speed in the torque balance, over angular frequency - (N*m)**2 (N**2).
+
+    s_M**2*|1 + tau*s|**2*<(1 - dM_model/dM)**2> + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
+    """
+    conditioning = rows.conditioning
+    left = _left_of_effort(rows, hypothesis, layout, theta)
+    moving, _ = delays(rows, hypothesis)
+
+    def power(omega: Array) -> Array:
+        s = 1j * omega
+        kinetic = theta[INERTIA] * s + theta[VISCOUS]
+        for index, term in enumerate(hypothesis.terms):
+            if term.effect.of_motion:
+                kinetic = kinetic + theta[layout.owners == index][0] * s * term.effect.noise_of_motion(term.shape, omega)
+        kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
+        effort = left * conditioning.effort_noise**2 * np.abs(1.0 + theta[MISALIGNMENT] * s) ** 2
+        return effort + conditioning.source_noise**2 * np.abs(kinetic) ** 2
+
+    return power
+
+
+def _left_of_effort(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> float:
+    """Mean of (1 - dM_model/dM)**2: what effects made of the measured torque leave of its noise's power.
+
+    An effect that copies the torque copies its noise, and so would take all of it for explained.
+    """
+    copies = [(term, theta[layout.owners == k]) for k, term in enumerate(hypothesis.terms) if term.effect.copies_torque]
+    if not copies:
+        return 1.0
+    total, count = 0.0, 0
+    for part in rows.stretches:
+        signals = part.signals
+        step = 1e-6 * signals.peak_effort
+        more, slope = replace(signals, torque=signals.torque + step), np.zeros(signals.torque.size)
+        for term, strengths in copies:
+            high, low = (term.effect.columns(s, term.shape) for s in (more, signals))
+            for ((after, _),), ((before, _),), strength in zip(high, low, strengths, strict=True):
+                slope += strength * (after - before) / step
+        total, count = total + float(np.sum((1.0 - slope) ** 2)), count + slope.size
+    return total / count
+
+
+def colour(rows: Rows, density: Callable[[Array], Array], residual: Array) -> tuple[float, float]:
     """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white."""
-    windows = _windows(bench, residual)
+    windows = _windows(rows, residual)
     count, length = windows.shape
-    smooth = bench.conditioning.filter
+    smooth = rows.conditioning.filter
     period = smooth.stride * smooth.sample_period
     omega = np.pi / period * np.arange(length // 2 + 1) / max(length // 2, 1)
     white = density(omega) / smooth.stride
@@ -85,9 +138,9 @@ def _quiet_level(count: int) -> float:
     return float(np.interp(QUIET * (count - 1), np.arange(count), expected))
 
 
-def _windows(bench: Workbench, residual: Array) -> Array:
+def _windows(rows: Rows, residual: Array) -> Array:
     """Half-overlapping windows of neighbouring rows, each less its straight line (k, length); none where too few."""
-    used = tuple(part.used.tobytes() for part in bench.stretches)
+    used = tuple(part.used.tobytes() for part in rows.stretches)
     for length in LENGTHS:
         starts = _starts(used, length)
         if starts.size >= ENOUGH:

@@ -13,10 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from bench.diagnose.workbench import Workbench
-from bench.effects.effect import Column, Signals
-
-Array = NDArray[np.float64]
+from bench.effects.signals import Signals
+from bench.trace.filter import Array, Column
 
 #: Steps of the integration per radian of the contact's oscillation: the trapezoidal rule errs by 1/(12*steps**2) of it.
 STEPS_PER_RADIAN = 6.0
@@ -24,10 +22,6 @@ STEPS_PER_RADIAN = 6.0
 WINDOWS, SHORTEST = 128, 60
 #: Share of the gap to which a window's start agrees with the end of the window before.
 CLOSED = 1e-5
-#: Shapes whose motions are kept, as a lag tried beside them leaves the motion as it is.
-FEW = 8
-#: Factors of gap, frequency and damping within which a recording does not tell a contact from another.
-UNTOLD = (1.01, 1.1, 1.1)
 
 
 def load_positions(angle: Array, sample_period: float, shapes: Array) -> Array:
@@ -101,45 +95,19 @@ def _run(
     return moved, position, velocity
 
 
-def dead_zone_columns(seen: Workbench, shapes: Array, lag: float) -> Array:
-    """Load's acceleration less the motor's behind several dead zones, with the spring's share of it, filtered.
+def dead_zone_columns(signals: Signals, shapes: Array) -> list[Column]:
+    """Load's acceleration less the motor's behind several dead zones, with the spring's share of it.
 
     Where the speed is the source, the motor's angle is its integral, whose noise no resolution of an encoder adds to.
 
     Args:
-        seen: the recording as the hypothesis sees it.
+        signals: of one stretch.
         shapes: (k, 4), see `load_positions`.
-        lag: to undo on the motion - s.
-
-    Returns:
-        (m, k) - rad/s**2 (m/s**2).
     """
-
-    def relative(signals: Signals) -> list[Column]:
-        angle = signals.position
-        if seen.conditioning.source == "velocity":
-            speed = signals.velocity
-            steps = 0.5 * signals.sample_period * (speed[1:] + speed[:-1])
-            angle = angle[0] + np.concatenate([[0.0], np.cumsum(steps)])
-
-        def twisted() -> Array:
-            return (load_positions(angle, signals.sample_period, shapes) - angle[:, None]).T
-
-        made_of = ("twist", shapes.tobytes(), signals.time[0], seen.moved(signals))
-        twist = seen.memory.get(made_of, twisted) if len(shapes) <= FEW else twisted()
-        return [[(load, 2), (rate * load, 0)] for load, rate in zip(twist, shapes[:, 3], strict=True)]
-
-    return seen.table(relative, lag)
-
-
-def sensitivity(seen: Workbench, shape: tuple[float, ...], lag: float) -> Array:
-    """How far a column of `dead_zone_columns` moves within UNTOLD - rad/s**2 (m/s**2) - (m,).
-
-    Rows soon after an impact move most: its instant hangs on how the load left the other side of the gap.
-    """
-    shapes = np.tile(shape, (2 * len(UNTOLD) + 1, 1))
-    for k, factor in enumerate(UNTOLD):
-        shapes[2 * k + 1, k] *= factor
-        shapes[2 * k + 2, k] /= factor
-    columns = dead_zone_columns(seen, shapes, lag)
-    return np.abs(columns[:, 1:] - columns[:, :1]).max(axis=1)
+    angle = signals.position
+    if signals.source == "velocity":
+        speed = signals.velocity
+        steps = 0.5 * signals.sample_period * (speed[1:] + speed[:-1])
+        angle = angle[0] + np.concatenate([[0.0], np.cumsum(steps)])
+    twist = (load_positions(angle, signals.sample_period, shapes) - angle[:, None]).T
+    return [[(load, 2), (rate * load, 0)] for load, rate in zip(twist, shapes[:, 3], strict=True)]

@@ -10,7 +10,6 @@ Hooks are neutral unless an effect overrides them. They take values and states a
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -18,7 +17,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.units import Quantity
+from bench.effects.effect import Effect
 
 Array = NDArray[np.float64]
 Number = float | Array
@@ -73,35 +72,7 @@ class Moment:
     effort: Array
 
 
-class Physics(ABC):
-    """Anything the catalogue lists.
-
-    Attributes:
-        name: as in the contract.
-        summary: one line.
-        quantities: its parameters, with unit and bounds.
-    """
-
-    name: str
-    summary: str
-    quantities: tuple[Quantity, ...]
-
-    @abstractmethod
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Values of some quantities at which the effect is exactly absent."""
-
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """Values of quantities that need not be given."""
-        return {}
-
-    @classmethod
-    def acts_through(cls, hook: str) -> bool:
-        """Whether the effect overrides a hook of its kind."""
-        neutral = next(vars(kind)[hook] for kind in (Mechanism, Friction, Electronics, Sensing) if hook in vars(kind))
-        return getattr(cls, hook, neutral) is not neutral
-
-
-class Mechanism(Physics):
+class Mechanism(Effect):
     """An effect on the mechanics."""
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
@@ -109,7 +80,7 @@ class Mechanism(Physics):
 
     def native(self, values: Mapping[str, float], friction_scaled: bool) -> bool:
         """Whether MuJoCo alone makes it; `friction_scaled`: another effect scales friction in every step."""
-        return self.acts_through("add")
+        return self.overrides("add")
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Taken off the motor's torque - N*m (N)."""
@@ -140,7 +111,7 @@ class Friction(Mechanism):
         return 0.0
 
 
-class Electronics(Physics):
+class Electronics(Effect):
     """An effect of drive and motor winding. Efforts are currents times k_T - N*m (N)."""
 
     def flowing(
@@ -162,8 +133,13 @@ class Electronics(Physics):
         return effort
 
 
-class Sensing(Physics):
+class Sensing(Effect):
     """An effect of the sensor."""
+
+    @property
+    def kind(self) -> str:
+        """A fault of the measurement."""
+        return "measurement"
 
     def seen(self, values: Values, position: Array, velocity: Array) -> tuple[Array, Array]:
         """Position and velocity as the encoder sees them and the drive has them, from the true ones."""

@@ -7,14 +7,22 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from scipy.signal import lfilter
 
-from bench.effects.catalogue import catalogue
-from bench.effects.effect import Base, Column, Effect, Shape, Signals
+from bench.effects.effect import Effect
+from bench.effects.kinds import Axis, Number
+from bench.effects.signals import Base, Shape, Signals
+from bench.trace.filter import Column
 from bench.units import Quantity
 
-NOTCH = "outside_notch"
+
+class Rival(Effect):
+    """Physics that no catalogue lists: it competes with the names of a search and never gets one."""
+
+    def null(self, axis: Axis) -> Mapping[str, Number]:
+        """It is in no simulation."""
+        return {}
 
 
-class Vibration(Effect):
+class Vibration(Rival):
     """A torque periodic in time, M = A*sin(2*pi*f*t + phi)."""
 
     name = "outside_vibration"
@@ -27,21 +35,22 @@ class Vibration(Effect):
         angle = 2.0 * np.pi * shape[0] * signals.time
         return [[(np.sin(angle), 0)], [(np.cos(angle), 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Frequency."""
         return {"frequency": shape[0]}
 
 
-class Notch(Effect):
+class Notch(Rival):
     """A bump of torque or friction at one angle of the revolution, of Gaussian shape."""
 
-    name = NOTCH
+    name = "outside_notch"
     summary = "a bump at one angle"
     quantities = (Quantity("angle", "q_0", "rad"), Quantity("width", "w", "rad", lower=0.0))
     shapes = (
-        Shape(quantities[0], tuple(float(q) for q in np.arange(36) * np.pi / 18.0)),
+        Shape(quantities[0], tuple(float(q) for q in np.arange(36) * np.pi / 18.0), additive=True),
         Shape(quantities[1], (0.08, 0.2, 0.45)),
     )
+    turning_only = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """The bump, and the bump of friction."""
@@ -49,12 +58,12 @@ class Notch(Effect):
         bump = np.exp(-0.5 * (away / shape[1]) ** 2)
         return [[(bump, 0)], [(bump * signals.sign, 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Angle and width."""
         return {"angle": shape[0], "width": shape[1]}
 
 
-class SlowMemory(Effect):
+class SlowMemory(Rival):
     """Friction that grows with how fast the axis has run: level A*m, T*dm/dt = |omega| - m."""
 
     name = "outside_slow_memory"
@@ -67,12 +76,12 @@ class SlowMemory(Effect):
         keep = np.exp(-signals.sample_period / shape[0])
         return [[(signals.sign * _lowpass(np.abs(signals.velocity), keep), 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Time constant."""
         return {"time_constant": shape[0]}
 
 
-class FrictionalMemory(Effect):
+class FrictionalMemory(Rival):
     """Friction that follows a change of speed late: A*exp(-m/omega_s)*sgn(omega), T*dm/dt = |omega| - m.
 
     Source: D. P. Hess, A. Soom, Journal of Tribology 112(1), 1990, 147-152.
@@ -91,7 +100,7 @@ class FrictionalMemory(Effect):
         keep = np.exp(-signals.sample_period / shape[0])
         return [[(signals.sign * np.exp(-_lowpass(np.abs(signals.velocity), keep) / shape[1]), 0)]]
 
-    def values(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Time constant and speed."""
         return {"time_constant": shape[0], "speed": shape[1]}
 
@@ -100,11 +109,4 @@ def _lowpass(values: np.ndarray, keep: float) -> np.ndarray:
     return np.asarray(lfilter([1.0 - keep], [1.0, -keep], values))
 
 
-OUTSIDE: Mapping[str, Effect] = {
-    effect.name: effect for effect in (Vibration(), Notch(), SlowMemory(), FrictionalMemory())
-}
-
-
-def physics_of(name: str) -> Effect:
-    """An effect of the catalogue, or a rival from outside it."""
-    return OUTSIDE[name] if name in OUTSIDE else catalogue()[name]
+RIVALS: tuple[Effect, ...] = (Vibration(), Notch(), SlowMemory(), FrictionalMemory())

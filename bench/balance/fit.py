@@ -1,0 +1,282 @@
+"""A hypothesis fitted to a recording by least squares, held against what noise alone would leave."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.balance.friction_levels import multiply, with_friction, with_levels
+from bench.balance.hypothesis import Hypothesis, Term
+from bench.balance.layout import INERTIA, MISALIGNMENT, VISCOUS, COULOMB, Layout, delays, filtered, lay_out, seen_by
+from bench.balance.load_side import with_loads
+from bench.balance.noise import Floor, noise_floor, white_power
+from bench.balance.normal_equations import solved
+from bench.balance.rows import Rows
+from bench.effects.effect import Effect, Proposal
+from bench.effects.signals import Base, Scope, Signals
+from bench.trace.filter import Array, Column
+
+#: Rounds in which levels of dry friction that multiply are brought in line.
+LEVEL_ROUNDS = 4
+#: Share of the noise floor by which a row's torque may hang on what the recording does not tell, an impact's instant.
+UNTOLD_SHARE = 0.3
+#: Numbers of all shapes tried at once, which bounds memory: 8 bytes each, some four times over.
+TOGETHER = 8_000_000
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A hypothesis fitted to a recording by least squares.
+
+    Attributes:
+        rows: the recording.
+        hypothesis: what was fitted.
+        layout: its columns.
+        theta: (p,): J, K_w, K_0, misalignment, sines and cosines of hum, then the strengths of the effects in order.
+        held: whether the misalignment is at its bound.
+        told: (m,) rows whose torque the recording determines: not those that hang on the instant of an impact.
+    """
+
+    rows: Rows
+    hypothesis: Hypothesis
+    layout: Layout
+    theta: Array
+    held: bool
+    told: NDArray[np.bool_]
+
+    @cached_property
+    def residual(self) -> Array:
+        """Measured less modelled torque (m,), 0 at rows that are not told - N*m (N)."""
+        return self.left * self.told
+
+    @cached_property
+    def left(self) -> Array:
+        """Measured less modelled torque at all rows (m,) - N*m (N)."""
+        return self.effort - self.columns @ self.theta
+
+    @cached_property
+    def squares(self) -> float:
+        """Sum of squared residuals - (N*m)**2 (N**2)."""
+        return float(self.residual @ self.residual)
+
+    @cached_property
+    def noise(self) -> Floor:
+        """What noise alone leaves under this model."""
+        return noise_floor(self.rows, white_power(self.rows, self.hypothesis, self.layout, self.theta), self.residual)
+
+    @property
+    def floor(self) -> float:
+        """RMS that sensor noise alone leaves, its colour included - N*m (N)."""
+        return self.noise.coloured
+
+    @property
+    def count(self) -> int:
+        """Rows that are told."""
+        return int(np.count_nonzero(self.told))
+
+    @property
+    def rms(self) -> float:
+        """RMS residual - N*m (N)."""
+        return float(np.sqrt(self.squares / self.count))
+
+    @property
+    def chi(self) -> float:
+        """RMS residual over noise floor: 1 where the model explains all but noise."""
+        return self.rms / self.floor
+
+    @property
+    def excess(self) -> float:
+        """Squares above the noise floor, summed over rows - (N*m)**2, not negative."""
+        return max(self.squares - self.count * self.floor**2, 0.0)
+
+    @property
+    def base(self) -> Base:
+        """J, K_w and K_0."""
+        return Base(*(float(self.theta[k]) for k in (INERTIA, VISCOUS, COULOMB)))
+
+    @cached_property
+    def span(self) -> Array:
+        """Orthonormal basis of the columns that were free (m, p)."""
+        free = np.delete(self.columns, MISALIGNMENT, 1) if self.held else self.columns
+        return np.linalg.qr(free)[0]
+
+    def strengths(self, index: int) -> list[float]:
+        """Strengths of one term."""
+        return self.theta[self.owners == index].tolist()
+
+    # What effects ask of it, see `bench.effects.effect.Fitted`.
+
+    @property
+    def scope(self) -> Scope:
+        """What the recording is able to show."""
+        return self.rows.scope
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """Of the hypothesis."""
+        return self.hypothesis.terms
+
+    @property
+    def columns(self) -> Array:
+        """(m, p)."""
+        return self.layout.columns
+
+    @property
+    def owners(self) -> NDArray[np.int64]:
+        """(p,) index of the term a column belongs to."""
+        return self.layout.owners
+
+    @property
+    def effort(self) -> Array:
+        """What the columns are to explain (m,) - N*m (N)."""
+        return self.layout.effort
+
+    @property
+    def time(self) -> Array:
+        """Of the rows (m,) - s."""
+        return self.rows.time
+
+    @cached_property
+    def beside(self) -> Rows:
+        """The recording as one term more would see it."""
+        return with_friction(seen_by(self.rows, self.hypothesis), self.hypothesis, len(self.terms))
+
+    def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array:
+        """Columns (m, k) of raw signals as one term more would see them; `of_motion`: accelerations or speeds."""
+        return self.beside.table(columns, delays(self.rows, self.hypothesis)[0 if of_motion else 1])
+
+    def gains(self, columns: Array, width: int) -> Array:
+        """Squares that groups of columns would take from the residual beyond what is fitted - (N*m)**2 (N**2).
+
+        Args:
+            columns: (m, groups*width), group by group.
+            width: columns of a group.
+
+        Returns:
+            (groups,).
+        """
+        return gains(columns if self.told.all() else columns * self.told[:, None], width, self.residual, self.span)
+
+    def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
+        """Shapes of an effect with what each would take: by its columns, or fitted anew where it has none."""
+        if not (effect.overrides("columns") or effect.overrides("columns_of")):
+            return [
+                Proposal(shape, self.squares - fit(self.rows, self.hypothesis.plus(Term(effect, shape))).squares)
+                for shape in shapes
+            ]
+        few = max(1, TOGETHER // (8 * self.time.size))
+        parts = [shapes[k : k + few] for k in range(0, len(shapes), few)]
+        return [proposal for part in parts for proposal in self._by_columns(effect, part)]
+
+    def _by_columns(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
+        lag = delays(self.rows, self.hypothesis)[0 if effect.of_motion else 1]
+
+        def made() -> Array:
+            return self.beside.table(lambda s: effect.columns_of(s, shapes), lag)
+
+        if effect.couples:  # of the motion alone, which most terms leave as it is
+            key = ("tried", effect.name, tuple(shapes), lag, self.beside.motion)
+            columns = self.rows.memory.get(key, made)
+        else:
+            columns = made()
+        worth = self.gains(columns, columns.shape[1] // len(shapes))
+        return [Proposal(shape, float(gain)) for shape, gain in zip(shapes, worth, strict=True)]
+
+
+def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
+    """Least squares of a hypothesis; the levels that scaled frictions see are brought in line with what is found."""
+    layout = lay_out(rows, hypothesis)
+    theta, held = _balanced(rows, layout, None)
+    for _ in range(LEVEL_ROUNDS):
+        found = with_loads(with_levels(hypothesis, theta, layout.owners), theta, layout.owners)
+        loaded = any(term.load is not None for term in hypothesis.terms)
+        settled = not (loaded or multiply(hypothesis)) or _alike(found, hypothesis)
+        hypothesis = found
+        if settled:
+            break
+        layout = lay_out(rows, hypothesis)
+        theta, held = _balanced(rows, layout, None)
+    every = np.ones(layout.effort.size, dtype=bool)
+    fitted = Fit(rows, hypothesis, layout, theta, held, every)
+    told = _told(fitted)
+    if told is None or told.all():
+        return fitted
+    theta, held = _balanced(rows, layout, told)
+    return Fit(rows, hypothesis, layout, theta, held, told)
+
+
+def _told(fitted: Fit) -> NDArray[np.bool_] | None:
+    """Rows whose modelled torque would be the same within what the recording does not tell (m,)."""
+    told = None
+    for index, term in enumerate(fitted.terms):
+        if term.effect.overrides("open_torque"):
+            made_of = ("open", term.key, delays(fitted.rows, fitted.hypothesis), fitted.beside.motion)
+            strength = abs(fitted.strengths(index)[0]) or 1.0
+            moved = fitted.rows.memory.get(
+                made_of, lambda index=index, term=term, per=strength: _open(fitted, term, index) / per
+            )
+            sure = moved * strength < UNTOLD_SHARE * fitted.floor
+            told = sure if told is None else told & sure
+    return told
+
+
+def _open(fitted: Fit, term: Term, index: int) -> Array:
+    found = term.effect.open_torque(fitted, index)
+    return np.zeros(fitted.time.size) if found is None else found
+
+
+def _alike(found: Hypothesis, before: Hypothesis) -> bool:
+    """Whether levels and loads have settled."""
+    for new, old in zip(found.terms, before.terms, strict=True):
+        for values, others in ((new.level, old.level), (new.load or (), old.load or ())):
+            if len(values) != len(others) or not np.allclose(values, others, rtol=1e-3, atol=1e-6):
+                return False
+    return True
+
+
+def _balanced(rows: Rows, layout: Layout, told: NDArray[np.bool_] | None) -> tuple[Array, bool]:
+    """Least squares (p,), and whether torque and speed would be further apart in time than they were latched.
+
+    A larger shift is a lag, which is an effect: the misalignment is held at its bound.
+    """
+    columns, effort = (layout.columns, layout.effort) if told is None else (layout.columns[told], layout.effort[told])
+    theta = least_squares(columns, effort, layout.noise)
+    bound = rows.scope.latched
+    if abs(theta[MISALIGNMENT]) <= bound:
+        return theta, False
+    at = np.copysign(bound, theta[MISALIGNMENT])
+    kept = np.delete(np.arange(theta.size), MISALIGNMENT)
+    rest = least_squares(columns[:, kept], effort - at * columns[:, MISALIGNMENT], layout.noise[kept])
+    return np.insert(rest, MISALIGNMENT, at), True
+
+
+def least_squares(columns: Array, effort: Array, noise: Array) -> Array:
+    """Strengths (p,) of columns (m, p) that hold noise of standard deviations (p,)."""
+    return solved(columns.T @ columns, columns.T @ effort, columns.shape[0] * noise**2)[0]
+
+
+def gains(columns: Array, width: int, residual: Array, basis: Array) -> Array:
+    """Squares that groups of columns take from a residual (m,) beyond what an orthonormal basis (m, p) spans.
+
+    Args:
+        columns: (m, groups*width), group by group.
+        width: columns of a group.
+        residual: (m,).
+        basis: (m, p).
+
+    Returns:
+        (groups,) - the residual's unit squared.
+    """
+    rows = np.ascontiguousarray(columns.T)
+    full = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    rows = rows - (rows @ basis) @ basis.T
+    scale = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    rows *= np.where(scale > 1e-4 * np.maximum(full, 1e-300), 1.0 / np.maximum(scale, 1e-300), 0.0)[:, None]
+    shared = (rows @ residual).reshape(-1, width)
+    groups = rows.reshape(-1, width, rows.shape[1])
+    inverse = np.linalg.pinv(groups @ groups.transpose(0, 2, 1), rcond=1e-8, hermitian=True)
+    return np.einsum("gi,gij,gj->g", shared, inverse, shared)

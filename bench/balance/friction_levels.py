@@ -1,0 +1,59 @@
+"""Dry frictions of one axis multiply: what scales the level scales all that other effects add to it.
+
+    M = (K_0 + sum of added levels)*(1 + w_1)*(1 + w_2)*...
+
+Linear in the strengths only with the other strengths held, as share of K_0; a fit brings them in line.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.balance.hypothesis import Hypothesis, Term
+from bench.balance.rows import Rows
+from bench.effects.signals import Signals
+from bench.trace.filter import Array
+
+
+def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
+    """The recording with the level of dry friction that the term at an index scales, as share of K_0.
+
+    sgn(omega) and what terms add to it, times what scales it before the one at the index.
+    """
+    others = [term for k, term in enumerate(hypothesis.terms) if term.level and k != index]
+    before = [term for k, term in enumerate(hypothesis.terms) if term.level and k < index]
+    acting = [term for term in others if not term.effect.scales_friction]
+    acting += [term for term in before if term.effect.scales_friction]
+    if not acting:
+        return seen
+
+    def change(signals: Signals) -> Signals:
+        for term in acting:
+            more = term.effect.level(signals, term.shape, term.level)
+            signals = replace(signals, friction=signals.friction + more)
+        return signals
+
+    return seen.with_signals(change)
+
+
+def with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> Hypothesis:
+    """The hypothesis with the levels that a fit found: strengths over K_0 where that is positive."""
+    coulomb = float(theta[2])
+
+    def level(index: int, term: Term) -> tuple[float, ...]:
+        if coulomb <= 0.0 or not term.effect.overrides("level"):
+            return ()
+        return tuple((theta[owners == index] / coulomb).tolist())
+
+    return hypothesis.with_terms(
+        replace(term, level=level(index, term)) for index, term in enumerate(hypothesis.terms)
+    )
+
+
+def multiply(hypothesis: Hypothesis) -> bool:
+    """Whether an effect scales what another adds."""
+    rubs = [term.effect for term in hypothesis.terms if term.effect.overrides("level")]
+    return len(rubs) > 1 and any(effect.scales_friction for effect in rubs)

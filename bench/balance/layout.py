@@ -1,0 +1,138 @@
+"""Columns of a hypothesis: the recording as it sees it, laid out for least squares."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.balance.friction_levels import with_friction
+from bench.balance.hypothesis import Hypothesis, Term
+from bench.balance.load_side import loads_of
+from bench.balance.rows import Rows
+from bench.effects.effect import Load
+from bench.effects.signals import Signals
+from bench.trace.filter import Array, Column
+
+#: Owners of columns that belong to no effect.
+BASE, HUM = -1, -2
+#: Places of J, K_w, K_0 and of the time by which torque is behind speed among the columns.
+INERTIA, VISCOUS, COULOMB, MISALIGNMENT = range(4)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """A hypothesis in columns.
+
+    Attributes:
+        columns: (m, p): J, K_w, K_0, misalignment, sines and cosines of hum, then the effects' in order.
+        owners: (p,) index of the term a column belongs to, BASE or HUM.
+        effort: (m,) what they are to explain - N*m (N).
+        noise: (p,) standard deviation of the sensors' noise in each column.
+    """
+
+    columns: Array
+    owners: NDArray[np.int64]
+    effort: Array
+    noise: Array
+
+
+def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:
+    """The recording as the hypothesis has it: without the faults of its sensors."""
+    terms = sorted((term for term in hypothesis.terms if term.effect.overrides("see")), key=lambda term: term.key)
+    if not terms:
+        return rows
+
+    def change(signals: Signals) -> Signals:
+        for term in terms:
+            signals = term.effect.see(signals, term.shape)
+        return signals
+
+    return rows.with_signals(change, tuple(term.key for term in terms))
+
+
+def delays(rows: Rows, hypothesis: Hypothesis) -> tuple[float, float]:
+    """Lag to undo on columns of motion, and on all others - s."""
+    found = [term.effect.delays(term.shape, rows.conditioning.source) for term in hypothesis.terms]
+    return sum(moving for moving, _ in found), sum(resting for _, resting in found)
+
+
+def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
+    """Columns of a hypothesis."""
+    seen, (moving, resting) = seen_by(rows, hypothesis), delays(rows, hypothesis)
+    made_of = _made_of(rows, hypothesis)
+    order = 1 if rows.conditioning.source == "position" else 0
+
+    def motion(signals: Signals) -> list[Column]:
+        values = getattr(signals, rows.conditioning.source)
+        return [[(values, order + 1)], [(values, order)]]
+
+    def rest(signals: Signals) -> list[Column]:
+        return [[(signals.sign, 0)], [(-signals.effort, 1)]]
+
+    parts = [
+        rows.memory.get(("motion", *made_of), lambda: seen.table(motion, moving)),
+        rows.memory.get(("rest", *made_of), lambda: seen.table(rest, resting)),
+    ]
+    owners = [BASE] * 4
+    if hypothesis.hum:
+        made = ("hum", hypothesis.hum, resting)
+        parts.append(rows.memory.get(made, lambda: seen.table(lambda s: _hum(s, hypothesis.hum), resting)))
+        owners += [HUM] * 2 * len(hypothesis.hum)
+    for index, term in enumerate(hypothesis.terms):
+        table = term_columns(rows, seen, hypothesis, index)
+        parts.append(table)
+        owners += [index] * table.shape[1]
+    columns = np.concatenate(parts, axis=1)
+    return Layout(columns, np.array(owners), seen.effort, _noise(rows, moving, columns.shape[1]))
+
+
+def term_columns(rows: Rows, seen: Rows, hypothesis: Hypothesis, index: int) -> Array:
+    """Columns (m, k) of one term; none of one that only changes how the recording is seen."""
+    term = hypothesis.terms[index]
+    friction = with_friction(seen, hypothesis, index)
+    loads = loads_of(hypothesis) if term.effect.couples else ()
+    lag = delays(rows, hypothesis)[0 if term.effect.of_motion else 1]
+    if loads or friction is not seen:
+        return filtered(friction, term, loads, lag)
+    return rows.memory.get((term.key, *_made_of(rows, hypothesis)), lambda: filtered(seen, term, loads, lag))
+
+
+def filtered(seen: Rows, term: Term, loads: tuple[Load, ...], lag: float) -> Array:
+    """Columns (m, k) of a term in a recording as it is seen.
+
+    What follows the motion behind a coupling is integrated at length, and only once where nothing but a lag differs.
+    """
+    if not (term.effect.overrides("columns") or term.effect.overrides("columns_of")):
+        return np.empty((seen.effort.size, 0))
+    if not term.effect.couples or loads:
+        return seen.table(lambda s: term.effect.columns_of(s, [term.shape], loads), lag)
+
+    def kept(signals: Signals) -> Sequence[Column]:
+        made_of = ("raw", term.key, seen.motion, float(signals.time[0]))
+        return seen.memory.columns(made_of, lambda: term.effect.columns_of(signals, [term.shape]))
+
+    return seen.table(kept, lag)
+
+
+def _hum(signals: Signals, lines: tuple[float, ...]) -> list[Column]:
+    angles = [2.0 * np.pi * line * signals.time for line in lines]
+    return [[(wave(angle), 0)] for angle in angles for wave in (np.sin, np.cos)]
+
+
+def _made_of(rows: Rows, hypothesis: Hypothesis) -> tuple[object, ...]:
+    seen = tuple(sorted(term.key for term in hypothesis.terms if term.effect.overrides("see")))
+    return *delays(rows, hypothesis), seen
+
+
+def _noise(rows: Rows, moving: float, count: int) -> Array:
+    """A smoothed signal and its derivative are uncorrelated under white noise, as G is even and omega*G odd."""
+    conditioning = rows.conditioning
+    gain, order = conditioning.filter.noise_gain, conditioning.order
+    noise = np.zeros(count)
+    noise[INERTIA] = conditioning.source_noise * np.hypot(gain(order + 1), moving * gain(order + 2))
+    noise[VISCOUS] = conditioning.source_noise * np.hypot(gain(order), moving * gain(order + 1))
+    noise[MISALIGNMENT] = conditioning.effort_noise * gain(1)
+    return noise

@@ -1,0 +1,137 @@
+"""Normal equations gathered block by block in time: one pass over a recording of any length."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.trace.filter import Array
+
+#: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
+BLOCK_WIDTHS = 8.0
+#: Blocks that a covariance needs at most, of a recording and of each of its parts.
+BLOCKS = 512
+#: Power of a combination of scaled columns below which it is none but rounding.
+ROUNDING = 1e-13
+
+
+@dataclass(frozen=True)
+class NormalEquations:
+    """Sums over blocks of time, from which estimate, residual and a covariance for correlated residuals follow.
+
+    Attributes:
+        gram: X'X of each block - (b, p, p).
+        moment: X'y of each block - (b, p).
+        power: y'y of each block - (b,).
+        rows: of each block - (b,).
+        noise: (p,) standard deviation of the noise in each column.
+    """
+
+    gram: Array
+    moment: Array
+    power: Array
+    rows: NDArray[np.int64]
+    noise: Array
+
+    def select(self, columns: Sequence[int]) -> NormalEquations:
+        """The same equations for some of the columns only."""
+        kept = list(columns)
+        gram = self.gram[:, kept][:, :, kept]
+        return replace(self, gram=gram, moment=self.moment[:, kept], noise=self.noise[kept])
+
+    def coarsened(self, limit: int) -> NormalEquations:
+        """The same equations with neighbouring blocks joined until there are at most `limit`."""
+        if self.rows.size <= limit:
+            return self
+        starts = np.arange(0, self.rows.size, -(-self.rows.size // limit))
+        sums = {name: np.add.reduceat(getattr(self, name), starts) for name in ("gram", "moment", "power", "rows")}
+        return replace(self, **sums)
+
+    @cached_property
+    def count(self) -> int:
+        """Rows of all blocks."""
+        return int(self.rows.sum())
+
+    @cached_property
+    def matrix(self) -> Array:
+        """X'X less what sensor noise put onto its diagonal - (p, p)."""
+        return self.gram.sum(axis=0) - np.diag(self.count * self.noise**2)
+
+    def solve(self) -> tuple[Array, Array]:
+        """Coefficients (p,), and the inverse of the matrix (p, p)."""
+        return solved(self.gram.sum(axis=0), self.moment.sum(axis=0), self.count * self.noise**2)
+
+    def scores(self, theta: Array) -> Array:
+        """X'(y - X*theta) of each block, less the part of it that is due to noise in the columns - (b, p)."""
+        return self.moment - self.gram @ theta + self.rows[:, None] * self.noise**2 * theta
+
+    def residual_power(self, theta: Array) -> float:
+        """Sum of squared residuals of all rows - the effort's unit squared."""
+        gram, moment = self.gram.sum(axis=0), self.moment.sum(axis=0)
+        return float(self.power.sum() - 2.0 * theta @ moment + theta @ gram @ theta)
+
+
+def solved(gram: Array, moment: Array, noise: Array) -> tuple[Array, Array]:
+    """Coefficients (p,) of X'X (p, p) and X'y (p,), and the inverse of the matrix that they came from.
+
+    Noise in a column inflates its own square and draws its coefficient towards zero; taking the known power `noise`
+    (p,) out makes least squares consistent (Soderstrom, Errors-in-variables methods in system identification, Automatica
+    43(6), 2007, eq. 40).
+    """
+    scale = np.sqrt(np.diag(gram))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    inverse = np.linalg.pinv((gram - np.diag(noise)) / np.outer(scale, scale), rcond=ROUNDING, hermitian=True)
+    inverse /= np.outer(scale, scale)
+    return inverse @ moment, inverse
+
+
+def normal_equations(columns: Array, effort: Array, time: Array, noise: Array, width: float) -> NormalEquations:
+    """Gather rows into blocks of time; blocks without rows do not appear.
+
+    Args:
+        columns: (m, p).
+        effort: (m,) what they are to explain.
+        time: (m,) - s.
+        noise: (p,) standard deviation of the noise in each column.
+        width: of the filter - s.
+    """
+    edges = block_edges(time, width)
+    table = np.column_stack([columns, effort])
+    products = np.zeros((max(edges.size - 1, 0), table.shape[1], table.shape[1]))
+    for index, (start, stop) in enumerate(pairwise(edges.tolist())):
+        rows = table[start:stop]
+        np.matmul(rows.T, rows, out=products[index])
+    return NormalEquations(
+        gram=products[:, :-1, :-1],
+        moment=products[:, :-1, -1],
+        power=products[:, -1, -1],
+        rows=np.diff(edges),
+        noise=noise,
+    )
+
+
+def block_edges(time: Array, width: float) -> NDArray[np.int64]:
+    """First rows of blocks of BLOCK_WIDTHS filter widths, longer ones where there would be more than BLOCKS; the end.
+
+    Args:
+        time: (m,) - s.
+        width: of the filter - s.
+    """
+    if not time.size:
+        return np.empty(0, dtype=np.int64)
+    count = int(np.clip((time[-1] - time[0]) / (BLOCK_WIDTHS * width), 1, BLOCKS))
+    borders = np.linspace(time[0], time[-1], count + 1)[1:-1]
+    return np.unique(np.concatenate([[0], np.searchsorted(time, borders), [time.size]]))
+
+
+def join(parts: Sequence[NormalEquations]) -> NormalEquations:
+    """Normal equations of a recording from those of its stretches, in order; all of the same columns."""
+    sums = {
+        name: np.concatenate([getattr(part, name) for part in parts]) for name in ("gram", "moment", "power", "rows")
+    }
+    return replace(parts[0], **sums)

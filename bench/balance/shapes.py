@@ -1,0 +1,69 @@
+"""The shape of one effect - a Stribeck speed, a lag, a pitch - searched for the least residual, the others held."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.optimize
+
+from bench.balance.fit import Fit, fit
+from bench.balance.hypothesis import Hypothesis, Term
+from bench.balance.rows import Rows
+from bench.effects.effect import is_pitch
+from bench.effects.signals import Scope
+from bench.trace.filter import Array
+
+
+def free_shapes(term: Term, scope: Scope) -> list[int]:
+    """Places of the shape quantities that vary continuously and are searched so."""
+    return [
+        k
+        for k, shape in enumerate(term.effect.shapes)
+        if term.effect.reach(term.shape, k) and (not shape.whole or is_pitch(shape, scope))
+    ]
+
+
+def shaped(rows: Rows, hypothesis: Hypothesis, index: int) -> Fit:
+    """Search one term's shape for the least residual, the others held."""
+    term, scope = hypothesis.terms[index], rows.scope
+    free = free_shapes(term, scope)
+    if not free:
+        return fit(rows, hypothesis)
+    if term.effect.overrides("see") and hypothesis.coupling is not None:
+        rows_tried = rows.held  # what follows behind the coupling is kept while the motion is corrected a little
+        fit(rows_tried, hypothesis)
+    else:
+        rows_tried = rows
+
+    def at(offset: Array) -> Hypothesis:
+        return hypothesis.reshaped(index, _moved(term, free, offset, scope))
+
+    def misfit(offset: Array) -> float:
+        return float(np.log(max(fit(rows_tried, at(offset)).squares, 1e-300)))
+
+    if len(free) == 1:
+        best = scipy.optimize.minimize_scalar(
+            lambda x: misfit(np.array([x])), bounds=(-1.0, 1.0), method="bounded", options={"xatol": 4e-3}
+        )
+        return fit(rows, at(np.array([best.x])))
+    simplex = np.vstack([np.zeros(len(free)), 0.5 * np.eye(len(free))])
+    best = scipy.optimize.minimize(
+        misfit,
+        np.zeros(len(free)),
+        method="Nelder-Mead",
+        options={"initial_simplex": simplex, "xatol": 3e-3, "fatol": 1e-4, "maxfev": 120},
+    )
+    return fit(rows, at(np.asarray(best.x)))
+
+
+def _moved(term: Term, free: list[int], offset: Array, scope: Scope) -> tuple[float, ...]:
+    """The shape an offset away, in units of how far a search goes."""
+    shape = list(term.shape)
+    for k, step in zip(free, offset.tolist(), strict=True):
+        slot = term.effect.shapes[k]
+        if is_pitch(slot, scope):
+            shape[k] += step * scope.spacing
+        elif slot.additive:
+            shape[k] += step * term.effect.reach(term.shape, k)
+        else:
+            shape[k] *= float(np.exp(step * term.effect.reach(term.shape, k)))
+    return tuple(shape)

@@ -1,0 +1,22 @@
+"""The first-order lag T*dy/dt + y = u, written once for all signals that pass one."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.signal import lfilter
+
+from bench.trace.filter import Array
+
+
+def lagged(values: Array, time_constant: float, step: float) -> Array:
+    """Values (n,) behind a lag, exact for an input that runs straight between samples; started in equilibrium.
+
+    Args:
+        values: (n,), any unit.
+        time_constant: T - s.
+        step: between samples - s.
+    """
+    decay = np.exp(-step / time_constant)
+    mean = time_constant / step * (1.0 - decay)
+    now, before = 1.0 - mean, mean - decay
+    return np.asarray(lfilter([now, before], [1.0, -decay], values, zi=[values[0] * (1.0 - now)])[0])

@@ -1,0 +1,108 @@
+"""What effects are given of a recording: raw samples of a stretch, the numbers beside them, and where shapes are sought."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from bench.axis_kind import AxisKind
+from bench.trace.filter import Array
+from bench.units import Quantity
+
+
+@dataclass(frozen=True)
+class Signals:
+    """Raw samples of one stretch of a recording, all (n,).
+
+    Attributes:
+        time: since the recording's start - s.
+        position: rad (m); from speed by the trapezoidal rule where it is not recorded.
+        velocity: rad/s (m/s).
+        sign: sgn(omega), 0 where noise may have made it.
+        effort: motor torque as reported - N*m (N).
+        torque: motor torque as it acts, which a lag of the current loop delays - N*m (N).
+        friction: level of dry friction with its sign, as share of K_0: sgn(omega), or what a named effect makes of it;
+            effects that scale dry friction multiply it.
+        peak_effort: effort at the motor's peak current - N*m (N); the recording's largest where the rig tells none.
+        sample_period: s.
+        source: signal that speed and acceleration are taken from, `velocity` or `position`.
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    sign: Array
+    effort: Array
+    torque: Array
+    friction: Array
+    peak_effort: float
+    sample_period: float
+    source: str = "velocity"
+
+
+@dataclass(frozen=True)
+class Base:
+    """What the torque balance without effects has: J - kg*m**2 (kg), K_w - N*m*s/rad (N*s/m), K_0 - N*m (N)."""
+
+    inertia: float
+    viscous: float
+    coulomb: float
+
+
+@dataclass(frozen=True)
+class Scope:
+    """What a recording is able to show, as far as effects have to know it.
+
+    Attributes:
+        kind: of the axis.
+        source: signal that speed and acceleration are taken from, `velocity` or `position`.
+        signals: names of all that is recorded.
+        one_way: whether the axis moves in one direction only.
+        duration, sample_period: s.
+        latched: within what time torque and speed were taken: one tick of a drive, else one sample - s.
+        drift: standard deviation of a position that was integrated from noisy speed, 0 of a recorded one - rad (m).
+        width: of the filter, its standard deviation - s.
+        travel: from the lowest to the highest position - rad (m).
+        top_speed, rms_speed: rad/s (m/s).
+        rotor_inertia: of the motor alone, 0 where the rig does not tell - kg*m**2 (kg).
+    """
+
+    kind: AxisKind
+    source: str
+    signals: frozenset[str]
+    one_way: bool
+    duration: float
+    sample_period: float
+    latched: float
+    drift: float
+    width: float
+    travel: float
+    top_speed: float
+    rms_speed: float
+    rotor_inertia: float
+
+    @property
+    def spacing(self) -> float:
+        """Distance of wave numbers that the travel just tells apart: half a cycle over it - 1 (rad/m)."""
+        return math.pi / self.travel
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A quantity of an effect that enters nonlinearly.
+
+    Attributes:
+        quantity: name, unit, bounds.
+        grid: where a search looks first.
+        whole: whether only whole numbers make sense on a rotary axis (a harmonic).
+        reach: how far a search goes from there, as factor e**reach, or as distance where `additive`; 0 if it does not.
+        additive: whether steps are added rather than multiplied (an instant, an angle).
+        step: of a numerical derivative, as share of the value; 0 of what is no free number of the fit.
+    """
+
+    quantity: Quantity
+    grid: tuple[float, ...] = ()
+    whole: bool = False
+    reach: float = 0.9
+    additive: bool = False
+    step: float = 1e-4

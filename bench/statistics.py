@@ -1,0 +1,8 @@
+"""Figures of statistics that are used all over the bench."""
+
+from __future__ import annotations
+
+from statistics import NormalDist
+
+#: Half width of a normal distribution's 95 % interval in standard deviations.
+NORMAL95 = NormalDist().inv_cdf(0.975)
