@@ -3,7 +3,7 @@ import pickle
 import pytest
 
 from bench.axis_kind import COULOMB, INERTIA, KINDS, LINEAR, MISALIGNMENT, OFFSET, ROTARY, VISCOUS, axis_kind
-from bench.effects.catalogue import physics
+from bench.effects.catalogue import catalogue
 from bench.errors import InputError
 from bench.trace.signals import unit_on
 from bench.units import Quantity, dimensionality, same_dimension
@@ -87,7 +87,7 @@ def test_what_stays_an_angle_or_has_a_unit_of_its_own_says_so():
 
 
 def test_harmonics_times_position_and_phases_are_angles_on_every_axis():
-    quantities = [quantity for effect in physics().values() for quantity in effect.quantities]
+    quantities = [quantity for effect in catalogue().values() for quantity in effect.quantities]
     harmonics = [quantity for quantity in quantities if quantity.name == "harmonic"]
     phases = [quantity for quantity in quantities if quantity.name == "phase"]
     assert harmonics and phases

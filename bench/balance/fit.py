@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from bench.balance.friction_levels import multiply, with_friction, with_levels
 from bench.balance.hypothesis import Hypothesis, Term
-from bench.balance.layout import INERTIA, MISALIGNMENT, VISCOUS, COULOMB, Layout, delays, filtered, lay_out, seen_by
+from bench.balance.layout import COULOMB, INERTIA, MISALIGNMENT, VISCOUS, Layout, delays, lay_out, seen_by
 from bench.balance.load_side import with_loads
 from bench.balance.noise import Floor, noise_floor, white_power
 from bench.balance.normal_equations import solved

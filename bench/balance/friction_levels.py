@@ -48,9 +48,7 @@ def with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64])
             return ()
         return tuple((theta[owners == index] / coulomb).tolist())
 
-    return hypothesis.with_terms(
-        replace(term, level=level(index, term)) for index, term in enumerate(hypothesis.terms)
-    )
+    return hypothesis.with_terms(replace(term, level=level(index, term)) for index, term in enumerate(hypothesis.terms))
 
 
 def multiply(hypothesis: Hypothesis) -> bool:

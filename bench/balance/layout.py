@@ -81,7 +81,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
         made = ("hum", hypothesis.hum, resting)
         parts.append(rows.memory.get(made, lambda: seen.table(lambda s: _hum(s, hypothesis.hum), resting)))
         owners += [HUM] * 2 * len(hypothesis.hum)
-    for index, term in enumerate(hypothesis.terms):
+    for index in range(len(hypothesis.terms)):
         table = term_columns(rows, seen, hypothesis, index)
         parts.append(table)
         owners += [index] * table.shape[1]

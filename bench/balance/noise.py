@@ -80,7 +80,8 @@ def white_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
         kinetic = theta[INERTIA] * s + theta[VISCOUS]
         for index, term in enumerate(hypothesis.terms):
             if term.effect.of_motion:
-                kinetic = kinetic + theta[layout.owners == index][0] * s * term.effect.noise_of_motion(term.shape, omega)
+                heard = term.effect.noise_of_motion(term.shape, omega)
+                kinetic = kinetic + theta[layout.owners == index][0] * s * heard
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
         effort = left * conditioning.effort_noise**2 * np.abs(1.0 + theta[MISALIGNMENT] * s) ** 2
         return effort + conditioning.source_noise**2 * np.abs(kinetic) ** 2

@@ -80,8 +80,8 @@ def solved(gram: Array, moment: Array, noise: Array) -> tuple[Array, Array]:
     """Coefficients (p,) of X'X (p, p) and X'y (p,), and the inverse of the matrix that they came from.
 
     Noise in a column inflates its own square and draws its coefficient towards zero; taking the known power `noise`
-    (p,) out makes least squares consistent (Soderstrom, Errors-in-variables methods in system identification, Automatica
-    43(6), 2007, eq. 40).
+    (p,) out makes least squares consistent (Soderstrom, Errors-in-variables methods in system identification,
+    Automatica 43(6), 2007, eq. 40).
     """
     scale = np.sqrt(np.diag(gram))
     scale = np.where(scale > 0.0, scale, 1.0)

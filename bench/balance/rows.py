@@ -155,10 +155,7 @@ class Rows:
     def samples(self) -> NDArray[np.int64]:
         """Index into the recording of every used row (m,)."""
         smooth = self.conditioning.filter
-        found = [
-            part.start + smooth.margin + smooth.stride * np.flatnonzero(part.used)
-            for part in self.stretches
-        ]
+        found = [part.start + smooth.margin + smooth.stride * np.flatnonzero(part.used) for part in self.stretches]
         return np.concatenate(found)
 
     def values(self, pick: Callable[[Signals], Array]) -> Array:
@@ -235,9 +232,7 @@ def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: C
     direction = np.concatenate([s.sign[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
     drift = 0.0
     if "position" not in trace:  # of the mean of integrated white noise, sigma*sqrt(T_s*T/3)
-        drift = conditioning.source_noise * float(
-            np.sqrt(trace.sample_period * (trace.time[-1] - trace.time[0]) / 3.0)
-        )
+        drift = conditioning.source_noise * float(np.sqrt(trace.sample_period * (trace.time[-1] - trace.time[0]) / 3.0))
     return Scope(
         kind=trace.axis_kind,
         source=conditioning.source,

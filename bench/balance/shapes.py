@@ -41,10 +41,8 @@ def shaped(rows: Rows, hypothesis: Hypothesis, index: int) -> Fit:
         return float(np.log(max(fit(rows_tried, at(offset)).squares, 1e-300)))
 
     if len(free) == 1:
-        best = scipy.optimize.minimize_scalar(
-            lambda x: misfit(np.array([x])), bounds=(-1.0, 1.0), method="bounded", options={"xatol": 4e-3}
-        )
-        return fit(rows, at(np.array([best.x])))
+        best = scipy.optimize.fminbound(lambda x: misfit(np.array([x])), -1.0, 1.0, xtol=4e-3)
+        return fit(rows, at(np.array([float(best)])))
     simplex = np.vstack([np.zeros(len(free)), 0.5 * np.eye(len(free))])
     best = scipy.optimize.minimize(
         misfit,

@@ -17,13 +17,13 @@ def friction(
     out: Annotated[Path | None, typer.Option("--out", help="Figure to write: .png, .pdf or .svg.")] = None,
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
-    from bench.diagnose.steady import steady_friction
+    from bench.friction_map.map import friction_map
     from bench.report.friction import draw_friction, friction_json, friction_table
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
     axis = load_rig(rig)
-    found = steady_friction([read(trace, axis.trace.columns) for trace in traces], axis)
+    found = friction_map([read(trace, axis.trace.columns) for trace in traces], axis)
     if out is not None:
         draw_friction(found, axis.name, out)
     if json is not None:

@@ -57,7 +57,7 @@ def identify(
     if json != Path("-"):
         console().print(estimate_table(estimate, f"{axis.name}: {trace.name}"))
         if refinement is not None:
-            typer.echo(refinement_line(refinement, axis.linear))
+            typer.echo(refinement_line(refinement, axis.axis_kind))
         tell_files(files)
     tell_warnings(estimate.warnings)
 

@@ -30,7 +30,7 @@ def simulate(
 
     axis = load_rig(rig)
     with progress(f"simulating {axis.name}") as done:
-        present = [parse_effect(text, axis.linear) for text in effect or ()]
+        present = [parse_effect(text, axis.axis_kind) for text in effect or ()]
         simulated = run_simulation(axis, profile, seed, progress=done, effects=present)
     write(simulated.trace, out)
     tell_files([out, write_truth(out, simulated.truth)])

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from bench.identify.estimate import Parameter
+from bench.balance.parameter import Parameter
+from bench.effects.effect import Effect
 
 
 @dataclass(frozen=True)
@@ -12,15 +14,26 @@ class NamedEffect:
     """An effect that the recording shows.
 
     Attributes:
-        name, parameters: of the effect; parameters with interval.
+        effect: what it is.
+        parameters: its quantities with interval.
         ambiguous_with: names that this recording cannot tell from it.
         evidence: figures that speak for it, by what they are.
     """
 
-    name: str
+    effect: Effect
     parameters: dict[str, Parameter]
     ambiguous_with: tuple[str, ...]
-    evidence: dict[str, float]
+    evidence: Mapping[str, float]
+
+    @property
+    def name(self) -> str:
+        """Of the effect, as in the contract."""
+        return self.effect.name
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Of its quantities - SI."""
+        return {key: parameter.value for key, parameter in self.parameters.items()}
 
 
 @dataclass(frozen=True)
@@ -56,7 +69,7 @@ class Rejected:
 
 @dataclass(frozen=True)
 class Shrunk:
-    """Gaps at one point of the model's growth.
+    """Gaps after one addition to the model.
 
     Attributes:
         effect: added last; empty for the bare axis.

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from bench.diagnose.decidable import require_decidable, require_samples
-from bench.diagnose.holdout import require_another
-from bench.diagnose.sensing import VelocityLag, unlagged, velocity_lag
-from bench.diagnose.workbench import Workbench
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.balance.rows import Rows
+from bench.diagnose.gap.decidable import require_another, require_decidable, require_samples
+from bench.effects.catalogue import catalogue
+from bench.effects.effect import Detected, Effect
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -20,20 +22,20 @@ class Recordings:
         rig: of the axis.
         trace: the recording.
         holdout: another one, not fitted; None without one.
-        bench, other: both laid out.
-        lag: of the reported speed behind position; None where there is none or it cannot be told.
+        rows, other: both laid out.
+        detected: effects that the recording's signals show, of which the torque balance holds none.
     """
 
     rig: Rig
     trace: Trace
     holdout: Trace | None
-    bench: Workbench
-    other: Workbench | None
-    lag: VelocityLag | None
+    rows: Rows
+    other: Rows | None
+    detected: Mapping[Effect, Detected]
 
     @classmethod
     def of(cls, trace: Trace, rig: Rig, holdout: Trace | None) -> Recordings:
-        """Lay out both recordings; a reported speed that lags its position is taken back to where it would have been.
+        """Lay out both recordings; a fault that the signals show by themselves is undone before.
 
         Raises:
             UndeterminedError: the recording is too short, too slow or too quiet to decide.
@@ -43,17 +45,29 @@ class Recordings:
         if holdout is not None:
             require_samples(holdout)
             require_another(trace, holdout)
-        bench = Workbench.of(trace, rig)
-        require_decidable(trace, rig, bench)
-        lag, seen, unseen = velocity_lag(trace, bench), trace, holdout
-        if lag is not None and bench.conditioning.source == "velocity":
-            seen, unseen = unlagged(trace, lag), unlagged(holdout, lag) if holdout is not None else None
-            bench = Workbench.of(seen, rig)
-            require_decidable(seen, rig, bench)
-        other = Workbench.of(unseen, rig, bench.conditioning.filter.width) if unseen is not None else None
-        return cls(rig, trace, holdout, bench, other, lag)
+        rows = Rows.of(trace, rig)
+        require_decidable(trace, rig, rows)
+        width = rows.conditioning.filter.width
+        found = {effect: effect.detect(trace, rig, width) for effect in catalogue().values()}
+        detected = {effect: those for effect, those in found.items() if those is not None}
+        seen, unseen = trace, holdout
+        for effect, those in detected.items():
+            if effect.faulty_signal == rows.conditioning.source:
+                seen = effect.corrected(seen, those.values)
+                unseen = effect.corrected(unseen, those.values) if unseen is not None else None
+        if seen is not trace:
+            rows = Rows.of(seen, rig)
+            require_decidable(seen, rig, rows)
+        other = Rows.of(unseen, rig, width=rows.conditioning.filter.width) if unseen is not None else None
+        return cls(rig, trace, holdout, rows, other, detected)
 
     @property
     def unit(self) -> str:
         """Unit of the effort: N*m, N, or what the rig allows."""
         return self.rig.net_effort(self.trace)[1]
+
+    @property
+    def base_units(self) -> dict[str, str]:
+        """Names of J, K_w and K_0 on this kind of axis, with their units."""
+        kind = self.rig.axis_kind
+        return {kind.parameter(term): kind.parameter_unit(term, self.unit) for term in (INERTIA, VISCOUS, COULOMB)}

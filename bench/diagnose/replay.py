@@ -6,27 +6,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bench.diagnose.added import holding_bandwidth, without_events
-from bench.diagnose.balance import EVERY, Balance
-from bench.diagnose.columns import build
-from bench.diagnose.hypothesis import BACKLASH, CURRENT_LAG, ECCENTRICITY, ELASTIC, VELOCITY_LAG
-from bench.diagnose.outside import OUTSIDE, physics_of
-from bench.diagnose.workbench import Workbench
-from bench.effects.catalogue import catalogue
+from bench.arrays import Array, rms
+from bench.balance.layout import lay_out
+from bench.balance.rows import Rows
+from bench.balance.stored import EVERY, Balance
+from bench.diagnose.add.model import holding_bandwidth, without_events
 from bench.errors import InputError, UndeterminedError
 from bench.plant.model_file import load_model, read_table
 from bench.plant.track import measured_velocity
 from bench.plant.track_effects import track_effects
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-from bench.units import nearest
 
-Array = NDArray[np.float64]
-
-#: Shape numbers of the effects that change how columns are made; the others list theirs.
-SHAPES = {CURRENT_LAG: 1, VELOCITY_LAG: 1, ECCENTRICITY: 2, ELASTIC: 2, BACKLASH: 4}
 #: Share of a recording's torque that the model of its axis does not leave unexplained.
 LEFT = 0.2
 
@@ -84,16 +76,16 @@ def replay(path: Path, trace: Trace, rig: Rig) -> Replay:
         raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
     effort, unit = rig.net_effort(trace)
     try:
-        bench = Workbench.of(trace, rig, balance.width, every=True)
+        rows = Rows.of(trace, rig, width=balance.width, every=True)
     except UndeterminedError as error:
         raise UndeterminedError(f"the torque gap along {trace.origin}", error.reason, error.record) from error
-    _, owners = build(bench, balance.hypothesis)
+    owners = lay_out(rows, balance.hypothesis).owners
     if owners.size != balance.theta.size:
         where, found = f"{path}: torque_balance.coefficients", f"found {balance.theta.size} of them"
         raise InputError(where, found, f"allowed: {owners.size}, as its effects want")
-    samples = bench.samples(trace)
+    samples = rows.samples()
     torque, simulated = np.full(len(trace), np.nan), np.full(len(trace), np.nan)
-    torque[samples], simulated[samples] = bench.effort, balance.torque(bench)
+    torque[samples], simulated[samples] = rows.effort, rows.effort - balance.left(rows)
     velocity = np.full(len(trace), np.nan)
     if "parameters" in table:
         stored = load_model(path)
@@ -107,13 +99,13 @@ def replay(path: Path, trace: Trace, rig: Rig) -> Replay:
     left = _rms(torque - simulated) / max(_rms(torque), 1e-300)
     if left > LEFT:
         warnings.append(f"the model leaves {left:.0%} of the torque unexplained: another axis, or other units?")
-    speed = "m/s" if rig.linear else "rad/s"
+    speed = rig.axis_kind.speed_unit
     return Replay(trace.time, measured_velocity(trace), velocity, torque, simulated, speed, unit, tuple(warnings))
 
 
 def _rms(values: Array) -> float:
     known = values[np.isfinite(values)]
-    return float(np.sqrt(np.mean(known**2))) if known.size else 0.0
+    return rms(known) if known.size else 0.0
 
 
 def load_balance(path: Path) -> Balance:
@@ -129,7 +121,7 @@ def load_balance(path: Path) -> Balance:
     if not isinstance(table["torque_balance"], dict):
         raise InputError(where, f"found {table['torque_balance']!r}", "allowed: a table, as bench diagnose wrote it")
     try:
-        balance = Balance.from_table(table["torque_balance"])
+        balance = Balance.from_table(table["torque_balance"], where)
     except KeyError as error:
         raise InputError(f"{where}.{error.args[0]}", "missing", "allowed: as bench diagnose wrote it") from error
     except (TypeError, ValueError) as error:
@@ -143,12 +135,8 @@ def _require_sound(balance: Balance, where: str) -> None:
         raise InputError(f"{where}.filter_width", f"found {balance.width:g}", "allowed: a width above zero - s")
     if not np.isfinite(balance.theta).all():
         raise InputError(f"{where}.coefficients", "found one that is not finite", "allowed: finite numbers")
-    for effect in balance.hypothesis.effects:
-        known = [*SHAPES, *catalogue(), *OUTSIDE]
-        if effect.name not in known:
-            found = f"found '{effect.name}'{nearest(effect.name, known)}"
-            raise InputError(f"{where}.effects", found, "allowed: names that bench effects lists")
-        size = SHAPES[effect.name] if effect.name in SHAPES else len(physics_of(effect.name).shapes)
-        if len(effect.shape) != size or not np.isfinite(effect.shape).all():
-            found = f"found {list(effect.shape)}"
-            raise InputError(f"{where}.effects: {effect.name}.shape", found, f"allowed: {size} finite numbers")
+    for term in balance.hypothesis.terms:
+        size = len(term.effect.shapes)
+        if len(term.shape) != size or not np.isfinite(term.shape).all():
+            found = f"found {list(term.shape)}"
+            raise InputError(f"{where}.effects: {term.effect.name}.shape", found, f"allowed: {size} finite numbers")

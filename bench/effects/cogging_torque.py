@@ -14,8 +14,8 @@ import mujoco
 import numpy as np
 
 from bench.effects.effect import amplitude_and_phase
-from bench.effects.mjcf import add_periodic_torque
 from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.mjcf import add_periodic_torque
 from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -78,10 +78,10 @@ class FittedTerm(Protocol):
 class Fitted(Protocol):
     """A torque balance fitted to a recording, as effects may ask it; see `bench.balance.fit.Fit`."""
 
-    theta: Array
-    owners: NDArray[np.int64]
-    told: NDArray[np.bool_]
-
+    @property
+    def theta(self) -> Array: ...  # noqa: D102
+    @property
+    def owners(self) -> NDArray[np.int64]: ...  # noqa: D102
     @property
     def scope(self) -> Scope: ...  # noqa: D102
     @property
@@ -125,6 +125,7 @@ class Effect(ABC):
         biased_by_noise: whether noise of the motion biases its strength, and not only scatters it.
         not_beside: names of effects beside which it is not sought, as a recording tells but one of them.
         replaces: names of effects that it is tried in the place of, once nothing else explains more.
+        faulty_signal: name of the signal that `corrected` mends; empty if it mends none.
         shows_under_drive: whether it shows where the drive runs the model, and hardly where the recording holds it.
         tolerates: share of the first gap that may be left beside it, if it is unlike that of other effects.
         fixed_in_simulation: quantities that a fit by simulation leaves alone: whole numbers, instants between samples.
@@ -148,6 +149,7 @@ class Effect(ABC):
     biased_by_noise: ClassVar[bool] = False
     not_beside: ClassVar[frozenset[str]] = frozenset()
     replaces: ClassVar[frozenset[str]] = frozenset()
+    faulty_signal: ClassVar[str] = ""
     shows_under_drive: ClassVar[bool] = False
     tolerates: ClassVar[float | None] = None
     fixed_in_simulation: ClassVar[frozenset[str]] = frozenset()
@@ -229,13 +231,13 @@ class Effect(ABC):
         pitches = [value for slot, value in zip(self.shapes, shape, strict=True) if is_pitch(slot, scope)]
         return PITCH_SHARE if any(value > MANY * scope.spacing for value in pitches) else SHARE
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base, scope: Scope) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """Whether physics allows these values: every quantity within its bounds."""
         found = self.report(strengths, shape, base)
         return all(q.lower <= found[q.name] <= q.upper for q in self.quantities if q.name in found)
 
     def plausible(self, shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
-        """Whether all of them may be there together, if it is repeatable."""
+        """Whether its shapes, several if it is repeatable, are credible in such a recording."""
         return True
 
     def wave_number(self, shape: Sequence[float]) -> float | None:
@@ -253,7 +255,7 @@ class Effect(ABC):
         return {slot.quantity.name: value for slot, value in zip(self.shapes, shape, strict=True)}
 
     def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
-        """Standard deviations of its shape that no noise shows: of an instant between rows (m,), of an angle's origin."""
+        """Standard deviations of its shape that no noise shows: of an instant between rows at times (m,) - s."""
         return [0.0] * len(self.shapes)
 
     def spread(self, fitted: Fitted, index: int) -> Array | None:
@@ -296,8 +298,8 @@ class Effect(ABC):
     @classmethod
     def overrides(cls, hook: str) -> bool:
         """Whether the effect has a hook of its own rather than the neutral one of its kind."""
-        neutral: Any = next(vars(base)[hook] for base in cls.__mro__[::-1] if hook in vars(base))
-        return getattr(cls, hook) is not neutral
+        neutral: Any = next((vars(base)[hook] for base in cls.__mro__[::-1] if hook in vars(base)), None)
+        return getattr(cls, hook, None) is not neutral
 
 
 def is_pitch(shape: Shape, scope: Scope) -> bool:

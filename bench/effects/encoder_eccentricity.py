@@ -56,7 +56,7 @@ class EncoderEccentricity(Sensing):
 
     def reach(self, shape: Sequence[float], k: int) -> float:
         """A third of the amplitude."""
-        return 0.3 * max(float(np.hypot(*shape)), 1e-4)
+        return 0.3 * max(float(np.linalg.norm(shape)), 1e-4)
 
     def wave_number(self, shape: Sequence[float]) -> float:
         """One cycle a revolution."""
@@ -69,7 +69,7 @@ class EncoderEccentricity(Sensing):
 
     def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
         """By the drift of an integrated position, and by the half tick within which it was taken."""
-        return [float(np.hypot(*shape)) * (scope.drift + 0.5 * scope.latched * scope.rms_speed / NORMAL95)] * 2
+        return [float(np.linalg.norm(shape)) * (scope.drift + 0.5 * scope.latched * scope.rms_speed / NORMAL95)] * 2
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

@@ -75,13 +75,14 @@ class LoadTorqueEvent(Mechanism):
         """More than of others: with a window of time to choose freely, an event fits a part of anything."""
         return NEEDED
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base, scope: Scope) -> bool:
-        """It ends after it starts, by more than the filter blurs both."""
-        return shape[1] - shape[0] > RESOLVED * scope.width
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+        """It ends after it starts."""
+        return shape[1] > shape[0]
 
     def plausible(self, shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
-        """Together they last for less than most of the recording; beyond, that is how the axis is."""
-        return sum(stop - start for start, stop in shapes) <= LONGEST * scope.duration
+        """Each lasts longer than the filter blurs; all of them for most of the recording would be how the axis is."""
+        lasting = [stop - start for start, stop in shapes]
+        return min(lasting) > RESOLVED * scope.width and sum(lasting) <= LONGEST * scope.duration
 
     def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
         """Of its edges by the distance of the rows around them, which an instant lies within at 95 %."""

@@ -6,7 +6,7 @@ import mujoco
 
 AXIS, MOTOR, LOAD, DRIVE, LOAD_TORQUE = "axis", "motor", "load", "drive", "load torque"
 #: The actuator whose bristles are the axis' friction, where it has some.
-PRESLIDING = "presliding_friction"
+BRISTLES = "bristles"
 
 #: A passive DC motor brakes by K**2/R times speed; its constant is chosen so small that this vanishes in rounding.
 PASSIVE_MOTOR_CONSTANT = 1e-12

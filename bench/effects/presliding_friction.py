@@ -15,9 +15,9 @@ from itertools import pairwise
 import mujoco
 import numpy as np
 
-from bench.effects.mjcf import AXIS, PRESLIDING, passive_motor
 from bench.effects.kinds import Axis, Friction, Number
-from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.effects.mjcf import AXIS, BRISTLES, passive_motor
+from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -46,7 +46,7 @@ class PreslidingFriction(Friction):
         """sigma is its rate over displacement times Coulomb friction, sigma_1 the strength of the bending."""
         return {"bristle_stiffness": shape[0] * base.coulomb, "bristle_damping": strengths[1]}
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base, scope: Scope) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """The bristles carry Coulomb friction within a factor of two, and damp as far as noise lets that be seen."""
         if base.coulomb <= 0.0 or base.inertia <= 0.0:
             return False
@@ -67,7 +67,7 @@ class PreslidingFriction(Friction):
         level, joint.frictionloss = joint.frictionloss, 0.0
         # MuJoCo takes the bend of the bristles at the start of a step; their rate carries it on to the middle
         damping = values["bristle_damping"] + 0.5 * spec.option.timestep * values["bristle_stiffness"]
-        passive_motor(spec, PRESLIDING, lugre=(values["bristle_stiffness"], damping, level, level, 1.0))
+        passive_motor(spec, BRISTLES, lugre=(values["bristle_stiffness"], damping, level, level, 1.0))
 
 
 def bristles(position: np.ndarray, sign: np.ndarray, rate: float) -> np.ndarray:

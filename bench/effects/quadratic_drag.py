@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.mjcf import AXIS
 from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.mjcf import AXIS
 from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -1,4 +1,4 @@
-"""What effects are given of a recording: raw samples of a stretch, the numbers beside them, and where shapes are sought."""
+"""What effects are given of a recording: raw samples of a stretch, and what the recording is able to show."""
 
 from __future__ import annotations
 

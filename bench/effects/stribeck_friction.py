@@ -46,9 +46,13 @@ class StribeckFriction(Friction):
         """Static friction is Coulomb friction plus the rise."""
         return {"static_friction": base.coulomb + strengths[0], "stribeck_velocity": shape[0]}
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base, scope: Scope) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """Friction rises towards standstill, and dry friction stays positive."""
-        return strengths[0] > 0.0 and base.coulomb > 0.0 and shape[0] <= RISE * scope.top_speed
+        return strengths[0] > 0.0 and base.coulomb > 0.0
+
+    def plausible(self, shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+        """The rise ends within a share of the speeds."""
+        return all(speed <= RISE * scope.top_speed for (speed,) in shapes)
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Where the effect is absent."""

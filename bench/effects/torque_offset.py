@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.mjcf import add_resisting_torque
 from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.mjcf import add_resisting_torque
 from bench.effects.signals import Base, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity

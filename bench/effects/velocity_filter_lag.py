@@ -40,6 +40,7 @@ class VelocityFilterLag(Sensing):
     quantities = (Quantity("time_constant", "T", "s", lower=0.0),)
     shapes = (Shape(quantities[0], LAGS, reach=1.0),)
     not_beside = frozenset({"current_loop_lag"})
+    faulty_signal = "velocity"
 
     def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
         """What is made of the reported speed."""

@@ -10,7 +10,7 @@ import scipy.stats
 from numpy.typing import NDArray
 
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Base, Signals
+from bench.effects.signals import Base, Signals
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from bench.axis_kind import AxisKind
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Base
+from bench.effects.signals import Base
 from bench.errors import InputError, UndeterminedError
 from bench.friction_map.curve import Curve, bent_curve, chance, plain_curve
 from bench.rig.rig import Rig
@@ -94,7 +94,7 @@ def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
     base = Base(float("nan"), float(kept.theta[0]), float(kept.theta[1]))
     offset = float(kept.theta[2]) if kept.constant else None
     name = kept.name or None
-    values = dict(catalogue()[name].values(kept.theta[3:].tolist(), kept.shape, base)) if name else {}
+    values = dict(catalogue()[name].report(kept.theta[3:].tolist(), kept.shape, base)) if name else {}
     left = (float(np.sqrt(plain.squares / total)), float(np.sqrt(best.squares / total)))
     return FrictionMap(
         velocity, effort, unit, rig.axis_kind, plain, best, base, offset, name, values, probability, left

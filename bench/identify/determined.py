@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS, AxisKind
+from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
+from bench.balance import layout
+from bench.balance.normal_equations import NormalEquations
+from bench.balance.parameter import Parameter
+from bench.balance.rows import ONE_WAY
 from bench.errors import UndeterminedError
-from bench.identify.estimate import Parameter
-from bench.identify.normal_equations import NormalEquations
 
 #: Rows that the regression must have for each of its columns.
 ROWS_PER_COLUMN = 20
-#: Share of the motion in the weaker direction below which friction and offset are one number.
-DIRECTION_SHARE = 0.02
 #: Share of a column's power that the others do not explain; 1 % inflates its standard error tenfold.
 INDEPENDENT_SHARE = 0.01
+
+#: Terms of the equation of motion by their places among the columns; a constant comes last.
+PLACES = {
+    INERTIA: layout.INERTIA,
+    VISCOUS: layout.VISCOUS,
+    COULOMB: layout.COULOMB,
+    MISALIGNMENT: layout.MISALIGNMENT,
+    OFFSET: -1,
+}
 
 RECORD = {
     INERTIA: "a motion that accelerates and brakes hard several times",
@@ -41,7 +50,7 @@ def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
 
 def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
     """UndeterminedError where the rows are too few or leave the inertia open."""
-    least = ROWS_PER_COLUMN * len(equations.names)
+    least = ROWS_PER_COLUMN * equations.noise.size
     if equations.count < least:
         reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
         raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])
@@ -56,16 +65,16 @@ def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
 
 def only_direction(equations: NormalEquations) -> str | None:
     """`forward` or `backward` where the axis moves one way only, so that Coulomb friction and offset are one number."""
-    coulomb, constant = equations.names.index(COULOMB), equations.names.index(OFFSET)
-    mean_direction = equations.gram[:, coulomb, constant].sum() / equations.count
-    if 0.5 * (1.0 - abs(mean_direction)) >= DIRECTION_SHARE:
+    mean_direction = equations.gram[:, PLACES[COULOMB], PLACES[OFFSET]].sum() / equations.count
+    if 0.5 * (1.0 - abs(mean_direction)) >= ONE_WAY:
         return None
     return "forward" if mean_direction > 0.0 else "backward"
 
 
 def _require_excited(equations: NormalEquations, column: str, kind: AxisKind) -> None:
     """A column must keep power above its noise, and enough of it beside the others."""
-    chosen = equations.select([column, *(name for name in (INERTIA, VISCOUS, COULOMB) if name != column)])
+    others = (term for term in (INERTIA, VISCOUS, COULOMB) if term != column)
+    chosen = equations.select([PLACES[column], *(PLACES[term] for term in others)])
     power = np.diag(chosen.gram.sum(axis=0))
     scale = np.sqrt(np.where(power > 0.0, power, 1.0))
     matrix = chosen.matrix / np.outer(scale, scale)

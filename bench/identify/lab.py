@@ -12,11 +12,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.balance.parameter import Parameter
 from bench.errors import InputError, UndeterminedError
 from bench.identify.determined import RECORD
-from bench.identify.estimate import Estimate, Parameter, Residual
+from bench.identify.estimate import Estimate, Residual
 from bench.identify.load_inertia import load_inertia
-from bench.identify.regressors import COULOMB, INERTIA, VISCOUS
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from bench.identify.estimate import Parameter
+from bench.balance.parameter import Parameter
 from bench.rig.rig import Rig
 
 

@@ -14,11 +14,11 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
+from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
 from bench.errors import InputError
 from bench.identify.estimate import Estimate
 from bench.identify.load_inertia import load_inertia
 from bench.identify.regression import identify
-from bench.identify.regressors import COULOMB, INERTIA, OFFSET, VISCOUS
 from bench.plant.model import AxisParameters, build_spec
 from bench.plant.track import BANDWIDTH, holding_cascade, holding_model, measured_velocity, step_of, track
 from bench.rig.rig import Rig

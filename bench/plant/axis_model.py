@@ -9,15 +9,13 @@ from functools import cached_property
 
 import mujoco
 
-from bench.effects.physics import Axis, Electronics, Mechanism, Physics, Sensing, Winding
+from bench.effects.effect import Effect
+from bench.effects.kinds import Axis, Electronics, Mechanism, Sensing, Winding
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.plant.model import AxisParameters, build_spec
 from bench.rig.load import Load
 from bench.rig.rig import Rig
-
-#: Effects that part motor and load; an axis has one coupling.
-COUPLINGS = ("elastic_coupling", "backlash")
 
 #: Hooks of electronics and sensing that the drive has to do with.
 IN_THE_LOOP = ("flowing", "acting", "delivered", "seen")
@@ -46,7 +44,7 @@ class AxisModel:
         axis = self.axis
         present = [Present.of(p.name, p.resolved(axis)) for p in self.effects if not p.absent(axis)]
         object.__setattr__(self, "effects", tuple(sorted(present, key=lambda p: (p.name, p.values))))
-        couplings = [p.name for p in present if p.name in COUPLINGS]
+        couplings = [p.name for p in present if p.effect.couples]
         if len(couplings) > 1:
             raise InputError("effects", f"found {' and '.join(couplings)}", "allowed: one coupling of motor and load")
         if couplings and not 0.0 < self.parameters.motor_inertia < self.parameters.inertia:
@@ -69,7 +67,7 @@ class AxisModel:
             winding=self.winding,
         )
 
-    def of_kind(self, kind: type[Physics]) -> tuple[Present, ...]:
+    def of_kind(self, kind: type[Effect]) -> tuple[Present, ...]:
         """Effects that are mechanisms, electronics or sensing."""
         return tuple(present for present in self.effects if isinstance(present.effect, kind))
 
@@ -89,7 +87,7 @@ class AxisModel:
     def all_native(self) -> bool:
         """Whether MuJoCo runs the whole axis and its drive by itself."""
         in_the_loop = (*self.of_kind(Electronics), *self.of_kind(Sensing))
-        return not self.ticked and not any(p.effect.acts_through(h) for p in in_the_loop for h in IN_THE_LOOP)
+        return not self.ticked and not any(p.effect.overrides(h) for p in in_the_loop for h in IN_THE_LOOP)
 
     @property
     def structure(self) -> tuple[str, ...]:
@@ -110,7 +108,7 @@ class AxisModel:
 
 def scales_friction(effects: Sequence[Present]) -> bool:
     """Whether dry friction changes in every step."""
-    return any(p.effect.acts_through("friction_factor") or p.effect.acts_through("friction_excess") for p in effects)
+    return any(p.effect.overrides("friction_factor") or p.effect.overrides("friction_excess") for p in effects)
 
 
 def winding_of(rig: Rig) -> Winding | None:

@@ -22,7 +22,7 @@ from typing import Any
 import tomli_w
 
 from bench.axis_kind import AxisKind, axis_kind
-from bench.effects.physics import Winding
+from bench.effects.kinds import Winding
 from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.errors import InputError
 from bench.files import write_text

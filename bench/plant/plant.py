@@ -8,7 +8,7 @@ from functools import cached_property
 
 import mujoco
 
-from bench.effects.physics import Friction, Winding
+from bench.effects.kinds import Friction, Winding
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, winding_of

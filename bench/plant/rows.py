@@ -9,11 +9,12 @@ from typing import Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.effects.physics import Axis, Moment, Physics, Winding
+from bench.effects.effect import Effect
+from bench.effects.kinds import Axis, Moment, Winding
 from bench.plant.axis_model import AxisModel
 
 Array = NDArray[np.float64]
-Kind = TypeVar("Kind", bound=Physics)
+Kind = TypeVar("Kind", bound=Effect)
 
 
 @dataclass

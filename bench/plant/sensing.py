@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.effects.physics import Sensing
+from bench.effects.kinds import Sensing
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
 from bench.plant.rows import Rows
@@ -43,7 +43,7 @@ def seen(model: AxisModel, position: Array, velocity: Array) -> tuple[Array, Arr
 
 def filters(model: AxisModel) -> bool:
     """Whether the velocity that is recorded depends on what came before."""
-    return any(effect.acts_through("filtered") for _, effect in _pairs(model.of_kind(Sensing)))
+    return any(effect.overrides("filtered") for _, effect in _pairs(model.of_kind(Sensing)))
 
 
 def filtered(model: AxisModel, velocity: Array, step: float) -> Array:

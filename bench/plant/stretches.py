@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.effects.physics import Electronics, Sensing
+from bench.effects.kinds import Electronics, Sensing
 from bench.plant.axis_model import AxisModel
 from bench.plant.blocks import blocks, samples_in
 from bench.plant.sensing import filtered, filters, seen, true_motion, true_velocity
@@ -156,7 +156,7 @@ def _motion(stretch: Stretch) -> tuple[Array, Array]:
 
 
 def _lagged(model: AxisModel, holding: HoldingInputs) -> Array | None:
-    lags = [(values, effect) for values, effect in _electronics(model) if effect.acts_through("acting_along")]
+    lags = [(values, effect) for values, effect in _electronics(model) if effect.overrides("acting_along")]
     if not lags:
         return None
     effort = np.empty(holding.steps)

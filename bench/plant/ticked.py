@@ -12,12 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import mujoco
 import numpy as np
 from mujoco.batch import Batch
 from numpy.typing import NDArray
 
-from bench.effects.mjcf import AXIS, PRESLIDING
-from bench.effects.physics import Electronics, Friction, Mechanism, Moment
+from bench.effects.kinds import Electronics, Friction, Mechanism, Moment
+from bench.effects.mjcf import AXIS, BRISTLES
 from bench.plant.axis_model import AxisModel
 from bench.plant.rows import Rows, gather
 
@@ -108,8 +109,8 @@ class _FrictionLevels:
         self._differences = _through(mechanisms, "friction_difference")
         self._levels: Array | None = None
         if self._excesses or self._factors or self._differences:
-            if PRESLIDING in models[0].structure:
-                actuator = batch.model.actuator(PRESLIDING).id
+            actuator = mujoco.mj_name2id(batch.model, mujoco.mjtObj.mjOBJ_ACTUATOR, BRISTLES)
+            if actuator >= 0:
                 self._levels = batch.expand("actuator_biasprm")[:, actuator, BRISTLE_LEVELS]
             else:
                 dof = batch.model.joint(AXIS).dofadr
@@ -138,4 +139,4 @@ class _FrictionLevels:
 
 
 def _through(rows: Sequence[Rows], hook: str) -> list[Rows]:
-    return [some for some in rows if some.effect.acts_through(hook)]
+    return [some for some in rows if some.effect.overrides(hook)]

@@ -8,8 +8,8 @@ import mujoco
 import numpy as np
 from mujoco.batch import MODEL_FIELDS, Batch
 
+from bench.effects.kinds import Sensing
 from bench.effects.mjcf import AXIS, DRIVE
-from bench.effects.physics import Sensing
 from bench.errors import SimulationError
 from bench.plant.drive import Cascade, CascadeDrive, FrictionEmulation
 from bench.plant.plant import Plant
@@ -42,7 +42,7 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
     velocity[:] = motion.velocity[0]
     position[:] = motion.position[0] + half * velocity
     models = [plant.model for plant in plants]
-    encoders = [rows for rows in gather(models, Sensing) if rows.effect.acts_through("seen")]
+    encoders = [rows for rows in gather(models, Sensing) if rows.effect.overrides("seen")]
     acting = TickedEffects(batch, models, velocity) if any(not model.all_native for model in models) else None
     record = States(motion.time, *(np.zeros_like(motion.velocity) for _ in range(4)))
     with quiet():

@@ -16,8 +16,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.effects.kinds import Mechanism
 from bench.effects.mjcf import AXIS, DRIVE
-from bench.effects.physics import Mechanism
 from bench.errors import SimulationError
 from bench.plant.axis_model import AxisModel
 from bench.plant.blocks import blocks

@@ -15,7 +15,7 @@ from rich.table import Table
 from bench.axis_kind import KINDS
 from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Gap, Shrunk
-from bench.diagnose.where import Where
+from bench.diagnose.where.where import Where
 from bench.files import write_text
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report.estimate import parameters_json
@@ -34,9 +34,10 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
         "effects": [
             {
                 "name": effect.name,
+                "kind": effect.effect.kind,
                 "parameters": parameters_json(effect.parameters),
                 "ambiguous_with": list(effect.ambiguous_with),
-                "evidence": effect.evidence,
+                "evidence": dict(effect.evidence),
             }
             for effect in diagnosis.effects
         ],
@@ -50,6 +51,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
         "steps": [_step(step) for step in diagnosis.steps[1:]],
         "rejected": [{"name": found.name, "reason": found.reason} for found in diagnosis.rejected],
         "next_experiment": _experiment(diagnosis),
+        "stopped": diagnosis.stopped,
         "model": {"mjcf": "model.xml" if diagnosis.model is not None else None, "toml": "model.toml"},
         "warnings": diagnosis.warnings,
     }

@@ -8,8 +8,9 @@ import math
 from rich import box
 from rich.table import Table
 
-from bench.effects.catalogue import physics
-from bench.effects.physics import Electronics, Mechanism, Physics, Sensing
+from bench.effects.catalogue import catalogue
+from bench.effects.effect import Effect
+from bench.effects.kinds import Electronics, Mechanism, Sensing
 from bench.effects.present import named
 from bench.units import Quantity
 
@@ -33,7 +34,7 @@ HOOKS = {
 def effects_table() -> Table:
     """Every effect with its quantities, and where it acts."""
     table = Table("effect", "what it is", "quantities", "simulated", box=box.SIMPLE_HEAD)
-    for name, effect in sorted(physics().items()):
+    for name, effect in sorted(catalogue().items()):
         quantities = ", ".join(f"{q.name} [{_unit(q)}]" for q in effect.quantities)
         table.add_row(name, effect.summary, quantities.replace("[", r"\["), _where(effect))
     return table
@@ -56,13 +57,13 @@ def effect_page(name: str) -> str:
     return "\n".join(lines)
 
 
-def _acting(effect: Physics) -> dict[str, str]:
-    return {hook: place for hook, place in HOOKS.items() if effect.acts_through(hook)}
+def _acting(effect: Effect) -> dict[str, str]:
+    return {hook: place for hook, place in HOOKS.items() if effect.overrides(hook)}
 
 
-def _where(effect: Physics) -> str:
+def _where(effect: Effect) -> str:
     if isinstance(effect, Mechanism):
-        return "MuJoCo model" if effect.acts_through("add") else "every step"
+        return "MuJoCo model" if effect.overrides("add") else "every step"
     return "electronics" if isinstance(effect, Electronics) else "sensor" if isinstance(effect, Sensing) else ""
 
 

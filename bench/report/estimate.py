@@ -12,7 +12,8 @@ from rich import box
 from rich.table import Table
 
 from bench.axis_kind import AxisKind
-from bench.identify.estimate import Estimate, Parameter
+from bench.balance.parameter import Parameter
+from bench.identify.estimate import Estimate
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
     from bench.identify.refine import Refinement

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from rich import box
 from rich.table import Table
 
+from bench.axis_kind import COULOMB, OFFSET, VISCOUS
 from bench.effects.catalogue import catalogue
 from bench.friction_map.map import CHANCE, FrictionMap
-from bench.identify.regressors import COULOMB, OFFSET, VISCOUS
 from bench.report.figures import MEASURED, MODELLED, REST, save_as_named
 
 SCHEMA = "bench.friction/1"

@@ -6,7 +6,7 @@ import pytest
 
 from bench.axis_kind import LINEAR
 from bench.cli import main
-from bench.effects.catalogue import physics
+from bench.effects.catalogue import catalogue
 from bench.effects.present import parse_effect
 from bench.errors import InputError
 from tests.plant.conftest import RIG
@@ -105,7 +105,7 @@ def test_friction_made_by_the_drive_has_no_effects(bench, tmp_path):
 def test_every_effect_is_listed_and_has_a_page(bench):
     code, table, _ = bench("effects")
     assert code == 0
-    for name, effect in physics().items():
+    for name, effect in catalogue().items():
         assert name in table
         code, page, _ = bench("effects", name)
         assert code == 0

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.effects.catalogue import catalogue, physics
+from bench.effects.catalogue import catalogue
 from bench.effects.effect import Base, Effect, Signals
 from bench.effects.mjcf import AXIS as AXIS_JOINT
-from bench.effects.physics import Electronics, Friction, Mechanism, Moment
+from bench.effects.kinds import Electronics, Friction, Mechanism, Moment
 from bench.effects.present import Present
 from bench.plant.axis_model import COUPLINGS
 from bench.plant.model import build_spec
@@ -17,7 +17,7 @@ from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from tests.effects.axes import AXIS, FREE, PARAMETERS, PERIOD, VALUES, Reversals, model, moved, plant, present
 
-EFFECTS = sorted(physics())
+EFFECTS = sorted(catalogue())
 SHORT = Reversals(0.4).references()
 NEUTRAL = {"friction_excess": 0.0, "friction_factor": 1.0, "resisting_torque": 0.0, "torque_factor": 1.0}
 #: Effects that the torque balance holds as columns of raw signals.
@@ -29,7 +29,7 @@ BALANCED = [
 
 
 def with_null(name):
-    values = {**VALUES[name], **{key: float(value) for key, value in physics()[name].null(model().axis).items()}}
+    values = {**VALUES[name], **{key: float(value) for key, value in catalogue()[name].null(model().axis).items()}}
     return Present.of(name, values)
 
 
@@ -47,8 +47,8 @@ def test_null_values_leave_the_trajectory_as_it_is(name):
 @pytest.mark.parametrize("name", [n for n in EFFECTS if np.isfinite(list(dict(with_null(n).values).values())).all()])
 def test_null_values_do_nothing_where_they_act(name):
     """Not only are absent effects left out: acting on null values does nothing either."""
-    effect, values, axis = physics()[name], dict(with_null(name).values), model().axis
-    if isinstance(effect, Mechanism) and effect.acts_through("add") and name not in COUPLINGS:
+    effect, values, axis = catalogue()[name], dict(with_null(name).values), model().axis
+    if isinstance(effect, Mechanism) and effect.overrides("add") and name not in COUPLINGS:
         motions = []
         for adds in (False, True):
             spec = build_spec(PARAMETERS, PERIOD)
@@ -60,7 +60,7 @@ def test_null_values_do_nothing_where_they_act(name):
     at = Moment(0.1, np.array([0.3, -2.0]), np.array([5.0, -0.1]), np.array([1.0, -0.2]))
     if isinstance(effect, Mechanism):
         for hook, neutral in NEUTRAL.items():
-            if effect.acts_through(hook):
+            if effect.overrides(hook):
                 np.testing.assert_array_equal(getattr(effect, hook)(values, axis, at), np.full(2, neutral))
     if isinstance(effect, Electronics):
         np.testing.assert_array_equal(effect.delivered(values, axis, at.effort), at.effort)
@@ -85,7 +85,7 @@ def test_order_does_not_matter():
     assert np.abs(first).max() > 10.0
 
 
-@pytest.mark.parametrize("name", [n for n in EFFECTS if isinstance(physics()[n], Friction) or n == "quadratic_drag"])
+@pytest.mark.parametrize("name", [n for n in EFFECTS if isinstance(catalogue()[n], Friction) or n == "quadratic_drag"])
 @pytest.mark.parametrize("velocity", [40.0, -40.0])
 def test_friction_only_dissipates(name, velocity):
     """Coasting, the axis never gains energy, but for what bristles store, and loses it all."""

@@ -244,6 +244,6 @@ def _members(plant: Plant, effects: Sequence[Sequence[Effect]]) -> dict[str, lis
         everywhere = len(index) == len(effects)
         rows = Rows(plant, slice(None) if everywhere else index, stack([effect for _, effect in pairs]))
         for hook in HOOKS:
-            if kind.acts_through(hook):
+            if kind.overrides(hook):
                 acting.setdefault(hook, []).append(rows)
     return acting

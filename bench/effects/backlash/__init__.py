@@ -20,7 +20,7 @@ from bench.effects.backlash.likeliest import contact_spread, likeliest_shape
 from bench.effects.effect import Fitted, Load
 from bench.effects.kinds import Axis, Mechanism, Number
 from bench.effects.mjcf import add_coupling_joint
-from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Array, Column
 from bench.units import Quantity
 
@@ -89,7 +89,7 @@ class Backlash(Mechanism):
         """By likelihood over gaps and contacts."""
         return likeliest_shape(fitted)
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base, scope: Scope) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """Part of the inertia sits behind the gap."""
         return BEHIND[0] < strengths[0] / base.inertia < BEHIND[1]
 

@@ -118,9 +118,7 @@ def _spring_rates(fitted: Fitted) -> set[float]:
 
 
 def _stiffness(fitted: Fitted, theta: Array) -> float:
-    return sum(
-        term.effect.stiffness(theta[fitted.owners == index].tolist()) for index, term in enumerate(fitted.terms)
-    )
+    return sum(term.effect.stiffness(theta[fitted.owners == index].tolist()) for index, term in enumerate(fitted.terms))
 
 
 def _likely(fitted: Fitted, shape: Array, column: Array) -> Likely:

@@ -74,7 +74,7 @@ class ElasticCoupling(Mechanism):
         s = 1j * omega / shape[0]
         return -(s**2) / (1.0 + 2.0 * shape[1] * s + s**2)
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base, scope: Scope) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """It rings, and part of the inertia sits behind it."""
         return shape[1] < OVERDAMPED and BEHIND[0] < strengths[0] / base.inertia < BEHIND[1]
 

@@ -95,7 +95,7 @@ class Effect:
         raise NotImplementedError
 
     @classmethod
-    def acts_through(cls, hook: str) -> bool:
+    def overrides(cls, hook: str) -> bool:
         """Whether the effect overrides a hook."""
         return getattr(cls, hook) is not getattr(Effect, hook)
 

@@ -8,15 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.diagnose.added import without_events
-from bench.diagnose.chain import Grown
+from bench.arrays import Array, rms
+from bench.diagnose.add.extension import Stage
+from bench.diagnose.add.model import without_events
 from bench.plant.model_file import StoredModel
-from bench.plant.track import measured_velocity
+from bench.plant.track import in_stretches, measured_velocity
 from bench.plant.track_effects import Held, track_models
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,8 @@ class Recorded:
         events: bool = True,
     ) -> Recorded:
         """A recording whose gap counts from a time on until another - s."""
-        return cls(name, trace, rig.net_effort(trace)[0], (trace.time >= since) & (trace.time < until), events)
+        judged = (trace.time >= since) & (trace.time < until) & in_stretches(trace)
+        return cls(name, trace, rig.net_effort(trace)[0], judged, events)
 
     def difference(self, simulated: Array) -> Array:
         """Simulated less measured velocity at the judged samples - rad/s (m/s)."""
@@ -77,27 +77,27 @@ class VelocityGaps:
         self.bandwidth, self.inertia = bandwidth, inertia
         self._known: dict[tuple[object, ...], float] = {}
 
-    def simulate(self, pairs: Iterable[tuple[Grown, Recorded]]) -> None:
+    def simulate(self, pairs: Iterable[tuple[Stage, Recorded]]) -> None:
         """Simulate models along recordings side by side, so far as that is not done."""
         asked = {self._key(*pair): pair for pair in pairs}
         new = {key: pair for key, pair in asked.items() if key not in self._known}
         self._known |= dict.fromkeys(new, float("nan"))
         run = {key: pair for key, pair in new.items() if pair[0].model is not None}
-        models = [grown.model for grown, _ in run.values()]
+        models = [stage.model for stage, _ in run.values()]
         found = self.of_models(models, [recorded for _, recorded in run.values()])
         self._known |= dict(zip(run, found, strict=True))
 
-    def of(self, grown: Grown, recorded: Recorded) -> float:
+    def of(self, stage: Stage, recorded: Recorded) -> float:
         """RMS of measured less simulated velocity - rad/s (m/s); nan without a model, or where it diverged."""
-        self.simulate([(grown, recorded)])
-        return self._known[self._key(grown, recorded)]
+        self.simulate([(stage, recorded)])
+        return self._known[self._key(stage, recorded)]
 
     def of_models(self, models: Iterable[StoredModel | None], recordings: Iterable[Recorded]) -> list[float]:
         """Gaps of models along recordings, one each."""
         recordings = list(recordings)
         simulated = self.velocities([m for m in models if m is not None], recordings)
         return [
-            float("nan") if velocity is None else float(np.sqrt(np.mean(recorded.difference(velocity) ** 2)))
+            float("nan") if velocity is None else rms(recorded.difference(velocity))
             for velocity, recorded in zip(simulated, recordings, strict=True)
         ]
 
@@ -106,5 +106,5 @@ class VelocityGaps:
         held = [r.holding(model, self.inertia) for model, r in zip(models, recordings, strict=True)]
         return track_models(held, self.bandwidth)
 
-    def _key(self, grown: Grown, recorded: Recorded) -> tuple[object, ...]:
-        return (grown.rows, grown.fitted.hypothesis.effects, grown.beside, recorded.name)
+    def _key(self, stage: Stage, recorded: Recorded) -> tuple[object, ...]:
+        return (stage.rows, tuple(term.key for term in stage.fitted.terms), stage.beside, recorded.name)

@@ -7,11 +7,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.diagnose.candidates import EVENT
-from bench.diagnose.fit import Fit
-from bench.diagnose.hypothesis import BACKLASH, ELASTIC
-from bench.diagnose.quantities import reported
-from bench.effects.physics import Friction, Moment
+from bench.balance.fit import Fit
+from bench.balance.layout import MISALIGNMENT
+from bench.effects.effect import Effect
+from bench.effects.kinds import Friction, Moment
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, winding_of
@@ -38,34 +37,34 @@ def stored_model(fitted: Fit, beside: Sequence[Present], rig: Rig) -> StoredMode
     Raises:
         InputError: MuJoCo cannot have the effects with these values, or no inertia.
     """
-    inertia, viscous, coulomb = (float(value) for value in fitted.theta[:3])
+    inertia, viscous, coulomb = fitted.theta[:3].tolist()
     if inertia <= 0.0:
         raise InputError(rig.source, f"found an inertia of {inertia:.3g}", "allowed: above zero")
     motor = rig.motor.rotor_inertia or rig.motor.moving_mass or 0.0
-    for index, effect in enumerate(fitted.hypothesis.effects):
-        if effect.name in (ELASTIC, BACKLASH):
-            motor = inertia - float(fitted.strengths(index)[0])
+    coupling = fitted.hypothesis.coupling
+    if coupling is not None:
+        motor = inertia - fitted.terms[coupling].effect.load_inertia(fitted.strengths(coupling))
     base = AxisParameters(inertia, max(viscous, 0.0), max(coulomb, 0.0), 0.0, min(motor, inertia), rig.axis_kind)
     present = [
-        present_of(effect.name, reported(effect, fitted.strengths(index), fitted.base))
-        for index, effect in enumerate(fitted.hypothesis.effects)
+        present_of(term.effect, term.effect.report(fitted.strengths(index), term.shape, fitted.base))
+        for index, term in enumerate(fitted.terms)
     ]
     constant, current = rig.motor.torque_per_ampere, rig.motor.peak_current
     peak = float(constant.torque(np.asarray(current))) if constant is not None and current is not None else math.inf
     model = AxisModel(base, (*present, *beside), peak, winding_of(rig))
-    return StoredModel(rig.name, model, float(fitted.theta[3]))
+    return StoredModel(rig.name, model, float(fitted.theta[MISALIGNMENT]))
 
 
-def present_of(name: str, values: Mapping[str, float]) -> Present:
+def present_of(effect: Effect, values: Mapping[str, float]) -> Present:
     """An effect with those of the values that it has quantities for; what noise left beyond a bound is put onto it."""
-    known = {quantity.name: quantity for quantity in Present(name, ()).effect.quantities}
+    known = {quantity.name: quantity for quantity in effect.quantities}
     bounded = {key: float(np.clip(values[key], known[key].lower, known[key].upper)) for key in values if key in known}
-    return Present.of(name, bounded)
+    return Present.of(effect.name, bounded)
 
 
 def without_events(model: AxisModel) -> AxisModel:
     """The axis in a recording in which its event does not happen."""
-    return model.with_effects([present for present in model.effects if present.name != EVENT])
+    return model.with_effects([present for present in model.effects if not present.effect.occasional])
 
 
 def holding_bandwidth(model: AxisModel, top_speed: float) -> float:

@@ -16,19 +16,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from bench.diagnose.add import Added
-from bench.diagnose.added import stored_model
-from bench.diagnose.decidable import one_way
-from bench.diagnose.fit import fit
-from bench.diagnose.hypothesis import CURRENT_LAG, DIRECTION, VELOCITY_LAG
-from bench.diagnose.name import Suspects
-from bench.diagnose.outside import OUTSIDE
+from bench.arrays import rms
+from bench.balance.fit import fit
+from bench.balance.rows import SIGN_WIDTHS
+from bench.diagnose.add.add import Added
+from bench.diagnose.add.model import stored_model
+from bench.diagnose.name.name import Suspects
 from bench.diagnose.recordings import Recordings
-from bench.diagnose.search import OFFSET
-from bench.diagnose.workbench import SIGN_WIDTHS
+from bench.effects.catalogue import catalogue
 from bench.effects.present import Present
 from bench.errors import BenchError, InputError
 from bench.plant.axis_model import AxisModel
@@ -42,10 +39,6 @@ from bench.plant.sensing import reported_states
 from bench.plant.track import measured_velocity
 from bench.trace.filter import GaussianFilter
 
-Array = NDArray[np.float64]
-
-#: Effects that are the same wherever the axis moves, so that no motion tells them apart.
-SAME = {OFFSET, DIRECTION}
 #: Least duration of a recording that tells anything - s: a shorter profile is repeated.
 LONG_ENOUGH = 4.0
 #: RMS of what remains with a rival over that with what was named, below which both remain.
@@ -96,7 +89,7 @@ def propose(recordings: Recordings, suspects: Suspects, added: Added) -> NextExp
     stored = added.refined.model
     if stored is None or recordings.rig.drive is None:
         return None
-    width, floor = recordings.bench.conditioning.filter.width, added.chain.whole.fitted.floor
+    width, floor = recordings.rows.conditioning.filter.width, added.extension.whole.fitted.floor
     for rival in rivals(recordings, suspects, added, stored.model):
         try:
             found = [
@@ -118,57 +111,49 @@ def rivals(recordings: Recordings, suspects: Suspects, added: Added, model: Axis
     """Other explanations that remain, as models."""
     for effect in added.refined.effects:
         for other in effect.ambiguous_with:
-            values = {key: p.value for key, p in effect.parameters.items()}
-            like = counterpart(other, values)
+            values = effect.effect.counterpart(other, effect.values)
+            like = None if values is None else Present.of(other, values)
             if like is not None:
                 kept = [present for present in model.effects if present.name != effect.name]
                 models = model, model.with_effects([*kept, like])
                 yield Rival((effect.name, other), models, "this recording cannot tell them apart")
-    whole = added.chain.whole.fitted
     yield from nearly_as_good(recordings, suspects, added, model)
-    if one_way(recordings.bench):
-        yield one_direction(recordings, float(whole.theta[2]), model)
+    if recordings.rows.scope.one_way:
+        yield from one_direction(recordings, added.extension.whole.fitted.base.coulomb, model)
 
 
 def nearly_as_good(recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel) -> Iterator[Rival]:
     """Candidates of the search in the place of the effect taken up last that leave hardly more of the torque."""
-    whole = added.chain.whole.fitted
-    last = suspects.steps[-1]
-    if whole.hypothesis.effects and whole.hypothesis == last.fitted.hypothesis:
-        for candidate in last.rivals[:3]:
-            name = candidate.named.name
-            if name in OUTSIDE or name in whole.hypothesis.names or {name, whole.hypothesis.names[-1]} == SAME:
+    whole, searched = added.extension.whole.fitted, suspects.searched
+    if not whole.terms or whole.hypothesis != searched.last.hypothesis:
+        return
+    index = len(whole.terms) - 1
+    named = whole.terms[index].effect
+    for candidate in searched.steps[-1].rivals[:3]:
+        rival = candidate.term.effect
+        if rival.name in whole.hypothesis.names or rival.name in named.ambiguous(whole.scope):
+            continue
+        other = fit(recordings.rows, whole.hypothesis.without(index).plus(candidate.term))
+        if other.rms < NEARLY * whole.rms:
+            reason = f"{rival.name} leaves but {other.rms / whole.rms - 1.0:.0%} more of the torque unexplained"
+            try:
+                instead = stored_model(other, added.extension.beside, recordings.rig).model
+            except InputError:
                 continue
-            index = len(whole.hypothesis.effects) - 1
-            other = fit(recordings.bench, whole.hypothesis.without(index).with_effect(candidate.named))
-            if other.rms < NEARLY * whole.rms:
-                reason = f"{name} leaves but {other.rms / whole.rms - 1.0:.0%} more of the torque unexplained"
-                try:
-                    rival = stored_model(other, added.chain.beside, recordings.rig).model
-                except InputError:
-                    continue
-                yield Rival((whole.hypothesis.names[-1], name), (model, rival), reason)
+            yield Rival((named.name, rival.name), (model, instead), reason)
 
 
-def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Rival:
-    """Dry friction against a constant torque, which together make the constant part `dry` of what resists - N*m (N)."""
+def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Iterator[Rival]:
+    """Dry friction against what looks like it in one direction, `dry` together - N*m (N)."""
     direction = 1.0 if float(np.mean(measured_velocity(recordings.trace))) > 0.0 else -1.0
-
-    def split(friction: float) -> AxisModel:
-        constant = Present.of(OFFSET, {"torque": direction * (dry - friction)})
-        parameters = replace(model.parameters, coulomb_friction=friction)
-        return replace(model, parameters=parameters, effects=(*model.effects, constant))
-
-    names = ("coulomb_friction", OFFSET)
-    return Rival(names, (split(abs(dry)), split(0.0)), "the axis moved in one direction only")
-
-
-def counterpart(name: str, values: dict[str, float]) -> Present | None:
-    """The effect that looks the same as another one of given values in some motion; None if it does in every one.
-
-    A constant torque and dry friction that differs between the directions are the same wherever the axis moves.
-    """
-    return Present.of(name, {"time_constant": values["time_constant"]}) if name in (CURRENT_LAG, VELOCITY_LAG) else None
+    for effect in catalogue().values():
+        values = effect.instead_of_dry_friction(direction * dry)
+        if values is not None:
+            friction = replace(model.parameters, coulomb_friction=abs(dry))
+            nothing = replace(model.parameters, coulomb_friction=0.0)
+            instead = replace(model, parameters=nothing, effects=(*model.effects, Present.of(effect.name, values)))
+            models = replace(model, parameters=friction), instead
+            yield Rival(("coulomb_friction", effect.name), models, "the axis moved in one direction only")
 
 
 def motions(recordings: Recordings, model: AxisModel) -> list[tuple[str, References]]:
@@ -214,4 +199,4 @@ def separation(
         return 0.0
     taken_up = np.stack([acceleration, speed, np.sign(speed), shift], axis=1)[clear]
     rest = missed[clear] - taken_up @ np.linalg.lstsq(taken_up, missed[clear], rcond=None)[0]
-    return float(np.sqrt(np.mean(rest**2)))
+    return rms(rest)

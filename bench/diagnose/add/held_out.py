@@ -1,16 +1,12 @@
-"""Motion by which additions are judged: none of the fits that are judged has seen it."""
+"""Held-out motion, by which additions are judged: none of the fits that are judged has seen it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-import numpy as np
-
-from bench.diagnose.held import Recorded
-from bench.diagnose.memory import Memory
+from bench.balance.rows import Rows
+from bench.diagnose.add.tracking import Recorded
 from bench.diagnose.recordings import Recordings
-from bench.diagnose.workbench import Stretch, Workbench
-from bench.trace.filter import GaussianFilter
 
 #: Share of a recording without a holdout, at its end, that is kept from the fits that are judged.
 HELD_OUT = 1.0 / 3.0
@@ -20,25 +16,25 @@ HOLDOUT, LAST_THIRD = "holdout", "last third of the recording"
 
 
 @dataclass(frozen=True)
-class Unseen:
-    """Unseen motion.
+class HeldOut:
+    """Held-out motion.
 
     Attributes:
         fitted: rows that judged fits use.
         rows: their name.
-        bench: rows they are judged by.
+        judge: rows they are judged by.
         recorded: the same for simulations.
         seen: motion that a simulation may be fitted to.
     """
 
-    fitted: Workbench
+    fitted: Rows
     rows: str
-    bench: Workbench
+    judge: Rows
     recorded: Recorded
     seen: Recorded
 
     @classmethod
-    def of(cls, recordings: Recordings, trusted: bool, events: bool) -> Unseen:
+    def of(cls, recordings: Recordings, trusted: bool, events: bool) -> HeldOut:
         """The holdout, or the last third of the recording.
 
         Args:
@@ -49,22 +45,17 @@ class Unseen:
         if recordings.holdout is not None and recordings.other is not None and trusted:
             recorded = Recorded.of(HOLDOUT, recordings.holdout, recordings.rig, events=events)
             seen = Recorded.of(RECORDING, recordings.trace, recordings.rig)
-            return cls(recordings.bench, RECORDING, recordings.other, recorded, seen)
+            return cls(recordings.rows, RECORDING, recordings.other, recorded, seen)
         time = recordings.trace.time
         split = float(time[0] + (1.0 - HELD_OUT) * (time[-1] - time[0]))
         recorded = Recorded.of(LAST_THIRD, recordings.trace, recordings.rig, split)
-        fitted, bench = (_part(recordings.bench, split - time[0], late) for late in (False, True))
+        fitted, judge = (_part(recordings.rows, split - time[0], late) for late in (False, True))
         seen = Recorded.of(FIRST_PART, recordings.trace, recordings.rig, until=split)
-        return cls(fitted, FIRST_PART, bench, recorded, seen)
+        return cls(fitted, FIRST_PART, judge, recorded, seen)
 
 
-def _part(bench: Workbench, split: float, late: bool) -> Workbench:
+def _part(rows: Rows, split: float, late: bool) -> Rows:
     """The rows before or after a time; what the filter mixes of both sides belongs to neither."""
-    smooth: GaussianFilter = bench.conditioning.filter
+    smooth = rows.conditioning.filter
     away = smooth.margin * smooth.sample_period
-    parts = []
-    for part in bench.stretches:
-        time = part.signals.time[smooth.margin : -smooth.margin : smooth.stride][: part.used.size]
-        kept = time >= split + away if late else time < split - away
-        parts.append(Stretch(part.signals, part.used & np.asarray(kept)))
-    return replace(bench, stretches=tuple(parts), memory=Memory())
+    return rows.selected(lambda time: time >= split + away if late else time < split - away)

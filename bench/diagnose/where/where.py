@@ -6,12 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.signal
-from numpy.typing import NDArray
 
-from bench.diagnose.fit import Fit
-from bench.diagnose.workbench import Workbench
-
-Array = NDArray[np.float64]
+from bench.axis_kind import AxisKind
+from bench.balance.fit import Fit
+from bench.trace.filter import Array
 
 #: Bins of a coordinate, and rows that a bin needs.
 BINS, LEAST = 48, 12
@@ -37,25 +35,23 @@ class Where:
     means: Array
 
 
-def where(bench: Workbench, fitted: Fit, linear: bool, effort_unit: str) -> list[Where]:
+def where(fitted: Fit, kind: AxisKind, effort_unit: str) -> list[Where]:
     """Shares of every coordinate, largest first."""
-    length = "m" if linear else "rad"
-    time = bench.row_values(lambda s: s.time)
-    position = bench.row_values(lambda s: s.position)
-    sign = bench.row_values(lambda s: s.sign)
+    rows = fitted.rows
+    time, position, sign = rows.time, rows.values(lambda s: s.position), rows.values(lambda s: s.sign)
     turned = np.concatenate([[0.0], np.where(np.diff(sign) != 0.0, time[1:], 0.0)])
-    turn = position if linear else np.mod(position, 2.0 * np.pi)
+    turn = np.mod(position, 2.0 * np.pi) if kind.turns else position
     coordinates = {
-        "position": (turn, length),
-        "velocity": (bench.row_values(lambda s: s.velocity), f"{length}/s"),
-        "acceleration": (fitted.columns[:, 0], f"{length}/s**2"),
-        "current": (bench.effort, effort_unit),
+        "position": (turn, kind.length_unit),
+        "velocity": (rows.values(lambda s: s.velocity), kind.speed_unit),
+        "acceleration": (fitted.columns[:, 0], kind.acceleration_unit),
+        "current": (fitted.effort, effort_unit),
         "time": (time, "s"),
         "direction": (sign, "dimensionless"),
         "reversal": (time - np.maximum.accumulate(turned), "s"),
     }
     found = [_account(name, values, fitted.residual, unit) for name, (values, unit) in coordinates.items()]
-    found.append(_frequency(bench, fitted))
+    found.append(_frequency(fitted))
     return sorted(found, key=lambda account: -account.share)
 
 
@@ -81,9 +77,9 @@ def _account(name: str, values: Array, gap: Array, unit: str) -> Where:
     return Where(name, region, unit, share, centres[kept], means[kept])
 
 
-def _frequency(bench: Workbench, fitted: Fit) -> Where:
+def _frequency(fitted: Fit) -> Where:
     """Share of the gap in the strongest narrow band of frequency, above an even spread over the band."""
-    smooth = bench.conditioning.filter
+    smooth = fitted.rows.conditioning.filter
     rate = 1.0 / (smooth.sample_period * smooth.stride)
     length = min(1024, fitted.residual.size)
     frequency, power = scipy.signal.welch(fitted.residual, rate, nperseg=length)

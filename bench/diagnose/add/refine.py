@@ -1,4 +1,4 @@
-"""Refine a model by the error of its simulation, from the regression's estimate and within its intervals.
+"""Refine a model by the error of its simulation, and keep that only if held-out motion bears it out.
 
 One Gauss-Newton step is a bounded linear least-squares problem over the simulated velocities' derivatives, which run
 side by side: within the intervals of a regression the simulation is as good as linear. Regression first, simulation
@@ -12,23 +12,81 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.optimize
-from numpy.typing import NDArray
 
-from bench.diagnose.added import present_of
+from bench.arrays import Array
+from bench.balance.parameter import Parameter
+from bench.diagnose.add.extension import Stage
+from bench.diagnose.add.held_out import HeldOut
+from bench.diagnose.add.model import present_of
+from bench.diagnose.add.tracking import Recorded, VelocityGaps
 from bench.diagnose.found import NamedEffect
-from bench.diagnose.held import Recorded, VelocityGaps
+from bench.diagnose.name.name import Suspects, named
+from bench.diagnose.recordings import Recordings
 from bench.effects.present import Present
 from bench.errors import InputError
-from bench.identify.estimate import Parameter
 from bench.plant.model_file import StoredModel
+from bench.plant.track import measured_velocity
+from bench.statistics import NORMAL95
+from bench.trace.noise import white_noise
 
-Array = NDArray[np.float64]
+#: Velocity gap of a model that lacks nothing, over the white noise of the recorded speed: at most this on the shared
+#: cases (docs/diagnose.md). A change below it shows nothing, and refining a model that is there cannot help.
+NULL = 3.5
+#: Share by which the gap of held-out motion must fall for a refined model to be kept: what wins less is chance.
+WON = 0.02
 
-#: Step of a derivative, in standard errors; bounds of the move, in standard errors: the interval of 95 %.
-STEP, REACH = 0.5, 1.96
-#: Whole numbers, and times that a simulation sees only in samples.
-HELD = frozenset({"harmonic", "start", "end"})
+
+#: Step of a derivative, in standard errors; moves are bounded by the interval of 95 %.
+STEP = 0.5
 BASE = ("inertia", "viscous_friction_coefficient", "coulomb_friction")
+
+
+@dataclass(frozen=True)
+class Refined:
+    """A model and what was named in it.
+
+    Attributes:
+        model: None where MuJoCo cannot have it.
+        effects, parameters: with the values of the model.
+        gap: velocity gap of held-out motion before and after it was refined - rad/s (m/s); None where it was not.
+    """
+
+    model: StoredModel | None
+    effects: list[NamedEffect]
+    parameters: dict[str, Parameter]
+    gap: tuple[float, float] | None
+
+
+def refined(recordings: Recordings, stage: Stage, suspects: Suspects, held_out: HeldOut, gaps: VelocityGaps) -> Refined:
+    """The quantities of a model with their intervals, refined where that can matter and helps.
+
+    It can matter where something was added, nothing is left unexplained that the values would then take up, and the
+    gap stands above what a perfect model leaves.
+    """
+    effects, parameters = named(recordings, stage.fitted, stage.detected(suspects))
+    plain = Refined(stage.model, effects, parameters, None)
+    if stage.model is None or not effects or suspects.policy.remainder.holds(stage.fitted):
+        return plain
+    before = gaps.of(stage, held_out.recorded)
+    if not before > NULL * white_noise(measured_velocity(recordings.trace)):
+        return plain
+    found = refined_model(stage.model, Numbers.of(effects, parameters), held_out, gaps)
+    if found is None or not found.gap or not found.gap[1] < (1.0 - WON) * before:
+        return plain
+    return replace(found, gap=(before, found.gap[1]))
+
+
+def refined_model(stored: StoredModel, numbers: Numbers, held_out: HeldOut, gaps: VelocityGaps) -> Refined | None:
+    """The model as simulation of seen motion would have it; None where that cannot be had."""
+    values = stepped(stored, numbers, held_out.seen, gaps)
+    if values is None:
+        return None
+    try:
+        model = numbers.model(stored, values)
+    except InputError:
+        return None
+    after = gaps.of_models([model], [held_out.recorded])[0]
+    return Refined(model, *numbers.named(values), gap=(float("nan"), after))
 
 
 @dataclass(frozen=True)
@@ -52,8 +110,9 @@ class Numbers:
         """The free numbers of what was named."""
         free = [((-1, name), parameters[name]) for name in list(parameters)[:3]]
         for index, effect in enumerate(effects):
-            known = dict(present_of(effect.name, _values(effect)).values)
-            free += [((index, key), p) for key, p in effect.parameters.items() if key in known and key not in HELD]
+            fixed = effect.effect.fixed_in_simulation
+            known = dict(present_of(effect.effect, effect.values).values)
+            free += [((index, key), p) for key, p in effect.parameters.items() if key in known and key not in fixed]
         free = [(place, p) for place, p in free if np.isfinite(p.std_error) and p.std_error > 0.0]
         values, errors = np.array([p.value for _, p in free]), np.array([p.std_error for _, p in free])
         return cls(tuple(effects), parameters, tuple(place for place, _ in free), values, errors)
@@ -63,7 +122,7 @@ class Numbers:
         moved = self.named(values)
         base = [max(p.value, 0.0) for p in list(moved[1].values())[:3]]
         parameters = replace(stored.model.parameters, **dict(zip(BASE, base, strict=True)))
-        present: tuple[Present, ...] = tuple(present_of(effect.name, _values(effect)) for effect in moved[0])
+        present: tuple[Present, ...] = tuple(present_of(effect.effect, effect.values) for effect in moved[0])
         return replace(stored, model=replace(stored.model, parameters=parameters, effects=present))
 
     def named(self, values: Array) -> tuple[list[NamedEffect], dict[str, Parameter]]:
@@ -79,7 +138,7 @@ class Numbers:
         return found, parameters
 
 
-def polished(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: VelocityGaps) -> Array | None:
+def stepped(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: VelocityGaps) -> Array | None:
     """Values (p,) whose simulation comes closest to a recording; None where a simulation on the way is not to be had.
 
     Args:
@@ -98,9 +157,5 @@ def polished(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: Ve
     if len(differences) < len(models):
         return None
     jacobian = np.stack([other - differences[0] for other in differences[1:]], axis=1) / STEP
-    found = scipy.optimize.lsq_linear(jacobian, -differences[0], bounds=(-REACH, REACH))
+    found = scipy.optimize.lsq_linear(jacobian, -differences[0], bounds=(-NORMAL95, NORMAL95))
     return numbers.values + numbers.errors * found.x
-
-
-def _values(effect: NamedEffect) -> dict[str, float]:
-    return {key: parameter.value for key, parameter in effect.parameters.items()}

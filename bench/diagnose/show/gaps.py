@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from bench.diagnose.add import Added
-from bench.diagnose.balance import Balance
-from bench.diagnose.fit import Fit
+from bench.balance.fit import Fit
+from bench.balance.stored import Balance
+from bench.diagnose.add.add import Added
 from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.recordings import Recordings
 from bench.plant.track import measured_velocity
@@ -17,11 +17,11 @@ from bench.trace.noise import white_noise
 def shrinking(recordings: Recordings, added: Added) -> list[Shrunk]:
     """Gaps of the bare axis and after each addition, the last one as it was kept."""
     found = []
-    for grown in added.chain.grown:
-        balance = Balance.of(recordings.bench, grown.fitted).repeating(added.repeats)
-        torque = [balance.gap(bench) for bench in (recordings.bench, recordings.other) if bench is not None]
-        velocity = [added.gaps.of(grown, recorded) for recorded in added.recorded]
-        found.append(Shrunk(grown.effect, tuple(torque), tuple(velocity)))
+    for stage in added.extension.stages:
+        balance = Balance.of(stage.fitted).repeating(added.repeats)
+        torque = [balance.gap(rows) for rows in (recordings.rows, recordings.other) if rows is not None]
+        velocity = [added.gaps.of(stage, recorded) for recorded in added.recorded]
+        found.append(Shrunk(stage.effect, tuple(torque), tuple(velocity)))
     if added.refined.gap is not None:
         velocity = added.gaps.of_models([added.refined.model] * len(added.recorded), added.recorded)
         found[-1] = replace(found[-1], velocity=tuple(velocity))
@@ -42,5 +42,5 @@ def velocity_gap(recordings: Recordings, steps: list[Shrunk]) -> Gap:
         for pair in zip(steps[0].velocity, steps[-1].velocity, strict=True)
     ]
     floor = white_noise(measured_velocity(recordings.trace))
-    unit = "m/s" if recordings.rig.linear else "rad/s"
+    unit = recordings.rig.axis_kind.speed_unit
     return Gap(unit, floor, pairs[0], pairs[1] if len(pairs) > 1 else None)

@@ -6,19 +6,18 @@ import math
 
 import numpy as np
 
-from bench.axis_kind import AxisKind
-from bench.diagnose.fit import Fit, fit
-from bench.diagnose.hypothesis import Hypothesis
-from bench.diagnose.search import SIGNIFICANT, row_correlation
-from bench.diagnose.workbench import Workbench, clear_motion
+from bench.arrays import rms
+from bench.axis_kind import COULOMB, OFFSET, AxisKind
+from bench.balance.fit import Fit, fit
+from bench.balance.hypothesis import Hypothesis
+from bench.balance.parameter import Parameter
+from bench.balance.rows import Rows, clear_motion
+from bench.diagnose.name.policy import Policy, row_correlation
 from bench.errors import InputError, UndeterminedError
-from bench.identify.determined import DIRECTION_SHARE, require_friction, require_inertia
-from bench.identify.estimate import Parameter
-from bench.identify.normal_equations import normal_equations
-from bench.identify.regressors import COULOMB, OFFSET, regressors
+from bench.identify.determined import require_friction, require_inertia
+from bench.identify.regression import equations_of
 from bench.rig.rig import Rig
 from bench.trace.filter import LEAST_WIDTH
-from bench.trace.motion import motion
 from bench.trace.trace import Trace
 
 #: Independent rows of clear motion. Of the shared cases cut short, those with 25 to 70 named an effect that was not
@@ -49,35 +48,42 @@ def require_samples(trace: Trace) -> None:
         )
 
 
-def require_decidable(trace: Trace, rig: Rig, bench: Workbench) -> None:
+def require_another(trace: Trace, holdout: Trace) -> None:
+    """InputError where the holdout is the recording itself."""
+    if len(trace) == len(holdout) and all(
+        name in holdout and np.array_equal(values, holdout[name]) for name, values in trace.signals.items()
+    ):
+        raise InputError("--holdout", f"found the recording itself ({holdout.origin})", "allowed: another recording")
+
+
+def require_decidable(trace: Trace, rig: Rig, rows: Rows) -> Fit:
     """Refuse a recording that is too short, too quiet, or whose rows determine no inertia and friction.
+
+    Returns:
+        The fit of the empty hypothesis.
 
     Raises:
         UndeterminedError: with what to record instead.
         InputError: position and velocity contradict each other.
     """
     require_agreement(trace)
-    _require_length(trace, bench)
-    effort, unit = rig.net_effort(trace)
-    rows = regressors(motion(trace, effort, bench.conditioning))
-    equations = normal_equations(rows, 8.0 * bench.conditioning.filter.width, 512)
+    _require_length(trace, rows)
+    equations = equations_of(rows, Hypothesis())
     require_inertia(equations, rig.axis_kind)
     require_friction(equations, rig.axis_kind)
-    require_audible(bench, fit(bench, Hypothesis()), unit, rig.linear)
+    bare = fit(rows, Hypothesis())
+    require_audible(bare, rig.net_effort(trace)[1], rig.axis_kind)
+    return bare
 
 
-def one_way(bench: Workbench) -> bool:
-    """Whether the axis moves in one direction only, so that dry friction and a constant torque are one number."""
-    return 0.5 * (1.0 - abs(_mean_direction(bench))) < DIRECTION_SHARE
-
-
-def untold(bench: Workbench, kind: AxisKind) -> list[str]:
+def untold(rows: Rows, kind: AxisKind) -> list[str]:
     """A warning of what a motion in one direction leaves open; what else it tells stays told."""
-    if not one_way(bench):
+    if not rows.scope.one_way:
         return []
     offset, friction = kind.parameter(OFFSET), kind.parameter(COULOMB)
+    forward = float(np.mean(rows.values(lambda s: s.sign))) > 0.0
     return [
-        f"the axis moves {'forward' if _mean_direction(bench) > 0.0 else 'backward'} only: {friction} holds any "
+        f"the axis moves {'forward' if forward else 'backward'} only: {friction} holds any "
         f"{offset} too, and no effect on friction was sought; record both directions for that"
     ]
 
@@ -92,10 +98,6 @@ def impacts(fitted: Fit, unit: str) -> list[str]:
         f"recording does not tell: the verdict is by the others, on which {fitted.rms:.3g} {unit} are left; the torque "
         "gap counts all"
     ]
-
-
-def _mean_direction(bench: Workbench) -> float:
-    return float(np.mean(bench.row_values(lambda s: s.sign)))
 
 
 def require_agreement(trace: Trace) -> None:
@@ -122,39 +124,39 @@ def require_agreement(trace: Trace) -> None:
     )
 
 
-def _require_length(trace: Trace, bench: Workbench) -> None:
-    smooth = bench.conditioning.filter
-    found = bench.effort.size / row_correlation(bench)
+def _require_length(trace: Trace, rows: Rows) -> None:
+    smooth = rows.conditioning.filter
+    correlation = row_correlation(rows)
+    found = rows.effort.size / correlation
     if found >= INDEPENDENT:
         return
-    moving = bench.effort.size * smooth.stride * smooth.sample_period
+    moving = rows.effort.size * smooth.stride * smooth.sample_period
     raise UndeterminedError(
         WHAT,
         f"{moving:.2g} s of {trace.time[-1] - trace.time[0]:.3g} s move clearly in one direction, "
         f"{found:.0f} independent samples where {INDEPENDENT} are needed",
         f"at least {moving * INDEPENDENT / found:.2g} s of such motion in both directions: "
-        f"{clear_motion(bench.conditioning, trace.linear)}",
+        f"{clear_motion(rows.conditioning, trace.axis_kind)}",
     )
 
 
-def smallest_visible(bench: Workbench, fitted: Fit) -> float:
+def smallest_visible(fitted: Fit, policy: Policy) -> float:
     """RMS torque of the smallest effect that noise would let be found - N*m (N)."""
-    return fitted.floor * math.sqrt(SIGNIFICANT * row_correlation(bench) / bench.effort.size)
+    return math.sqrt(policy.significant.threshold(fitted, 1) / fitted.effort.size)
 
 
-def require_audible(bench: Workbench, base: Fit, unit: str, linear: bool) -> None:
+def require_audible(base: Fit, unit: str, kind: AxisKind) -> None:
     """UndeterminedError where an effect as large as friction, or a tenth of the torque, would drown in the noise.
 
     Args:
-        bench: the recording.
-        base: inertia, viscous and Coulomb friction fitted to it.
+        base: inertia, viscous and Coulomb friction fitted to the recording.
         unit: of the effort.
-        linear: whether the axis is linear.
+        kind: of the axis.
     """
-    conditioning = bench.conditioning
-    _require_acceleration(bench, base, linear)
+    conditioning = base.rows.conditioning
+    _require_acceleration(base, kind)
     noise = conditioning.effort_noise * conditioning.filter.noise_gain(0)
-    varies = float(np.std(bench.effort))
+    varies = float(np.std(base.effort))
     if varies <= 2.0 * noise:
         raise UndeterminedError(
             WHAT,
@@ -163,9 +165,9 @@ def require_audible(bench: Workbench, base: Fit, unit: str, linear: bool) -> Non
             if noise > 0.0
             else "the signal that the motor's torque follows: this one never changes",
         )
-    friction = float(np.sqrt(np.mean((base.columns[:, 1:3] @ base.theta[1:3]) ** 2)))
-    torque = float(np.sqrt(np.mean((base.columns[:, :3] @ base.theta[:3]) ** 2)))
-    least, loud = smallest_visible(bench, base), max(friction, torque / SMALL)
+    friction = rms(base.columns[:, 1:3] @ base.theta[1:3])
+    torque = rms(base.columns[:, :3] @ base.theta[:3])
+    least, loud = smallest_visible(base, Policy()), max(friction, torque / SMALL)
     if least > loud:
         raise UndeterminedError(
             WHAT,
@@ -175,12 +177,12 @@ def require_audible(bench: Workbench, base: Fit, unit: str, linear: bool) -> Non
         )
 
 
-def _require_acceleration(bench: Workbench, base: Fit, linear: bool) -> None:
-    conditioning = bench.conditioning
-    noise, moved = conditioning.acceleration_noise, float(np.sqrt(np.mean(base.columns[:, 0] ** 2)))
+def _require_acceleration(base: Fit, kind: AxisKind) -> None:
+    conditioning = base.rows.conditioning
+    noise, moved = conditioning.acceleration_noise, rms(base.columns[:, 0])
     if noise**2 <= NOISY * moved**2:
         return
-    unit = "m/s**2" if linear else "rad/s**2"
+    unit = kind.acceleration_unit
     raise UndeterminedError(
         WHAT,
         f"acceleration is {moved:.3g} {unit} RMS, {noise:.3g} {unit} of it noise of {conditioning.source}",

@@ -1,4 +1,4 @@
-"""A model grown effect by effect: the torque balance and the MuJoCo model after each addition."""
+"""The axis extended effect by effect: the torque balance and the MuJoCo model after each addition."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from bench.diagnose.added import stored_model
-from bench.diagnose.balance import Balance
-from bench.diagnose.fit import Fit, fit
-from bench.diagnose.hypothesis import Hypothesis
-from bench.diagnose.workbench import Workbench
+from bench.balance.fit import Fit, fit
+from bench.balance.hypothesis import Hypothesis
+from bench.balance.rows import Rows
+from bench.balance.stored import Balance
+from bench.diagnose.add.model import stored_model
+from bench.diagnose.name.name import Suspects
+from bench.effects.effect import Detected, Effect
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.plant.model_file import StoredModel
@@ -18,8 +20,8 @@ from bench.rig.rig import Rig
 
 
 @dataclass(frozen=True)
-class Grown:
-    """A model at one point of its growth.
+class Stage:
+    """The model after an addition.
 
     Attributes:
         effect: added last; empty for the bare axis.
@@ -37,8 +39,13 @@ class Grown:
     model: StoredModel | None
     problem: str = ""
 
+    def detected(self, suspects: Suspects) -> dict[Effect, Detected]:
+        """Those of the suspects that stand beside the torque balance here."""
+        present = {one.effect for one in self.beside}
+        return {effect: found for effect, found in suspects.detected.items() if effect in present}
+
     @classmethod
-    def of(cls, effect: str, fitted: Fit, beside: Sequence[Present], rig: Rig, rows: str) -> Grown:
+    def of(cls, effect: str, fitted: Fit, beside: Sequence[Present], rig: Rig, rows: str) -> Stage:
         """The model of a fit."""
         try:
             return cls(effect, fitted, tuple(beside), rows, stored_model(fitted, beside, rig))
@@ -47,18 +54,18 @@ class Grown:
 
 
 @dataclass(frozen=True)
-class Chain:
+class Extension:
     """The bare axis, then with each effect added in turn: those of the torque balance, then those beside it.
 
     Attributes:
-        bench: the rows that every balance is fitted to.
+        recording: the rows that every balance is fitted to.
         rows: their name.
         hypothesis: all effects of the torque balance.
         beside: the others.
         rig: of the axis.
     """
 
-    bench: Workbench
+    recording: Rows
     rows: str
     hypothesis: Hypothesis
     beside: tuple[Present, ...]
@@ -70,26 +77,30 @@ class Chain:
         return (*self.hypothesis.names, *(present.name for present in self.beside))
 
     @cached_property
-    def whole(self) -> Grown:
+    def whole(self) -> Stage:
         """The model with all effects."""
         effect = self.names[-1] if self.names else ""
-        return Grown.of(effect, fit(self.bench, self.hypothesis), self.beside, self.rig, self.rows)
+        return Stage.of(effect, fit(self.recording, self.hypothesis), self.beside, self.rig, self.rows)
 
     @cached_property
-    def grown(self) -> tuple[Grown, ...]:
-        """The model after none, one, ... all of the effects."""
-        effects, count = self.hypothesis.effects, len(self.names)
-        parts = [replace(self, hypothesis=Hypothesis(effects[:k]), beside=()) for k in range(len(effects))]
+    def stages(self) -> tuple[Stage, ...]:
+        """The model after none, one, ... all of the effects, the nuisances of the recording beside each."""
+        own, count = len(self.hypothesis.terms), len(self.names)
+        parts = [replace(self, hypothesis=self.hypothesis.first(k), beside=()) for k in range(own)]
         parts += [replace(self, beside=self.beside[:k]) for k in range(len(self.beside))]
         return (*(part.whole for part in parts[:count]), self.whole)
 
-    def less(self, index: int) -> Chain:
-        """The chain without one of its effects."""
-        own = len(self.hypothesis.effects)
+    def less(self, index: int) -> Extension:
+        """The same without one of its effects."""
+        own = len(self.hypothesis.terms)
         if index < own:
             return replace(self, hypothesis=self.hypothesis.without(index))
         return replace(self, beside=(*self.beside[: index - own], *self.beside[index - own + 1 :]))
 
+    def occasional(self, index: int) -> bool:
+        """Whether an effect happens in one recording and not in another."""
+        return index < len(self.hypothesis.terms) and self.hypothesis.terms[index].effect.occasional
+
     def balance(self, events: bool) -> Balance:
         """Torque balance of the whole; `events`: whether its events happen in every recording."""
-        return Balance.of(self.bench, self.whole.fitted).repeating(events)
+        return Balance.of(self.whole.fitted).repeating(events)

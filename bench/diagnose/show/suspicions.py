@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from bench.identify.estimate import Parameter
+from bench.balance.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

@@ -1,0 +1,173 @@
+"""Add the named effects to the MuJoCo model and keep what held-out motion bears out.
+
+An effect is accepted if, with it, neither the torque gap nor the velocity gap of held-out motion grows. A change that
+the simulation's own floor hides - an offset that integral action takes up - is no verdict, nor is a simulation that is
+further off than the mean speed would be - a held motor that slips from cog to cog: then the torque gap alone
+decides. An effect of drive or sensor that torque and held velocity both leave as they were is judged where it shows:
+a voltage limit under the drive of the rig.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bench.balance.rows import Rows
+from bench.balance.stored import Balance
+from bench.diagnose.add.closed_loop import closed_loop_gap, under_drive
+from bench.diagnose.add.extension import Extension, Stage
+from bench.diagnose.add.held_out import HOLDOUT, RECORDING, HeldOut
+from bench.diagnose.add.model import BANDWIDTH, holding_bandwidth
+from bench.diagnose.add.refine import NULL, Numbers, Refined, refined, refined_model
+from bench.diagnose.add.same_axis import foreign
+from bench.diagnose.add.tracking import Recorded, VelocityGaps
+from bench.diagnose.found import Rejected
+from bench.diagnose.name.name import Suspects, named
+from bench.diagnose.recordings import Recordings
+from bench.plant.track import measured_velocity
+from bench.trace.noise import white_noise
+
+
+@dataclass(frozen=True)
+class Added:
+    """What was kept.
+
+    Attributes:
+        extension: the effects accepted, fitted to the whole recording.
+        held_out: motion that judged them.
+        gaps: velocity gaps, those of every addition simulated.
+        recorded: the recording, and the holdout where there is one.
+        rejected: effects not kept, with the reason.
+        refined: the model kept, its quantities refined by simulation where that helps.
+        repeats: whether the recording's events happen in the holdout too.
+        warnings: that the holdout is of another axis, or that MuJoCo cannot have the model.
+        closed_loop: velocity gap under the drive of the rig without and with what shows only there - rad/s (m/s); None
+            where nothing does.
+    """
+
+    extension: Extension
+    held_out: HeldOut
+    gaps: VelocityGaps
+    recorded: tuple[Recorded, ...]
+    rejected: tuple[Rejected, ...]
+    refined: Refined
+    repeats: bool
+    warnings: tuple[str, ...]
+    closed_loop: tuple[float, float] | None
+
+
+def add(recordings: Recordings, suspects: Suspects) -> Added:
+    """Try every effect and keep those that held-out motion bears out; refine the model of those."""
+    found = suspects.searched.last
+    warnings = foreign(found, recordings.other)
+    repeats = everywhere(Balance.of(found), recordings.other)
+    held_out = HeldOut.of(recordings, not warnings, repeats)
+    recorded = [Recorded.of(RECORDING, recordings.trace, recordings.rig)]
+    if recordings.holdout is not None:
+        recorded.append(Recorded.of(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
+    extension = Extension(recordings.rows, RECORDING, found.hypothesis, suspects.beside, recordings.rig)
+    closed_loop = closed_loop_gap(recordings, extension)
+    rejected: list[Rejected] = []
+    while True:
+        trial = Trial.of(recordings, suspects, held_out, extension)
+        trial.gaps.simulate([*trial.pairs, *((stage, each) for stage in extension.stages for each in recorded)])
+        against = rejection(trial) or unlimited(extension, closed_loop)
+        if against is None:
+            break
+        rejected.append(Rejected(extension.names[against[0]], against[1]))
+        extension = extension.less(against[0])
+    kept = refined(recordings, extension.whole, suspects, held_out, trial.gaps)
+    problem = [f"not added to the MuJoCo model: {extension.whole.problem}"] if extension.whole.problem else []
+    told = (*warnings, *problem)
+    return Added(extension, held_out, trial.gaps, tuple(recorded), tuple(rejected), kept, repeats, told, closed_loop)
+
+
+def everywhere(balance: Balance, other: Rows | None) -> bool:
+    """Whether events come in every recording: the holdout shows them at the same time of its own."""
+    if other is None or not any(term.effect.occasional for term in balance.hypothesis.terms):
+        return False
+    return balance.repeating(True).gap(other) < balance.gap(other)
+
+
+def bandwidth(extension: Extension, recordings: Recordings) -> float:
+    """Bandwidth that holds every model of an extension - rad/s."""
+    stored = extension.whole.model
+    top = float(np.abs(measured_velocity(recordings.trace)).max())
+    return BANDWIDTH if stored is None else holding_bandwidth(stored.model, top)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Effects before held-out motion.
+
+    Attributes:
+        recordings, suspects: as added.
+        held_out: the motion.
+        gaps: of velocity.
+        judged: all effects, fitted to seen motion.
+        without: the same less each one of them.
+    """
+
+    recordings: Recordings
+    suspects: Suspects
+    held_out: HeldOut
+    gaps: VelocityGaps
+    judged: Extension
+    without: tuple[Extension, ...]
+
+    @classmethod
+    def of(cls, recordings: Recordings, suspects: Suspects, held_out: HeldOut, extension: Extension) -> Trial:
+        """The effects of an extension, refitted to what may be seen."""
+        judged = replace(extension, recording=held_out.fitted, rows=held_out.rows)
+        laid_out_for = extension.whole if extension.whole.model is not None else extension.stages[0]
+        gaps = VelocityGaps(bandwidth(extension, recordings), float(laid_out_for.fitted.theta[0]))
+        without = tuple(judged.less(index) for index in range(len(extension.names)))
+        return cls(recordings, suspects, held_out, gaps, judged, without)
+
+    @property
+    def pairs(self) -> list[tuple[Stage, Recorded]]:
+        """What has to be simulated to judge."""
+        tried = (self.judged, *self.without) if self.without else ()
+        return [(extension.whole, self.held_out.recorded) for extension in tried]
+
+
+def rejection(trial: Trial) -> tuple[int, str] | None:
+    """The last effect that held-out motion speaks against, and why; None if it speaks against none."""
+    held_out, judged = trial.held_out, trial.judged
+    floor = NULL * white_noise(measured_velocity(trial.recordings.trace))
+    for index in reversed(range(len(judged.names))):
+        less = trial.without[index]
+        if judged.occasional(index) and (not held_out.recorded.events or held_out.rows != RECORDING):
+            continue
+        torque = tuple(each.balance(held_out.recorded.events).gap(held_out.judge) for each in (less, judged))
+        if torque[1] > torque[0]:
+            return index, _grows("torque", torque, judged.rig.effort_unit, held_out)
+        velocity = trial.gaps.of(less.whole, held_out.recorded), trial.gaps.of(judged.whole, held_out.recorded)
+        allowed = float(np.hypot(velocity[0], floor))
+        follows = min(velocity) < held_out.recorded.varies
+        if follows and velocity[1] > allowed and not _comes_closer(trial, allowed):
+            return index, _grows("velocity", velocity, judged.rig.axis_kind.speed_unit, held_out)
+    return None
+
+
+def _comes_closer(trial: Trial, allowed: float) -> bool:
+    """Whether the velocity gap of all effects comes below what is allowed once they are refined by simulation."""
+    whole = trial.judged.whole
+    if whole.model is None:
+        return True
+    numbers = Numbers.of(*named(trial.recordings, whole.fitted, whole.detected(trial.suspects)))
+    found = refined_model(whole.model, numbers, trial.held_out, trial.gaps)
+    return found is not None and found.gap is not None and found.gap[1] <= allowed
+
+
+def unlimited(extension: Extension, closed_loop: tuple[float, float] | None) -> tuple[int, str] | None:
+    """What shows under the drive only, if the axis under its drive does not come closer to the recording with it."""
+    index = under_drive(extension)
+    if closed_loop is None or closed_loop[1] < closed_loop[0] or index is None:
+        return None
+    return index, f"the velocity gap under the rig's drive grows with it: {closed_loop[0]:.3g} -> {closed_loop[1]:.3g}"
+
+
+def _grows(what: str, gap: tuple[float, ...], unit: str, held_out: HeldOut) -> str:
+    return f"the {what} gap of the {held_out.recorded.name} grows with it: {gap[0]:.3g} -> {gap[1]:.3g} {unit}"

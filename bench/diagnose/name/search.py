@@ -1,0 +1,126 @@
+"""Forward selection: try every effect, keep what explains, polish it, let go of what a later one explains.
+
+Stop, accept and "unexplained" are tests against the noise floor of the recording itself (chi = 1 where only noise is
+left), so a recording in which nothing is hidden ends without a name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from bench.balance.fit import Fit, fit
+from bench.balance.hum import with_hum
+from bench.balance.hypothesis import Term
+from bench.balance.load_side import on_other_side, outer_loads
+from bench.balance.shapes import shaped
+from bench.diagnose.name.candidates import Candidate, candidates, joins
+from bench.diagnose.name.policy import Policy
+from bench.effects.effect import Effect
+
+#: Said of a search that its limit ended.
+LIMIT = "limit of effects reached"
+
+
+@dataclass(frozen=True)
+class Step:
+    """An effect taken up: its hypothesis fitted, and the candidates it was chosen from, best first."""
+
+    fitted: Fit
+    rivals: tuple[Candidate, ...] = ()
+
+
+@dataclass(frozen=True)
+class Searched:
+    """Steps of a search, the first without an effect, and what ended it before it was done; None if nothing did."""
+
+    steps: tuple[Step, ...]
+    stopped: str | None = None
+
+    @property
+    def last(self) -> Fit:
+        """With all effects."""
+        return self.steps[-1].fitted
+
+
+def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
+    """Effects in the order in which they are taken up.
+
+    Args:
+        bare: the fit without an effect.
+        effects: to be tried.
+        policy: that decides.
+    """
+    found = forward_selection(Searched((Step(bare),)), effects, policy)
+    if policy.remainder.holds(found.last):
+        for effect in effects:
+            replaced = replacement(found.last, effect, policy) if effect.replaces else None
+            if replaced is not None:
+                steps = found.steps[:-1] if len(found.steps) > 1 else found.steps
+                found = forward_selection(Searched((*steps, Step(replaced))), effects, policy)
+    return found
+
+
+def forward_selection(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
+    """Steps with effects added until none is worthwhile, or the limit is reached."""
+    steps = found.steps
+    while True:
+        current = steps[-1].fitted
+        tried = candidates(current, effects)
+        finalists = [
+            refined(current, candidate.term) for candidate in policy.promising.of(current, tried, policy.significant)
+        ]
+        better = [after for after in finalists if _worthwhile(current, after, policy)]
+        if not better:
+            return Searched(steps)
+        if len({term.effect.name for term in min(better, key=lambda after: after.squares).terms}) > policy.most:
+            return Searched(steps, LIMIT)
+        chosen = polished(min(better, key=lambda after: after.squares), policy)
+        steps = (*steps, Step(with_hum(backward_elimination(on_its_side(chosen, policy), policy)), tuple(tried)))
+
+
+def _worthwhile(current: Fit, after: Fit, policy: Policy) -> bool:
+    return policy.explains.holds(current, after, policy.significant) and policy.physical.holds(after)
+
+
+def replacement(fitted: Fit, effect: Effect, policy: Policy) -> Fit | None:
+    """The hypothesis with an effect in the place of those it replaces, if that explains clearly more."""
+    kept = [term for term in fitted.terms if term.effect.name not in effect.replaces]
+    current = fit(fitted.rows, fitted.hypothesis.with_terms(kept))
+    shape = effect.in_place_of(current) if joins(current, effect) else None
+    if shape is None:
+        return None
+    after = fit(fitted.rows, current.hypothesis.plus(Term(effect, shape)))
+    return backward_elimination(after, policy) if policy.replaces.holds(fitted, after) else None
+
+
+def refined(current: Fit, term: Term) -> Fit:
+    """A term added, its shape searched around where the grid found it."""
+    return shaped(current.rows, current.hypothesis.plus(term), len(current.terms))
+
+
+def polished(fitted: Fit, policy: Policy) -> Fit:
+    """Every term's shape searched again beside the others."""
+    for index in range(len(fitted.terms) if len(fitted.terms) > 1 else 0):
+        tried = shaped(fitted.rows, fitted.hypothesis, index)
+        fitted = tried if policy.physical.holds(tried) else fitted
+    return fitted
+
+
+def on_its_side(fitted: Fit, policy: Policy) -> Fit:
+    """With outer loads on the side of a coupling, motor or load, on which they explain more, if much is left."""
+    if not policy.remainder.holds(fitted) or not outer_loads(fitted.hypothesis) or fitted.hypothesis.coupling is None:
+        return fitted
+    moved = shaped(fitted.rows, on_other_side(fitted.hypothesis), fitted.hypothesis.coupling)
+    return min(fitted, moved, key=lambda found: found.squares)
+
+
+def backward_elimination(fitted: Fit, policy: Policy) -> Fit:
+    """Without the terms that no longer explain anything beside the later ones."""
+    for index in range(len(fitted.terms) - 1, -1, -1):
+        if len(fitted.terms) < 2:
+            break
+        less = fit(fitted.rows, fitted.hypothesis.without(index))
+        if policy.no_longer_needed.holds(fitted, less, index, policy.significant):
+            fitted = less
+    return fitted

@@ -1,0 +1,1 @@
+"""Show the gap shrink, and what to record next."""

@@ -1,0 +1,99 @@
+"""Show what was found, with the gaps that every addition closed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from bench.balance.fit import Fit
+from bench.balance.parameter import Parameter
+from bench.balance.stored import Balance
+from bench.diagnose.add.add import Added
+from bench.diagnose.found import Gap, NamedEffect, Rejected, Shrunk
+from bench.diagnose.gap.decidable import impacts, untold
+from bench.diagnose.name.name import Suspects
+from bench.diagnose.recordings import Recordings
+from bench.diagnose.show.gaps import shrinking, torque_gap, velocity_gap
+from bench.diagnose.show.next_experiment import NextExperiment, propose
+from bench.diagnose.show.suspicions import suspicions
+from bench.diagnose.where.where import Where, where
+from bench.plant.model_file import StoredModel
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What is missing from the model of an axis, and the model with it.
+
+    Attributes:
+        verdict, effects, parameters: as the contract has them.
+        where: shares of the gap before any effect; unexplained_share, unexplained_where: of what is left.
+        torque, velocity: gaps before and after.
+        bandwidth: of the cascade that held the models to the recordings - rad/s.
+        closed_loop: velocity gap under the rig's drive without and with what shows only there - rad/s (m/s).
+        refined: velocity gap of held-out motion before and after values were refined by simulation; None if not kept.
+        steps: the bare axis, then the model after each addition.
+        next_experiment: that tells apart what this recording does not.
+        rejected: names that held-out motion spoke against.
+        stopped: what ended the search before it was done; None if nothing did.
+        model, balance: with all effects; no model where MuJoCo cannot have them.
+        warnings: what a user should know.
+    """
+
+    verdict: str
+    effects: list[NamedEffect]
+    where: list[Where]
+    unexplained_share: float
+    unexplained_where: list[Where]
+    parameters: dict[str, Parameter]
+    torque: Gap
+    velocity: Gap
+    bandwidth: float
+    closed_loop: tuple[float, float] | None
+    refined: tuple[float, float] | None
+    steps: list[Shrunk]
+    rejected: tuple[Rejected, ...]
+    next_experiment: NextExperiment | None
+    stopped: str | None
+    model: StoredModel | None
+    balance: Balance
+    warnings: list[str] = field(default_factory=list)
+
+
+def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Suspects, added: Added) -> Diagnosis:
+    """The diagnosis of what was found.
+
+    Args:
+        recordings: laid out.
+        bare: the fit without an effect.
+        located: where the gap sits.
+        suspects: what was named.
+        added: what was kept.
+    """
+    rig, unit, kind = recordings.rig, recordings.unit, recordings.rig.axis_kind
+    whole, kept, searched = added.extension.whole.fitted, added.refined, suspects.searched
+    steps = shrinking(recordings, added)
+    remains = suspects.policy.remainder.holds(whole) or suspects.withheld or searched.stopped is not None
+    return Diagnosis(
+        verdict="unexplained_remainder" if remains else "explained" if kept.effects else "nothing_missing",
+        effects=kept.effects,
+        where=located,
+        unexplained_share=whole.excess / max(bare.squares, 1e-300),
+        unexplained_where=where(whole, kind, unit)[:3] if remains else [],
+        parameters=kept.parameters,
+        torque=torque_gap(steps, whole, unit),
+        velocity=velocity_gap(recordings, steps),
+        bandwidth=added.gaps.bandwidth,
+        closed_loop=added.closed_loop,
+        refined=kept.gap,
+        steps=steps,
+        rejected=added.rejected,
+        next_experiment=propose(recordings, suspects, added),
+        stopped=searched.stopped,
+        model=kept.model,
+        balance=Balance.of(whole).repeating(added.repeats),
+        warnings=[
+            *suspicions(recordings.trace, rig, kept.parameters),
+            *untold(recordings.rows, kind),
+            *impacts(whole, unit),
+            *added.warnings,
+        ],
+    )

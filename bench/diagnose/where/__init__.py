@@ -1,0 +1,1 @@
+"""Where the gap sits, before any effect is assumed."""
