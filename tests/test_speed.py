@@ -1,7 +1,10 @@
 """How fast: printed and never asserted. `pytest tests/test_speed.py -m '' --benchmark-only -s` shows all of it."""
 
+import resource
+import statistics
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pyarrow as pa
@@ -9,6 +12,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from bench.identify.regression import identify
+from bench.rig.rig import load_rig
+from bench.trace.read import read
+from bench.trace.write import write
 from tests.identify.motions import RIG, recording
 
 SAMPLES = 10_000_000
@@ -68,3 +74,32 @@ def test_ten_million_samples_are_streamed_in_bounded_memory(long_recording):
         )
     assert inertia == pytest.approx(1.5e-3, rel=1e-3)
     assert megabytes < 1024
+
+
+def cpu_of_command(*arguments):
+    """User and system seconds of `bench` in a process of its own, the median of nine."""
+
+    def run():
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([sys.executable, "-m", "bench", *map(str, arguments)], check=True, capture_output=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+    return statistics.median(run() for _ in range(9))
+
+
+@pytest.mark.slow
+def test_what_a_command_costs_beside_its_work_in_process(benchmark, tmp_path):
+    rig, trace = tmp_path / "rig.toml", tmp_path / "run.csv.gz"
+    rig.write_text('name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\n', encoding="utf-8")
+    write(recording(np.random.default_rng(0), duration=4.0), trace)
+
+    def work():
+        began = time.process_time()
+        estimate = identify(read(trace), load_rig(rig))
+        return time.process_time() - began, estimate
+
+    seconds, estimate = benchmark(work)
+    version, command = cpu_of_command("--version"), cpu_of_command("identify", trace, "--rig", rig)
+    print(f"\nCPU: --version {version:.3f} s; identify {command:.3f} s, its work in process {seconds:.3f} s", end="")
+    assert estimate.samples_read == 4000

@@ -61,7 +61,7 @@ class Replay:
         return "\n".join([head, *rows]) + "\n"
 
 
-def replay(path: Path, trace: Trace, rig: Rig) -> Replay:
+def replay(path: str | Path, trace: Trace, rig: Rig) -> Replay:
     """Run the model of a `model.toml` along a recording.
 
     Raises:
@@ -108,7 +108,7 @@ def _rms(values: Array) -> float:
     return rms(known) if known.size else 0.0
 
 
-def load_balance(path: Path) -> Balance:
+def load_balance(path: str | Path) -> Balance:
     """The torque balance in a `model.toml`.
 
     Raises:

@@ -105,7 +105,7 @@ def load_model(path: str | Path) -> StoredModel:
     Raises:
         InputError: no such file, no TOML, another schema, an unknown or missing key, or a value that is none.
     """
-    table = read_table(Path(path))
+    table = read_table(path)
     if table.get("schema") != SCHEMA:
         raise InputError(f"{path}: schema", f"found {table.get('schema')!r}", f"allowed: '{SCHEMA}'")
     kind = axis_kind(table.get("kind"), f"{path}: kind")
@@ -128,10 +128,10 @@ def load_model(path: str | Path) -> StoredModel:
     return StoredModel(str(table.get("name", "axis")), AxisModel(parameters, effects, peak, winding), misalignment)
 
 
-def read_table(path: Path) -> dict[str, Any]:
+def read_table(path: str | Path) -> dict[str, Any]:
     """The tables of a `model.toml`; InputError where it cannot be read or is no TOML."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(path, f"cannot be read ({error.strerror})", "give the path of a model.toml") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

@@ -94,7 +94,10 @@ def _table(frame: ArrowStream, origin: str) -> pa.Table:
         allowed = "allowed: arrays by their names, or a data frame"
         raise InputError(origin, f"found {type(frame).__name__}", allowed) from error
     except pa.ArrowException as error:
-        raise InputError(origin, f"its columns cannot be read ({error})", "allowed: columns of numbers") from error
+        reason = " ".join(str(error).split())
+        raise InputError(
+            origin, f"the data frame cannot be read ({reason})", "allowed: columns of one type each; drop the others"
+        ) from error
 
 
 def _require_units(channels: Sequence[Channel], columns: Mapping[str, str]) -> None:

@@ -8,6 +8,7 @@ import pytest
 from bench.errors import InputError
 from bench.plant.limits import MotionLimits
 from bench.plant.model import AxisParameters
+from bench.plant.profile_names import DEFAULT, NAMES
 from bench.plant.profiles import PROFILES, plan
 from bench.plant.s_curve import s_curve, through_speeds
 
@@ -110,3 +111,8 @@ def test_limits_follow_the_rig(rig_of):
 def test_limits_refuse_what_the_motor_cannot_move(rig_of):
     with pytest.raises(InputError, match="friction and load"):
         MotionLimits.from_rig(rig_of(), AxisParameters(2.2e-3, 0.0, 2.0), 250e-6)
+
+
+def test_the_command_line_lists_the_profiles_there_are():
+    assert tuple(PROFILES) == NAMES
+    assert DEFAULT in NAMES
