@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from functools import cache
 from tokenize import TokenError
 
-import numpy as np
 import pint
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import InputError
 
 #: What pint raises on texts that are no unit.
@@ -100,7 +99,7 @@ def _affine(unit: str, to: str) -> tuple[float, float]:
     return float(one - zero), float(zero)
 
 
-def convert(values: NDArray[np.float64], unit: str, to: str) -> NDArray[np.float64]:
+def convert(values: Array, unit: str, to: str) -> Array:
     """Values of any shape from `unit` to `to` (same dimension); the same array when nothing changes."""
     factor, offset = _affine(unit, to)
     if offset == 0.0:

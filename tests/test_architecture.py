@@ -10,7 +10,7 @@ SOURCES = sorted((ROOT / "bench").rglob("*.py"))
 
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
-    {"__init__", "errors", "units", "axis_kind", "assets", "files"},
+    {"__init__", "errors", "units", "arrays", "axis_kind", "assets", "files"},
     {"trace"},
     {"rig"},
     {"effects"},

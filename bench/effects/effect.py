@@ -12,11 +12,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.units import Quantity
-
-Array = NDArray[np.float64]
 
 #: Raw samples (n,) and the order of the time derivative to be taken of them by the filter; a column is a sum of terms.
 #: So products are formed on raw samples and differentiated exactly: q''*sin(q) = (q'*sin(q))' - q'**2*cos(q).

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from statistics import NormalDist
+
+#: Half width of the 95 % interval of a normal distribution in standard deviations, 1.96.
+NORMAL95 = NormalDist().inv_cdf(0.975)
 
 
 @dataclass(frozen=True)

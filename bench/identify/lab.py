@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from bench.errors import InputError, UndeterminedError
 from bench.identify.determined import RECORD
-from bench.identify.estimate import Estimate, Parameter, Residual
+from bench.identify.estimate import NORMAL95, Estimate, Parameter, Residual
 from bench.identify.load_inertia import load_inertia
 from bench.identify.regressors import COULOMB, INERTIA, VISCOUS
 from bench.rig.rig import Rig
@@ -113,7 +113,7 @@ def identify_as_in_the_lab(trace: Trace, rig: Rig) -> Estimate:
             (float(value - reach), float(value + reach)),
         )
         for column, value, deviation, reach in zip(
-            (INERTIA, VISCOUS, COULOMB), theta, std_error, 1.96 * std_error, strict=True
+            (INERTIA, VISCOUS, COULOMB), theta, std_error, NORMAL95 * std_error, strict=True
         )
     }
     rms = math.sqrt(error / np.count_nonzero(fast))

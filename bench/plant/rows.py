@@ -9,10 +9,10 @@ from typing import Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.physics import Axis, Moment, Physics, Winding
 from bench.plant.axis_model import AxisModel
 
-Array = NDArray[np.float64]
 Kind = TypeVar("Kind", bound=Physics)
 
 

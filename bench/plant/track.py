@@ -12,14 +12,12 @@ import math
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import SimulationError
 from bench.plant.drive import Cascade, add_pid
 from bench.plant.native import run_controls, sense_torque
 from bench.trace.trace import Trace
-
-Array = NDArray[np.float64]
 
 #: Bandwidth of the cascade that holds the model - rad/s.
 BANDWIDTH = 10.0

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.effects.physics import Electronics, Mechanism
 from bench.errors import SimulationError
@@ -36,7 +36,6 @@ from bench.plant.track import (
 )
 from bench.trace.trace import Trace
 
-Array = NDArray[np.float64]
 #: Position and velocity at every step, (steps,) each; None where it diverged.
 Run = tuple[Array, Array] | None
 

@@ -9,6 +9,8 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from bench.arrays import Array
+
 #: The impulse response and its derivatives are below 1e-6 of their peak beyond this many widths.
 REACH = 6.0
 #: Smallest width in sample periods: the transfer is then 1.5e-5 at the Nyquist frequency, so nothing folds back.
@@ -61,7 +63,7 @@ class GaussianFilter:
         power = math.gamma(order + 0.5) / (2.0 * math.pi * self.width ** (2 * order + 1))
         return math.sqrt(self.sample_period * power)
 
-    def __call__(self, values: NDArray[np.floating], *orders: int) -> NDArray[np.float64]:
+    def __call__(self, values: NDArray[np.floating], *orders: int) -> Array:
         """Filtered derivatives of one signal over a stretch without holes.
 
         Args:
@@ -73,7 +75,7 @@ class GaussianFilter:
         """
         return self.columns(values[None], *((0, order) for order in orders))
 
-    def columns(self, signals: NDArray[np.floating], *wanted: tuple[int, int]) -> NDArray[np.float64]:
+    def columns(self, signals: NDArray[np.floating], *wanted: tuple[int, int]) -> Array:
         """Filtered derivatives of several signals at once, which costs half as much as one after the other.
 
         Args:

@@ -9,8 +9,8 @@ from itertools import pairwise
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
 
@@ -18,7 +18,7 @@ from bench.errors import InputError
 HOLE = 1.5
 
 
-def all_finite(values: NDArray[np.float64]) -> bool:
+def all_finite(values: Array) -> bool:
     """Whether no value is infinite or nan; costs no temporary array where none is."""
     with np.errstate(over="ignore", invalid="ignore"):
         # a sum is finite only if every term is; that of large finite ones may overflow, hence the second look
@@ -65,8 +65,8 @@ class Trace:
             does not increase.
     """
 
-    time: NDArray[np.float64]
-    signals: Mapping[str, NDArray[np.float64]]
+    time: Array
+    signals: Mapping[str, Array]
     units: Mapping[str, str]
     origin: str
     metadata: Mapping[str, str] = field(default_factory=dict)
@@ -97,7 +97,7 @@ class Trace:
                 "allowed: increasing times",
             )
 
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
+    def __getitem__(self, name: str) -> Array:
         """Values of a signal; InputError naming it when the trace does not hold it."""
         if name not in self.signals:
             raise InputError(self.origin, f"holds no {name}", f"found: {', '.join(self.signals) or 'no signal'}")
@@ -134,7 +134,7 @@ class Trace:
         """Whether the axis moves in metres rather than radians."""
         return not self.axis_kind.turns
 
-    def with_signals(self, signals: Mapping[str, NDArray[np.float64]], units: Mapping[str, str]) -> Trace:
+    def with_signals(self, signals: Mapping[str, Array], units: Mapping[str, str]) -> Trace:
         """The same recording with signals added or replaced."""
         return replace(self, signals={**self.signals, **signals}, units={**self.units, **units})
 
