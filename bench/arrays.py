@@ -1,13 +1,19 @@
-"""What every array of the bench is made of."""
+"""Arrays of numbers, and what is asked of them everywhere."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+#: Numbers of any shape; a docstring says which.
 Array = NDArray[np.float64]
 
 
 def rms(values: Array) -> float:
-    """Root mean square of values (n,), in their unit."""
+    """Root mean square of all values, of any shape, in their unit."""
     return float(np.sqrt(np.mean(values**2)))
+
+
+def column_rms(table: Array) -> Array:
+    """Root mean square of each column (m,) of a table (n, m), in its unit."""
+    return np.sqrt(np.mean(table**2, axis=0))

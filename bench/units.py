@@ -8,9 +8,7 @@ import re
 from dataclasses import dataclass
 from functools import cache
 
-import numpy as np
-from numpy.typing import NDArray
-
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.usual_units import USUAL_UNITS
 
@@ -79,7 +77,7 @@ def _affine(unit: str, to: str) -> tuple[float, float]:
     return unit_registry.affine(unit, to)
 
 
-def convert(values: NDArray[np.float64], unit: str, to: str) -> NDArray[np.float64]:
+def convert(values: Array, unit: str, to: str) -> Array:
     """Values of any shape from `unit` to `to` (same dimension); the same array when nothing changes."""
     factor, offset = _affine(unit, to)
     if offset == 0.0:

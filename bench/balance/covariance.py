@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import special
 
-from bench.trace.filter import Array
+from bench.arrays import Array
 
 #: Andrews' bandwidth minimises the error of the covariance, not of an interval's coverage: on 400 recordings of 6 s
 #: with first-order residuals (0.9 a ms) nominal 95 % intervals covered .958/.923/.903 with it, .963/.935/.908 half

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.balance.friction_levels import multiply, with_friction, with_levels
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.layout import COULOMB, INERTIA, MISALIGNMENT, VISCOUS, Layout, delays, lay_out, seen_by
@@ -18,7 +19,7 @@ from bench.balance.normal_equations import solved
 from bench.balance.rows import Rows
 from bench.effects.effect import Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 
 #: Rounds in which levels of dry friction that multiply are brought in line.
 LEVEL_ROUNDS = 4
@@ -48,7 +49,7 @@ class Fit:
     held: bool
     told: NDArray[np.bool_]
 
-    @cached_property
+    @property
     def residual(self) -> Array:
         """Measured less modelled torque (m,), 0 at rows that are not told - N*m (N)."""
         return self.left * self.told
@@ -61,7 +62,8 @@ class Fit:
     @cached_property
     def squares(self) -> float:
         """Sum of squared residuals - (N*m)**2 (N**2)."""
-        return float(self.residual @ self.residual)
+        residual = self.residual
+        return float(residual @ residual)
 
     @cached_property
     def noise(self) -> Floor:
@@ -98,9 +100,13 @@ class Fit:
         """J, K_w and K_0."""
         return Base(*(float(self.theta[k]) for k in (INERTIA, VISCOUS, COULOMB)))
 
-    @cached_property
+    @property
     def span(self) -> Array:
         """Orthonormal basis of the columns that were free (m, p)."""
+        return self._basis
+
+    @cached_property
+    def _basis(self) -> Array:
         free = np.delete(self.columns, MISALIGNMENT, 1) if self.held else self.columns
         return np.linalg.qr(free)[0]
 

@@ -12,10 +12,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.rows import Rows
 from bench.effects.signals import Signals
-from bench.trace.filter import Array
 
 
 def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:

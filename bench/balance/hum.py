@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.balance.fit import Fit, fit
-from bench.trace.filter import Array
 
 #: Lines of the two grids of the world - Hz, and how far a grid strays - Hz.
 LINES, STRAYS = (50.0, 60.0, 100.0, 120.0, 150.0, 180.0), 0.1
@@ -54,4 +54,4 @@ def _around(time: Array, residual: Array, line: float) -> tuple[Array, Array]:
     power = np.abs(np.fft.fft(sums, 2 * count)) ** 2
     offsets = np.fft.fftfreq(2 * count, 1.0 / RATE)
     order = np.flatnonzero(np.abs(offsets) <= BAND)
-    return offsets[order], power[order]
+    return np.asarray(offsets[order]), np.asarray(power[order])

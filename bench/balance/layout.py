@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.balance.friction_levels import with_friction
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.load_side import loads_of
 from bench.balance.rows import Rows
 from bench.effects.effect import Load
 from bench.effects.signals import Signals
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 
 #: Owners of columns that belong to no effect.
 BASE, HUM = -1, -2

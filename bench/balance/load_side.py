@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.effects.effect import Load
-from bench.trace.filter import Array
 
 
 def outer_loads(hypothesis: Hypothesis) -> list[int]:

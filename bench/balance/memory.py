@@ -6,7 +6,8 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable, Sequence
 from typing import Any
 
-from bench.trace.filter import Array, Column
+from bench.arrays import Array
+from bench.trace.filter import Column
 
 #: Bytes kept: on a recording of 8 s at 1 kHz some hundred columns, of 600 s all that one hypothesis needs.
 KEPT = 96 * 2**20

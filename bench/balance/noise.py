@@ -17,10 +17,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.balance.hypothesis import Hypothesis
 from bench.balance.layout import INERTIA, MISALIGNMENT, VISCOUS, Layout, delays
 from bench.balance.rows import Rows
-from bench.trace.filter import Array
 
 #: Rows of a window, longer ones first, and windows of a length that it takes; else white noise is assumed.
 LENGTHS, ENOUGH = (128, 64), 24
@@ -145,9 +145,9 @@ def _windows(rows: Rows, residual: Array) -> Array:
     for length in LENGTHS:
         starts = _starts(used, length)
         if starts.size >= ENOUGH:
-            rows = residual[starts[:, None] + np.arange(length)]
+            found = residual[starts[:, None] + np.arange(length)]
             ramp = np.linspace(-1.0, 1.0, length)
-            return rows - rows.mean(axis=1, keepdims=True) - np.outer(rows @ ramp / (ramp @ ramp), ramp)
+            return found - found.mean(axis=1, keepdims=True) - np.outer(found @ ramp / (ramp @ ramp), ramp)
     return np.empty((0, LENGTHS[-1]))
 
 

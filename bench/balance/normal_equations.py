@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.trace.filter import Array
+from bench.arrays import Array
 
 #: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
 BLOCK_WIDTHS = 8.0
@@ -86,7 +86,7 @@ def solved(gram: Array, moment: Array, noise: Array) -> tuple[Array, Array]:
     scale = np.sqrt(np.diag(gram))
     scale = np.where(scale > 0.0, scale, 1.0)
     inverse = np.linalg.pinv((gram - np.diag(noise)) / np.outer(scale, scale), rcond=ROUNDING, hermitian=True)
-    inverse /= np.outer(scale, scale)
+    inverse = np.asarray(inverse / np.outer(scale, scale), dtype=np.float64)
     return inverse @ moment, inverse
 
 

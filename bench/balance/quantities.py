@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.balance.covariance import estimated
 from bench.balance.fit import Fit, least_squares
 from bench.balance.layout import BASE, COULOMB, INERTIA, VISCOUS, lay_out
@@ -20,7 +21,6 @@ from bench.balance.rows import Rows
 from bench.effects.effect import Effect, is_pitch
 from bench.effects.signals import Base, Signals
 from bench.statistics import NORMAL95
-from bench.trace.filter import Array
 
 #: Step of a numerical derivative, relative.
 STEP = 1e-4

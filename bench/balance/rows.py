@@ -9,13 +9,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.balance.memory import Memory
 from bench.effects.signals import Scope, Signals
 from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
 from bench.trace.conditioning import Conditioning, condition, known_sign, raw_speed
-from bench.trace.filter import Array, Column, GaussianFilter
+from bench.trace.filter import Column, GaussianFilter
 from bench.trace.trace import Trace
 
 #: Widest filter - s: shapes of friction live in the milliseconds around a reversal.

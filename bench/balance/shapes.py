@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import scipy.optimize
 
+from bench.arrays import Array
 from bench.balance.fit import Fit, fit
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.rows import Rows
 from bench.effects.effect import is_pitch
 from bench.effects.signals import Scope
-from bench.trace.filter import Array
 
 
 def free_shapes(term: Term, scope: Scope) -> list[int]:
@@ -41,8 +41,8 @@ def shaped(rows: Rows, hypothesis: Hypothesis, index: int) -> Fit:
         return float(np.log(max(fit(rows_tried, at(offset)).squares, 1e-300)))
 
     if len(free) == 1:
-        best = scipy.optimize.fminbound(lambda x: misfit(np.array([x])), -1.0, 1.0, xtol=4e-3)
-        return fit(rows, at(np.array([float(best)])))
+        best = np.atleast_1d(scipy.optimize.fminbound(lambda x: misfit(np.array([x])), -1.0, 1.0, xtol=4e-3))
+        return fit(rows, at(np.asarray(best, dtype=np.float64)))
     simplex = np.vstack([np.zeros(len(free)), 0.5 * np.eye(len(free))])
     best = scipy.optimize.minimize(
         misfit,

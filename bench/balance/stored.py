@@ -8,13 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from bench.arrays import rms
+from bench.arrays import Array, rms
 from bench.balance.fit import Fit
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.layout import HUM, lay_out
 from bench.balance.rows import Rows
 from bench.effects.present import named
-from bench.trace.filter import Array
 
 #: Stands for a recording where an event comes at the same time of every one.
 EVERY = "every recording"

@@ -13,11 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.effects.first_order import lagged
 from bench.effects.kinds import Axis, Electronics, Number, Values
 from bench.effects.signals import Scope, Shape, Signals
 from bench.statistics import NORMAL95
-from bench.trace.filter import Array
 from bench.units import Quantity
 
 #: Lags that a search tries first - s.

@@ -18,9 +18,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.rig.rig import Rig
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 from bench.trace.trace import Trace
 from bench.units import Quantity
 

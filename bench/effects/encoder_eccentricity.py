@@ -14,11 +14,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.effects.effect import Fitted, Proposal, amplitude_and_phase
 from bench.effects.kinds import Axis, Number, Sensing, Values
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.statistics import NORMAL95
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 #: Newton steps that turn a measured into a true angle: the error after k of them is below e**(2**k).

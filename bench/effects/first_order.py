@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import lfilter
 
-from bench.trace.filter import Array
+from bench.arrays import Array
 
 
 def lagged(values: Array, time_constant: float, step: float) -> Array:

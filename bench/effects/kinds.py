@@ -14,12 +14,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import mujoco
-import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.effect import Effect
 
-Array = NDArray[np.float64]
 Number = float | Array
 Values = Mapping[str, Number]
 

@@ -12,9 +12,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.effects.kinds import Axis, Friction, Moment, Number, Values
 from bench.effects.signals import Base, Signals
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 

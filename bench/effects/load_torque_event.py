@@ -11,11 +11,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.effects.effect import Fitted, Proposal
 from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.statistics import NORMAL95
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 #: Points in time between which events are sought.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from bench.arrays import Array
 from bench.axis_kind import AxisKind
-from bench.trace.filter import Array
 from bench.units import Quantity
 
 

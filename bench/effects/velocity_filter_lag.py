@@ -14,6 +14,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.effects.current_loop_lag import LAGS
 from bench.effects.effect import Detected
 from bench.effects.first_order import lagged
@@ -21,7 +22,7 @@ from bench.effects.kinds import Axis, Number, Sensing
 from bench.effects.signals import Scope, Shape
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95
-from bench.trace.filter import Array, GaussianFilter
+from bench.trace.filter import GaussianFilter
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 from bench.units import Quantity

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.optimize
 import scipy.stats
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.catalogue import catalogue
 from bench.effects.signals import Base, Signals
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.effects.catalogue import catalogue
 from bench.effects.signals import Base
@@ -22,8 +22,6 @@ from bench.errors import InputError, UndeterminedError
 from bench.friction_map.curve import Curve, bent_curve, chance, plain_curve
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-
-Array = NDArray[np.float64]
 
 #: Chance that a map without an effect gets a name, for all shapes of all effects tried together.
 CHANCE = 1e-3

@@ -19,6 +19,7 @@ from bench.identify.determined import RECORD
 from bench.identify.estimate import Estimate, Residual
 from bench.identify.load_inertia import load_inertia
 from bench.rig.rig import Rig
+from bench.statistics import NORMAL95
 from bench.trace.trace import Trace
 
 #: The course drops slower samples - rad/s.
@@ -114,7 +115,7 @@ def identify_as_in_the_lab(trace: Trace, rig: Rig) -> Estimate:
             (float(value - reach), float(value + reach)),
         )
         for column, value, deviation, reach in zip(
-            (INERTIA, VISCOUS, COULOMB), theta, std_error, 1.96 * std_error, strict=True
+            (INERTIA, VISCOUS, COULOMB), theta, std_error, NORMAL95 * std_error, strict=True
         )
     }
     rms = math.sqrt(error / np.count_nonzero(fast))

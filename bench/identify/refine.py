@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 import scipy.optimize
-from numpy.typing import NDArray
 
+from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
 from bench.errors import InputError
 from bench.identify.estimate import Estimate
@@ -23,8 +23,6 @@ from bench.plant.model import AxisParameters, build_spec
 from bench.plant.track import BANDWIDTH, holding_cascade, holding_model, measured_velocity, step_of, track
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-
-Array = NDArray[np.float64]
 
 #: Share of the recording, at its end, that is kept from the fit to judge it.
 HELD_OUT = 1.0 / 3.0
@@ -96,7 +94,7 @@ class _Tracking:
 
     def gap(self, estimate: Estimate) -> float:
         """RMS of simulated minus measured velocity - rad/s (m/s)."""
-        return float(np.sqrt(np.mean(self._difference(self._theta(estimate), estimate) ** 2)))
+        return rms(self._difference(self._theta(estimate), estimate))
 
     def polished(self, start: Estimate) -> Estimate:
         """The estimate whose simulation comes closest, searched from `start`."""

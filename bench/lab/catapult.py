@@ -10,10 +10,10 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+from bench.arrays import Array
 from bench.assets import asset
 from bench.errors import SimulationError
 from bench.files import write_text
-from bench.lab.result import Array
 from bench.plant.states import DIVERGED
 
 FLIGHTS, POINTS = 10, 20

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.errors import UndeterminedError
-from bench.lab.result import Array
 
 #: Stretch of the falling current, in shares of its top, that the line is fitted to.
 FROM, TO = 0.9, 0.5

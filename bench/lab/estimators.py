@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from bench.arrays import Array, column_rms
 from bench.identify.lab import identify_as_in_the_lab, mean_inertia
 from bench.identify.regression import identify
-from bench.lab.result import Array, Number, Task
+from bench.lab.result import Number, Task
 from bench.lab.rig import without_friction
 from bench.lab.run import run_of
 from bench.lab.t09_least_squares import identify_friction
@@ -69,4 +70,4 @@ def _recordings(rig: Rig) -> list[Trace]:
 
 def _rms(found: Array, known: Array) -> list[float]:
     """RMS error of estimates (n, p) - percent of the truth (p,)."""
-    return (100.0 * np.sqrt(np.mean((found / known - 1.0) ** 2, axis=0))).tolist()
+    return (100.0 * column_rms(found / known - 1.0)).tolist()

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.errors import InputError
-from bench.lab.result import Array
 from bench.units import convert, dimensionality
 
 ENDINGS = (".csv", ".txt", ".dat", ".tsv")

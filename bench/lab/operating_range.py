@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from bench.lab.result import Array, Chart, Curve, Number, Panel, Task
+from bench.arrays import Array, rms
+from bench.lab.result import Chart, Curve, Number, Panel, Task
 from bench.lab.t10_peak_torque import RPM
 from bench.rig.limits import OperatingRange, reserve
 from bench.rig.rig import Rig
@@ -43,7 +44,7 @@ def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
             Number(f"thermal reserve, {volts}", left.thermal, "N·m"),
         ]
         limits += _limit_curves(limit, volts)
-    numbers.append(Number("RMS torque", float(np.sqrt(np.mean(torque**2))), "N·m"))
+    numbers.append(Number("RMS torque", rms(torque), "N·m"))
     motion = Curve(np.abs(speed) * RPM, np.sign(speed * torque) * np.abs(torque), "motion", "dots")
     panel = Panel("speed |n| / rpm", "torque M in the direction of motion / (N·m)", (motion, *limits))
     return Task(KEY, f"{TITLE}: {what}", tuple(says), tuple(numbers), (Chart(f"Operating range: {what}", (panel,)),))

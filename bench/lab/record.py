@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
+from bench.arrays import Array
 from bench.files import whole, write_text
 from bench.lab.catapult import record_flights
 from bench.lab.corner import corner_speed
 from bench.lab.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
-from bench.lab.result import Array
 from bench.lab.rig import lab_rig, torque_constant, without_friction
 from bench.lab.t11_corner import VELOCITY_GAIN, peak_current
 from bench.lab.winding import STEP, Winding, WindingRun, run_winding

@@ -5,12 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
+from bench.arrays import Array
 from bench.errors import BenchError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

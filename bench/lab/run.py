@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.identify.lab import backward_difference
-from bench.lab.result import Array, Chart, Curve, Panel
+from bench.lab.result import Chart, Curve, Panel
 from bench.lab.rig import torque_constant
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace

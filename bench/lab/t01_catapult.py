@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.lab.result import Array, Chart, Curve, Number, Panel, Task
+from bench.arrays import Array
+from bench.lab.result import Chart, Curve, Number, Panel, Task
 
 KEY, TITLE = "1", "Catapult"
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from bench.lab.result import Array, Chart, Curve, Number, Panel, Task
+from bench.arrays import Array
+from bench.lab.result import Chart, Curve, Number, Panel, Task
 from bench.lab.t03_torque_constants import torque_constants
 from bench.rig.motor import Motor
 from bench.rig.rig import Rig

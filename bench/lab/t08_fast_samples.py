@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import UndeterminedError
 from bench.identify.lab import LEAST_SPEED
-from bench.lab.result import Array, Chart, Curve, Number, Panel, Task
+from bench.lab.result import Chart, Curve, Number, Panel, Task
 from bench.lab.run import Run
 
 KEY, TITLE = "8", "Filtered acceleration, slow samples removed"

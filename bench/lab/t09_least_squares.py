@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.identify.lab import least_squares
-from bench.lab.result import Array, Chart, Curve, Number, Panel, Task
+from bench.lab.result import Chart, Curve, Number, Panel, Task
 from bench.lab.rig import rotor_inertia
 from bench.lab.run import Run
 from bench.lab.t06_inertia import KG_CM2

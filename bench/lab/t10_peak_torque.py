@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.errors import UndeterminedError
 from bench.lab.corner import corner_speed
-from bench.lab.result import Array, Chart, Curve, Number, Panel, Task
+from bench.lab.result import Chart, Curve, Number, Panel, Task
 from bench.lab.run import Run
 from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig

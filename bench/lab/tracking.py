@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from bench.arrays import Array, column_rms
 from bench.errors import InputError
-from bench.lab.result import Array, Chart, Curve, Number, Panel, Task
+from bench.lab.result import Chart, Curve, Number, Panel, Task
 from bench.lab.rig import rotor_inertia
 from bench.lab.t06_inertia import KG_CM2
 from bench.plant.limits import MotionLimits
@@ -42,7 +43,7 @@ def task(rig: Rig, identified: float) -> Task:
     ]
     states = run(plants, [references] * len(plants))
     deviation = np.degrees(references.position[:, None] - states.position)
-    rms = np.sqrt(np.mean(deviation**2, axis=0))
+    rms = column_rms(deviation)
     numbers = []
     for k, name in enumerate(loads):
         numbers.append(Number(f"largest deviation, {name}", float(np.abs(deviation[:, k]).max()), "deg"))

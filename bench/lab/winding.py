@@ -13,15 +13,13 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import SimulationError
 from bench.plant.model import AxisParameters, build_spec
 from bench.plant.states import DIVERGED
 from bench.rig.circuit import HOT, Circuit
 from bench.rig.torque_constant import TorqueConstant
-
-Array = NDArray[np.float64]
 
 #: Name of the motor's actuator in mjcf/rotary_axis.xml.
 DRIVE = "drive"

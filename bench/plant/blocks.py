@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from bench.arrays import Array
 
 #: Bytes of inputs and states that a simulation holds at once.
 BLOCK_BYTES = 8 * 2**20

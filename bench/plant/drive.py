@@ -14,14 +14,13 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.mjcf import DRIVE
 from bench.errors import InputError
 from bench.plant.references import References
 from bench.rig.rig import Rig
 
-Array = NDArray[np.float64]
 Values = float | Array
 
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade
@@ -22,8 +22,6 @@ from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 from mujoco import rollout
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import SimulationError
 from bench.plant.blocks import Controls, blocks
@@ -18,8 +18,6 @@ from bench.plant.plant import Plant
 from bench.plant.quiet import quiet
 from bench.plant.references import References
 from bench.plant.states import DIVERGED, States
-
-Array = NDArray[np.float64]
 
 
 def run_native(plant: Plant, references: References) -> States:

@@ -9,11 +9,11 @@ from typing import Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.effect import Effect
 from bench.effects.kinds import Axis, Moment, Winding
 from bench.plant.axis_model import AxisModel
 
-Array = NDArray[np.float64]
 Kind = TypeVar("Kind", bound=Effect)
 
 

@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from bench.arrays import Array
 from bench.effects.kinds import Sensing
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
 from bench.plant.rows import Rows
 from bench.plant.states import States
-
-Array = NDArray[np.float64]
 
 
 def seen_by_drive(encoders: Sequence[Rows[Sensing]], position: Array, velocity: Array) -> tuple[Array, Array]:

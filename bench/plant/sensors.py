@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from bench.arrays import Array
 from bench.axis_kind import ROTARY, AxisKind
 from bench.errors import InputError
 from bench.plant.references import References
@@ -16,8 +16,6 @@ from bench.rig.rig import Rig
 from bench.rig.torque_constant import TorqueConstant
 from bench.trace.signals import unit_on
 from bench.trace.trace import Trace
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import SimulationError
-
-Array = NDArray[np.float64]
 
 DIVERGED = "the simulation diverged: lower the drive's gains or its control period"
 

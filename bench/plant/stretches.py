@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.kinds import Electronics, Sensing
 from bench.plant.axis_model import AxisModel
 from bench.plant.blocks import blocks, samples_in
@@ -23,8 +23,6 @@ from bench.plant.track import (
     stretches_of,
 )
 from bench.trace.trace import Trace
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

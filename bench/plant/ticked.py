@@ -15,14 +15,12 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 from mujoco.batch import Batch
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.kinds import Electronics, Friction, Mechanism, Moment
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.plant.axis_model import AxisModel
 from bench.plant.rows import Rows, gather
-
-Array = NDArray[np.float64]
 
 #: Places of the two friction levels among the parameters of a passive motor with bristles.
 BRISTLE_LEVELS = slice(3, 5)

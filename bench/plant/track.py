@@ -15,14 +15,13 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import SimulationError
 from bench.plant.blocks import samples_in
 from bench.plant.drive import Cascade, add_pid
 from bench.plant.native import OpenLoop, run_blocks, sense_torque
 from bench.plant.quiet import quiet
 from bench.trace.trace import Trace
-
-Array = NDArray[np.float64]
 
 #: Bandwidth of the cascade that holds the model - rad/s.
 BANDWIDTH = 10.0

@@ -14,8 +14,8 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.kinds import Mechanism
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import SimulationError
@@ -29,8 +29,6 @@ from bench.plant.ticked import TickedEffects
 from bench.plant.ticks import batch_of
 from bench.plant.track import BANDWIDTH
 from bench.trace.trace import Trace
-
-Array = NDArray[np.float64]
 
 
 def track_effects(

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.errors import InputError
 from bench.files import whole
@@ -38,7 +38,7 @@ def save_as_named(figure: Figure, path: Path) -> None:
     save(figure, path)
 
 
-def thinned(*columns: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+def thinned(*columns: Array) -> list[Array]:
     """Columns (m,) at no more than POINTS rows, keeping the extremes of the last column in every stretch."""
     rows = columns[0].size
     if rows <= POINTS:
@@ -89,8 +89,8 @@ def identification_figure(motion: Motion, estimate: Estimate, kind: AxisKind, ti
 
 def _draw(
     axis: Axes,
-    time: NDArray[np.float64],
-    values: NDArray[np.float64],
+    time: Array,
+    values: Array,
     label_y: str,
     color: str = MEASURED,
     label: str | None = None,

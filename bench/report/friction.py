@@ -32,7 +32,7 @@ def friction_json(found: FrictionMap) -> str:
         "best": found.best.name or None,
         "chance": found.probability,
         "unexplained": {"before": before, "after": after},
-        "velocity": {"unit": _speed_unit(found), "values": found.velocity.tolist()},
+        "velocity": {"unit": found.kind.speed_unit, "values": found.velocity.tolist()},
         "effort": {"unit": found.effort_unit, "values": found.effort.tolist()},
     }
     return json.dumps(content, indent=2)
@@ -52,7 +52,7 @@ def friction_table(found: FrictionMap, title: str) -> Table:
     caption = [
         f"{verdict} (named below {CHANCE:g})",
         f"unexplained share of the effort: {before:.4f} without, {after:.4f} with it",
-        f"{found.velocity.size} recordings, {low:.3g} to {high:.3g} {_speed_unit(found)}",
+        f"{found.velocity.size} recordings, {low:.3g} to {high:.3g} {found.kind.speed_unit}",
     ]
     if found.offset is None:
         caption.append("a constant offset is counted in the effect: no such recordings tell them apart")
@@ -94,15 +94,11 @@ def draw_friction(found: FrictionMap, title: str, path: Path) -> None:
     rest.axhline(0.0, color="0.3", lw=0.8)
     over.set_ylabel(f"{effort} / {found.effort_unit}")
     rest.set_ylabel(f"left / {found.effort_unit}")
-    rest.set_xlabel(f"speed / ({_speed_unit(found)})")
+    rest.set_xlabel(f"speed / ({found.kind.speed_unit})")
     for axis in (over, rest):
         axis.grid(alpha=0.25)
         axis.legend(frameon=False, fontsize=8)
     save_as_named(figure, path)
-
-
-def _speed_unit(found: FrictionMap) -> str:
-    return found.kind.speed_unit
 
 
 def _base(found: FrictionMap) -> dict[str, tuple[float, str]]:

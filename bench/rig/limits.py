@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array, rms
 from bench.errors import InputError
 from bench.rig.motor import Motor
 from bench.rig.peak_curve import PeakCurve
-
-Array = NDArray[np.float64]
 
 #: Torque this share of the peak torque beyond a limit is still at it: noise of current and speed.
 AT_LIMIT = 0.01
@@ -96,17 +94,17 @@ def reserve(limits: OperatingRange, speed: Array, torque: Array) -> Reserve:
     """Reserve of a motion that repeats itself, speed - rad/s, torque - N*m, (n,) each."""
     left = limits.available(speed, torque) - np.abs(torque)
     at = int(np.argmin(left))
-    rms, mean = float(np.sqrt(np.mean(torque**2))), float(np.mean(np.abs(speed)))
+    effective, mean = rms(torque), float(np.mean(np.abs(speed)))
     allowed = float(limits.continuous(np.asarray(mean)))
-    thermal_share = (allowed - rms) / allowed if allowed > 0.0 else -1.0
+    thermal_share = (allowed - effective) / allowed if allowed > 0.0 else -1.0
     return Reserve(
         peak=float(left[at]),
         peak_share=float(left[at]) / limits.peak_torque,
         at=at,
         beyond=float(np.mean(left < -AT_LIMIT * limits.peak_torque)),
-        rms_torque=rms,
+        rms_torque=effective,
         mean_speed=mean,
-        thermal=allowed - rms,
+        thermal=allowed - effective,
         thermal_share=thermal_share,
     )
 

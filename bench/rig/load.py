@@ -6,10 +6,10 @@ import math
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812
 
+from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.rig.values import Angle, Density, Inertia, Length, Mass, Table
 
@@ -73,7 +73,7 @@ class Load(Table):
         """What the disk adds to the inertia of an axis of a kind, on the load's side - kg*m**2 (kg); 0 without one."""
         return (self.disk_inertia if kind.turns else self.disk_mass) or 0.0
 
-    def gravity_torque(self, position: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    def gravity_torque(self, position: Array) -> Array | None:
         """M_load = m*g*r*sin(q/i - q_0)/i at motor angles q - rad - (n,), at the motor - N*m; None without."""
         if self.eccentric_mass is None or self.eccentric_radius is None:
             return None

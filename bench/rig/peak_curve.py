@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import model_validator
 
+from bench.arrays import Array
 from bench.rig.values import Speed, Table, Voltage
 
 
@@ -28,7 +28,7 @@ class PeakCurve(Table):
             raise ValueError("corner_speed must be below no_load_speed")
         return self
 
-    def share(self, speed: NDArray[np.float64]) -> NDArray[np.float64]:
+    def share(self, speed: Array) -> Array:
         """Share of peak torque to be had at speeds - rad/s (m/s), any shape: 1 to the corner, then linearly to 0."""
         falling = (self.no_load_speed - np.abs(speed)) / (self.no_load_speed - self.corner_speed)
         return np.clip(falling, 0.0, 1.0)

@@ -7,10 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, ValidationError, model_validator
 
+from bench.arrays import Array
 from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
 from bench.rig.catalogue import catalogue_motor
@@ -85,7 +84,7 @@ class Rig(Table):
         """Whether the axis moves in metres."""
         return not self.axis_kind.turns
 
-    def effort(self, trace: Trace) -> tuple[NDArray[np.float64], str]:
+    def effort(self, trace: Trace) -> tuple[Array, str]:
         """What drives the axis in a trace, and its unit: motor torque - N*m (force - N) wherever the rig tells how.
 
         Taken from the first that is recorded: torque or force, current, voltage. Torque from current is kT(Iq)*Iq; from
@@ -113,7 +112,7 @@ class Rig(Table):
             return self._effort_of_voltage(trace)
         raise InputError(trace.origin, "holds no current, torque, force or voltage", "identification needs one of them")
 
-    def net_effort(self, trace: Trace) -> tuple[NDArray[np.float64], str]:
+    def net_effort(self, trace: Trace) -> tuple[Array, str]:
         """The effort less the load torque that the rig knows (an eccentric mass under gravity), and its unit.
 
         Raises:
@@ -127,7 +126,7 @@ class Rig(Table):
         gravity = self.load.gravity_torque(trace["position"])
         return (effort, unit) if gravity is None else (effort - gravity, unit)
 
-    def _effort_of_voltage(self, trace: Trace) -> tuple[NDArray[np.float64], str]:
+    def _effort_of_voltage(self, trace: Trace) -> tuple[Array, str]:
         gain = self.motor.force_per_volt or self.motor.torque_per_volt
         if gain is not None:
             return trace["voltage"] * gain, self.effort_unit

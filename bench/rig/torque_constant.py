@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from bench.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -39,15 +40,15 @@ class TorqueConstant:
         curvature = (peak - stall) / (peak_current**2 - continuous_stall_current**2)
         return cls(stall - curvature * continuous_stall_current**2, curvature)
 
-    def __call__(self, current: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, current: Array) -> Array:
         """Torque per ampere at a current - A, any shape."""
         return self.constant + self.curvature * current**2
 
-    def torque(self, current: NDArray[np.float64]) -> NDArray[np.float64]:
+    def torque(self, current: Array) -> Array:
         """Motor torque at a current - A, any shape."""
         return self(current) * current
 
-    def current(self, torque: NDArray[np.float64]) -> NDArray[np.float64]:
+    def current(self, torque: Array) -> Array:
         """Current that gives a torque - N*m, any shape; the inverse of `torque` below its maximum.
 
         Solves a*I**3 + c*I = M on the branch through zero (trigonometric solution of the depressed cubic,

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.clock import Clock, Sampled
@@ -196,7 +196,7 @@ def _scale(unit: str) -> float:
     return float(convert(np.ones(1), unit, "s")[0])
 
 
-def _values(choice: Chosen, unit: str) -> NDArray[np.float64]:
+def _values(choice: Chosen, unit: str) -> Array:
     channel = choice.channel
     if channel.defect is not None:
         raise channel.defect

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import InputError
 
 _NAME_UNIT = re.compile(r"(.*?)(?:\s*\[([^\[\]]*)\])?\s*", re.DOTALL)
@@ -33,7 +33,7 @@ class Channel:
 
     name: str
     unit: str | None
-    values: NDArray[np.float64]
+    values: Array
     origin: str
     time: Channel | None = None
     line: int | None = None
@@ -97,7 +97,7 @@ def split_label(label: str) -> tuple[str, str | None]:
     return match[1].strip(), (match[2] or "").strip() or None
 
 
-def float_values(texts: Iterable[str], place: Callable[[int], str]) -> NDArray[np.float64]:
+def float_values(texts: Iterable[str], place: Callable[[int], str]) -> Array:
     """Numbers from their texts (TRUE and FALSE as 1 and 0) - (n,).
 
     Raises:

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import InputError
 
 #: Share of samples that may stand at a time already taken, with other values.
 MOST_DUPLICATES = 0.01
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, GaussianFilter
@@ -67,7 +68,7 @@ class Conditioning:
         return self.source_noise * self.filter.noise_gain(self.order + 1)
 
 
-def condition(trace: Trace, effort: NDArray[np.float64], cutoff: float | None = None) -> Conditioning:
+def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Conditioning:
     """Choose source, filter and thresholds for a recording.
 
     The cut-off is the frequency up to which effort and acceleration are coherent above one half; beyond it they no
@@ -113,17 +114,17 @@ def condition(trace: Trace, effort: NDArray[np.float64], cutoff: float | None = 
     return Conditioning(chosen, source, noise[source], white_noise(effort[part]), speed_noise, float(coherence[peak]))
 
 
-def raw_speed(values: NDArray[np.float64], source: str, sample_period: float) -> NDArray[np.float64]:
+def raw_speed(values: Array, source: str, sample_period: float) -> Array:
     """Unfiltered speed (n,) of a source (n,): itself, or the central difference of a position - rad/s (m/s)."""
     return np.gradient(values, sample_period) if source == "position" else values
 
 
-def known_sign(speed: NDArray[np.float64], threshold: float) -> NDArray[np.float64]:
+def known_sign(speed: Array, threshold: float) -> Array:
     """Sign of a speed (n,), 0 where it is within `threshold` of zero - rad/s (m/s)."""
     return np.sign(speed) * (np.abs(speed) > threshold)
 
 
-def _least_cutoff(sign: NDArray[np.float64], sample_period: float) -> float:
+def _least_cutoff(sign: Array, sample_period: float) -> float:
     """Lowest cut-off that still leaves KEPT of the rows - Hz.
 
     A filter of width s loses 3.1*s at both ends of each run of one sign, where its reach spans a reversal.
@@ -137,9 +138,7 @@ def _least_cutoff(sign: NDArray[np.float64], sample_period: float) -> float:
     return GaussianFilter(widest, sample_period).cutoff
 
 
-def _coherence(
-    source: NDArray[np.float64], effort: NDArray[np.float64], sample_period: float, order: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _coherence(source: Array, effort: Array, sample_period: float, order: int) -> tuple[Array, Array]:
     """Magnitude-squared coherence of effort and the source's derivative over frequency - Hz, Welch's estimate.
 
     At least sixteen half-overlapping windows, as the estimate's bias is about one over their number. As

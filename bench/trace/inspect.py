@@ -8,12 +8,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from rich import box
 from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
+from bench.arrays import Array, rms
 from bench.trace.assemble import assemble, choose, in_si
 from bench.trace.read import read_recording
 
@@ -117,15 +117,13 @@ def inspect(path: str | Path, columns: Mapping[str, str] | None = None) -> Inspe
     )
 
 
-def _summary(
-    name: str, unit: str, column: str, values: NDArray[np.float64], recorded: NDArray[np.float64]
-) -> SignalSummary:
+def _summary(name: str, unit: str, column: str, values: Array, recorded: Array) -> SignalSummary:
     steps = np.abs(np.diff(recorded))
     steps = steps[steps > 0.0]
     largest = float(np.abs(values).max())
-    rms = largest * float(np.sqrt(np.mean((values / largest) ** 2))) if largest > 0.0 else 0.0
+    effective = largest * rms(values / largest) if largest > 0.0 else 0.0
     resolution = float(steps.min()) if steps.size else None
-    return SignalSummary(name, unit, column, float(values.min()), float(values.max()), rms, resolution)
+    return SignalSummary(name, unit, column, float(values.min()), float(values.max()), effective, resolution)
 
 
 def to_json(inspection: Inspection) -> str:

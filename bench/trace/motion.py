@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.trace.conditioning import Conditioning, known_sign, raw_speed
 from bench.trace.trace import Trace
 
@@ -31,19 +31,19 @@ class Motion:
         conditioning: how it was filtered.
     """
 
-    time: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    acceleration: NDArray[np.float64]
-    effort: NDArray[np.float64]
-    effort_rate: NDArray[np.float64]
-    direction: NDArray[np.float64]
+    time: Array
+    velocity: Array
+    acceleration: Array
+    effort: Array
+    effort_rate: Array
+    direction: Array
     conditioning: Conditioning
 
     def __len__(self) -> int:
         return self.time.size
 
 
-def motion(trace: Trace, effort: NDArray[np.float64], conditioning: Conditioning) -> Motion:
+def motion(trace: Trace, effort: Array, conditioning: Conditioning) -> Motion:
     """Filter a recording; stretches shorter than the filter's two margins are left out."""
     parts = [_filtered(trace, effort, conditioning, block) for block in _blocks(trace, conditioning)]
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)] if parts else [np.empty(0)] * 6
@@ -59,9 +59,7 @@ def _blocks(trace: Trace, conditioning: Conditioning) -> Iterator[slice]:
             yield slice(start, min(start + step + 2 * margin, segment.stop))
 
 
-def _filtered(
-    trace: Trace, effort: NDArray[np.float64], conditioning: Conditioning, block: slice
-) -> tuple[NDArray[np.float64], ...]:
+def _filtered(trace: Trace, effort: Array, conditioning: Conditioning, block: slice) -> tuple[Array, ...]:
     """Columns of one block: products and signs are formed on raw samples and filtered afterwards."""
     smooth, order = conditioning.filter, conditioning.order
     source = trace[conditioning.source][block]

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import InputError
-from bench.trace.clock import Array, Clock
+from bench.trace.clock import Clock
 from bench.trace.trace import TimeBase
 
 #: Steps up to this many sample periods are filled; a longer one is a hole.

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.assemble import Chosen, choose, in_si
 from bench.trace.channel import Recording
@@ -65,7 +65,7 @@ def _counts_from_first_moment(path: str) -> bool:
         return True  # `read` says what is wrong with it
 
 
-def _continues(last: Trace | None, time: NDArray[np.float64], period: float, origin: str) -> bool:
+def _continues(last: Trace | None, time: Array, period: float, origin: str) -> bool:
     """Whether samples follow the last chunk without a hole.
 
     Raises:

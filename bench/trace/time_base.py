@@ -20,8 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import InputError
-from bench.trace.clock import Array, Clock, Sampled, without_duplicates
+from bench.trace.clock import Clock, Sampled, without_duplicates
 from bench.trace.sample_base import LONGEST_STEP, STEADY, Base, find_base
 from bench.trace.trace import TimeBase
 

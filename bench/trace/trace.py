@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 HOLE = 1.5
 
 
-def all_finite(values: NDArray[np.float64]) -> bool:
+def all_finite(values: Array) -> bool:
     """Whether no value is infinite or nan; costs no temporary array where none is."""
     with np.errstate(over="ignore", invalid="ignore"):
         # a sum is finite only if every term is; that of large finite ones may overflow, hence the second look
@@ -69,8 +70,8 @@ class Trace:
             does not increase.
     """
 
-    time: NDArray[np.float64]
-    signals: Mapping[str, NDArray[np.float64]]
+    time: Array
+    signals: Mapping[str, Array]
     units: Mapping[str, str]
     origin: str
     metadata: Mapping[str, str] = field(default_factory=dict)
@@ -165,7 +166,7 @@ class Trace:
         """Whether the axis moves in metres rather than radians."""
         return not self.axis_kind.turns
 
-    def with_signals(self, signals: Mapping[str, NDArray[np.float64]], units: Mapping[str, str]) -> Trace:
+    def with_signals(self, signals: Mapping[str, Array], units: Mapping[str, str]) -> Trace:
         """The same recording with signals added or replaced."""
         return replace(self, signals={**self.signals, **signals}, units={**self.units, **units})
 

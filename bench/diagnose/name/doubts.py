@@ -12,6 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.balance.fit import Fit, fit
 from bench.balance.hypothesis import Term
 from bench.balance.rows import Rows
@@ -21,7 +22,7 @@ from bench.diagnose.name.search import Searched, Step, refined
 from bench.effects.catalogue import catalogue, rivals
 from bench.effects.effect import Effect
 from bench.effects.signals import Signals
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 
 
 @dataclass(frozen=True)

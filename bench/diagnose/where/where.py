@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.signal
 
+from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.balance.fit import Fit
-from bench.trace.filter import Array
 
 #: Bins of a coordinate, and rows that a bin needs.
 BINS, LEAST = 48, 12

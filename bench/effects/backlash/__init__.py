@@ -15,13 +15,14 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
+from bench.arrays import Array
 from bench.effects.backlash.dead_zone import dead_zone_columns
 from bench.effects.backlash.likeliest import contact_spread, likeliest_shape
 from bench.effects.effect import Fitted, Load
 from bench.effects.kinds import Axis, Mechanism, Number
 from bench.effects.mjcf import add_coupling_joint
 from bench.effects.signals import Base, Shape, Signals
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 #: Contact of a gear whose own is not known: natural frequency against the two inertias - rad/s - and damping ratio.

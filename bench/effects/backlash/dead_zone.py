@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from bench.arrays import Array
 from bench.effects.signals import Signals
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 
 #: Steps of the integration per radian of the contact's oscillation: the trapezoidal rule errs by 1/(12*steps**2) of it.
 STEPS_PER_RADIAN = 6.0

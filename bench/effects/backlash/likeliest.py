@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bench.arrays import Array
 from bench.effects.backlash.dead_zone import dead_zone_columns
 from bench.effects.effect import Fitted
-from bench.trace.filter import Array
 
 #: Gaps in travel of the motor at the recording's RMS speed over one filter width; contacts - rad/s; damping ratio.
 GAPS = tuple(float(g) for g in np.geomspace(0.03, 0.8, 16))

@@ -16,12 +16,13 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.effect import Load
 from bench.effects.elastic_coupling.twist import twist_columns
 from bench.effects.kinds import Axis, Mechanism, Number
 from bench.effects.mjcf import add_coupling_joint
 from bench.effects.signals import Base, Scope, Shape, Signals
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 #: Antiresonances - rad/s - and damping ratios that a search tries first.

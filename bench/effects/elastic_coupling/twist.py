@@ -17,9 +17,10 @@ import scipy.linalg
 import scipy.signal
 from scipy.interpolate import CubicSpline
 
+from bench.arrays import Array
 from bench.effects.effect import Load
 from bench.effects.signals import Signals
-from bench.trace.filter import Array, Column
+from bench.trace.filter import Column
 
 #: Longest step - rad of the antiresonance: speed that runs straight within it lacks step**2/12 of its swing.
 LONGEST_STEP = 0.1

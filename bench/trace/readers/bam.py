@@ -9,8 +9,8 @@ from __future__ import annotations
 import json
 
 import numpy as np
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording
 from bench.trace.source import Source
@@ -68,7 +68,7 @@ def read(source: Source) -> Recording:
     return Recording(channels, FORMAT, source.path, metadata, notes)
 
 
-def _numbers(entries: list, key: str, path: str) -> NDArray[np.float64]:
+def _numbers(entries: list, key: str, path: str) -> Array:
     values = [entry.get(key) if isinstance(entry, dict) else None for entry in entries]
     for sample, value in enumerate(values):
         if isinstance(value, bool) or not isinstance(value, int | float):

@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
-from numpy.typing import NDArray
-
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, float_values
 from bench.trace.source import Source
@@ -77,7 +75,7 @@ def _rows(lines: list[str], first: int, width: int, path: str) -> tuple[list[lis
     return rows, numbers, notes
 
 
-def _column(texts: tuple[str, ...], numbers: list[int], name: str, path: str) -> NDArray[np.float64]:
+def _column(texts: tuple[str, ...], numbers: list[int], name: str, path: str) -> Array:
     label = name or "time"
     decimal_point = [text.replace(",", ".") for text in texts]
     return float_values(decimal_point, lambda sample: f"{path}: line {numbers[sample]}, column '{label}'")

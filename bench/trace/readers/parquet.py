@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.source import Source
@@ -74,7 +74,7 @@ def is_moment(kind: pa.DataType) -> bool:
     return pa.types.is_timestamp(kind) or pa.types.is_duration(kind)
 
 
-def _numbers(column: pa.ChunkedArray | pa.Array) -> NDArray[np.float64] | None:
+def _numbers(column: pa.ChunkedArray | pa.Array) -> Array | None:
     """Values as float64, without a copy where they are float64 in one piece; None for what is not a number."""
     kind = column.type
     if is_moment(kind):

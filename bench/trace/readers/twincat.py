@@ -15,8 +15,8 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pyarrow as pa
-from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
 from bench.trace.readers.columns import parse_columns
@@ -124,7 +124,7 @@ def _first(column: pa.ChunkedArray) -> int:
     return present[0].as_py() if len(present) else 0
 
 
-def _times(column: pa.ChunkedArray, start: int) -> NDArray[np.float64]:
+def _times(column: pa.ChunkedArray, start: int) -> Array:
     """Times in ms, nan where the cell is empty; FILETIME, in steps of 100 ns, counts from `start`."""
     if column.type != pa.int64():
         return column.to_numpy()
@@ -146,7 +146,7 @@ def _described(name: str, number: int, header: list[list[str]], source: Source) 
     return replace(channel, unit=None, open_unit=reason)
 
 
-def _sampled(channel: Channel, time: NDArray[np.float64], values: NDArray[np.float64]) -> Channel:
+def _sampled(channel: Channel, time: Array, values: Array) -> Channel:
     """The channel with samples where both time and value stand; one without the other is a defect."""
     present = ~np.isnan(time)
     rows = np.flatnonzero(present)
