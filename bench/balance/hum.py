@@ -54,4 +54,4 @@ def _around(time: Array, residual: Array, line: float) -> tuple[Array, Array]:
     power = np.abs(np.fft.fft(sums, 2 * count)) ** 2
     offsets = np.fft.fftfreq(2 * count, 1.0 / RATE)
     order = np.flatnonzero(np.abs(offsets) <= BAND)
-    return np.asarray(offsets[order]), np.asarray(power[order])
+    return np.asarray(offsets[order], dtype=np.float64), np.asarray(power[order], dtype=np.float64)
