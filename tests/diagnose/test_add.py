@@ -3,14 +3,16 @@
 import numpy as np
 import pytest
 
-from bench.diagnose.add import add
-from bench.diagnose.fit import fit
-from bench.diagnose.hypothesis import Hypothesis, Named
-from bench.diagnose.name import Suspects
+from bench.balance.fit import fit
+from bench.balance.hypothesis import Hypothesis, Term
+from bench.diagnose.add.add import add
+from bench.diagnose.name.name import Suspects
+from bench.diagnose.name.policy import Policy
+from bench.diagnose.name.search import Searched, Step
 from bench.diagnose.recordings import Recordings
-from bench.diagnose.search import Step
-from bench.diagnose.sensing import VelocityLag
-from bench.diagnose.show import shrinking
+from bench.diagnose.show.gaps import shrinking
+from bench.effects.catalogue import catalogue
+from bench.effects.effect import Detected
 from bench.rig.rig import load_rig
 from tests.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
 from tests.independent.effects import KINDS
@@ -19,7 +21,8 @@ AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
 )
 SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
-LAG = VelocityLag(4e-3, 1e-5, 1.0, 1.0)
+SPRING = Term(catalogue()["torsion_spring"])
+LAG = {catalogue()["velocity_filter_lag"]: Detected({"time_constant": 4e-3}, {"time_constant": 1e-5})}
 
 
 @pytest.fixture(scope="module")
@@ -33,16 +36,16 @@ def recorded(tmp_path_factory):
     return load_rig(path), runs[0].trace, runs[1].trace
 
 
-def added(recorded, effects, lag=None, with_holdout=True):
+def added(recorded, terms, detected=None, with_holdout=True):
     rig, trace, holdout = recorded
     recordings = Recordings.of(trace, rig, holdout if with_holdout else None)
-    steps = [Step(fit(recordings.bench, Hypothesis(tuple(effects))), ())]
-    return recordings, add(recordings, Suspects(steps, lag, None, withheld=False))
+    searched = Searched((Step(fit(recordings.rows, Hypothesis(tuple(terms)))),))
+    return recordings, add(recordings, Suspects(searched, detected or {}, False, Policy()))
 
 
 @pytest.mark.parametrize("with_holdout", [True, False])
 def test_a_true_effect_is_kept_and_both_gaps_shrink(recorded, with_holdout):
-    recordings, result = added(recorded, [Named("torsion_spring")], with_holdout=with_holdout)
+    recordings, result = added(recorded, [SPRING], with_holdout=with_holdout)
     assert result.rejected == ()
     before, after = shrinking(recordings, result)
     assert (before.effect, after.effect) == ("", "torsion_spring")
@@ -53,7 +56,7 @@ def test_a_true_effect_is_kept_and_both_gaps_shrink(recorded, with_holdout):
 
 @pytest.mark.parametrize("with_holdout", [True, False])
 def test_an_effect_that_makes_the_simulation_worse_is_rejected_with_the_reason(recorded, with_holdout):
-    _, result = added(recorded, [Named("torsion_spring")], LAG, with_holdout)
+    _, result = added(recorded, [SPRING], LAG, with_holdout)
     (rejected,) = result.rejected
     assert rejected.name == "velocity_filter_lag"
     assert "velocity gap" in rejected.reason
@@ -62,7 +65,7 @@ def test_an_effect_that_makes_the_simulation_worse_is_rejected_with_the_reason(r
 
 
 def test_what_was_refined_stays_within_its_interval(recorded):
-    _, result = added(recorded, [Named("torsion_spring")])
+    _, result = added(recorded, [SPRING])
     (stiffness,) = result.refined.effects[0].parameters.values()
-    plain = result.chain.whole.fitted.strengths(0)[0]
+    plain = result.extension.whole.fitted.strengths(0)[0]
     assert abs(stiffness.value - plain) <= 1.01 * 0.5 * (stiffness.ci95[1] - stiffness.ci95[0])

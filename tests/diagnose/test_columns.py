@@ -5,11 +5,12 @@ import pytest
 import scipy.signal
 from scipy.interpolate import CubicSpline
 
-from bench.diagnose.dead_zone import load_positions
-from bench.diagnose.transforms import corrected, lagged
-from bench.diagnose.where import _account
-from bench.effects.effect import Signals
+from bench.diagnose.where.where import _account
+from bench.effects.backlash.dead_zone import load_positions
+from bench.effects.catalogue import catalogue
+from bench.effects.first_order import lagged
 from bench.effects.presliding_friction import bristles
+from bench.effects.signals import Signals
 
 PERIOD = 1e-3
 
@@ -67,14 +68,16 @@ def test_a_lag_is_the_first_order_response():
     assert lagged(ramp, 0.02, PERIOD) == pytest.approx(expected, abs=1e-12)
 
 
-def test_an_eccentric_encoder_is_corrected():
+@pytest.mark.parametrize("amplitude", [0.02, 0.5])
+def test_an_eccentric_encoder_is_corrected(amplitude):
     time = np.arange(3000) * PERIOD
     angle, speed = 40.0 * time**2, 80.0 * time
-    measured = angle + 0.02 * np.sin(angle + 0.7)
-    reported = speed * (1.0 + 0.02 * np.cos(angle + 0.7))
-    found = corrected(signals(measured, reported), (0.02 * np.cos(0.7), 0.02 * np.sin(0.7)))
-    assert found.position == pytest.approx(angle, abs=1e-7)
-    assert found.velocity == pytest.approx(speed, abs=1e-5)
+    measured = angle + amplitude * np.sin(angle + 0.7)
+    reported = speed * (1.0 + amplitude * np.cos(angle + 0.7))
+    shape = (amplitude * np.cos(0.7), amplitude * np.sin(0.7))
+    found = catalogue()["encoder_eccentricity"].see(signals(measured, reported), shape)
+    assert found.position == pytest.approx(angle, abs=1e-9)
+    assert found.velocity == pytest.approx(speed, abs=1e-7)
 
 
 def test_bristles_are_dahls_equation_integrated():
@@ -91,14 +94,15 @@ def test_bristles_are_dahls_equation_integrated():
     assert found == pytest.approx(expected, abs=0.02)
 
 
-def test_the_two_mass_transfer_is_the_transfer_function():
+def test_a_coupling_hears_noise_as_its_transfer_function_says():
+    """The load's acceleration over the motor's by scipy, less one."""
     antiresonance, damping = 150.0, 0.05
     omega = np.linspace(1.0, 400.0, 50)
     numerator = [2.0 * damping / antiresonance, 1.0]
     denominator = [1.0 / antiresonance**2, 2.0 * damping / antiresonance, 1.0]
-    _, expected = scipy.signal.freqs(numerator, denominator, omega)
-    s = 1j * omega / antiresonance
-    assert 1.0 - s**2 / (1.0 + 2.0 * damping * s + s**2) == pytest.approx(expected)
+    _, transfer = scipy.signal.freqs(numerator, denominator, omega)
+    found = catalogue()["elastic_coupling"].noise_of_motion((antiresonance, damping), omega)
+    assert found == pytest.approx(transfer - 1.0)
 
 
 def test_a_gap_of_two_directions_belongs_to_direction():

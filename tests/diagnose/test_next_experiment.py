@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from bench.diagnose.diagnosis import diagnose
-from bench.diagnose.next_experiment import motions
 from bench.diagnose.recordings import Recordings
+from bench.diagnose.show.next_experiment import motions
 from bench.plant.references import References
 from bench.rig.rig import load_rig
 from tests.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from bench.diagnose.fit import fit
-from bench.diagnose.hypothesis import ELASTIC, Hypothesis, Named
-from bench.diagnose.quantities import reported
-from bench.diagnose.search import search
-from bench.diagnose.soft_coupling import coupled_columns
-from bench.diagnose.workbench import Workbench
+from bench.balance.fit import fit
+from bench.balance.hypothesis import Hypothesis, Term
+from bench.balance.rows import Rows
+from bench.diagnose.gap.gap import gap
+from bench.diagnose.name.policy import Policy
+from bench.diagnose.name.search import search
 from bench.effects.catalogue import catalogue
 from bench.rig.rig import Rig, load_rig
 from bench.trace.trace import Trace
@@ -20,6 +20,7 @@ from tests.independent.rig import Axis, write_rig
 from tests.independent.sensors import Noise, Sensors
 from tests.independent.simulate import simulate
 
+ELASTIC = catalogue()["elastic_coupling"]
 PERIOD = 1e-3
 AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
 SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
@@ -41,7 +42,7 @@ def test_the_load_moves_as_its_equation_says(tmp_path, drag, ends):
     turn, speed = 2.0 * np.pi / 4.0, 60.0
     angle, velocity = speed / turn * (1.0 - np.cos(turn * time)), speed * np.sin(turn * time)
     values = {"position": angle, "velocity": velocity, "current": 0.12 * np.cos(turn * time) + 0.1 * np.sign(velocity)}
-    bench = Workbench.of(Trace(time, values, {"position": "rad", "velocity": "rad/s", "current": "A"}, "swing"), rig)
+    rows = Rows.of(Trace(time, values, {"position": "rad", "velocity": "rad/s", "current": "A"}, "swing"), rig)
 
     def equation(t, state):
         motor, rate = speed / turn * (1.0 - np.cos(turn * t)), speed * np.sin(turn * t)
@@ -50,19 +51,19 @@ def test_the_load_moves_as_its_equation_says(tmp_path, drag, ends):
 
     load = scipy.integrate.solve_ivp(equation, (0.0, ends), [0.0, 0.0], t_eval=time, rtol=1e-8, atol=1e-9).y
     acting = [(catalogue()["quadratic_drag"], (), (drag,))] if drag else []
-    found = coupled_columns(bench, [(antiresonance, damping)], acting, 0.0)[:, 0]
+    found = rows.table(lambda s: ELASTIC.columns_of(s, [(antiresonance, damping)], acting))[:, 0]
     excess = drag * (load[1] * np.abs(load[1]) - velocity * np.abs(velocity))
-    expected = bench.rows(lambda s: [(load[0] - angle, 2), (excess, 0)])
+    expected = rows.table(lambda s: [[(load[0] - angle, 2), (excess, 0)]])[:, 0]
     assert found == pytest.approx(expected, abs=2e-3 * np.abs(expected).max())
 
 
 def test_a_soft_coupling_leaves_noise_alone(tmp_path):
     effect = ElasticCoupling(14.0, 2.5e-3)
     trace, rig = recorded(effect, tmp_path)
-    bench = Workbench.of(trace, rig)
+    rows = Rows.of(trace, rig)
     antiresonance = np.sqrt(effect.stiffness / (AXIS.inertia - AXIS.rotor_inertia))
     shape = float(antiresonance), 0.5 * effect.damping * float(antiresonance) / effect.stiffness
-    fitted = fit(bench, Hypothesis((Named(ELASTIC, shape),)))
+    fitted = fit(rows, Hypothesis((Term(ELASTIC, shape),)))
     assert 0.9 < fitted.chi < 1.1
     assert fitted.theta[0] == pytest.approx(AXIS.inertia, rel=1e-3)
     assert fitted.strengths(0)[0] == pytest.approx(AXIS.inertia - AXIS.rotor_inertia, rel=3e-3)
@@ -71,10 +72,10 @@ def test_a_soft_coupling_leaves_noise_alone(tmp_path):
 def test_bristles_are_named_with_their_damping(tmp_path):
     effect = PreslidingFriction(3.0, 8e-3)
     trace, rig = recorded(effect, tmp_path)
-    fitted = search(Workbench.of(trace, rig), AXIS.rotor_inertia)[-1].fitted
+    fitted = search(gap(Rows.of(trace, rig)), list(catalogue().values()), Policy()).last
     assert fitted.hypothesis.names == ("presliding_friction",)
     assert fitted.chi < 1.1
-    values = reported(fitted.hypothesis.effects[0], fitted.strengths(0), fitted.base)
+    values = fitted.terms[0].effect.report(fitted.strengths(0), fitted.terms[0].shape, fitted.base)
     assert values["bristle_stiffness"] == pytest.approx(effect.bristle_stiffness, rel=0.03)
     assert values["bristle_damping"] == pytest.approx(effect.bristle_damping, rel=0.15)
     assert fitted.theta[0] == pytest.approx(AXIS.inertia, rel=1e-3)

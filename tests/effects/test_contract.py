@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Base, Effect, Signals
+from bench.effects.effect import Effect
 from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.kinds import Electronics, Friction, Mechanism, Moment
 from bench.effects.present import Present
-from bench.plant.axis_model import COUPLINGS
+from bench.effects.signals import Base, Signals
 from bench.plant.model import build_spec
 from bench.plant.native import run_controls, sense_torque
 from bench.plant.run import run
@@ -24,7 +24,7 @@ NEUTRAL = {"friction_excess": 0.0, "friction_factor": 1.0, "resisting_torque": 0
 BALANCED = [
     name
     for name, effect in catalogue().items()
-    if name not in COUPLINGS and (isinstance(effect, Mechanism) or name == "torque_constant_saturation")
+    if effect.overrides("columns") and not effect.couples
 ]
 
 
@@ -48,7 +48,7 @@ def test_null_values_leave_the_trajectory_as_it_is(name):
 def test_null_values_do_nothing_where_they_act(name):
     """Not only are absent effects left out: acting on null values does nothing either."""
     effect, values, axis = catalogue()[name], dict(with_null(name).values), model().axis
-    if isinstance(effect, Mechanism) and effect.overrides("add") and name not in COUPLINGS:
+    if isinstance(effect, Mechanism) and effect.overrides("add") and not effect.couples:
         motions = []
         for adds in (False, True):
             spec = build_spec(PARAMETERS, PERIOD)
@@ -110,7 +110,7 @@ def test_columns_agree_with_the_simulation(name):
     strengths, *_ = np.linalg.lstsq(columns, gap, rcond=None)
     off = gap - columns @ strengths
     share = np.sqrt(np.mean(off**2) / np.mean(gap**2))
-    found = effect.values(strengths, shape, Base(AXIS.inertia, AXIS.viscous, AXIS.coulomb))
+    found = effect.report(strengths, shape, Base(AXIS.inertia, AXIS.viscous, AXIS.coulomb))
     print(f"{name}: {share:.1e} of the gap unexplained; {found} of {values}")
     assert share < 0.006
     for key, value in found.items():

@@ -15,10 +15,20 @@ def test_step_response():
 
 
 def test_along_a_recording_as_step_by_step():
-    reported = np.random.default_rng(0).normal(size=200)
-    values = {"time_constant": 3e-3}
-    before, middles = reported[:1], []
-    for value in reported:
-        middle, before = EFFECT.acting(values, np.array([value]), before, PERIOD)
-        middles.append(middle[0])
-    np.testing.assert_allclose(EFFECT.acting_along(values, reported, PERIOD), middles, atol=1e-12)
+    """A sine at the middles of steps: both are second order in the step, and halving it shows that."""
+    time_constant, omega = 3e-3, 120.0
+    off = []
+    for step in (PERIOD, PERIOD / 2.0):
+        time = np.arange(round(0.2 / step)) * step
+        reported = np.sin(omega * time)
+        before, middles = reported[:1], []
+        for value in reported:
+            middle, before = EFFECT.acting({"time_constant": time_constant}, np.array([value]), before, step)
+            middles.append(middle[0])
+        along = EFFECT.acting_along({"time_constant": time_constant}, reported, step)
+        settled = time > 30.0 * time_constant
+        phase = np.arctan(omega * time_constant)
+        exact = np.cos(phase) * np.sin(omega * time - phase)
+        off.append([np.abs(found - exact)[settled].max() for found in (np.array(middles), along)])
+    assert (np.array(off[0]) < 2e-4).all()
+    assert (np.array(off[1]) < 0.3 * np.array(off[0])).all()

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from bench.errors import UndeterminedError
+from bench.balance.hypothesis import Hypothesis
+from bench.balance.layout import lay_out
+from bench.balance.rows import Rows
 from bench.identify.lab import identify_as_in_the_lab
 from bench.identify.regression import identify
 from bench.trace.trace import Trace
@@ -53,13 +56,8 @@ def test_inertia_stays_unbiased_where_speed_noise_rivals_the_acceleration():
 
 def identify_as_plain(trace):
     """J by least squares on the same columns without taking the noise out."""
-    from bench.identify.regressors import regressors
-    from bench.trace.conditioning import condition
-    from bench.trace.motion import motion
-
-    effort, _ = RIG.effort(trace)
-    rows = regressors(motion(trace, effort, condition(trace, effort, 60.0)))
-    return np.linalg.lstsq(rows.columns, rows.effort, rcond=None)[0][0]
+    laid = lay_out(Rows.of(trace, RIG, cutoff=60.0), Hypothesis())
+    return np.linalg.lstsq(laid.columns, laid.effort, rcond=None)[0][0]
 
 
 def test_turning_the_axis_around_changes_nothing():
