@@ -21,11 +21,7 @@ EFFECTS = sorted(catalogue())
 SHORT = Reversals(0.4).references()
 NEUTRAL = {"friction_excess": 0.0, "friction_factor": 1.0, "resisting_torque": 0.0, "torque_factor": 1.0}
 #: Effects that the torque balance holds as columns of raw signals.
-BALANCED = [
-    name
-    for name, effect in catalogue().items()
-    if effect.overrides("columns") and not effect.couples
-]
+BALANCED = [name for name, effect in catalogue().items() if effect.overrides("columns") and not effect.couples]
 
 
 def with_null(name):
