@@ -18,7 +18,8 @@ from bench.balance.layout import BASE, COULOMB, INERTIA, VISCOUS, lay_out
 from bench.balance.normal_equations import block_edges, solved
 from bench.balance.parameter import Parameter
 from bench.balance.rows import Rows
-from bench.effects.effect import Effect, is_pitch
+from bench.effects.effect import Effect
+from bench.effects.grids import is_pitch
 from bench.effects.signals import Base, Signals
 from bench.statistics import NORMAL95
 

@@ -9,7 +9,6 @@ overrides what is not neutral in it, and whoever deals with effects asks the obj
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
@@ -19,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
+from bench.effects.grids import is_pitch, places
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.rig.rig import Rig
 from bench.trace.filter import Column
@@ -34,12 +34,6 @@ SHARE = 0.25
 #: The same for a pitch that repeats so many half cycles over the travel of a linear axis that no smooth error of the
 #: model copies it.
 PITCH_SHARE, MANY = 0.1, 20.0
-#: Top speed of the rotary axes for which effects state their grids - rad/s.
-TOP = 100.0
-#: Angle of a cycle that the motion must cover - rad: over less, a wave is a mere curve, and a wave of torque copies it.
-PERIOD = 2.0 * np.pi
-#: Cycles over the travel of a linear axis between which pitches are sought: fewer than two are no repetition.
-COARSEST, FINEST = 2.0, 128.0
 
 #: What acts on the load behind a coupling: effect, its shape, its strengths over load inertia.
 Load = tuple["Effect", tuple[float, ...], tuple[float, ...]]
@@ -104,7 +98,7 @@ class Fitted(Protocol):
     def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]: ...  # noqa: D102
 
 
-class Effect(ABC):
+class Effect:
     """Anything the catalogue lists.
 
     Attributes:
@@ -155,15 +149,13 @@ class Effect(ABC):
     tolerates: ClassVar[float | None] = None
     fixed_in_simulation: ClassVar[frozenset[str]] = frozenset()
 
-    # How it is told absent, and what need not be said of it.
-
-    @abstractmethod
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Values of some quantities at which the effect is exactly absent."""
+        return {quantity.name: quantity.null for quantity in self.quantities if quantity.null is not None}
 
     def defaults(self, axis: Axis) -> Mapping[str, Number]:
         """Values of quantities that need not be given."""
-        return {}
+        return {quantity.name: quantity.preset for quantity in self.quantities if quantity.preset is not None}
 
     # How it enters the torque balance.
 
@@ -301,29 +293,3 @@ class Effect(ABC):
         """Whether the effect has a hook of its own rather than the neutral one of its kind."""
         neutral: Any = next((vars(base)[hook] for base in cls.__mro__[::-1] if hook in vars(base)), None)
         return getattr(cls, hook, None) is not neutral
-
-
-def is_pitch(shape: Shape, scope: Scope) -> bool:
-    """Whether a harmonic is the wave number of a pitch.
-
-    A linear axis has no revolution that all share: screw, belt and magnets each have a pitch of their own, so a
-    harmonic is 2*pi over the pitch there - rad/m -, varies continuously and is sought by the travel.
-    """
-    return shape.whole and not scope.kind.turns
-
-
-def places(shape: Shape, scope: Scope) -> tuple[float, ...]:
-    """Where a shape is sought first: on a linear axis as on a rotary one whose top speed is TOP."""
-    if is_pitch(shape, scope):
-        return tuple((scope.spacing * np.arange(2.0 * COARSEST, 2.0 * FINEST + 1.0)).tolist())
-    if shape.whole:
-        return tuple(n for n in shape.grid if n * scope.travel >= PERIOD)
-    power = {"rad/s": 1, "1/rad": -1}.get(shape.quantity.unit, 0)
-    if scope.kind.turns or not power:
-        return shape.grid
-    return tuple(value * (scope.top_speed / TOP) ** power for value in shape.grid)
-
-
-def amplitude_and_phase(sine: float, cosine: float) -> tuple[float, float]:
-    """A, phi of A*sin(x + phi) = sine*sin(x) + cosine*cos(x); phi - rad in (-pi, pi]."""
-    return float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))

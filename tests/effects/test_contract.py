@@ -7,8 +7,8 @@ import pytest
 
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
-from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.kinds import Electronics, Friction, Mechanism, Moment
+from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.present import Present
 from bench.effects.signals import Base, Signals
 from bench.plant.model import build_spec
