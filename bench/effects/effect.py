@@ -10,15 +10,15 @@ overrides what is not neutral in it, and whoever deals with effects asks the obj
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
+from bench.effects.fitted import Detected, Fitted, Load, Proposal
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.rig.rig import Rig
 from bench.trace.filter import Column
@@ -40,68 +40,6 @@ TOP = 100.0
 PERIOD = 2.0 * np.pi
 #: Cycles over the travel of a linear axis between which pitches are sought: fewer than two are no repetition.
 COARSEST, FINEST = 2.0, 128.0
-
-#: What acts on the load behind a coupling: effect, its shape, its strengths over load inertia.
-Load = tuple["Effect", tuple[float, ...], tuple[float, ...]]
-
-
-@dataclass(frozen=True)
-class Proposal:
-    """A shape of an effect that was tried beside a fit, and the squares it would take from the residual."""
-
-    shape: tuple[float, ...]
-    gain: float
-
-
-@dataclass(frozen=True)
-class Detected:
-    """An effect read from signals that the torque balance does not hold.
-
-    Attributes:
-        values, errors: of its quantities, and their half widths at 95 % - SI.
-        evidence: figures that speak for it, by what they are.
-    """
-
-    values: Mapping[str, float]
-    errors: Mapping[str, float]
-    evidence: Mapping[str, float] = field(default_factory=dict)
-
-
-class FittedTerm(Protocol):
-    """A term of a fitted balance: an effect of a shape."""
-
-    @property
-    def effect(self) -> Effect: ...  # noqa: D102
-    @property
-    def shape(self) -> tuple[float, ...]: ...  # noqa: D102
-
-
-class Fitted(Protocol):
-    """A torque balance fitted to a recording, as effects may ask it; see `bench.balance.fit.Fit`."""
-
-    @property
-    def theta(self) -> Array: ...  # noqa: D102
-    @property
-    def owners(self) -> NDArray[np.int64]: ...  # noqa: D102
-    @property
-    def scope(self) -> Scope: ...  # noqa: D102
-    @property
-    def terms(self) -> Sequence[FittedTerm]: ...  # noqa: D102
-    @property
-    def columns(self) -> Array: ...  # noqa: D102
-    @property
-    def effort(self) -> Array: ...  # noqa: D102
-    @property
-    def residual(self) -> Array: ...  # noqa: D102
-    @property
-    def floor(self) -> float: ...  # noqa: D102
-    @property
-    def time(self) -> Array: ...  # noqa: D102
-    @property
-    def span(self) -> Array: ...  # noqa: D102
-    def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array: ...  # noqa: D102
-    def gains(self, columns: Array, width: int) -> Array: ...  # noqa: D102
-    def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]: ...  # noqa: D102
 
 
 class Effect(ABC):
