@@ -7,8 +7,8 @@ import pytest
 
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
-from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.kinds import Electronics, Friction, Mechanism, Moment
+from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.present import Present
 from bench.effects.signals import Base, Signals
 from bench.plant.model import build_spec
@@ -21,11 +21,7 @@ EFFECTS = sorted(catalogue())
 SHORT = Reversals(0.4).references()
 NEUTRAL = {"friction_excess": 0.0, "friction_factor": 1.0, "resisting_torque": 0.0, "torque_factor": 1.0}
 #: Effects that the torque balance holds as columns of raw signals.
-BALANCED = [
-    name
-    for name, effect in catalogue().items()
-    if effect.overrides("columns") and not effect.couples
-]
+BALANCED = [name for name, effect in catalogue().items() if effect.overrides("columns") and not effect.couples]
 
 
 def with_null(name):
