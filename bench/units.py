@@ -26,6 +26,8 @@ class Quantity:
         lower, upper: closed bounds in that unit.
         angle: whether it stays an angle on a linear axis, where other angles become lengths.
         linear_unit: SI unit on a linear axis, where it is not the rotary one with metres and newtons in it.
+        null: value at which what it belongs to is exactly absent, if one says so.
+        preset: value that it has where none is given, if it need not be.
     """
 
     name: str
@@ -35,6 +37,8 @@ class Quantity:
     upper: float = math.inf
     angle: bool = False
     linear_unit: str | None = None
+    null: float | None = None
+    preset: float | None = None
 
 
 @cache

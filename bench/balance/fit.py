@@ -68,7 +68,7 @@ class Fit:
     @cached_property
     def noise(self) -> Floor:
         """What noise alone leaves under this model."""
-        return noise_floor(self.rows, white_power(self.rows, self.hypothesis, self.layout, self.theta), self.residual)
+        return noise_floor(self.rows, white_power(self.rows, self.hypothesis, self.layout, self.theta), self.left)
 
     @property
     def floor(self) -> float:
@@ -256,13 +256,13 @@ def _balanced(rows: Rows, layout: Layout, told: NDArray[np.bool_] | None) -> tup
         return theta, False
     at = np.copysign(bound, theta[MISALIGNMENT])
     kept = np.delete(np.arange(theta.size), MISALIGNMENT)
-    rest = least_squares(columns[:, kept], effort - at * columns[:, MISALIGNMENT], layout.noise[kept])
+    rest = least_squares(columns[:, kept], effort - at * columns[:, MISALIGNMENT], layout.noise[np.ix_(kept, kept)])
     return np.insert(rest, MISALIGNMENT, at), True
 
 
 def least_squares(columns: Array, effort: Array, noise: Array) -> Array:
-    """Strengths (p,) of columns (m, p) that hold noise of standard deviations (p,)."""
-    return solved(columns.T @ columns, columns.T @ effort, columns.shape[0] * noise**2)[0]
+    """Strengths (p,) of columns (m, p) that hold noise of a covariance (p, p) in each row."""
+    return solved(columns.T @ columns, columns.T @ effort, columns.shape[0] * noise)[0]
 
 
 def gains(columns: Array, width: int, residual: Array, basis: Array) -> Array:

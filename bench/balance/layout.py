@@ -21,6 +21,8 @@ from bench.trace.filter import Column
 BASE, HUM = -1, -2
 #: Places of J, K_w, K_0 and of the time by which torque is behind speed among the columns.
 INERTIA, VISCOUS, COULOMB, MISALIGNMENT = range(4)
+#: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
+FREQUENCIES, REACH = 400, 4.0
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,7 @@ class Layout:
         columns: (m, p): J, K_w, K_0, misalignment, sines and cosines of hum, then the effects' in order.
         owners: (p,) index of the term a column belongs to, BASE or HUM.
         effort: (m,) what they are to explain - N*m (N).
-        noise: (p,) standard deviation of the sensors' noise in each column.
+        noise: (p, p) covariance of what the sensors' noise makes of the columns in a row.
     """
 
     columns: Array
@@ -87,7 +89,8 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
         parts.append(table)
         owners += [index] * table.shape[1]
     columns = np.concatenate(parts, axis=1)
-    return Layout(columns, np.array(owners), seen.effort, _noise(rows, moving, columns.shape[1]))
+    held_by = np.array(owners)
+    return Layout(columns, held_by, seen.effort, _noise(rows, hypothesis, held_by, moving))
 
 
 def term_columns(rows: Rows, seen: Rows, hypothesis: Hypothesis, index: int) -> Array:
@@ -128,12 +131,26 @@ def _made_of(rows: Rows, hypothesis: Hypothesis) -> tuple[object, ...]:
     return *delays(rows, hypothesis), seen
 
 
-def _noise(rows: Rows, moving: float, count: int) -> Array:
-    """A smoothed signal and its derivative are uncorrelated under white noise, as G is even and omega*G odd."""
+def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.int64], moving: float) -> Array:
+    """Covariance (p, p) of what the sensors' white noise makes of the columns.
+
+    A smoothed signal and its derivative are uncorrelated, as G is even and omega*G odd; what follows the motion behind
+    a coupling is not uncorrelated with the motor's acceleration: its transfer says how far it hears the same noise.
+    """
     conditioning = rows.conditioning
-    gain, order = conditioning.filter.noise_gain, conditioning.order
-    noise = np.zeros(count)
-    noise[INERTIA] = conditioning.source_noise * np.hypot(gain(order + 1), moving * gain(order + 2))
-    noise[VISCOUS] = conditioning.source_noise * np.hypot(gain(order), moving * gain(order + 1))
-    noise[MISALIGNMENT] = conditioning.effort_noise * gain(1)
+    smooth, order = conditioning.filter, conditioning.order
+    noise = np.zeros((owners.size, owners.size))
+    noise[MISALIGNMENT, MISALIGNMENT] = (conditioning.effort_noise * smooth.noise_gain(1)) ** 2
+    omega = np.linspace(0.0, REACH / smooth.width, FREQUENCIES)
+    accelerated = (1j * omega) ** (order + 1) * (1.0 + 1j * omega * moving)
+    heard = {INERTIA: accelerated, VISCOUS: (1j * omega) ** order * (1.0 + 1j * omega * moving)}
+    for index, term in enumerate(hypothesis.terms):
+        if term.effect.of_motion:
+            place = int(np.flatnonzero(owners == index)[0])
+            heard[place] = accelerated * term.effect.noise_of_motion(term.shape, omega)
+    spectra = np.stack(list(heard.values()))
+    weight = conditioning.source_noise**2 * smooth.sample_period / np.pi * np.exp(-((omega * smooth.width) ** 2))
+    places = list(heard)
+    step = omega[1] - omega[0]
+    noise[np.ix_(places, places)] = step * ((spectra * weight) @ spectra.conj().T).real
     return noise

@@ -29,7 +29,7 @@ class NormalEquations:
         moment: X'y of each block - (b, p).
         power: y'y of each block - (b,).
         rows: of each block - (b,).
-        noise: (p,) standard deviation of the noise in each column.
+        noise: (p, p) covariance of the noise of the columns in a row.
     """
 
     gram: Array
@@ -42,7 +42,7 @@ class NormalEquations:
         """The same equations for some of the columns only."""
         kept = list(columns)
         gram = self.gram[:, kept][:, :, kept]
-        return replace(self, gram=gram, moment=self.moment[:, kept], noise=self.noise[kept])
+        return replace(self, gram=gram, moment=self.moment[:, kept], noise=self.noise[np.ix_(kept, kept)])
 
     def coarsened(self, limit: int) -> NormalEquations:
         """The same equations with neighbouring blocks joined until there are at most `limit`."""
@@ -59,16 +59,16 @@ class NormalEquations:
 
     @cached_property
     def matrix(self) -> Array:
-        """X'X less what sensor noise put onto its diagonal - (p, p)."""
-        return self.gram.sum(axis=0) - np.diag(self.count * self.noise**2)
+        """X'X less what sensor noise put into it - (p, p)."""
+        return self.gram.sum(axis=0) - self.count * self.noise
 
     def solve(self) -> tuple[Array, Array]:
         """Coefficients (p,), and the inverse of the matrix (p, p)."""
-        return solved(self.gram.sum(axis=0), self.moment.sum(axis=0), self.count * self.noise**2)
+        return solved(self.gram.sum(axis=0), self.moment.sum(axis=0), self.count * self.noise)
 
     def scores(self, theta: Array) -> Array:
         """X'(y - X*theta) of each block, less the part of it that is due to noise in the columns - (b, p)."""
-        return self.moment - self.gram @ theta + self.rows[:, None] * self.noise**2 * theta
+        return self.moment - self.gram @ theta + np.outer(self.rows, self.noise @ theta)
 
     def residual_power(self, theta: Array) -> float:
         """Sum of squared residuals of all rows - the effort's unit squared."""
@@ -80,12 +80,12 @@ def solved(gram: Array, moment: Array, noise: Array) -> tuple[Array, Array]:
     """Coefficients (p,) of X'X (p, p) and X'y (p,), and the inverse of the matrix that they came from.
 
     Noise in a column inflates its own square and draws its coefficient towards zero; taking the known power `noise`
-    (p,) out makes least squares consistent (Soderstrom, Errors-in-variables methods in system identification,
+    (p, p) out makes least squares consistent (Soderstrom, Errors-in-variables methods in system identification,
     Automatica 43(6), 2007, eq. 40).
     """
     scale = np.sqrt(np.diag(gram))
     scale = np.where(scale > 0.0, scale, 1.0)
-    inverse = np.linalg.pinv((gram - np.diag(noise)) / np.outer(scale, scale), rcond=ROUNDING, hermitian=True)
+    inverse = np.linalg.pinv((gram - noise) / np.outer(scale, scale), rcond=ROUNDING, hermitian=True)
     inverse = np.asarray(inverse / np.outer(scale, scale), dtype=np.float64)
     return inverse @ moment, inverse
 
@@ -97,7 +97,7 @@ def normal_equations(columns: Array, effort: Array, time: Array, noise: Array, w
         columns: (m, p).
         effort: (m,) what they are to explain.
         time: (m,) - s.
-        noise: (p,) standard deviation of the noise in each column.
+        noise: (p, p) covariance of the noise of the columns in a row.
         width: of the filter - s.
     """
     edges = block_edges(time, width)

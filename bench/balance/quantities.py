@@ -18,7 +18,8 @@ from bench.balance.layout import BASE, COULOMB, INERTIA, VISCOUS, lay_out
 from bench.balance.normal_equations import block_edges, solved
 from bench.balance.parameter import Parameter
 from bench.balance.rows import Rows
-from bench.effects.effect import Effect, is_pitch
+from bench.effects.effect import Effect
+from bench.effects.grids import is_pitch
 from bench.effects.signals import Base, Signals
 from bench.statistics import NORMAL95
 
@@ -102,7 +103,7 @@ def uncertain(fitted: Fit) -> Uncertain:
     rows = fitted.rows
     slots = tuple((index, k) for index, term in enumerate(fitted.terms) for k in _free(term.effect, rows))
     jacobian = _jacobian(rows, fitted, slots)
-    noise = np.concatenate([fitted.layout.noise, np.zeros(len(slots))])
+    noise = np.pad(fitted.layout.noise, (0, len(slots)))
     numbers = np.concatenate([fitted.theta, np.zeros(len(slots))])
     weight = np.ones(rows.effort.size)
     if not fitted.told.all():
@@ -110,8 +111,8 @@ def uncertain(fitted: Fit) -> Uncertain:
     edges = block_edges(fitted.time, rows.conditioning.filter.width)
     count = np.diff(edges)
     scores = np.add.reduceat(jacobian * (weight * fitted.left)[:, None], edges[:-1])
-    scores += count[:, None] * noise**2 * numbers
-    inverse = solved((jacobian.T * weight) @ jacobian, numbers, count.sum() * noise**2)[1]
+    scores += np.outer(count, noise @ numbers)
+    inverse = solved((jacobian.T * weight) @ jacobian, numbers, count.sum() * noise)[1]
     conditioning = rows.conditioning
     covariance, reach = estimated(scores, inverse, conditioning.effort_noise**2 / conditioning.filter.stride)
     shapes = np.array([fitted.terms[index].shape[k] for index, k in slots])
@@ -197,4 +198,4 @@ def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
     layout = lay_out(loud, fitted.hypothesis)
     jacobian = _jacobian(loud, replace(fitted, rows=loud, layout=layout), slots)
     left = layout.effort - layout.columns @ fitted.theta
-    yield least_squares(jacobian, left, np.zeros(jacobian.shape[1]))
+    yield least_squares(jacobian, left, np.zeros((jacobian.shape[1],) * 2))

@@ -9,7 +9,7 @@ from bench.arrays import Array
 from bench.balance.fit import Fit, fit
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.rows import Rows
-from bench.effects.effect import is_pitch
+from bench.effects.grids import is_pitch
 from bench.effects.signals import Scope
 
 

@@ -13,10 +13,10 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.effect import amplitude_and_phase
-from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism
 from bench.effects.mjcf import add_periodic_torque
 from bench.effects.signals import Base, Shape, Signals
+from bench.effects.waves import amplitude_and_phase, followed
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -27,9 +27,9 @@ class CoggingTorque(Mechanism):
     name = "cogging_torque"
     summary = "torque periodic in position, independent of current"
     quantities = (
-        Quantity("amplitude", "A", "N*m", lower=0.0),
+        Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0),
         Quantity("harmonic", "n", "dimensionless", lower=2.0, linear_unit="rad/m"),
-        Quantity("phase", "phi", "rad", angle=True),
+        Quantity("phase", "phi", "rad", angle=True, preset=0.0),
     )
     shapes = (Shape(quantities[1], tuple(float(n) for n in range(2, 81)), whole=True),)
     repeatable = True
@@ -49,22 +49,9 @@ class CoggingTorque(Mechanism):
         """The harmonic."""
         return shape[0]
 
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"amplitude": 0.0}
-
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """A phase of zero."""
-        return {"phase": 0.0}
-
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """A passive DC motor that cogs."""
         add_periodic_torque(spec, name, values["amplitude"], values["harmonic"], values["phase"])
-
-
-def followed(signals: Signals, harmonic: float) -> np.ndarray:
-    """1 where a wave of n cycles a revolution stays below 0.8 of the Nyquist frequency, else 0 - (n,)."""
-    return (harmonic * np.abs(signals.velocity) < 0.8 * np.pi / signals.sample_period).astype(float)
 
 
 EFFECT = CoggingTorque()

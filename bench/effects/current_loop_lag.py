@@ -15,7 +15,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.effects.first_order import lagged
-from bench.effects.kinds import Axis, Electronics, Number, Values
+from bench.effects.kinds import Electronics, Values
 from bench.effects.signals import Scope, Shape, Signals
 from bench.statistics import NORMAL95
 from bench.units import Quantity
@@ -29,7 +29,7 @@ class CurrentLoopLag(Electronics):
 
     name = "current_loop_lag"
     summary = "torque acts later than the reported current"
-    quantities = (Quantity("time_constant", "T", "s", lower=0.0),)
+    quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
     shapes = (Shape(quantities[0], LAGS, reach=1.0),)
     not_beside = frozenset({"velocity_filter_lag"})
 
@@ -53,10 +53,6 @@ class CurrentLoopLag(Electronics):
     def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float]:
         """A lag of the speed by as much."""
         return {"time_constant": values["time_constant"]}
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"time_constant": 0.0}
 
     def acting(self, values: Values, reported: Array, before: Array, step: float) -> tuple[Array, Array]:
         """Exact for a current that is held over the step."""

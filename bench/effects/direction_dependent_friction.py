@@ -27,8 +27,8 @@ class DirectionDependentFriction(Friction):
     name = "direction_dependent_friction"
     summary = "friction differs between the two directions"
     quantities = (
-        Quantity("coulomb_difference", "D_0", "N*m"),
-        Quantity("viscous_difference", "D_w", "N*m*s/rad"),
+        Quantity("coulomb_difference", "D_0", "N*m", null=0.0),
+        Quantity("viscous_difference", "D_w", "N*m*s/rad", null=0.0, preset=0.0),
     )
     of_speed_alone = True
 
@@ -51,14 +51,6 @@ class DirectionDependentFriction(Friction):
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """A constant torque, wherever the axis moves."""
         return ("torque_offset",)
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"coulomb_difference": 0.0, "viscous_difference": 0.0}
-
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """No difference of viscous friction."""
-        return {"viscous_difference": 0.0}
 
     def native(self, values: Mapping[str, float], friction_scaled: bool) -> bool:
         """Dry friction alone is native: half of the difference is a constant torque, at rest and in motion."""

@@ -9,16 +9,16 @@ overrides what is not neutral in it, and whoever deals with effects asks the obj
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import product
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.effects.fitted import Detected, Fitted, Load, Proposal
+from bench.effects.grids import is_pitch, places
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.rig.rig import Rig
 from bench.trace.filter import Column
@@ -34,15 +34,71 @@ SHARE = 0.25
 #: The same for a pitch that repeats so many half cycles over the travel of a linear axis that no smooth error of the
 #: model copies it.
 PITCH_SHARE, MANY = 0.1, 20.0
-#: Top speed of the rotary axes for which effects state their grids - rad/s.
-TOP = 100.0
-#: Angle of a cycle that the motion must cover - rad: over less, a wave is a mere curve, and a wave of torque copies it.
-PERIOD = 2.0 * np.pi
-#: Cycles over the travel of a linear axis between which pitches are sought: fewer than two are no repetition.
-COARSEST, FINEST = 2.0, 128.0
+
+#: What acts on the load behind a coupling: effect, its shape, its strengths over load inertia.
+Load = tuple["Effect", tuple[float, ...], tuple[float, ...]]
 
 
-class Effect(ABC):
+@dataclass(frozen=True)
+class Proposal:
+    """A shape of an effect that was tried beside a fit, and the squares it would take from the residual."""
+
+    shape: tuple[float, ...]
+    gain: float
+
+
+@dataclass(frozen=True)
+class Detected:
+    """An effect read from signals that the torque balance does not hold.
+
+    Attributes:
+        values, errors: of its quantities, and their half widths at 95 % - SI.
+        evidence: figures that speak for it, by what they are.
+    """
+
+    values: Mapping[str, float]
+    errors: Mapping[str, float]
+    evidence: Mapping[str, float] = field(default_factory=dict)
+
+
+class FittedTerm(Protocol):
+    """A term of a fitted balance: an effect of a shape."""
+
+    @property
+    def effect(self) -> Effect: ...  # noqa: D102
+    @property
+    def shape(self) -> tuple[float, ...]: ...  # noqa: D102
+
+
+class Fitted(Protocol):
+    """A torque balance fitted to a recording, as effects may ask it; see `bench.balance.fit.Fit`."""
+
+    @property
+    def theta(self) -> Array: ...  # noqa: D102
+    @property
+    def owners(self) -> NDArray[np.int64]: ...  # noqa: D102
+    @property
+    def scope(self) -> Scope: ...  # noqa: D102
+    @property
+    def terms(self) -> Sequence[FittedTerm]: ...  # noqa: D102
+    @property
+    def columns(self) -> Array: ...  # noqa: D102
+    @property
+    def effort(self) -> Array: ...  # noqa: D102
+    @property
+    def residual(self) -> Array: ...  # noqa: D102
+    @property
+    def floor(self) -> float: ...  # noqa: D102
+    @property
+    def time(self) -> Array: ...  # noqa: D102
+    @property
+    def span(self) -> Array: ...  # noqa: D102
+    def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array: ...  # noqa: D102
+    def gains(self, columns: Array, width: int) -> Array: ...  # noqa: D102
+    def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]: ...  # noqa: D102
+
+
+class Effect:
     """Anything the catalogue lists.
 
     Attributes:
@@ -95,15 +151,13 @@ class Effect(ABC):
     fixed_in_simulation: ClassVar[frozenset[str]] = frozenset()
     undiagnosed: ClassVar[str] = ""
 
-    # How it is told absent, and what need not be said of it.
-
-    @abstractmethod
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Values of some quantities at which the effect is exactly absent."""
+        return {quantity.name: quantity.null for quantity in self.quantities if quantity.null is not None}
 
     def defaults(self, axis: Axis) -> Mapping[str, Number]:
         """Values of quantities that need not be given."""
-        return {}
+        return {quantity.name: quantity.preset for quantity in self.quantities if quantity.preset is not None}
 
     # How it enters the torque balance.
 
@@ -241,29 +295,3 @@ class Effect(ABC):
         """Whether the effect has a hook of its own rather than the neutral one of its kind."""
         neutral: Any = next((vars(base)[hook] for base in cls.__mro__[::-1] if hook in vars(base)), None)
         return getattr(cls, hook, None) is not neutral
-
-
-def is_pitch(shape: Shape, scope: Scope) -> bool:
-    """Whether a harmonic is the wave number of a pitch.
-
-    A linear axis has no revolution that all share: screw, belt and magnets each have a pitch of their own, so a
-    harmonic is 2*pi over the pitch there - rad/m -, varies continuously and is sought by the travel.
-    """
-    return shape.whole and not scope.kind.turns
-
-
-def places(shape: Shape, scope: Scope) -> tuple[float, ...]:
-    """Where a shape is sought first: on a linear axis as on a rotary one whose top speed is TOP."""
-    if is_pitch(shape, scope):
-        return tuple((scope.spacing * np.arange(2.0 * COARSEST, 2.0 * FINEST + 1.0)).tolist())
-    if shape.whole:
-        return tuple(n for n in shape.grid if n * scope.travel >= PERIOD)
-    power = {"rad/s": 1, "1/rad": -1}.get(shape.quantity.unit, 0)
-    if scope.kind.turns or not power:
-        return shape.grid
-    return tuple(value * (scope.top_speed / TOP) ** power for value in shape.grid)
-
-
-def amplitude_and_phase(sine: float, cosine: float) -> tuple[float, float]:
-    """A, phi of A*sin(x + phi) = sine*sin(x) + cosine*cos(x); phi - rad in (-pi, pi]."""
-    return float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))

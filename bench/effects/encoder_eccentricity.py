@@ -15,9 +15,10 @@ from dataclasses import replace
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.effect import Fitted, Proposal, amplitude_and_phase
-from bench.effects.kinds import Axis, Number, Sensing, Values
+from bench.effects.effect import Fitted, Proposal
+from bench.effects.kinds import Sensing, Values
 from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.effects.waves import amplitude_and_phase
 from bench.statistics import NORMAL95
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -31,7 +32,10 @@ class EncoderEccentricity(Sensing):
 
     name = "encoder_eccentricity"
     summary = "measured position errs once per revolution"
-    quantities = (Quantity("amplitude", "e", "rad", lower=0.0, upper=0.5), Quantity("phase", "phi", "rad", angle=True))
+    quantities = (
+        Quantity("amplitude", "e", "rad", lower=0.0, upper=0.5, null=0.0),
+        Quantity("phase", "phi", "rad", angle=True, preset=0.0),
+    )
     shapes = (
         Shape(Quantity("sine", "s", "rad"), additive=True),
         Shape(Quantity("cosine", "c", "rad"), additive=True),
@@ -71,14 +75,6 @@ class EncoderEccentricity(Sensing):
     def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
         """By the drift of an integrated position, and by the half tick within which it was taken."""
         return [float(np.linalg.norm(shape)) * (scope.drift + 0.5 * scope.latched * scope.rms_speed / NORMAL95)] * 2
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"amplitude": 0.0}
-
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """A phase of zero."""
-        return {"phase": 0.0}
 
     def seen(self, values: Values, position: Array, velocity: Array) -> tuple[Array, Array]:
         """By the equations above."""

@@ -25,9 +25,9 @@ class FrictionWarmup(Friction):
     name = "friction_warmup"
     summary = "friction decays over time as the axis warms up"
     quantities = (
-        Quantity("relative_amplitude", "A", "dimensionless", lower=0.0),
+        Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, null=0.0),
         Quantity("time_constant", "T", "s", lower=0.0),
-        Quantity("viscous_share", "s", "dimensionless", lower=0.0),
+        Quantity("viscous_share", "s", "dimensionless", lower=0.0, preset=1.0),
     )
     shapes = (Shape(quantities[1], (0.7, 1.5, 3.0, 6.0, 12.0)),)
     scales_friction = True
@@ -44,14 +44,6 @@ class FrictionWarmup(Friction):
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude relative to the Coulomb friction of the warm axis."""
         return {"relative_amplitude": strengths[0] / base.coulomb, "time_constant": shape[0]}
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"relative_amplitude": 0.0}
-
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """Viscous friction decays as dry friction does."""
-        return {"viscous_share": 1.0}
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Of the dry part."""

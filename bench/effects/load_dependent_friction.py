@@ -24,7 +24,7 @@ class LoadDependentFriction(Friction):
 
     name = "load_dependent_friction"
     summary = "friction grows with the magnitude of the transmitted torque"
-    quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0),)
+    quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0, null=0.0),)
     copies_torque = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
@@ -38,10 +38,6 @@ class LoadDependentFriction(Friction):
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"load_friction_coefficient": strengths[0]}
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"load_friction_coefficient": 0.0}
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """In proportion to the motor's torque."""

@@ -35,7 +35,7 @@ class LoadTorqueEvent(Mechanism):
     name = "load_torque_event"
     summary = "an external torque acts for a stretch of time"
     quantities = (
-        Quantity("torque", "M_e", "N*m"),
+        Quantity("torque", "M_e", "N*m", null=0.0),
         Quantity("start", "t_1", "s", lower=0.0),
         Quantity("end", "t_2", "s", lower=0.0),
     )
@@ -89,10 +89,6 @@ class LoadTorqueEvent(Mechanism):
         """Of its edges by the distance of the rows around them, which an instant lies within at 95 %."""
         after = np.clip(np.searchsorted(time, shape), 1, time.size - 1)
         return ((time[after] - time[after - 1]) / NORMAL95).tolist()
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"torque": 0.0}
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
         """While it acts."""

@@ -12,9 +12,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.effect import amplitude_and_phase
 from bench.effects.kinds import Axis, Friction, Moment, Number, Values
 from bench.effects.signals import Base, Signals
+from bench.effects.waves import amplitude_and_phase
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -25,8 +25,8 @@ class PositionDependentFriction(Friction):
     name = "position_dependent_friction"
     summary = "friction level varies with position"
     quantities = (
-        Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.5),
-        Quantity("phase", "phi", "rad", angle=True),
+        Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.5, null=0.0),
+        Quantity("phase", "phi", "rad", angle=True, preset=0.0),
     )
     scales_friction = True
     turning_only = True
@@ -47,14 +47,6 @@ class PositionDependentFriction(Friction):
     def wave_number(self, shape: Sequence[float]) -> float:
         """One cycle a revolution."""
         return 1.0
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"relative_amplitude": 0.0}
-
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """A phase of zero."""
-        return {"phase": 0.0}
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Once up and down a revolution."""

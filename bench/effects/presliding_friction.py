@@ -15,7 +15,7 @@ from itertools import pairwise
 import mujoco
 import numpy as np
 
-from bench.effects.kinds import Axis, Friction, Number
+from bench.effects.kinds import Axis, Friction
 from bench.effects.mjcf import AXIS, BRISTLES, passive_motor
 from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
@@ -31,8 +31,8 @@ class PreslidingFriction(Friction):
     name = "presliding_friction"
     summary = "bristle-like hysteresis before breakaway and after reversal (Dahl, LuGre)"
     quantities = (
-        Quantity("bristle_stiffness", "sigma", "N*m/rad", lower=0.0),
-        Quantity("bristle_damping", "sigma_1", "N*m*s/rad", lower=0.0),
+        Quantity("bristle_stiffness", "sigma", "N*m/rad", lower=0.0, null=np.inf),
+        Quantity("bristle_damping", "sigma_1", "N*m*s/rad", lower=0.0, preset=0.0),
     )
     shapes = (Shape(Quantity("bristle_rate", "sigma/K_0", "1/rad", lower=0.0), (3.0, 8.0, 20.0, 50.0, 130.0, 350.0)),)
 
@@ -52,14 +52,6 @@ class PreslidingFriction(Friction):
             return False
         critical = 2.0 * np.sqrt(shape[0] * base.coulomb * base.inertia)
         return 0.5 * base.coulomb < strengths[0] < 2.0 * base.coulomb and strengths[1] > -UNDAMPED * critical
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"bristle_stiffness": np.inf}
-
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """Bristles without damping (Dahl's)."""
-        return {"bristle_damping": 0.0}
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """LuGre friction of a passive DC motor in place of the joint's."""

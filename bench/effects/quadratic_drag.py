@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism
 from bench.effects.mjcf import AXIS
 from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
@@ -24,7 +24,7 @@ class QuadraticDrag(Mechanism):
 
     name = "quadratic_drag"
     summary = "resisting torque grows with velocity*|velocity|"
-    quantities = (Quantity("quadratic_drag", "k_q", "N*m*s**2/rad**2", lower=0.0),)
+    quantities = (Quantity("quadratic_drag", "k_q", "N*m*s**2/rad**2", lower=0.0, null=0.0),)
     may_load = True
     of_speed_alone = True
 
@@ -35,10 +35,6 @@ class QuadraticDrag(Mechanism):
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"quadratic_drag": strengths[0]}
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"quadratic_drag": 0.0}
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Second coefficient of the joint's damping, which grows with speed."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from bench.effects.kinds import Array, Axis, Electronics, Number, Values
+from bench.effects.kinds import Array, Axis, Electronics, Values
 from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -20,7 +20,7 @@ class TorqueConstantSaturation(Electronics):
 
     name = "torque_constant_saturation"
     summary = "torque per ampere falls at high current"
-    quantities = (Quantity("drop_at_peak", "d", "dimensionless", lower=0.0, upper=1.0),)
+    quantities = (Quantity("drop_at_peak", "d", "dimensionless", lower=0.0, upper=1.0, null=0.0),)
     copies_torque = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
@@ -30,10 +30,6 @@ class TorqueConstantSaturation(Electronics):
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The strength itself."""
         return {"drop_at_peak": strengths[0]}
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"drop_at_peak": 0.0}
 
     def delivered(self, values: Values, axis: Axis, effort: Array) -> Array:
         """What is left of the torque."""

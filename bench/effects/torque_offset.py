@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism
 from bench.effects.mjcf import add_resisting_torque
 from bench.effects.signals import Base, Scope, Signals
 from bench.trace.filter import Column
@@ -24,7 +24,7 @@ class TorqueOffset(Mechanism):
 
     name = "torque_offset"
     summary = "a constant torque"
-    quantities = (Quantity("torque", "M_0", "N*m"),)
+    quantities = (Quantity("torque", "M_0", "N*m", null=0.0),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """One."""
@@ -41,10 +41,6 @@ class TorqueOffset(Mechanism):
     def instead_of_dry_friction(self, torque: float) -> Mapping[str, float]:
         """The torque itself."""
         return {"torque": torque}
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"torque": 0.0}
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Part of the load's constant torque."""

@@ -12,10 +12,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.cogging_torque import followed
-from bench.effects.effect import amplitude_and_phase
 from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
 from bench.effects.signals import Base, Shape, Signals
+from bench.effects.waves import amplitude_and_phase, followed
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -26,9 +25,9 @@ class TorqueRipple(Mechanism):
     name = "torque_ripple"
     summary = "torque periodic in position, proportional to current"
     quantities = (
-        Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.0),
+        Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.0, null=0.0),
         Quantity("harmonic", "n", "dimensionless", lower=1.0, linear_unit="rad/m"),
-        Quantity("phase", "phi", "rad", angle=True),
+        Quantity("phase", "phi", "rad", angle=True, preset=0.0),
     )
     shapes = (Shape(quantities[1], tuple(float(n) for n in range(1, 41)), whole=True),)
     copies_torque = True
@@ -48,14 +47,6 @@ class TorqueRipple(Mechanism):
     def wave_number(self, shape: Sequence[float]) -> float:
         """The harmonic."""
         return shape[0]
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"relative_amplitude": 0.0}
-
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """A phase of zero."""
-        return {"phase": 0.0}
 
     def torque_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Of the angle the motor is at."""

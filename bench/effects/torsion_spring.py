@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import mujoco
 
-from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism
 from bench.effects.mjcf import AXIS
 from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
@@ -23,7 +23,7 @@ class TorsionSpring(Mechanism):
 
     name = "torsion_spring"
     summary = "a torque proportional to position"
-    quantities = (Quantity("stiffness", "c", "N*m/rad", lower=0.0),)
+    quantities = (Quantity("stiffness", "c", "N*m/rad", lower=0.0, null=0.0),)
     may_load = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
@@ -37,10 +37,6 @@ class TorsionSpring(Mechanism):
     def stiffness(self, strengths: Sequence[float]) -> float:
         """The strength itself."""
         return strengths[0]
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"stiffness": 0.0}
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Stiffness of the joint."""

@@ -12,10 +12,10 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.effect import amplitude_and_phase
-from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism
 from bench.effects.mjcf import add_periodic_torque
 from bench.effects.signals import Base, Signals
+from bench.effects.waves import amplitude_and_phase
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -25,7 +25,10 @@ class Unbalance(Mechanism):
 
     name = "unbalance"
     summary = "an eccentric mass under gravity, once per revolution"
-    quantities = (Quantity("amplitude", "A", "N*m", lower=0.0), Quantity("phase", "phi", "rad", angle=True))
+    quantities = (
+        Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0),
+        Quantity("phase", "phi", "rad", angle=True, preset=0.0),
+    )
     may_load = True
     turning_only = True
 
@@ -41,14 +44,6 @@ class Unbalance(Mechanism):
     def wave_number(self, shape: Sequence[float]) -> float:
         """One cycle a revolution."""
         return 1.0
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"amplitude": 0.0}
-
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """A phase of zero."""
-        return {"phase": 0.0}
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """A torque of one period a revolution: an eccentric body would add inertia that J holds already."""

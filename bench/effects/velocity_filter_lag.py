@@ -18,7 +18,7 @@ from bench.arrays import Array
 from bench.effects.current_loop_lag import LAGS
 from bench.effects.effect import Detected
 from bench.effects.first_order import lagged
-from bench.effects.kinds import Axis, Number, Sensing
+from bench.effects.kinds import Sensing
 from bench.effects.signals import Scope, Shape
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95
@@ -38,7 +38,7 @@ class VelocityFilterLag(Sensing):
 
     name = "velocity_filter_lag"
     summary = "reported velocity lags the motion"
-    quantities = (Quantity("time_constant", "T", "s", lower=0.0),)
+    quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
     shapes = (Shape(quantities[0], LAGS, reach=1.0),)
     not_beside = frozenset({"current_loop_lag"})
     faulty_signal = "velocity"
@@ -99,10 +99,6 @@ class VelocityFilterLag(Sensing):
         for part in trace.segments:
             speed[part] = self.unfiltered(values, speed[part], trace.sample_period)
         return trace.with_signals({"velocity": speed}, {})
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
-        return {"time_constant": 0.0}
 
     def filtered(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
         """Exact for a velocity that changes linearly within the step; started where the velocity is."""

@@ -41,7 +41,7 @@ class VoltageLimit(Electronics):
 
     name = "voltage_limit"
     summary = "the drive runs out of voltage at speed"
-    quantities = (Quantity("voltage", "U_max", "V", lower=0.0),)
+    quantities = (Quantity("voltage", "U_max", "V", lower=0.0, null=np.inf),)
     shows_under_drive = True
 
     def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
@@ -87,10 +87,6 @@ class VoltageLimit(Electronics):
         rests = np.flatnonzero(resting[: first + 1])
         start = float(trace.time[rests[-1] if rests.size else 0])
         return trace.between(start, max(start + LONGEST, float(trace.time[first]) + SHORTEST))
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent: any voltage."""
-        return {"voltage": np.inf}
 
     def flowing(
         self, values: Values, axis: Axis, velocity: Array, demand: Array, before: Array, step: float

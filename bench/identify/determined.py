@@ -50,7 +50,7 @@ def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
 
 def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
     """UndeterminedError where the rows are too few or leave the inertia open."""
-    least = ROWS_PER_COLUMN * equations.noise.size
+    least = ROWS_PER_COLUMN * equations.noise.shape[0]
     if equations.count < least:
         reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
         raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])

@@ -62,7 +62,7 @@ def equations_of(rows: Rows, hypothesis: Hypothesis) -> NormalEquations:
     """Normal equations of a hypothesis' columns and, behind them, a constant."""
     laid = lay_out(rows, hypothesis)
     columns = np.column_stack([laid.columns, np.ones(laid.effort.size)])
-    return normal_equations(columns, laid.effort, rows.time, np.append(laid.noise, 0.0), rows.conditioning.filter.width)
+    return normal_equations(columns, laid.effort, rows.time, np.pad(laid.noise, (0, 1)), rows.conditioning.filter.width)
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def solve(
     found = _solved(equations, rows, rig.offset)
     chosen = equations.select(found.columns)
     terms = [INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if rig.offset else [])]
-    places = [found.columns.index(PLACES[term] % equations.noise.size) for term in terms]
+    places = [found.columns.index(PLACES[term] % equations.noise.shape[0]) for term in terms]
     parameters = {}
     for term, place in zip(terms, places, strict=True):
         value, error = float(found.theta[place]), float(found.errors[place])
@@ -131,7 +131,7 @@ def solve(
 
 def _solved(equations: NormalEquations, rows: Rows, offset: bool) -> Solved:
     """Least squares; a shift of torque against speed beyond a tick is one only if it is sure, else held at the tick."""
-    width = equations.noise.size
+    width = equations.noise.shape[0]
     columns = list(range(width if offset else width - 1))
     chosen = equations.select(columns)
     theta, inverse = chosen.solve()
@@ -145,7 +145,7 @@ def _solved(equations: NormalEquations, rows: Rows, offset: bool) -> Solved:
         kept = [k for k in range(theta.size) if k != at]
         held = float(np.copysign(bound, theta[at]))
         gram, moment = chosen.gram.sum(axis=0), chosen.moment.sum(axis=0) - held * chosen.gram.sum(axis=0)[:, at]
-        rest, _ = solved(gram[np.ix_(kept, kept)], moment[kept], chosen.count * chosen.noise[kept] ** 2)
+        rest, _ = solved(gram[np.ix_(kept, kept)], moment[kept], chosen.count * chosen.noise[np.ix_(kept, kept)])
         theta = np.insert(rest, at, held)
     return Solved(columns, theta, errors, reach, shift)
 
@@ -153,8 +153,8 @@ def _solved(equations: NormalEquations, rows: Rows, offset: bool) -> Solved:
 def _floor(rows: Rows, hypothesis: Hypothesis, found: Solved) -> float:
     """What the sensors' noise leaves in the residual of the first part."""
     laid = lay_out(rows, hypothesis)
-    theta = found.theta[: laid.noise.size]
-    offset = float(found.theta[-1]) if found.theta.size > laid.noise.size else 0.0
+    theta = found.theta[: laid.owners.size]
+    offset = float(found.theta[-1]) if found.theta.size > laid.owners.size else 0.0
     left = laid.effort - laid.columns @ theta - offset
     return noise_floor(rows, white_power(rows, hypothesis, laid, theta), left).coloured
 

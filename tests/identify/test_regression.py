@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from bench.errors import UndeterminedError
 from bench.balance.hypothesis import Hypothesis
 from bench.balance.layout import lay_out
 from bench.balance.rows import Rows
+from bench.errors import UndeterminedError
 from bench.identify.lab import identify_as_in_the_lab
 from bench.identify.regression import identify
 from bench.trace.trace import Trace

@@ -18,7 +18,7 @@ from bench.balance.hypothesis import Term
 from bench.balance.rows import Rows
 from bench.diagnose.name.candidates import candidates
 from bench.diagnose.name.policy import Policy, freedom, worth
-from bench.diagnose.name.search import Searched, Step, refined
+from bench.diagnose.name.search import Searched, Step, backward_elimination, refined
 from bench.effects.catalogue import catalogue, rivals
 from bench.effects.effect import Effect
 from bench.effects.signals import Signals
@@ -188,6 +188,30 @@ class TwoForOne:
 
 
 @dataclass(frozen=True)
+class OneForMany:
+    """Waves of position in the place of which one thing from outside the catalogue leaves only noise.
+
+    A series of harmonics draws any bump at one angle; where a single rival with fewer numbers does, there is no series.
+    """
+
+    def left(self, fitted: Fit, evidence: Evidence) -> Fit:
+        """Without the waves, and without what is not needed beside the rival."""
+        kept = [term for term in fitted.terms if term.effect.wave_number(term.shape) is None]
+        if len(fitted.terms) - len(kept) < 2:
+            return fitted
+        less = fit(fitted.rows, fitted.hypothesis.with_terms(kept))
+        tried = [refined(less, found.term) for found in candidates(less, evidence.rivals())]
+        spared = [rival for rival in tried if freedom(rival) < freedom(fitted)]
+        if not spared:
+            return fitted
+        rival = min(spared, key=lambda found: found.squares)
+        if evidence.policy.remainder.holds(rival):
+            return fitted
+        needed = backward_elimination(rival, evidence.policy).terms
+        return fit(fitted.rows, fitted.hypothesis.with_terms(term for term in kept if any(map(term.same, needed))))
+
+
+@dataclass(frozen=True)
 class Simpler:
     """An effect of which a simpler form explains as much: friction differs by a constant only, which is an offset."""
 
@@ -225,7 +249,15 @@ class Unbelievable:
 
 
 #: All doubts, in the order in which they are raised.
-DOUBTS: tuple[Doubt, ...] = (NotBorneOut(), Contested(), WrongForm(), TwoForOne(), Simpler(), Unbelievable())
+DOUBTS: tuple[Doubt, ...] = (
+    NotBorneOut(),
+    Contested(),
+    WrongForm(),
+    TwoForOne(),
+    OneForMany(),
+    Simpler(),
+    Unbelievable(),
+)
 
 
 def doubted(searched: Searched, evidence: Evidence, doubts: Sequence[Doubt] = DOUBTS) -> Searched:

@@ -41,7 +41,7 @@ class Backlash(Mechanism):
     name = "backlash"
     summary = "motor and load are joined through a dead zone"
     quantities = (
-        Quantity("gap", "g", "rad", lower=0.0),
+        Quantity("gap", "g", "rad", lower=0.0, null=0.0),
         Quantity("contact_stiffness", "k", "N*m/rad", lower=0.0),
         Quantity("contact_damping", "d", "N*m*s/rad", lower=0.0),
     )
@@ -103,10 +103,6 @@ class Backlash(Mechanism):
     def spread(self, fitted: Fitted, index: int) -> Array:
         """Of resampled recordings: along the ridge of softer contacts and wider gaps curvature tells nothing."""
         return contact_spread(fitted, index)
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent: no gap, which is a rigid coupling as far as a recording tells."""
-        return {"gap": 0.0}
 
     def defaults(self, axis: Axis) -> Mapping[str, Number]:
         """A contact that resonates at CONTACT_FREQUENCY; recordings of an axis hardly tell it."""

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.effects.effect import Load
 from bench.effects.elastic_coupling.twist import twist_columns
-from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.kinds import Axis, Mechanism
 from bench.effects.mjcf import add_coupling_joint
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.trace.filter import Column
@@ -40,8 +40,8 @@ class ElasticCoupling(Mechanism):
     name = "elastic_coupling"
     summary = "motor and load are joined by a spring and damper"
     quantities = (
-        Quantity("stiffness", "k", "N*m/rad", lower=0.0),
-        Quantity("damping", "d", "N*m*s/rad", lower=0.0),
+        Quantity("stiffness", "k", "N*m/rad", lower=0.0, null=np.inf),
+        Quantity("damping", "d", "N*m*s/rad", lower=0.0, preset=0.0),
     )
     derived = (Quantity("resonance_frequency", "f", "Hz", lower=0.0),)
     shapes = (
@@ -87,14 +87,6 @@ class ElasticCoupling(Mechanism):
         resonance = np.sqrt(max(stiffness * (1.0 / max(motor, 1e-12) + 1.0 / load), 0.0)) / (2.0 * np.pi)
         loss = 2.0 * ratio * stiffness / antiresonance
         return {"stiffness": stiffness, "damping": loss, "resonance_frequency": float(resonance)}
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent: a rigid coupling."""
-        return {"stiffness": np.inf}
-
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """No damping."""
-        return {"damping": 0.0}
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """A joint with stiffness and damping between motor and load."""
