@@ -1,9 +1,13 @@
-"""Imports follow the way of the data, never back; files stay small; public things say what they are."""
+"""Imports follow the way of the data, never back; effects are asked and never named; files stay small."""
 
 import ast
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+from bench.effects.catalogue import catalogue
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = sorted((ROOT / "bench").rglob("*.py"))
@@ -15,6 +19,7 @@ LAYERS = (
     {"rig"},
     {"effects"},
     {"plant"},
+    {"balance"},
     {"identify"},
     {"friction_map"},
     {"diagnose"},
@@ -50,6 +55,79 @@ def test_no_import_goes_back(path):
     own = layer_of(module_of(path))
     back = [name for name in imports(path) if name != "bench.__version__" and layer_of(name) > own]
     assert not back, f"{module_of(path)} imports {back} from further down the way of the data"
+
+
+#: Names of the bench's own effects, each a word of its own in a text.
+NAMED = re.compile(rf"(?<![a-z_])({'|'.join(catalogue())})(?![a-z_])")
+#: Modules that are an effect, or lie in the folder of one.
+OF_EFFECTS = {type(effect).__module__ for effect in catalogue().values()}
+
+
+def texts(tree: ast.AST) -> Iterator[ast.Constant]:
+    """All string constants but docstrings."""
+    documented = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+    first = [node.body[0] for node in ast.walk(tree) if isinstance(node, documented) and node.body]
+    documenting = {id(node.value) for node in first if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in documenting:
+            yield node
+
+
+def known_by_name(tree: ast.AST) -> list[str]:
+    """Where code knows one effect from another: by its name, by the module it is in, or by comparing names.
+
+    Whether a name is in a set is no such knowledge: an effect declares the set, or the caller asked for it. Two names
+    held against each other are: what is one is told by `is`.
+    """
+    found = [f"{node.lineno}: {node.value!r}" for node in texts(tree) if NAMED.search(node.value)]
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            whole = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        elif isinstance(node, ast.Import):
+            whole = [alias.name for alias in node.names]
+        else:
+            whole = []
+        found += [f"{node.lineno}: {name}" for name in whole if any(f"{name}.".startswith(f"{e}.") for e in OF_EFFECTS)]
+        if isinstance(node, ast.Compare) and any(isinstance(one, ast.Eq | ast.NotEq) for one in node.ops):
+            sides = [ast.unparse(side) for side in (node.left, *node.comparators)]
+            found += [f"{node.lineno}: {side}" for side in sides if side.endswith(("effect.name", "rival.name"))]
+    return found
+
+
+@pytest.mark.parametrize("path", [path for path in SOURCES if "effects" not in path.parts], ids=module_of)
+def test_no_effect_is_known_by_name(path):
+    assert known_by_name(ast.parse(path.read_text(encoding="utf-8"))) == []
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        'catalogue()["torque_offset"]',
+        'if term.effect.name == "backlash": pass',
+        'lags = {"current_loop_lag", "velocity_filter_lag"}',
+        'say(f"it is unbalance of {amplitude}")',
+        "from bench.effects.backlash import EFFECT",
+        "from bench.effects import torque_ripple",
+        "from bench.effects.backlash.dead_zone import load_positions",
+        "import bench.effects.cogging_torque",
+        "same = present.effect.name == named.effect.name",
+    ],
+)
+def test_knowing_an_effect_by_name_is_seen(code):
+    assert known_by_name(ast.parse(code))
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        'def f():\n    """As backlash does."""',
+        "taken = other.name in effect.not_beside",
+        "catalogue()[name]",
+        'unit = {"torque_offset_unit": 1}',
+    ],
+)
+def test_asking_an_effect_is_not_knowing_its_name(code):
+    assert not known_by_name(ast.parse(code))
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=module_of)

@@ -124,6 +124,7 @@ class Effect:
         shows_under_drive: whether it shows where the drive runs the model, and hardly where the recording holds it.
         tolerates: share of the first gap that may be left beside it, if it is unlike that of other effects.
         fixed_in_simulation: quantities that a fit by simulation leaves alone: whole numbers, instants between samples.
+        undiagnosed: why no recording names it, a sentence; empty if one does, which a test then carries out.
     """
 
     name: ClassVar[str]
@@ -148,6 +149,7 @@ class Effect:
     shows_under_drive: ClassVar[bool] = False
     tolerates: ClassVar[float | None] = None
     fixed_in_simulation: ClassVar[frozenset[str]] = frozenset()
+    undiagnosed: ClassVar[str] = ""
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
         """Values of some quantities at which the effect is exactly absent."""

@@ -30,7 +30,6 @@ class FrictionWarmup(Friction):
         Quantity("viscous_share", "s", "dimensionless", lower=0.0, preset=1.0),
     )
     shapes = (Shape(quantities[1], (0.7, 1.5, 3.0, 6.0, 12.0)),)
-
     scales_friction = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

@@ -28,8 +28,8 @@ class PositionDependentFriction(Friction):
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.5, null=0.0),
         Quantity("phase", "phi", "rad", angle=True, preset=0.0),
     )
-
     scales_friction = True
+    turning_only = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """sin(q) and cos(q) of the friction level."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bench.axis_kind import OFFSET
 from bench.identify.regression import identify
 from bench.lab.result import Number, Task
 from bench.lab.rig import rotor_inertia, simulated_with
@@ -50,7 +51,7 @@ def task(rig: Rig) -> Task:
             truth.viscous_friction_coefficient,
         ),
         Number("K_fric_0", found["coulomb_friction_torque"].value, "N·m", truth.coulomb_friction),
-        Number("M_load behind the gear", found["torque_offset"].value * RATIO, "N·m", LOAD_TORQUE),
+        Number("M_load behind the gear", found[rig.axis_kind.parameter(OFFSET)].value * RATIO, "N·m", LOAD_TORQUE),
     )
     says = (
         f"With i = {RATIO:g} the motor feels J_load/i² and M_load/i. Simulated with {LOAD_TORQUE:g} N·m on the load "

@@ -114,7 +114,7 @@ def rivals(recordings: Recordings, suspects: Suspects, added: Added, model: Axis
             values = effect.effect.counterpart(other, effect.values)
             like = None if values is None else Present.of(other, values)
             if like is not None:
-                kept = [present for present in model.effects if present.name != effect.name]
+                kept = [present for present in model.effects if present.effect is not effect.effect]
                 models = model, model.with_effects([*kept, like])
                 yield Rival((effect.name, other), models, "this recording cannot tell them apart")
     yield from nearly_as_good(recordings, suspects, added, model)

@@ -1,0 +1,96 @@
+"""Every effect of the catalogue is named and recovered from a recording of the independent axis, or says why not."""
+
+import zlib
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+from bench.diagnose.diagnosis import diagnose
+from bench.effects.catalogue import catalogue
+from bench.rig.rig import load_rig
+from tests.blind.parameters import WHOLE, compared
+from tests.independent import KINDS, Axis, Noise, Sensors, random_motion, simulate, write_rig
+
+AXIS = Axis(
+    "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
+)
+SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
+SEED, SEVERITY, SECONDS, STEP = 3, 0.6, 6.0, 62.5e-6
+DIAGNOSED = [name for name, effect in catalogue().items() if not effect.undiagnosed]
+#: What is drawn beside its strength: without a viscous part, a difference of friction is a torque offset.
+BESIDE = {"direction_dependent_friction": {"viscous_share": 1.0}}
+#: Half widths of the intervals of 95 % within which every true value lies, and the chance that too few lie within one.
+REACH, CHANCE = 1.5, 0.01
+
+
+def number(name):
+    """What the draw and the noise of an effect hang on: its name, and not which others there are."""
+    return zlib.crc32(name.encode())
+
+
+@pytest.fixture(scope="module")
+def hidden():
+    """An effect of each kind on the same axis."""
+    rngs = {name: np.random.default_rng([SEED, number(name)]) for name in DIAGNOSED if name in KINDS}
+    drawn = {name: KINDS[name].draw(AXIS, SEVERITY, rng, SECONDS) for name, rng in rngs.items()}
+    return {name: replace(effect, **BESIDE.get(name, {})) for name, effect in drawn.items()}
+
+
+@pytest.fixture(scope="module")
+def diagnosed(hidden, tmp_path_factory):
+    """The diagnosis of a recording of each, all integrated together."""
+    path = tmp_path_factory.mktemp("rig") / "rig.toml"
+    write_rig(AXIS, path)
+    rig, count, motion = load_rig(path), len(hidden), random_motion(AXIS, np.random.default_rng(SEED), SECONDS)
+    runs = simulate(
+        [AXIS] * count,
+        [motion] * count,
+        [(effect,) for effect in hidden.values()],
+        [SENSORS] * count,
+        SEED,
+        numbers=[number(name) for name in hidden],
+        longest_step=STEP,
+    )
+    traces = dict(zip(hidden, (run.trace for run in runs), strict=True))
+    return cache(lambda name: diagnose(traces[name], rig))
+
+
+def quantities(diagnosis, effect):
+    """What is reported of an effect that was hidden, beside the truth."""
+    truth = {"coulomb_friction": AXIS.coulomb, "viscous_friction": AXIS.viscous}
+    truth |= {"parameters": {effect.name: effect.truth(AXIS)}}
+    named = next(named for named in diagnosis.effects if named.name == effect.name)
+    reported = {key: (found.value, *found.ci95) for key, found in named.parameters.items()}
+    return compared(truth, effect.name, effect.name, reported)
+
+
+@pytest.mark.parametrize("name", DIAGNOSED)
+def test_it_is_named_and_recovered(name, hidden, diagnosed):
+    found = diagnosed(name)
+    assert [effect.name for effect in found.effects] == [name]
+    told = quantities(found, hidden[name])
+    print({key: (one.true, one.value, one.half_widths) for key, one in told.items()})  # pytest -s
+    assert told
+    for key, one in told.items():
+        assert one.inside if key in WHOLE else one.half_widths < REACH, key
+    inertia = found.parameters["moment_of_inertia"]
+    assert inertia.value == pytest.approx(AXIS.inertia, rel=3e-3)
+
+
+def test_intervals_of_95_percent_hold_what_is_true(hidden, diagnosed):
+    told = [
+        one.inside
+        for name, effect in hidden.items()
+        for key, one in quantities(diagnosed(name), effect).items()
+        if key not in WHOLE
+    ]
+    assert len(told) > len(hidden)
+    assert told.count(False) <= binom.ppf(1.0 - CHANCE, len(told), 0.05)
+
+
+def test_what_cannot_be_named_says_why():
+    for name in set(catalogue()) - set(DIAGNOSED):
+        assert catalogue()[name].undiagnosed.endswith(".")

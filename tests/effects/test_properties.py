@@ -1,0 +1,401 @@
+"""What effects declare of themselves is what they do: each declaration against the behaviour of the object."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bench.effects.catalogue import catalogue
+from bench.effects.kinds import Electronics, Mechanism, Sensing
+from bench.effects.present import Present
+from bench.effects.signals import Base
+from bench.plant.model import build_spec
+from bench.trace.known_names import SI_UNITS
+from bench.trace.trace import Trace
+from tests.effects.axes import PARAMETERS, PERIOD, VALUES, model
+from tests.effects.recording import STEP, balanced, plain, raw, scopes, shape_of, signals
+from tests.independent import KINDS
+
+EFFECTS = catalogue()
+RECORDED = signals()
+BASE = Base(1.2e-3, 8e-4, 0.06)
+SCOPES = list(scopes())
+AXIS = model().axis
+
+every = pytest.mark.parametrize("effect", EFFECTS.values(), ids=list(EFFECTS))
+with_columns = pytest.mark.parametrize("effect", [EFFECTS[name] for name in balanced()], ids=balanced())
+
+
+def differ(one, other):
+    """Whether any of the values does by more than rounding."""
+    return any(np.abs(a - b).max() > 1e-9 * (np.abs(a).max() + 1e-300) for a, b in zip(one, other, strict=True))
+
+
+def changed(effect, **others):
+    """Whether its columns change with some of the signals."""
+    return differ(raw(effect, RECORDED), raw(effect, replace(RECORDED, **others)))
+
+
+def reported(effect):
+    """Quantities of strengths of one."""
+    strengths = [1.0] * len(effect.columns(RECORDED, shape_of(effect)))
+    return effect.report(strengths, shape_of(effect), BASE)
+
+
+# What its columns are made of.
+
+
+@every
+def test_it_copies_torque_if_its_columns_are_made_of_torque(effect):
+    other = np.roll(RECORDED.torque, 300)
+    assert effect.copies_torque == (effect.overrides("columns") and changed(effect, torque=other))
+
+
+@every
+def test_it_scales_friction_if_its_columns_follow_the_level_others_make(effect):
+    louder = changed(effect, friction=2.0 * RECORDED.friction)
+    assert effect.scales_friction == louder == effect.overrides("friction_factor")
+    if louder:
+        none, once, twice = (
+            np.array(raw(effect, replace(RECORDED, friction=factor * RECORDED.friction))) for factor in (0.0, 1.0, 2.0)
+        )
+        np.testing.assert_allclose(twice - once, once - none, atol=1e-12)
+
+
+@every
+def test_it_is_of_speed_alone_if_speed_makes_all_of_its_columns_and_they_vary(effect):
+    alone = False
+    if effect.overrides("columns"):
+        shuffled = np.random.default_rng(0).permutation(RECORDED.time.size)
+        speed = {"velocity": RECORDED.velocity[shuffled], "sign": RECORDED.sign[shuffled]}
+        moved = raw(effect, replace(RECORDED, **speed))
+        alone = not differ([column[shuffled] for column in raw(effect, RECORDED)], moved)
+        alone = alone and changed(effect, **speed)
+    assert effect.of_speed_alone == alone
+
+
+@every
+def test_columns_that_are_accelerations_hear_the_noise_of_motion(effect):
+    """A vibration too small for a gap comes out of the first column as the declared noise does."""
+    assert effect.of_motion == effect.overrides("noise_of_motion")
+    assert effect.of_motion or not effect.biased_by_noise
+    if not effect.of_motion:
+        return
+    time = STEP * np.arange(8000)
+    settled = np.concatenate([np.zeros(4000), np.hanning(4000)])  # deaf to a load that drifts within its gap
+    for frequency in (5.0, 20.0, 40.0):
+        omega = 2.0 * np.pi * frequency
+        small = 1e-4 * np.exp(1j * omega * time)
+        heard = 0.0 + 0.0j
+        for part, unit in ((np.real, 1.0), (np.imag, 1j)):
+            zero = np.zeros_like(time)
+            vibration = replace(
+                RECORDED, time=time, position=part(small / (1j * omega)), velocity=part(small),
+                sign=zero, effort=zero, torque=zero, friction=zero,
+            )  # fmt: skip
+            terms = effect.columns(vibration, shape_of(effect))[0]
+            listen = settled * small.conj()
+            heard += unit * sum(np.sum(values * listen) * (1j * omega) ** order for values, order in terms)
+        gain = heard / np.sum(settled * np.abs(small) ** 2) / (1j * omega)
+        declared = effect.noise_of_motion(shape_of(effect), np.array([omega]))[0]
+        assert gain == pytest.approx(declared, abs=0.02 * max(abs(declared), 1.0))
+
+
+@every
+def test_noise_of_motion_biases_what_filters_the_motion(effect):
+    heard = effect.noise_of_motion(shape_of(effect), 2.0 * np.pi * np.array([1.0, 10.0, 100.0]))
+    assert effect.biased_by_noise == (np.ptp(np.abs(heard)) > 0.0)
+
+
+@every
+def test_a_wave_repeats_with_its_number_and_what_repeats_is_a_wave(effect):
+    number = effect.wave_number(shape_of(effect))
+    position = RECORDED.position
+
+    def shifted(by):
+        seen = effect.see(replace(RECORDED, position=position + by), shape_of(effect))
+        return [seen.position - by, seen.velocity, *raw(effect, replace(RECORDED, position=position + by))]
+
+    at_home, once_more, elsewhere = (shifted(by) for by in (0.0, 2.0 * np.pi, 0.7))
+    assert (number is not None) == (differ(at_home, elsewhere) and not differ(at_home, once_more))
+    if number is not None:
+        assert not differ(at_home, shifted(2.0 * np.pi / number))
+        assert differ(at_home, shifted(np.pi / number))
+
+
+@every
+def test_it_turns_only_if_it_is_a_wave_of_a_revolution(effect):
+    """A linear axis has none; a harmonic is a pitch there."""
+    wave = effect.wave_number(shape_of(effect)) is not None
+    assert effect.turning_only == (wave and not any(slot.whole for slot in effect.shapes))
+    assert not (effect.turning_only and KINDS[effect.name].on_linear_axis)
+    asked = [effect.sought(scope) for scope in SCOPES if not scope.kind.turns]
+    assert effect.turning_only == (not any(asked)) or not effect.overrides("columns")
+
+
+@every
+def test_what_happens_in_one_recording_only_is_absent_for_a_while(effect):
+    """A motion in which something is never felt for a while, though the axis moves as before."""
+    quiet = False
+    if effect.overrides("columns"):
+        stretches = [np.array_split(column, 5) for column in raw(effect, RECORDED)]
+        quiet = any(not any(np.any(parts[k]) for parts in stretches) for k in range(5))
+    assert effect.occasional == quiet
+
+
+@every
+def test_several_of_a_repeatable_one_are_told_apart(effect):
+    if not effect.repeatable:
+        return
+    assert effect.overrides("columns")
+    assert effect.shapes
+    assert all(slot.whole or slot.additive for slot in effect.shapes)
+    shape = shape_of(effect)
+    for k, slot in enumerate(effect.shapes):
+        other = tuple(value + (1.0 if slot.whole else 0.1) * (j == k) for j, value in enumerate(shape))
+        table = [values for which in (shape, other) for ((values, _),) in effect.columns(RECORDED, which)]
+        assert np.linalg.matrix_rank(np.array(table)) == len(table)
+
+
+@every
+def test_the_level_of_friction_is_what_its_columns_make_of_dry_friction(effect):
+    """Column by column: dry friction all of it, friction in proportion to speed none of it."""
+    hooks = ("friction_excess", "friction_factor", "friction_difference")
+    assert effect.overrides("level") == any(effect.overrides(hook) for hook in hooks)
+    shape, faster = shape_of(effect), replace(RECORDED, velocity=2.0 * RECORDED.velocity)
+    columns, scaled = plain(effect, RECORDED), plain(effect, faster)
+    for k in range(len(columns) if effect.overrides("level") else 0):
+        level = effect.level(RECORDED, shape, [float(j == k) for j in range(len(columns))]) + 0.0 * RECORDED.time
+        viscous = not differ([2.0 * columns[k]], [scaled[k]]) and np.any(columns[k])
+        np.testing.assert_allclose(level, 0.0 * columns[k] if viscous else columns[k], atol=1e-12)
+
+
+@with_columns
+def test_stiffness_is_the_slope_of_its_torque_over_position(effect):
+    strengths = [1.3] * len(effect.columns(RECORDED, shape_of(effect)))
+    higher, lower = (plain(effect, replace(RECORDED, position=RECORDED.position + by)) for by in (0.5, -0.5))
+    slopes = [a - b for a, b in zip(higher, lower, strict=True)]
+    straight = slopes and all(np.ptp(slope) < 1e-9 for slope in slopes)
+    assert effect.stiffness(strengths) == pytest.approx(1.3 * sum(float(s[0]) for s in slopes) if straight else 0.0)
+
+
+@every
+def test_what_may_act_on_a_load_is_a_torque_of_motion_and_time_alone(effect):
+    """A load has no motor torque, no friction here and no harmonics of a motor; a constant only twists the coupling."""
+    outer = isinstance(effect, Mechanism) and effect.overrides("columns") and not effect.of_motion
+    if outer:
+        shaken = np.random.default_rng(0).normal(size=RECORDED.time.size)
+        alone = not changed(effect, torque=shaken, effort=shaken, friction=shaken, sign=shaken)
+        varies = all(np.ptp(column) > 0.0 for column in raw(effect, RECORDED))
+        torque = all([order for _, order in column] == [0] for column in effect.columns(RECORDED, shape_of(effect)))
+        outer = alone and varies and torque and not any(slot.whole for slot in effect.shapes)
+    assert effect.may_load == outer
+
+
+@every
+def test_a_coupling_gives_the_axis_a_second_degree_of_freedom(effect):
+    joints = 1
+    if isinstance(effect, Mechanism) and effect.overrides("add"):
+        spec = build_spec(PARAMETERS, PERIOD)
+        effect.add(spec, effect.name, {**effect.defaults(AXIS), **VALUES[effect.name]}, AXIS)
+        joints = spec.compile().nv
+    assert effect.couples == (joints == 2) == effect.overrides("load_inertia")
+    if effect.couples:
+        assert effect.of_motion
+        assert effect.load_inertia([7e-4]) == 7e-4
+        assert effect.physical([0.5 * BASE.inertia], shape_of(effect), BASE)
+        assert not effect.physical([BASE.inertia], shape_of(effect), BASE)
+
+
+# How it changes what is seen.
+
+
+@every
+def test_what_it_sees_is_what_a_simulated_sensor_or_drive_does_undone(effect):
+    shape = shape_of(effect)
+    if isinstance(effect, Sensing) and effect.overrides("seen"):
+        values = effect.report([], shape, BASE)
+        position, velocity = effect.seen(values, RECORDED.position, RECORDED.velocity)
+        found = effect.see(replace(RECORDED, position=position, velocity=velocity), shape)
+        np.testing.assert_allclose(found.position, RECORDED.position, atol=1e-9)
+        np.testing.assert_allclose(found.velocity, RECORDED.velocity, atol=1e-7)
+        again = effect.unseen(values, position, velocity)
+        np.testing.assert_allclose(again, [RECORDED.position, RECORDED.velocity], atol=1e-7)
+    elif isinstance(effect, Electronics) and effect.overrides("acting_along"):
+        acts = effect.acting_along(effect.report([], shape, BASE), RECORDED.torque, STEP)
+        np.testing.assert_allclose(effect.see(RECORDED, shape).torque, acts, atol=1e-12)
+    else:
+        assert not effect.overrides("see")
+
+
+@every
+def test_a_delay_is_that_of_the_simulated_signal(effect):
+    """A sine that passes it comes out as behind a first-order lag of the declared time, which grows as the shape."""
+    shape, sources = shape_of(effect), ("velocity", "position")
+    declared = [lag for source in sources for lag in effect.delays(shape, source)]
+    twice = [lag for source in sources for lag in effect.delays([2.0 * value for value in shape], source)]
+    assert twice == pytest.approx([2.0 * lag for lag in declared])
+    assert (
+        any(declared)
+        == effect.overrides("delays")
+        == (effect.overrides("acting_along") or effect.overrides("filtered"))
+    )
+    if not any(declared):
+        return
+    values, step = effect.report([], shape, BASE), 1e-4
+    omega = 2.0 * np.pi * 30.0
+    time = step * np.arange(10000)
+    wave = np.sin(omega * time)
+    passes = effect.acting_along if effect.overrides("acting_along") else effect.filtered
+    late = passes(values, wave, step)[-5000:]
+    gain = np.mean(late * np.exp(-1j * omega * time[-5000:])) / np.mean(
+        wave[-5000:] * np.exp(-1j * omega * time[-5000:])
+    )
+    assert gain == pytest.approx(1.0 / (1.0 + 1j * omega * max(declared)), rel=1e-3)
+
+
+@every
+def test_it_mends_the_signal_it_declares_faulty_and_no_other(effect):
+    assert bool(effect.faulty_signal) == effect.overrides("corrected")
+    if not effect.faulty_signal:
+        return
+    assert effect.faulty_signal in SI_UNITS
+    values = dict(VALUES[effect.name])
+    spoilt = {"position": RECORDED.position, "current": RECORDED.torque, "velocity": RECORDED.velocity}
+    spoilt[effect.faulty_signal] = effect.filtered(values, spoilt[effect.faulty_signal], STEP)
+    units = {"position": "rad", "velocity": "rad/s", "current": "A"}
+    mended = effect.corrected(Trace(RECORDED.time, spoilt, units, "reversals"), values)
+    for name, true in (("position", RECORDED.position), ("current", RECORDED.torque), ("velocity", RECORDED.velocity)):
+        off = np.abs(mended[name] - true)[10:-10].max()
+        assert off < 0.02 * np.abs(true).max()
+        assert name == effect.faulty_signal or off == 0.0
+
+
+@every
+def test_kind_says_whether_a_sensor_errs(effect):
+    assert (effect.kind == "measurement") == isinstance(effect, Sensing)
+
+
+# What it says of other effects.
+
+
+@every
+def test_what_excludes_another_is_excluded_by_it(effect):
+    assert effect.name not in effect.not_beside | effect.replaces
+    for name in effect.not_beside:
+        assert effect.name in EFFECTS[name].not_beside
+        assert any(name in effect.ambiguous(scope) for scope in SCOPES)
+
+
+@every
+def test_what_cannot_be_told_from_another_is_not_told_by_it(effect):
+    for scope in SCOPES:
+        for name in effect.ambiguous(scope):
+            assert effect.name in EFFECTS[name].ambiguous(scope)
+
+
+@every
+def test_a_counterpart_is_an_effect_with_the_same_as_its_own(effect):
+    names = {name for scope in SCOPES for name in effect.ambiguous(scope)}
+    for name in names:
+        values = effect.counterpart(name, VALUES[effect.name])
+        if values is not None:
+            assert Present.of(name, values).effect is EFFECTS[name]
+            assert EFFECTS[name].counterpart(effect.name, values) == VALUES[effect.name]
+    assert bool(names) or not effect.overrides("counterpart")
+
+
+@every
+def test_what_it_replaces_is_in_the_catalogue_and_has_a_shape_to_replace_it_with(effect):
+    assert effect.replaces <= set(EFFECTS)
+    assert bool(effect.replaces) == effect.overrides("in_place_of")
+
+
+@every
+def test_what_bursts_leaves_torque_open_and_a_remainder_that_is_borne(effect):
+    assert effect.bursts == effect.overrides("open_torque") == (effect.tolerates is not None)
+    assert effect.tolerates is None or 0.0 < effect.tolerates < 1.0
+
+
+@with_columns
+def test_a_simpler_form_is_contained(effect):
+    own = np.array(plain(effect, RECORDED)).T
+    for name in effect.simpler_forms():
+        assert EFFECTS[name].simpler_forms() == ()
+        simple = np.array(plain(EFFECTS[name], RECORDED)).T
+        left = simple - own @ np.linalg.lstsq(own, simple, rcond=None)[0]
+        assert np.abs(left).max() < 1e-9 * np.abs(simple).max()
+        assert own.shape[1] > simple.shape[1]
+
+
+@every
+def test_what_stands_for_dry_friction_in_one_direction_is_as_large(effect):
+    for torque in (0.08, -0.08):
+        values = effect.instead_of_dry_friction(torque)
+        if values is None:
+            continue
+        assert Present.of(effect.name, values).values == tuple(values.items())
+        table = np.array(plain(effect, RECORDED)).T
+        strengths = np.linalg.lstsq(table, np.full(RECORDED.time.size, torque), rcond=None)[0]
+        np.testing.assert_allclose(table @ strengths, torque)
+        assert effect.report(strengths.tolist(), shape_of(effect), BASE) == pytest.approx(values)
+
+
+# How it is told.
+
+
+@every
+def test_it_reports_its_quantities_and_what_follows_from_them(effect):
+    if not (effect.overrides("columns") or effect.overrides("see") or effect.overrides("delays")):
+        assert effect.overrides("detect")
+        return
+    names = {quantity.name for quantity in effect.quantities}
+    found = set(reported(effect))
+    assert found <= names | {quantity.name for quantity in effect.derived}
+    assert names - found <= set(effect.defaults(AXIS))
+    assert {quantity.name for quantity in effect.derived} <= found
+
+
+@every
+def test_what_a_simulation_cannot_move_a_little_is_left_alone(effect):
+    """Whole numbers, and instants: between two samples nothing changes."""
+    whole = {slot.quantity.name for slot in effect.shapes if slot.whole}
+    instants = {slot.quantity.name for slot in effect.shapes if slot.additive and slot.quantity.unit == "s"}
+    assert effect.fixed_in_simulation == whole | instants
+    assert effect.fixed_in_simulation <= {quantity.name for quantity in effect.quantities}
+
+
+@every
+def test_null_values_and_defaults_are_quantities_within_bounds(effect):
+    bounds = {quantity.name: quantity for quantity in effect.quantities}
+    for values in (effect.null(AXIS), effect.defaults(AXIS)):
+        for name, value in values.items():
+            assert bounds[name].lower <= float(value) <= bounds[name].upper
+    assert effect.null(AXIS)
+
+
+@every
+def test_shapes_that_are_tried_are_of_its_form_and_worth_a_share(effect):
+    for scope in SCOPES:
+        grid = effect.grid(scope)
+        assert all(len(shape) == len(effect.shapes) for shape in grid)
+        tried = grid if grid and all(map(len, grid)) else [shape_of(effect)]
+        assert any(effect.plausible([shape], scope) for shape in tried)
+        for shape in tried[:: max(1, len(tried) // 5)]:
+            assert 0.0 < effect.needed_share(shape, scope) < 1.0
+            errors = effect.shape_errors(shape, scope, RECORDED.time)
+            assert len(errors) == len(effect.shapes)
+            assert min(errors, default=0.0) >= 0.0
+            assert all(effect.reach(shape, k) >= 0.0 for k in range(len(effect.shapes)))
+
+
+@every
+def test_it_is_shown_under_the_drive_in_a_part_of_the_recording(effect):
+    assert effect.shows_under_drive == effect.overrides("shown_in")
+    assert effect.overrides("detect") or not effect.shows_under_drive
+
+
+@every
+def test_it_is_found_where_its_name_says(effect):
+    assert type(effect).__module__ == f"bench.effects.{effect.name}"
+    assert not hasattr(effect, "__dict__") or not vars(effect)
