@@ -4,8 +4,11 @@ import os
 
 from xdist.scheduler import LoadScopeScheduling
 
-#: Folders whose files share a fixture of the session; elsewhere every file goes its own way.
-TOGETHER = ("tests/effects/", "tests/lab/")
+#: Files that share a fixture of the session, by its name; every other file goes its own way.
+TOGETHER = {
+    "truths": tuple(f"tests/effects/test_{name}.py" for name in ("agreement", "follow", "model_file", "track_effects")),
+    "lab": ("tests/lab/",),
+}
 
 # before NumPy is loaded: the threads of several processes would fight over the cores
 for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -13,11 +16,11 @@ for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 
 class Sharing(LoadScopeScheduling):
-    """Files side by side, but for those of a folder that shares."""
+    """Files side by side, but for those that share."""
 
     def _split_scope(self, nodeid: str) -> str:
-        folder = next((folder for folder in TOGETHER if nodeid.startswith(folder)), None)
-        return folder or super()._split_scope(nodeid)
+        shared = (fixture for fixture, files in TOGETHER.items() if nodeid.startswith(files))
+        return next(shared, super()._split_scope(nodeid))
 
 
 def pytest_xdist_make_scheduler(config, log):
