@@ -26,7 +26,7 @@ RIG = Rig.of(
 )
 UNITS = {"position": "rad", "velocity": "rad/s", "current": "A"}
 INERTIA, VISCOUS, COULOMB, CONSTANT = 1.5e-3, 8e-4, 0.08, 0.7
-#: White noise of speed - rad/s -, of torque - N*m - and of the angle, so coarse that speed is taken from the first - rad.
+#: White noise of speed - rad/s -, torque - N*m - and angle - rad -, the last so coarse that none takes speed from it.
 SPEED_NOISE, TORQUE_NOISE, ANGLE_NOISE = 0.03, 6e-3, 1e-4
 #: Amplitude of the position - rad -, frequency - Hz - and phase of the sines that the motion is made of.
 SINES = ((6.0, 0.43, 0.3), (1.6, 1.31, 1.1), (0.5, 2.9, 2.0), (0.12, 6.1, 0.0))

@@ -29,7 +29,10 @@ from bench.diagnose.name.rules import (
 OFF: dict[type, tuple[str, Callable]] = {
     Promising: ("of", lambda self, current, tried, significant: tried),
     Significant: ("threshold", lambda self, fitted, numbers, noise=None: 0.0),
-    Explains: ("holds", lambda self, before, after, significant: worth(before, after) > significant.threshold(before, 1)),
+    Explains: (
+        "holds",
+        lambda self, before, after, significant: worth(before, after) > significant.threshold(before, 1),
+    ),
     Physical: ("holds", lambda self, fitted: True),
     NoLongerNeeded: ("holds", lambda self, fitted, less, index, significant: False),
     ReplacesClearly: ("holds", lambda self, before, after: True),
@@ -43,8 +46,9 @@ OFF: dict[type, tuple[str, Callable]] = {
 }
 
 
-def without(kind: type, policy: Policy = Policy()) -> Policy:
+def without(kind: type) -> Policy:
     """The policy with a rule or doubt off."""
+    policy = Policy()
     method, neutral = OFF[kind]
     off = type(kind.__name__, (kind,), {method: neutral})()
     doubts = tuple(off if isinstance(doubt, kind) else doubt for doubt in policy.doubts)

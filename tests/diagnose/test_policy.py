@@ -76,7 +76,7 @@ def coupled(share, antiresonance, damping):
 
 def test_a_coupling_beside_something_else_is_no_gap():
     """Where the coupling leaves a remainder a dead zone is tried in its place, and explains less."""
-    trace, effects = recorded(MOTION, coupled(0.6, 120.0, 0.04), vibration(0.03, 23.0)), ["elastic_coupling", "backlash"]
+    trace, effects = recorded(MOTION, coupled(0.6, 70.0, 0.04), vibration(0.02, 11.0)), ["elastic_coupling", "backlash"]
     assert searched(POLICY, trace, effects) == ("elastic_coupling",)
     assert searched(without(ReplacesClearly), trace, effects) == ("backlash",)
 
@@ -95,7 +95,9 @@ def test_what_no_effect_explains_is_told():
 
 def test_noise_alone_is_no_remainder():
     others = frozenset(catalogue()) - {"unbalance"}
-    assert [diagnose(recorded(MOTION, seed=k), RIG, excluded=others).verdict for k in range(6)] == ["nothing_missing"] * 6
+    assert [diagnose(recorded(MOTION, seed=k), RIG, excluded=others).verdict for k in range(6)] == [
+        "nothing_missing"
+    ] * 6
 
 
 def test_no_shape_is_searched_where_the_grid_promises_nothing(monkeypatch):
