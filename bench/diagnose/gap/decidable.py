@@ -12,7 +12,7 @@ from bench.balance.fit import Fit, fit
 from bench.balance.hypothesis import Hypothesis
 from bench.balance.parameter import Parameter
 from bench.balance.rows import Rows, clear_motion
-from bench.diagnose.name.policy import Policy, row_correlation
+from bench.diagnose.name.rules import Rules, row_correlation
 from bench.errors import InputError, UndeterminedError
 from bench.identify.determined import require_friction, require_inertia
 from bench.identify.regression import equations_of
@@ -140,9 +140,9 @@ def _require_length(trace: Trace, rows: Rows) -> None:
     )
 
 
-def smallest_visible(fitted: Fit, policy: Policy) -> float:
+def smallest_visible(fitted: Fit, rules: Rules) -> float:
     """RMS torque of the smallest effect that noise would let be found - N*m (N)."""
-    return math.sqrt(policy.significant.threshold(fitted, 1) / fitted.effort.size)
+    return math.sqrt(rules.significant.threshold(fitted, 1) / fitted.effort.size)
 
 
 def require_audible(base: Fit, unit: str, kind: AxisKind) -> None:
@@ -167,7 +167,7 @@ def require_audible(base: Fit, unit: str, kind: AxisKind) -> None:
         )
     friction = rms(base.columns[:, 1:3] @ base.theta[1:3])
     torque = rms(base.columns[:, :3] @ base.theta[:3])
-    least, loud = smallest_visible(base, Policy()), max(friction, torque / SMALL)
+    least, loud = smallest_visible(base, Rules()), max(friction, torque / SMALL)
     if least > loud:
         raise UndeterminedError(
             WHAT,

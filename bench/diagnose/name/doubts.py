@@ -17,7 +17,7 @@ from bench.balance.fit import Fit, fit
 from bench.balance.hypothesis import Term
 from bench.balance.rows import Rows
 from bench.diagnose.name.candidates import candidates
-from bench.diagnose.name.policy import Policy, freedom, worth
+from bench.diagnose.name.rules import Rules, freedom, worth
 from bench.diagnose.name.search import Searched, Step, backward_elimination, refined
 from bench.effects.catalogue import catalogue, rivals
 from bench.effects.effect import Effect
@@ -33,13 +33,13 @@ class Evidence:
         bare: the fit without an effect.
         holdout: another recording; None without one.
         excluded: names that were not to be tried.
-        policy: that decides.
+        rules: that the names were found by.
     """
 
     bare: Fit
     holdout: Rows | None
     excluded: frozenset[str]
-    policy: Policy
+    rules: Rules
 
     def rivals(self) -> list[Effect]:
         """Effects from outside the catalogue."""
@@ -106,7 +106,7 @@ class Contested:
 
     def left(self, fitted: Fit, evidence: Evidence) -> Fit:
         """Without the names that are contested."""
-        if not evidence.policy.remainder.holds(fitted):
+        if not evidence.rules.remainder.holds(fitted):
             return fitted
         for index in range(len(fitted.terms) - 1, -1, -1):
             less = fit(fitted.rows, fitted.hypothesis.without(index))
@@ -115,15 +115,15 @@ class Contested:
                 continue
             rival = refined(less, found[0].term)
             beside = fit(fitted.rows, rival.hypothesis.plus(fitted.terms[index]))
-            outdone = self._outdone(fitted, rival, evidence.policy)
+            outdone = self._outdone(fitted, rival, evidence.rules)
             if outdone and worth(rival, beside) < self.kept * worth(less, fitted):
                 fitted = less
         return fitted
 
-    def _outdone(self, fitted: Fit, rival: Fit, policy: Policy) -> bool:
+    def _outdone(self, fitted: Fit, rival: Fit, rules: Rules) -> bool:
         """Whether a rival with a quantity or two more explains clearly more."""
         added = max(freedom(rival) - freedom(fitted), 1)
-        return worth(fitted, rival) > max(self.more * fitted.excess, policy.significant.threshold(fitted, added))
+        return worth(fitted, rival) > max(self.more * fitted.excess, rules.significant.threshold(fitted, added))
 
 
 @dataclass(frozen=True)
@@ -146,20 +146,20 @@ class WrongForm:
         if any(term.effect.bursts for term in fitted.terms):
             return fitted
         index = len(fitted.terms) - 1
-        while index >= 0 and evidence.policy.remainder.holds(fitted):
-            if self._wrong(fitted, fitted.terms[index], evidence.policy):
+        while index >= 0 and evidence.rules.remainder.holds(fitted):
+            if self._wrong(fitted, fitted.terms[index], evidence.rules):
                 fitted = fit(fitted.rows, fitted.hypothesis.without(index))
                 index = len(fitted.terms)
             index -= 1
         return fitted
 
-    def _wrong(self, fitted: Fit, term: Term, policy: Policy) -> bool:
+    def _wrong(self, fitted: Fit, term: Term, rules: Rules) -> bool:
         number = term.effect.wave_number(term.shape)
         if number is None:
             return False
         columns = fitted.seen(lambda s: _waves(s, number), of_motion=False)
         saved = float(fitted.gains(columns, columns.shape[1])[0])
-        certain = policy.significant.threshold(fitted, columns.shape[1])
+        certain = rules.significant.threshold(fitted, columns.shape[1])
         left = (fitted.chi * fitted.floor) ** 2 - saved / fitted.residual.size
         return saved > max(self.share * fitted.excess, certain) and left < (self.noise * fitted.floor) ** 2
 
@@ -182,7 +182,7 @@ class TwoForOne:
             half = columns.shape[1] // 2
             order = np.stack([np.arange(half), half + np.arange(half)], axis=1).ravel()
             left = less.squares - float(less.gains(columns[:, order], 2).max())
-            if left < less.count * (evidence.policy.remainder.chi * fitted.floor) ** 2:
+            if left < less.count * (evidence.rules.remainder.chi * fitted.floor) ** 2:
                 return self.left(less, evidence)
         return fitted
 
@@ -205,9 +205,9 @@ class OneForMany:
         if not spared:
             return fitted
         rival = min(spared, key=lambda found: found.squares)
-        if evidence.policy.remainder.holds(rival):
+        if evidence.rules.remainder.holds(rival):
             return fitted
-        needed = backward_elimination(rival, evidence.policy).terms
+        needed = backward_elimination(rival, evidence.rules).terms
         return fit(fitted.rows, fitted.hypothesis.with_terms(term for term in kept if any(map(term.same, needed))))
 
 
@@ -220,7 +220,7 @@ class Simpler:
         for index, term in enumerate(fitted.terms):
             for name in term.effect.simpler_forms():
                 plain = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(catalogue()[name])))
-                if worth(plain, fitted) < evidence.policy.significant.threshold(fitted, 1):
+                if worth(plain, fitted) < evidence.rules.significant.threshold(fitted, 1):
                     return self.left(plain, evidence)
         return fitted
 
@@ -260,8 +260,8 @@ DOUBTS: tuple[Doubt, ...] = (
 )
 
 
-def doubted(searched: Searched, evidence: Evidence, doubts: Sequence[Doubt] = DOUBTS) -> Searched:
-    """Steps of a search with what doubt leaves of the last one's names."""
+def doubted(searched: Searched, evidence: Evidence, doubts: Sequence[Doubt]) -> Searched:
+    """Steps of a search with what doubts, raised one after the other, leave of the last one's names."""
     fitted = searched.last
     for doubt in doubts:
         fitted = doubt.left(fitted, evidence) if fitted.terms else fitted

@@ -53,7 +53,7 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     """
     effects = [effect for name, effect in catalogue().items() if name not in excluded]
     searched = search(bare, effects, policy)
-    searched = doubted(searched, Evidence(bare, recordings.other, excluded, policy))
+    searched = doubted(searched, Evidence(bare, recordings.other, excluded, policy), policy.doubts)
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
     return Suspects(searched, kept, len(kept) < len(recordings.detected), policy)
 

@@ -15,7 +15,7 @@ from bench.balance.hypothesis import Term
 from bench.balance.load_side import on_other_side, outer_loads
 from bench.balance.shapes import shaped
 from bench.diagnose.name.candidates import Candidate, candidates, joins
-from bench.diagnose.name.policy import Policy
+from bench.diagnose.name.rules import Rules
 from bench.effects.effect import Effect
 
 #: Said of a search that its limit ended.
@@ -43,47 +43,47 @@ class Searched:
         return self.steps[-1].fitted
 
 
-def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
+def search(bare: Fit, effects: Sequence[Effect], rules: Rules) -> Searched:
     """Effects in the order in which they are taken up.
 
     Args:
         bare: the fit without an effect.
         effects: to be tried.
-        policy: that decides.
+        rules: that decide.
     """
-    found = forward_selection(Searched((Step(bare),)), effects, policy)
-    if policy.remainder.holds(found.last):
+    found = forward_selection(Searched((Step(bare),)), effects, rules)
+    if rules.remainder.holds(found.last):
         for effect in effects:
-            replaced = replacement(found.last, effect, policy) if effect.replaces else None
+            replaced = replacement(found.last, effect, rules) if effect.replaces else None
             if replaced is not None:
                 steps = found.steps[:-1] if len(found.steps) > 1 else found.steps
-                found = forward_selection(Searched((*steps, Step(replaced))), effects, policy)
+                found = forward_selection(Searched((*steps, Step(replaced))), effects, rules)
     return found
 
 
-def forward_selection(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
+def forward_selection(found: Searched, effects: Sequence[Effect], rules: Rules) -> Searched:
     """Steps with effects added until none is worthwhile, or the limit is reached."""
     steps = found.steps
     while True:
         current = steps[-1].fitted
         tried = candidates(current, effects)
         finalists = [
-            refined(current, candidate.term) for candidate in policy.promising.of(current, tried, policy.significant)
+            refined(current, candidate.term) for candidate in rules.promising.of(current, tried, rules.significant)
         ]
-        better = [after for after in finalists if _worthwhile(current, after, policy)]
+        better = [after for after in finalists if _worthwhile(current, after, rules)]
         if not better:
             return Searched(steps)
-        if len({term.effect.name for term in min(better, key=lambda after: after.squares).terms}) > policy.most:
+        if len({term.effect.name for term in min(better, key=lambda after: after.squares).terms}) > rules.most:
             return Searched(steps, LIMIT)
-        chosen = polished(min(better, key=lambda after: after.squares), policy)
-        steps = (*steps, Step(with_hum(backward_elimination(on_its_side(chosen, policy), policy)), tuple(tried)))
+        chosen = polished(min(better, key=lambda after: after.squares), rules)
+        steps = (*steps, Step(with_hum(backward_elimination(on_its_side(chosen, rules), rules)), tuple(tried)))
 
 
-def _worthwhile(current: Fit, after: Fit, policy: Policy) -> bool:
-    return policy.explains.holds(current, after, policy.significant) and policy.physical.holds(after)
+def _worthwhile(current: Fit, after: Fit, rules: Rules) -> bool:
+    return rules.explains.holds(current, after, rules.significant) and rules.physical.holds(after)
 
 
-def replacement(fitted: Fit, effect: Effect, policy: Policy) -> Fit | None:
+def replacement(fitted: Fit, effect: Effect, rules: Rules) -> Fit | None:
     """The hypothesis with an effect in the place of those it replaces, if that explains clearly more."""
     kept = [term for term in fitted.terms if term.effect.name not in effect.replaces]
     current = fit(fitted.rows, fitted.hypothesis.with_terms(kept))
@@ -91,7 +91,7 @@ def replacement(fitted: Fit, effect: Effect, policy: Policy) -> Fit | None:
     if shape is None:
         return None
     after = fit(fitted.rows, current.hypothesis.plus(Term(effect, shape)))
-    return backward_elimination(after, policy) if policy.replaces.holds(fitted, after) else None
+    return backward_elimination(after, rules) if rules.replaces.holds(fitted, after) else None
 
 
 def refined(current: Fit, term: Term) -> Fit:
@@ -99,28 +99,28 @@ def refined(current: Fit, term: Term) -> Fit:
     return shaped(current.rows, current.hypothesis.plus(term), len(current.terms))
 
 
-def polished(fitted: Fit, policy: Policy) -> Fit:
+def polished(fitted: Fit, rules: Rules) -> Fit:
     """Every term's shape searched again beside the others."""
     for index in range(len(fitted.terms) if len(fitted.terms) > 1 else 0):
         tried = shaped(fitted.rows, fitted.hypothesis, index)
-        fitted = tried if policy.physical.holds(tried) else fitted
+        fitted = tried if rules.physical.holds(tried) else fitted
     return fitted
 
 
-def on_its_side(fitted: Fit, policy: Policy) -> Fit:
+def on_its_side(fitted: Fit, rules: Rules) -> Fit:
     """With outer loads on the side of a coupling, motor or load, on which they explain more, if much is left."""
-    if not policy.remainder.holds(fitted) or not outer_loads(fitted.hypothesis) or fitted.hypothesis.coupling is None:
+    if not rules.remainder.holds(fitted) or not outer_loads(fitted.hypothesis) or fitted.hypothesis.coupling is None:
         return fitted
     moved = shaped(fitted.rows, on_other_side(fitted.hypothesis), fitted.hypothesis.coupling)
     return min(fitted, moved, key=lambda found: found.squares)
 
 
-def backward_elimination(fitted: Fit, policy: Policy) -> Fit:
+def backward_elimination(fitted: Fit, rules: Rules) -> Fit:
     """Without the terms that no longer explain anything beside the later ones."""
     for index in range(len(fitted.terms) - 1, -1, -1):
         if len(fitted.terms) < 2:
             break
         less = fit(fitted.rows, fitted.hypothesis.without(index))
-        if policy.no_longer_needed.holds(fitted, less, index, policy.significant):
+        if rules.no_longer_needed.holds(fitted, less, index, rules.significant):
             fitted = less
     return fitted
