@@ -24,7 +24,7 @@ from bench.trace.filter import Column
 #: Rounds in which levels of dry friction that multiply are brought in line.
 LEVEL_ROUNDS = 4
 #: Share of the noise floor by which a row's torque may hang on what the recording does not tell, an impact's instant.
-UNTOLD_SHARE = 0.3
+OPEN_SHARE = 0.3
 #: Numbers of all shapes tried at once, which bounds memory: 8 bytes each, some four times over.
 TOGETHER = 8_000_000
 
@@ -39,7 +39,7 @@ class Fit:
         layout: its columns.
         theta: (p,): J, K_w, K_0, misalignment, sines and cosines of hum, then the strengths of the effects in order.
         held: whether the misalignment is at its bound.
-        told: (m,) rows whose torque the recording determines: not those that hang on the instant of an impact.
+        determined: (m,) rows whose torque the recording determines: not those that hang on the instant of an impact.
     """
 
     rows: Rows
@@ -47,12 +47,12 @@ class Fit:
     layout: Layout
     theta: Array
     held: bool
-    told: NDArray[np.bool_]
+    determined: NDArray[np.bool_]
 
     @property
     def residual(self) -> Array:
-        """Measured less modelled torque (m,), 0 at rows that are not told - N*m (N)."""
-        return self.left * self.told
+        """Measured less modelled torque (m,), 0 at rows that are not determined - N*m (N)."""
+        return self.left * self.determined
 
     @cached_property
     def left(self) -> Array:
@@ -77,8 +77,8 @@ class Fit:
 
     @property
     def count(self) -> int:
-        """Rows that are told."""
-        return int(np.count_nonzero(self.told))
+        """Rows that are determined."""
+        return int(np.count_nonzero(self.determined))
 
     @property
     def rms(self) -> float:
@@ -165,7 +165,9 @@ class Fit:
         Returns:
             (groups,).
         """
-        return gains(columns if self.told.all() else columns * self.told[:, None], width, self.residual, self.span)
+        return gains(
+            columns if self.determined.all() else columns * self.determined[:, None], width, self.residual, self.span
+        )
 
     def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
         """Shapes of an effect with what each would take: by its columns, or fitted anew where it has none."""
@@ -208,16 +210,16 @@ def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
         theta, held = _balanced(rows, layout, None)
     every = np.ones(layout.effort.size, dtype=bool)
     fitted = Fit(rows, hypothesis, layout, theta, held, every)
-    told = _told(fitted)
-    if told is None or told.all():
+    determined = _determined(fitted)
+    if determined is None or determined.all():
         return fitted
-    theta, held = _balanced(rows, layout, told)
-    return Fit(rows, hypothesis, layout, theta, held, told)
+    theta, held = _balanced(rows, layout, determined)
+    return Fit(rows, hypothesis, layout, theta, held, determined)
 
 
-def _told(fitted: Fit) -> NDArray[np.bool_] | None:
+def _determined(fitted: Fit) -> NDArray[np.bool_] | None:
     """Rows whose modelled torque would be the same within what the recording does not tell (m,)."""
-    told = None
+    determined = None
     for index, term in enumerate(fitted.terms):
         if term.effect.overrides("open_torque"):
             made_of = ("open", term.key, delays(fitted.rows, fitted.hypothesis), fitted.beside.motion)
@@ -225,9 +227,9 @@ def _told(fitted: Fit) -> NDArray[np.bool_] | None:
             moved = fitted.rows.memory.get(
                 made_of, lambda index=index, term=term, per=strength: _open(fitted, term, index) / per
             )
-            sure = moved * strength < UNTOLD_SHARE * fitted.floor
-            told = sure if told is None else told & sure
-    return told
+            sure = moved * strength < OPEN_SHARE * fitted.floor
+            determined = sure if determined is None else determined & sure
+    return determined
 
 
 def _open(fitted: Fit, term: Term, index: int) -> Array:
@@ -244,12 +246,16 @@ def _alike(found: Hypothesis, before: Hypothesis) -> bool:
     return True
 
 
-def _balanced(rows: Rows, layout: Layout, told: NDArray[np.bool_] | None) -> tuple[Array, bool]:
+def _balanced(rows: Rows, layout: Layout, determined: NDArray[np.bool_] | None) -> tuple[Array, bool]:
     """Least squares (p,), and whether torque and speed would be further apart in time than they were latched.
 
     A larger shift is a lag, which is an effect: the misalignment is held at its bound.
     """
-    columns, effort = (layout.columns, layout.effort) if told is None else (layout.columns[told], layout.effort[told])
+    columns, effort = (
+        (layout.columns, layout.effort)
+        if determined is None
+        else (layout.columns[determined], layout.effort[determined])
+    )
     theta = least_squares(columns, effort, layout.noise)
     bound = rows.scope.latched
     if abs(theta[MISALIGNMENT]) <= bound:

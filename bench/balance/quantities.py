@@ -25,8 +25,8 @@ from bench.statistics import NORMAL95
 
 #: Step of a numerical derivative, relative.
 STEP = 1e-4
-#: Residual in noise floors beyond which a row counts less and less, where some rows are not told: as in the search for
-#: a dead zone.
+#: Residual in noise floors beyond which a row counts less and less, where some rows are not determined, as in the
+#: search for a dead zone.
 SCALE = 3.0
 
 
@@ -99,14 +99,14 @@ class Uncertain:
 
 
 def uncertain(fitted: Fit) -> Uncertain:
-    """Free numbers of a fit with their covariance; where some rows are not told, all count as in a robust search."""
+    """Free numbers of a fit with their covariance; where not all rows are determined, as in a robust search."""
     rows = fitted.rows
     slots = tuple((index, k) for index, term in enumerate(fitted.terms) for k in _free(term.effect, rows))
     jacobian = _jacobian(rows, fitted, slots)
     noise = np.pad(fitted.layout.noise, (0, len(slots)))
     numbers = np.concatenate([fitted.theta, np.zeros(len(slots))])
     weight = np.ones(rows.effort.size)
-    if not fitted.told.all():
+    if not fitted.determined.all():
         weight = 1.0 / (1.0 + (fitted.left / (SCALE * fitted.floor)) ** 2)
     edges = block_edges(fitted.time, rows.conditioning.filter.width)
     count = np.diff(edges)
@@ -155,7 +155,7 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
 
     A drive latches its signals within one tick: the alignment of torque is fitted, that of a wave of position is not.
     """
-    if not fitted.terms or not fitted.told.all():
+    if not fitted.terms or not fitted.determined.all():
         return
     plain = least_squares(fitted.columns, fitted.effort, fitted.layout.noise)
     scope = fitted.scope
@@ -182,7 +182,7 @@ def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
     The column of a coupling is made of the noisy motion, so noise biases it; that of the noise itself is as large.
     J. R. Cook, L. A. Stefanski, Journal of the American Statistical Association 89, 1994, 1314-1328.
     """
-    if not any(term.effect.biased_by_noise for term in fitted.terms) or not fitted.told.all():
+    if not any(term.effect.biased_by_noise for term in fitted.terms) or not fitted.determined.all():
         return
     rng, conditioning = np.random.default_rng(0), fitted.rows.conditioning
 

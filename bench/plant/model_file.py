@@ -79,16 +79,16 @@ def model_toml(stored: StoredModel, beside: Mapping[str, Any] | None = None) -> 
         beside: further tables of the same file, by name.
     """
     model, kind = stored.model, stored.model.parameters.kind
-    content: dict[str, Any] = {"name": stored.name, "misalignment": _told(stored.misalignment, "s")}
+    content: dict[str, Any] = {"name": stored.name, "misalignment": _determined(stored.misalignment, "s")}
     if math.isfinite(model.peak_effort):
-        content["peak_effort"] = _told(model.peak_effort, kind.effort_unit)
+        content["peak_effort"] = _determined(model.peak_effort, kind.effort_unit)
     content["parameters"] = {
-        quantity.name: _told(getattr(model.parameters, field), quantity.unit)
+        quantity.name: _determined(getattr(model.parameters, field), quantity.unit)
         for field, quantity in parameter_quantities(kind).items()
     }
     if model.winding is not None:
         units = _winding_units(kind)
-        content["winding"] = {key: _told(getattr(model.winding, key), unit) for key, unit in units.items()}
+        content["winding"] = {key: _determined(getattr(model.winding, key), unit) for key, unit in units.items()}
     if model.effects:
         content["effects"] = [_effect_table(present, kind) for present in model.effects]
     return tables_toml(kind, {**content, **(beside or {})})
@@ -153,7 +153,7 @@ def _values(table: object, units: Mapping[str, str], where: str) -> dict[str, fl
 
 def _effect_table(present: Present, kind: AxisKind) -> dict[str, float | str]:
     units = {quantity.name: kind.unit(quantity) for quantity in present.effect.quantities}
-    return {"name": present.name, **{key: _told(value, units[key]) for key, value in present.values}}
+    return {"name": present.name, **{key: _determined(value, units[key]) for key, value in present.values}}
 
 
 def _effects(entries: object, kind: AxisKind, where: str) -> tuple[Present, ...]:
@@ -183,5 +183,5 @@ def _winding_units(kind: AxisKind) -> dict[str, str]:
     return dict(zip(names, (kind.translated("N*m/A"), "ohm", "H", kind.translated("V*s/rad")), strict=True))
 
 
-def _told(value: float, unit: str) -> float | str:
+def _determined(value: float, unit: str) -> float | str:
     return float(value) if unit == "dimensionless" else f"{float(value)!r} {unit}"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from bench.diagnose.name.doubts import Contested, NotBorneOut, Simpler, TwoForOne, Unbelievable, WrongForm
+from bench.diagnose.name.doubts import Contested, NotInHoldout, Simpler, TwoForOne, Unbelievable, WrongForm
 from bench.diagnose.name.policy import Policy
 from bench.effects.catalogue import catalogue
 from tests.diagnose.constructed import SINES, moved, names, offset, only_during, recorded, vibration, wave
@@ -39,7 +39,7 @@ def test_what_happens_in_the_holdout_at_any_time_is_no_event():
     trace = recorded(MOTION, only_during(0.08, 1.0, 1.5))
     holdout = recorded(OTHER, only_during(0.08, 2.5, 3.0), seed=1)
     assert names(POLICY, trace, EVENT, holdout) == ()
-    assert names(without(NotBorneOut), trace, EVENT, holdout) == EVENT
+    assert names(without(NotInHoldout), trace, EVENT, holdout) == EVENT
 
 
 def test_a_vibration_in_step_with_the_motion_is_no_spring():

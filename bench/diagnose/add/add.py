@@ -79,8 +79,8 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         extension = extension.less(against[0])
     kept = refined(recordings, extension.whole, suspects, held_out, trial.gaps)
     problem = [f"not added to the MuJoCo model: {extension.whole.problem}"] if extension.whole.problem else []
-    told = (*warnings, *problem)
-    return Added(extension, held_out, trial.gaps, tuple(recorded), tuple(rejected), kept, repeats, told, closed_loop)
+    notes = (*warnings, *problem)
+    return Added(extension, held_out, trial.gaps, tuple(recorded), tuple(rejected), kept, repeats, notes, closed_loop)
 
 
 def everywhere(balance: Balance, other: Rows | None) -> bool:

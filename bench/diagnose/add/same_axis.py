@@ -34,20 +34,20 @@ def foreign(fitted: Fit, other: Rows | None) -> list[str]:
     lasting = fitted.hypothesis.with_terms(term for term in fitted.terms if not term.effect.occasional)
     here, there = fit(fitted.rows, lasting), fit(other, lasting)
     own, foreigns = _relative_errors(here), _relative_errors(there)
-    told = []
+    apart = []
     for k, (name, factor) in enumerate(
         (("inertia", INERTIA), ("viscous friction", VISCOUS), ("Coulomb friction", COULOMB))
     ):
         ratio = float(there.theta[k] / here.theta[k])
         error = float(np.hypot(own[k], foreigns[k] * abs(ratio)))
         if here.theta[k] > 0.0 and not 1.0 / factor - SURE * error < ratio < factor + SURE * error:
-            told.append(f"{ratio:.3g} times the {name} (± {NORMAL95 * error:.2g})")
+            apart.append(f"{ratio:.3g} times the {name} (± {NORMAL95 * error:.2g})")
     left, least = _left(there), _left(here)
     if left > max(LEFT, MORE * least):
-        told.append(f"{left:.0%} of its torque unexplained by the effects found, {least:.1%} of the recording's")
-    if not told:
+        apart.append(f"{left:.0%} of its torque unexplained by the effects found, {least:.1%} of the recording's")
+    if not apart:
         return []
-    return [f"the holdout recording has {' and '.join(told)}: another axis? It was not used as proof"]
+    return [f"the holdout recording has {' and '.join(apart)}: another axis? It was not used as proof"]
 
 
 def _relative_errors(fitted: Fit) -> Array:

@@ -76,7 +76,7 @@ def require_decidable(trace: Trace, rig: Rig, rows: Rows) -> Fit:
     return bare
 
 
-def untold(rows: Rows, kind: AxisKind) -> list[str]:
+def left_open(rows: Rows, kind: AxisKind) -> list[str]:
     """A warning of what a motion in one direction leaves open; what else it tells stays told."""
     if not rows.scope.one_way:
         return []
@@ -90,7 +90,7 @@ def untold(rows: Rows, kind: AxisKind) -> list[str]:
 
 def impacts(fitted: Fit, unit: str) -> list[str]:
     """A warning of the rows that hang on the instants of impacts, if the fit was judged without some."""
-    share = 1.0 - float(fitted.told.mean())
+    share = 1.0 - float(fitted.determined.mean())
     if share == 0.0:
         return []
     return [

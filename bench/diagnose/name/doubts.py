@@ -55,7 +55,7 @@ class Doubt(Protocol):
 
 
 @dataclass(frozen=True)
-class NotBorneOut:
+class NotInHoldout:
     """An event whose absence the holdout does not explain: what it stood for happens there too.
 
     Unless it happens as an event there, at the same time of that recording.
@@ -250,7 +250,7 @@ class Unbelievable:
 
 #: All doubts, in the order in which they are raised.
 DOUBTS: tuple[Doubt, ...] = (
-    NotBorneOut(),
+    NotInHoldout(),
     Contested(),
     WrongForm(),
     TwoForOne(),

@@ -139,23 +139,23 @@ class ReplacesClearly:
     """An effect that is tried in the place of others must leave clearly less, and no more where it is not told.
 
     Attributes:
-        share: of what stands above the noise floor, on the rows that are told.
-        told: share of rows whose torque the recording determines beside it, at least.
+        share: of what stands above the noise floor, on the rows that are determined.
+        determined: share of rows whose torque the recording determines beside it, at least.
     """
 
     share: float = 0.5
-    told: float = 0.5
+    determined: float = 0.5
 
     def holds(self, before: Fit, after: Fit) -> bool:
         """Whether `after`, with its last term in the place of others, may take the place of `before`."""
         index = len(after.terms) - 1
         if not after.terms[index].effect.physical(after.strengths(index), after.terms[index].shape, after.base):
             return False
-        left = float(np.sum(before.residual[after.told] ** 2))
+        left = float(np.sum(before.residual[after.determined] ** 2))
         excess = left - after.count * before.floor**2
         clearly = left - after.squares > self.share * max(excess, 0.0)
         whole = float(np.sum(after.left**2)) < before.squares
-        return clearly and whole and float(after.told.mean()) > self.told
+        return clearly and whole and float(after.determined.mean()) > self.determined
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ def shrinking(recordings: Recordings, added: Added) -> list[Shrunk]:
 def torque_gap(steps: list[Shrunk], whole: Fit, unit: str) -> Gap:
     """Of all effects together, over all rows; beside it what is left on those that judge the fit, where not all do."""
     pairs = list(zip(steps[0].torque, steps[-1].torque, strict=True))
-    judged = None if whole.told.all() else (float(whole.told.mean()), whole.rms)
+    judged = None if whole.determined.all() else (float(whole.determined.mean()), whole.rms)
     return Gap(unit, whole.floor, pairs[0], pairs[1] if len(pairs) > 1 else None, judged)
 
 

@@ -9,7 +9,7 @@ from bench.balance.parameter import Parameter
 from bench.balance.stored import Balance
 from bench.diagnose.add.add import Added
 from bench.diagnose.found import Gap, NamedEffect, Rejected, Shrunk
-from bench.diagnose.gap.decidable import impacts, untold
+from bench.diagnose.gap.decidable import impacts, left_open
 from bench.diagnose.name.name import Suspects
 from bench.diagnose.recordings import Recordings
 from bench.diagnose.show.gaps import shrinking, torque_gap, velocity_gap
@@ -92,7 +92,7 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
         balance=Balance.of(whole).repeating(added.repeats),
         warnings=[
             *suspicions(recordings.trace, rig, kept.parameters),
-            *untold(recordings.rows, kind),
+            *left_open(recordings.rows, kind),
             *impacts(whole, unit),
             *added.warnings,
         ],

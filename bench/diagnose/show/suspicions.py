@@ -1,4 +1,4 @@
-"""What a recording or its result looks like when a unit, a range or a sensor is wrong, told as warnings."""
+"""What a recording or its result looks like when a unit, a range or a sensor is wrong, found as warnings."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _less_than_the_rotor(rig: Rig, parameters: Mapping[str, Parameter]) -> list[
 
 
 def _clipped(trace: Trace, rig: Rig) -> list[str]:
-    told = []
+    found = []
     for name in ("current", "torque", "force"):
         if name not in trace:
             continue
@@ -43,11 +43,11 @@ def _clipped(trace: Trace, rig: Rig) -> list[str]:
             limited = peak is not None and abs(top / peak - 1.0) < AT_LIMIT
             standing = _in_a_row(values == top)
             if top > 0.0 and standing > CLIPPED * len(trace) and not limited:
-                told.append(
+                found.append(
                     f"{standing / len(trace):.1%} of {name} stand at exactly {side * top:.4g} {trace.units[name]}: "
                     "the end of its range? What lies beyond is lost"
                 )
-    return told
+    return found
 
 
 def _in_a_row(standing: np.ndarray) -> int:

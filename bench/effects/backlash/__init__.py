@@ -32,7 +32,7 @@ IMPEDANCE = (0.01, 0.01, 1.0, 0.5, 2.0)
 #: Share of the inertia that sits behind the gap, at least and at most.
 BEHIND = (0.02, 0.98)
 #: Factors of gap, frequency and damping within which a recording does not tell a contact from another.
-UNTOLD = (1.01, 1.1, 1.1)
+INDISTINCT = (1.01, 1.1, 1.1)
 
 
 class Backlash(Mechanism):
@@ -78,8 +78,8 @@ class Backlash(Mechanism):
     def open_torque(self, fitted: Fitted, index: int) -> Array:
         """Rows soon after an impact: its instant hangs on how the load left the other side of the gap."""
         shape = fitted.terms[index].shape
-        shapes = np.tile(shape, (2 * len(UNTOLD) + 1, 1))
-        for k, factor in enumerate(UNTOLD):
+        shapes = np.tile(shape, (2 * len(INDISTINCT) + 1, 1))
+        for k, factor in enumerate(INDISTINCT):
             shapes[2 * k + 1, k] *= factor
             shapes[2 * k + 2, k] /= factor
         columns = fitted.seen(lambda signals: dead_zone_columns(signals, shapes), of_motion=True)
