@@ -2,6 +2,7 @@
 
 import os
 
+from hypothesis import HealthCheck, settings
 from xdist.scheduler import LoadScopeScheduling
 
 #: Files that share a fixture of the session, by its name; every other file goes its own way.
@@ -13,6 +14,10 @@ TOGETHER = {
 # before NumPy is loaded: the threads of several processes would fight over the cores
 for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(threads, "1")
+
+# a busy machine is no failure
+settings.register_profile("unhurried", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("unhurried")
 
 
 class Sharing(LoadScopeScheduling):
