@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from bench.errors import BenchError, InputError, UndeterminedError
 
 if TYPE_CHECKING:
-    from bench.diagnose.diagnosis import Diagnosis, diagnose
+    from bench.diagnose.diagnosis import diagnose
     from bench.diagnose.replay import replay
+    from bench.diagnose.show.show import Diagnosis
     from bench.identify.estimate import Estimate
     from bench.identify.regression import identify
     from bench.plant.simulate import simulate
@@ -40,7 +41,7 @@ __version__ = "0.1.0"
 
 #: Module that each name comes from; a test holds it against the imports above, which are what type checkers read.
 _HOMES = {
-    "Diagnosis": "bench.diagnose.diagnosis",
+    "Diagnosis": "bench.diagnose.show.show",
     "Estimate": "bench.identify.estimate",
     "Rig": "bench.rig.rig",
     "Trace": "bench.trace.trace",

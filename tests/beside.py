@@ -1,4 +1,4 @@
-"""Seconds of CPU a diagnosis, this checkout beside another one, case by case in turn: `python -m tests.beside OTHER`."""
+"""Seconds of CPU a diagnosis, this checkout beside another, case by case in turn: `python -m tests.beside OTHER`."""
 
 from __future__ import annotations
 
@@ -36,7 +36,8 @@ def main(
 ) -> None:
     """Diagnose the shared cases with both checkouts in turn; print seconds and their ratio."""
     cases = sorted(path for path in (SHARED / "cases").iterdir() if path.is_dir())[::every]
-    rows = [(seconds(HERE, case), seconds(other.resolve(), case)) for case in track(cases, console=Console(stderr=True))]
+    taken = track(cases, console=Console(stderr=True))
+    rows = [(seconds(HERE, case), seconds(other.resolve(), case)) for case in taken]
     here, there = np.array(rows).T
     for case, mine, its in zip(cases, here, there, strict=True):
         typer.echo(f"{case.name}: {mine:.2f} s here, {its:.2f} s there, ratio {mine / its:.2f}")

@@ -41,6 +41,7 @@ print(time.perf_counter() - began)
 """
 
 
+@pytest.mark.slow
 def test_identify_two_seconds_at_a_kilohertz_in_memory(benchmark):
     trace = recording(np.random.default_rng(0), duration=2.0)
     assert benchmark(identify, trace, RIG).samples_read == 2000

@@ -14,6 +14,7 @@ from bench.diagnose.name.name import name
 from bench.diagnose.name.policy import Policy
 from bench.diagnose.recordings import Recordings
 from bench.diagnose.show.show import Diagnosis, show
+from bench.diagnose.show.suspicions import suspicions
 from bench.diagnose.where.where import where
 from bench.identify.determined import require_significant
 from bench.rig.rig import Rig
@@ -66,5 +67,5 @@ def require_weight(recordings: Recordings, fitted: Fit) -> None:
     """
     kind = recordings.rig.axis_kind
     inertia = uncertain(fitted).base(recordings.base_units)[kind.parameter(INERTIA)]
-    require_significant(inertia, kind)
+    require_significant(inertia, kind, suspicions(recordings.trace, recordings.rig, {}))
     require_positive(inertia, recordings.trace.origin)

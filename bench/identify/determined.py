@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
@@ -84,9 +86,15 @@ def _require_excited(equations: NormalEquations, column: str, kind: AxisKind) ->
         raise UndeterminedError(kind.spoken(column), reason, RECORD[column])
 
 
-def require_significant(inertia: Parameter, kind: AxisKind) -> None:
-    """UndeterminedError unless the interval of the inertia lies away from zero; the effort may be anything's then."""
+def require_significant(inertia: Parameter, kind: AxisKind, told: Sequence[str] = ()) -> None:
+    """UndeterminedError unless the interval of the inertia lies away from zero; the effort may be anything's then.
+
+    Args:
+        inertia: as found.
+        kind: of the axis.
+        told: what else is suspicious about the recording, and may be why.
+    """
     low, high = inertia.ci95
     if low <= 0.0 <= high:
-        reason = f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero"
+        reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero", *told])
         raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])

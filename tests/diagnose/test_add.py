@@ -21,6 +21,8 @@ AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
 )
 SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
+#: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
+STEP = 62.5e-6
 SPRING = Term(catalogue()["torsion_spring"])
 LAG = {catalogue()["velocity_filter_lag"]: Detected({"time_constant": 4e-3}, {"time_constant": 1e-5})}
 
@@ -30,7 +32,7 @@ def recorded(tmp_path_factory):
     """The axis with a torsion spring, recorded twice."""
     spring = (KINDS["torsion_spring"].draw(AXIS, 0.6, np.random.default_rng(0), 4.0),)
     motions = [random_motion(AXIS, np.random.default_rng(k), 4.0) for k in range(2)]
-    runs = simulate([AXIS] * 2, motions, [spring] * 2, [SENSORS] * 2, seed=6)
+    runs = simulate([AXIS] * 2, motions, [spring] * 2, [SENSORS] * 2, seed=6, longest_step=STEP)
     path = tmp_path_factory.mktemp("rig") / "rig.toml"
     write_rig(AXIS, path)
     return load_rig(path), runs[0].trace, runs[1].trace

@@ -24,12 +24,23 @@ ELASTIC = catalogue()["elastic_coupling"]
 PERIOD = 1e-3
 AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
 SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
+#: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
+STEP = 62.5e-6
 
 
-def recorded(effect, tmp_path, seed: int = 5) -> tuple[Trace, Rig]:
-    motion = random_motion(AXIS, np.random.default_rng(seed), 6.0)
-    write_rig(AXIS, tmp_path / "rig.toml")
-    return simulate([AXIS], [motion], [(effect,)], [SENSORS], seed)[0].trace, load_rig(tmp_path / "rig.toml")
+COUPLING, BRISTLES = ElasticCoupling(14.0, 2.5e-3), PreslidingFriction(3.0, 8e-3)
+SEED = 5
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory) -> tuple[Rig, dict[str, Trace]]:
+    """The rig, and a recording by the name of the effect in it."""
+    path = tmp_path_factory.mktemp("rig") / "rig.toml"
+    write_rig(AXIS, path)
+    effects, motion = (COUPLING, BRISTLES), random_motion(AXIS, np.random.default_rng(SEED), 6.0)
+    together = [AXIS] * 2, [motion] * 2, [(effect,) for effect in effects], [SENSORS] * 2
+    runs = simulate(*together, SEED, numbers=[0, 0], longest_step=STEP)
+    return load_rig(path), {effect.name: run.trace for effect, run in zip(effects, runs, strict=True)}
 
 
 @pytest.mark.parametrize(("drag", "ends"), [(0.0, 4.0), (0.02, 4.0), (0.0, 3.7)])
@@ -57,10 +68,9 @@ def test_the_load_moves_as_its_equation_says(tmp_path, drag, ends):
     assert found == pytest.approx(expected, abs=2e-3 * np.abs(expected).max())
 
 
-def test_a_soft_coupling_leaves_noise_alone(tmp_path):
-    effect = ElasticCoupling(14.0, 2.5e-3)
-    trace, rig = recorded(effect, tmp_path)
-    rows = Rows.of(trace, rig)
+def test_a_soft_coupling_leaves_noise_alone(recorded):
+    (rig, traces), effect = recorded, COUPLING
+    rows = Rows.of(traces[effect.name], rig)
     antiresonance = np.sqrt(effect.stiffness / (AXIS.inertia - AXIS.rotor_inertia))
     shape = float(antiresonance), 0.5 * effect.damping * float(antiresonance) / effect.stiffness
     fitted = fit(rows, Hypothesis((Term(ELASTIC, shape),)))
@@ -69,10 +79,9 @@ def test_a_soft_coupling_leaves_noise_alone(tmp_path):
     assert fitted.strengths(0)[0] == pytest.approx(AXIS.inertia - AXIS.rotor_inertia, rel=3e-3)
 
 
-def test_bristles_are_named_with_their_damping(tmp_path):
-    effect = PreslidingFriction(3.0, 8e-3)
-    trace, rig = recorded(effect, tmp_path)
-    fitted = search(gap(Rows.of(trace, rig)), list(catalogue().values()), Policy()).last
+def test_bristles_are_named_with_their_damping(recorded):
+    (rig, traces), effect = recorded, BRISTLES
+    fitted = search(gap(Rows.of(traces[effect.name], rig)), list(catalogue().values()), Policy()).last
     assert fitted.hypothesis.names == ("presliding_friction",)
     assert fitted.chi < 1.1
     values = fitted.terms[0].effect.report(fitted.strengths(0), fitted.terms[0].shape, fitted.base)

@@ -1,6 +1,7 @@
 """What every effect of the catalogue keeps to, whatever it is."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -15,13 +16,15 @@ from bench.plant.model import build_spec
 from bench.plant.native import run_controls, sense_torque
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
-from tests.effects.axes import AXIS, FREE, PARAMETERS, PERIOD, VALUES, Reversals, model, moved, plant, present
+from tests.effects.axes import AXIS, FREE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant, present, pushed
 
 EFFECTS = sorted(catalogue())
 SHORT = Reversals(0.4).references()
 NEUTRAL = {"friction_excess": 0.0, "friction_factor": 1.0, "resisting_torque": 0.0, "torque_factor": 1.0}
 #: Effects that the torque balance holds as columns of raw signals.
 BALANCED = [name for name, effect in catalogue().items() if effect.overrides("columns") and not effect.couples]
+#: Effects that only take energy from the motion.
+DISSIPATIVE = [n for n in EFFECTS if isinstance(catalogue()[n], Friction) or n == "quadratic_drag"]
 
 
 def with_null(name):
@@ -81,13 +84,21 @@ def test_order_does_not_matter():
     assert np.abs(first).max() > 10.0
 
 
-@pytest.mark.parametrize("name", [n for n in EFFECTS if isinstance(catalogue()[n], Friction) or n == "quadratic_drag"])
-@pytest.mark.parametrize("velocity", [40.0, -40.0])
-def test_friction_only_dissipates(name, velocity):
-    """Coasting, the axis never gains energy, but for what bristles store, and loses it all."""
+@pytest.fixture(scope="module")
+def coasting():
+    """Speed at every tick of an axis with each friction, left alone at either speed; all run together."""
     friction = replace(FREE, coulomb_friction=AXIS.coulomb, viscous_friction_coefficient=AXIS.viscous)
-    states = moved([present(name)], 2.0, velocity=velocity, parameters=friction)
-    energy = 0.5 * FREE.inertia * states.velocity[:, 0] ** 2
+    cases = list(product(DISSIPATIVE, (40.0, -40.0)))
+    axes = [pushed([present(name)], 2.0, velocity=velocity, parameters=friction) for name, velocity in cases]
+    states = run(*zip(*axes, strict=True))
+    return dict(zip(cases, states.velocity.T, strict=True))
+
+
+@pytest.mark.parametrize("name", DISSIPATIVE)
+@pytest.mark.parametrize("velocity", [40.0, -40.0])
+def test_friction_only_dissipates(name, velocity, coasting):
+    """Coasting, the axis never gains energy, but for what bristles store, and loses it all."""
+    energy = 0.5 * FREE.inertia * coasting[name, velocity] ** 2
     stored = AXIS.coulomb**2 / (2.0 * VALUES[name]["bristle_stiffness"]) if name == "presliding_friction" else 0.0
     assert (energy <= np.minimum.accumulate(energy) + stored + 1e-9).all()
     assert energy[-1] < 0.01 * energy[0]

@@ -1,16 +1,17 @@
-"""What effects cost, printed; the limits are wide, for machines that others use too."""
-
-import time
+"""What effects cost: counted in steps that Python takes part in, and measured with `-m '' --benchmark-only -s`."""
 
 import numpy as np
 import pytest
 
+from bench.plant import ticks
 from bench.plant.run import run
 from bench.plant.track_effects import track_effects
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, Reversals, model, plant
 
-DURATION, SAMPLE_PERIOD = 13.0, 1e-3
+SAMPLE_PERIOD = 1e-3
+#: A sample is simulated in two steps.
+STEPS = 2
 NATIVE = ("cogging_torque", "elastic_coupling", "presliding_friction", "quadratic_drag", "torsion_spring")
 TICKED = ("stribeck_friction",)
 MANY_TICKED = (
@@ -22,26 +23,55 @@ MANY_TICKED = (
 )
 
 
-@pytest.mark.parametrize(("names", "most"), [((), 1.0), (NATIVE, 1.5), (TICKED, 4.0), (MANY_TICKED, 8.0)], ids=str)
-def test_tracking_a_recording(names, most):
-    """13 s at 1 kHz, 26000 steps."""
-    times = SAMPLE_PERIOD * np.arange(round(DURATION / SAMPLE_PERIOD))
-    position, velocity, acceleration = Reversals(DURATION, 20.0).at(times)
+@pytest.fixture
+def steps(monkeypatch):
+    """One entry for each call by which Python steps a batch."""
+    calls = []
+
+    class Counted(ticks.Batch):
+        def step(self, *args, **kwargs):
+            calls.append(self)
+            return super().step(*args, **kwargs)
+
+    monkeypatch.setattr(ticks, "Batch", Counted)
+    return calls
+
+
+def recorded(duration):
+    times = SAMPLE_PERIOD * np.arange(round(duration / SAMPLE_PERIOD))
+    position, velocity, acceleration = Reversals(duration, 20.0).at(times)
     current = AXIS.inertia * acceleration / AXIS.torque_constant
     signals = {"position": position, "velocity": velocity, "current": current}
-    trace = Trace(times, signals, {"position": "rad", "velocity": "rad/s", "current": "A"}, "made up")
-    start = time.perf_counter()
-    track_effects(model(*names), trace, AXIS.torque_constant * current)
-    took = time.perf_counter() - start
-    print(f"{len(names)} effects ({', '.join(names) or 'none'}): {took:.2f} s, {took / 0.026:.1f} us a step")
-    assert took < most
+    return Trace(times, signals, {"position": "rad", "velocity": "rad/s", "current": "A"}, "made up")
 
 
-def test_many_axes_cost_little_more_than_one():
+def tracked(names, trace):
+    return track_effects(model(*names), trace, AXIS.torque_constant * trace["current"])
+
+
+@pytest.mark.parametrize(("names", "each"), [((), 0), (NATIVE, 0), (TICKED, STEPS), (MANY_TICKED, STEPS)], ids=str)
+def test_native_effects_leave_all_steps_to_mujoco_and_ticked_ones_share_theirs(names, each, steps):
+    trace = recorded(0.2)
+    assert np.isfinite(tracked(names, trace)).all()
+    assert len(steps) == pytest.approx(each * len(trace), abs=STEPS)
+
+
+@pytest.mark.parametrize("axes", [1, 50])
+def test_many_axes_take_the_steps_of_one(axes, steps):
+    references, one = Reversals(0.02).references(), plant(*MANY_TICKED)
+    run([one] * axes, [references] * axes)
+    assert len(steps) == len(references.time) * one.substeps
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("names", [(), NATIVE, TICKED, MANY_TICKED], ids=str)
+def test_tracking_a_recording(names, benchmark):
+    """13 s at 1 kHz, 26000 steps."""
+    assert np.isfinite(benchmark(tracked, names, recorded(13.0))).all()
+
+
+@pytest.mark.slow
+def test_a_hundred_axes(benchmark):
     references = Reversals(0.2).references()
-    start = time.perf_counter()
-    run([plant(*MANY_TICKED)] * 100, [references] * 100)
-    took = time.perf_counter() - start
-    each = 1e6 * took / (100 * len(references.time))
-    print(f"100 axes with {len(MANY_TICKED)} ticked effects: {each:.1f} us an axis and step")
-    assert each < 30.0
+    states = benchmark(run, [plant(*MANY_TICKED)] * 100, [references] * 100)
+    assert states.velocity.shape == (references.time.size, 100)

@@ -1,16 +1,49 @@
-"""The course, done once for all tests that read it."""
+"""`bench lab`, run once for all tests that read its tasks, its report or what it prints."""
+
+import sys
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
 
 import pytest
 
-from bench.lab.course import course
-from bench.lab.recordings import Recordings
+from bench.cli import main
 from bench.lab.result import Task
+from bench.report import course
+
+
+@dataclass(frozen=True)
+class Lab:
+    """What the command left: its exit status, what it printed, and its results before they were printed."""
+
+    folder: Path
+    status: object
+    printed: str
+    results: list
 
 
 @pytest.fixture(scope="session")
-def done():
+def lab(tmp_path_factory):
+    """`bench lab --out here` on the synthetic recordings."""
+    folder, reports = tmp_path_factory.mktemp("lab"), []
+
+    def kept(*arguments, report=course.report_course):
+        reports.append(report(*arguments))
+        return reports[-1]
+
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(StringIO()) as printed:
+        patch.chdir(folder)
+        patch.setattr(sys, "argv", ["bench", "lab", "--out", "here"])
+        patch.setattr(course, "report_course", kept)
+        with pytest.raises(SystemExit) as stop:
+            main()
+    return Lab(folder, stop.value.code, printed.getvalue(), [*reports[0].results])
+
+
+@pytest.fixture(scope="session")
+def done(lab):
     """Tasks of the course on the synthetic recordings by their key."""
-    tasks = course(Recordings.in_folder(None))
-    missed = [task for task in tasks if not isinstance(task, Task)]
+    missed = [task for task in lab.results if not isinstance(task, Task)]
     assert not missed, [f"{task.key}: {task.reason}" for task in missed]
-    return {task.key: task for task in tasks}
+    return {task.key: task for task in lab.results}
