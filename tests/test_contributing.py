@@ -53,6 +53,14 @@ def test_the_examples_pass_their_tests(extras):
     assert f"{len(TESTS)} passed" in done.stdout, done.stdout + done.stderr
 
 
+def test_the_examples_are_what_they_declare(extras):
+    names = [Path(name).stem.removeprefix("test_") for name in TESTS]
+    laws = [str(ROOT / "tests" / "effects" / f"test_{name}.py") for name in ("properties", "told")]
+    done = run(extras, "-m", "pytest", "-q", "-n", "0", "-p", "no:cacheprovider", *laws, "-k", " or ".join(names))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert " passed" in done.stdout
+
+
 def test_the_examples_are_listed_beside_the_catalogue(extras):
     done = run(extras, "-m", "bench", "effects")
     for name in TESTS:

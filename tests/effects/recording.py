@@ -1,17 +1,18 @@
-"""A recording as effects see it, and shapes and scopes to ask them with."""
+"""A recording as effects see it, shapes and scopes to ask them with, and all effects to be asked."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
+import pytest
 
 from bench.axis_kind import LINEAR, ROTARY
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
-from bench.effects.signals import Scope, Signals
+from bench.effects.signals import Base, Scope, Signals
 
 COUNT, STEP = 2000, 1e-3
 #: Shapes of effects that no grid finds: of the event, of the eccentricity, of the dead zone.
@@ -70,3 +71,28 @@ def plain(effect: Effect, seen: Signals) -> list[np.ndarray]:
     """Columns without derivatives (n,): those of an effect that has a term with one are left out."""
     columns = effect.columns(seen, shape_of(effect))
     return [sum(values for values, _ in column) for column in columns if all(order == 0 for _, order in column)]
+
+
+def differ(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> bool:
+    """Whether any of the values does by more than rounding."""
+    return any(np.abs(a - b).max() > 1e-9 * (np.abs(a).max() + 1e-300) for a, b in zip(one, other, strict=True))
+
+
+EFFECTS = catalogue()
+RECORDED = signals()
+BASE = Base(1.2e-3, 8e-4, 0.06)
+SCOPES = list(scopes())
+
+every = pytest.mark.parametrize("effect", EFFECTS.values(), ids=list(EFFECTS))
+with_columns = pytest.mark.parametrize("effect", [EFFECTS[name] for name in balanced()], ids=balanced())
+
+
+def changed(effect: Effect, **others: np.ndarray) -> bool:
+    """Whether its columns change with some of the signals."""
+    return differ(raw(effect, RECORDED), raw(effect, replace(RECORDED, **others)))
+
+
+def reported(effect: Effect) -> dict[str, float]:
+    """Quantities of strengths that are small."""
+    strengths = [5e-4] * len(effect.columns(RECORDED, shape_of(effect)))
+    return dict(effect.report(strengths, shape_of(effect), BASE))
