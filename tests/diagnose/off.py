@@ -8,6 +8,7 @@ from dataclasses import fields, replace
 from bench.diagnose.name.doubts import (
     Contested,
     NotInHoldout,
+    OneForMany,
     Simpler,
     TwoForOne,
     Unbelievable,
@@ -41,6 +42,7 @@ OFF: dict[type, tuple[str, Callable]] = {
     Contested: ("left", lambda self, fitted, evidence: fitted),
     WrongForm: ("left", lambda self, fitted, evidence: fitted),
     TwoForOne: ("left", lambda self, fitted, evidence: fitted),
+    OneForMany: ("left", lambda self, fitted, evidence: fitted),
     Simpler: ("left", lambda self, fitted, evidence: fitted),
     Unbelievable: ("left", lambda self, fitted, evidence: fitted),
 }

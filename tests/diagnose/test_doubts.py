@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from bench.diagnose.name.doubts import Contested, NotInHoldout, Simpler, TwoForOne, Unbelievable, WrongForm
+from bench.diagnose.name.doubts import Contested, NotInHoldout, OneForMany, Simpler, TwoForOne, Unbelievable, WrongForm
 from bench.diagnose.name.policy import Policy
 from bench.effects.catalogue import catalogue
 from tests.diagnose.constructed import SINES, moved, names, offset, only_during, recorded, vibration, wave
@@ -76,6 +76,17 @@ def test_two_waves_of_one_period_stay_where_no_single_one_replaces_them():
         wave(0.06, 1.0, 1.0),
     )
     assert set(names(POLICY, trace, RIGID)) == {"position_dependent_friction", "unbalance"}
+
+
+def test_a_bump_at_one_angle_is_no_series_of_waves():
+    trace = recorded(moved(), lambda motion: 0.06 * np.exp(-0.5 * (np.angle(np.exp(1j * motion.position)) / 0.5) ** 2))
+    assert names(POLICY, trace, RIGID) == ()
+    assert "cogging_torque" in names(without(OneForMany), trace, RIGID)
+
+
+def test_waves_of_several_numbers_are_a_series():
+    trace = recorded(moved(), wave(0.03, 1.0), wave(0.03, 6.0, 1.0), wave(0.03, 12.0, 2.0))
+    assert set(names(POLICY, trace, RIGID)) == {"unbalance", "cogging_torque"}
 
 
 def test_friction_that_differs_by_a_constant_is_an_offset():

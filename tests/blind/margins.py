@@ -1,0 +1,80 @@
+"""How far the search's thresholds stand from what the blind set shows: `python -m tests.blind.margins`.
+
+Of nulls: the most that any candidate would save, over noise power, per number and independent row (`Significant`), and
+residual over noise floor (`Remainder`). Of singles named rightly: the share of what stands above the noise floor that
+the hidden effect explains when it is taken up (`Explains`), and residual over noise floor with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.progress import track
+
+from bench.balance.fit import Fit
+from bench.balance.rows import Rows
+from bench.diagnose.gap.gap import gap
+from bench.diagnose.name.candidates import candidates
+from bench.diagnose.name.policy import Policy
+from bench.diagnose.name.rules import row_correlation, worth
+from bench.diagnose.name.search import search
+from bench.effects.catalogue import catalogue
+from bench.rig.rig import load_rig
+from bench.trace.read import read
+from tests.blind.draw import Drawn, draw
+from tests.blind.record import home, truth_of
+from tests.blind.score import same
+
+
+def bare(folder: Path) -> Fit:
+    """The fit without an effect of a case's first recording."""
+    rig = load_rig(folder / "rig.toml")
+    return gap(Rows.of(read(folder / "run1.csv.gz", rig.trace.columns), rig))
+
+
+def of_nulls(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[float]]:
+    """Significance of the best candidate, and residual over noise floor, of each."""
+    significance, chi = [], []
+    for case in track(cases, "nulls", console=Console(stderr=True)):
+        fitted = bare(folder / case.name)
+        best = candidates(fitted, catalogue().values())[0]
+        numbers = max(len(best.term.shape), 1)
+        significance.append(best.gain / (numbers * row_correlation(fitted.rows) * fitted.floor**2))
+        chi.append(fitted.chi)
+    return significance, chi
+
+
+def of_singles(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[float]]:
+    """Share explained by the hidden effect when taken up, and residual over noise floor, where it alone is named."""
+    shares, chi = [], []
+    for case in track(cases, "singles", console=Console(stderr=True)):
+        steps = search(bare(folder / case.name), list(catalogue().values()), Policy()).steps
+        if len(steps) == 2 and same(steps[1].fitted.hypothesis.names) == same(truth_of(folder, case.name)["effects"]):
+            before, after = steps[0].fitted, steps[1].fitted
+            shares.append(worth(before, after) / before.excess if before.excess else 1.0)
+            chi.append(after.chi)
+    return shares, chi
+
+
+def main(every: Annotated[int, typer.Option(min=1, help="Take every so many of the singles.")] = 4) -> None:
+    """Print the margins; the blind set must have been recorded by `python -m tests.blind`."""
+    folder, drawn = home(1, 8.0, None), draw(1, {"single": 252, "pair": 60, "null": 100, "outside": 32}, 8.0)
+    significance, null_chi = of_nulls(folder, [case for case in drawn if case.group == "null"])
+    shares, chi = of_singles(folder, [case for case in drawn if case.group == "single"][::every])
+    typer.echo(
+        f"{len(significance)} nulls: best candidate {np.max(significance):.1f} at most, median "
+        f"{np.median(significance):.1f}; chi {np.quantile(null_chi, 0.95):.3f} at 95 %, {np.max(null_chi):.3f} at most"
+    )
+    typer.echo(
+        f"{len(shares)} singles: share explained {np.min(shares):.2f} at least, {np.quantile(shares, 0.05):.2f} at "
+        f"5 %; chi {np.quantile(chi, 0.95):.3f} at 95 %, {np.max(chi):.3f} at most"
+    )
+
+
+if __name__ == "__main__":
+    typer.run(main)
