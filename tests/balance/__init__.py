@@ -1,0 +1,1 @@
+"""The engine: rows, hypotheses and their fits."""
