@@ -28,18 +28,34 @@ SHORT_STROKE = moved(4.0, sines=tuple((0.4 * amplitude, 2.0 * f, phase) for ampl
 WAVES = ("cogging_torque", "torque_ripple", "unbalance", "quadratic_drag", "stribeck_friction")
 
 
-@pytest.mark.parametrize("seed", [3, 11])
-def test_noise_that_takes_its_share_by_chance_is_not_named(seed):
-    """Where no effect is, a quarter of almost nothing above the floor is soon explained."""
-    trace = recorded(moved(3.0), seed=seed)
-    assert names(POLICY, trace, WAVES) == ()
-    assert names(without(Significant), trace, WAVES) == ("torque_ripple",)
+def searched(policy, trace, effects):
+    """Names before any doubt."""
+    return search(bare(trace), [catalogue()[name] for name in effects], policy).last.hypothesis.names
+
+
+def test_no_shape_is_searched_where_the_grid_promises_nothing(monkeypatch):
+    """Promising spares work: beside noise alone no shape of any effect is searched."""
+    asked, refined = [], searching.refined
+    monkeypatch.setattr(searching, "refined", lambda current, term: asked.append(term) or refined(current, term))
+    null, few = bare(recorded(MOTION)), [catalogue()[name] for name in WAVES]
+    assert search(null, few, POLICY).last is null
+    assert asked == []
+    search(null, few, without(Promising))
+    assert len(asked) == len(few)
 
 
 def test_a_significant_part_of_something_else_is_not_named():
     trace = recorded(MOTION, vibration(0.05, 3.3))
     assert searched(POLICY, trace, WAVES[:3]) == ()
     assert searched(without(Explains), trace, WAVES[:3]) != ()
+
+
+@pytest.mark.parametrize("seed", [3, 11])
+def test_noise_that_takes_its_share_by_chance_is_not_named(seed):
+    """Where no effect is, a quarter of almost nothing above the floor is soon explained."""
+    trace = recorded(moved(3.0), seed=seed)
+    assert names(POLICY, trace, WAVES) == ()
+    assert names(without(Significant), trace, WAVES) == ("torque_ripple",)
 
 
 def test_a_torque_that_drives_the_axis_is_no_drag():
@@ -81,11 +97,6 @@ def test_a_coupling_beside_something_else_is_no_gap():
     assert searched(without(ReplacesClearly), trace, effects) == ("backlash",)
 
 
-def searched(policy, trace, effects):
-    """Names before any doubt."""
-    return search(bare(trace), [catalogue()[name] for name in effects], policy).last.hypothesis.names
-
-
 def test_what_no_effect_explains_is_told():
     trace = recorded(MOTION, vibration(0.01, 3.3))
     others = frozenset(catalogue()) - {"unbalance"}
@@ -98,17 +109,6 @@ def test_noise_alone_is_no_remainder():
     assert [diagnose(recorded(MOTION, seed=k), RIG, excluded=others).verdict for k in range(6)] == [
         "nothing_missing"
     ] * 6
-
-
-def test_no_shape_is_searched_where_the_grid_promises_nothing(monkeypatch):
-    """Promising spares work: beside noise alone not one shape of 21 effects is searched."""
-    asked, refined = [], searching.refined
-    monkeypatch.setattr(searching, "refined", lambda current, term: asked.append(term) or refined(current, term))
-    null, few = bare(recorded(MOTION)), [catalogue()[name] for name in WAVES]
-    assert search(null, few, POLICY).last is null
-    assert asked == []
-    search(null, few, without(Promising))
-    assert len(asked) == len(few)
 
 
 def test_few_finalists_are_searched_and_the_best_of_them():
