@@ -7,12 +7,8 @@ from dataclasses import fields, replace
 
 from bench.diagnose.name.doubts import (
     Contested,
-<<<<<<< HEAD
     NotInHoldout,
     OneForMany,
-=======
-    NotBorneOut,
->>>>>>> m5
     Simpler,
     TwoForOne,
     Unbelievable,
@@ -42,18 +38,11 @@ OFF: dict[type, tuple[str, Callable]] = {
     NoLongerNeeded: ("holds", lambda self, fitted, less, index, significant: False),
     ReplacesClearly: ("holds", lambda self, before, after: True),
     Remainder: ("holds", lambda self, fitted: False),
-<<<<<<< HEAD
     NotInHoldout: ("left", lambda self, fitted, evidence: fitted),
     Contested: ("left", lambda self, fitted, evidence: fitted),
     WrongForm: ("left", lambda self, fitted, evidence: fitted),
     TwoForOne: ("left", lambda self, fitted, evidence: fitted),
     OneForMany: ("left", lambda self, fitted, evidence: fitted),
-=======
-    NotBorneOut: ("left", lambda self, fitted, evidence: fitted),
-    Contested: ("left", lambda self, fitted, evidence: fitted),
-    WrongForm: ("left", lambda self, fitted, evidence: fitted),
-    TwoForOne: ("left", lambda self, fitted, evidence: fitted),
->>>>>>> m5
     Simpler: ("left", lambda self, fitted, evidence: fitted),
     Unbelievable: ("left", lambda self, fitted, evidence: fitted),
 }

@@ -7,11 +7,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-<<<<<<< HEAD
 from bench.diagnose.name.doubts import Contested, NotInHoldout, OneForMany, Simpler, TwoForOne, Unbelievable, WrongForm
-=======
-from bench.diagnose.name.doubts import Contested, NotBorneOut, Simpler, TwoForOne, Unbelievable, WrongForm
->>>>>>> m5
 from bench.diagnose.name.policy import Policy
 from bench.effects.catalogue import catalogue
 from tests.diagnose.constructed import SINES, moved, names, offset, only_during, recorded, vibration, wave
@@ -43,11 +39,7 @@ def test_what_happens_in_the_holdout_at_any_time_is_no_event():
     trace = recorded(MOTION, only_during(0.08, 1.0, 1.5))
     holdout = recorded(OTHER, only_during(0.08, 2.5, 3.0), seed=1)
     assert names(POLICY, trace, EVENT, holdout) == ()
-<<<<<<< HEAD
     assert names(without(NotInHoldout), trace, EVENT, holdout) == EVENT
-=======
-    assert names(without(NotBorneOut), trace, EVENT, holdout) == EVENT
->>>>>>> m5
 
 
 def test_a_vibration_in_step_with_the_motion_is_no_spring():
@@ -86,7 +78,6 @@ def test_two_waves_of_one_period_stay_where_no_single_one_replaces_them():
     assert set(names(POLICY, trace, RIGID)) == {"position_dependent_friction", "unbalance"}
 
 
-<<<<<<< HEAD
 def test_a_bump_at_one_angle_is_no_series_of_waves():
     trace = recorded(moved(), lambda motion: 0.06 * np.exp(-0.5 * (np.angle(np.exp(1j * motion.position)) / 0.5) ** 2))
     assert names(POLICY, trace, RIGID) == ()
@@ -98,8 +89,6 @@ def test_waves_of_several_numbers_are_a_series():
     assert set(names(POLICY, trace, RIGID)) == {"unbalance", "cogging_torque"}
 
 
-=======
->>>>>>> m5
 def test_friction_that_differs_by_a_constant_is_an_offset():
     trace = recorded(MOTION, offset(0.05))
     assert names(POLICY, trace, RIGID) == ("torque_offset",)

@@ -44,11 +44,7 @@ def tried(mutant: Mutant | None, stages: tuple[tuple[str, ...], ...], deadline: 
     environment = {**os.environ, **ONE_THREAD, **({MUTANT: name} if mutant else {})}
     for stage in stages:
         command = [sys.executable, "-m", "pytest", "-p", "tests.mutation.plugin", "-p", "no:cacheprovider"]
-<<<<<<< HEAD
         command += ["-q", "-n", "0", "-x", "--tb=no", "--no-header", *stage]
-=======
-        command += ["-q", "-x", "--tb=no", "--no-header", *stage]
->>>>>>> m5
         left = deadline - (time.monotonic() - start)
         try:
             done = subprocess.run(
