@@ -147,7 +147,8 @@ def _solved(equations: NormalEquations, rows: Rows, offset: bool) -> Solved:
         gram, moment = chosen.gram.sum(axis=0), chosen.moment.sum(axis=0) - held * chosen.gram.sum(axis=0)[:, at]
         rest, _ = solved(gram[np.ix_(kept, kept)], moment[kept], chosen.count * chosen.noise[np.ix_(kept, kept)])
         theta = np.insert(rest, at, held)
-        errors = np.sqrt(np.maximum(np.diag(estimated(chosen.scores(theta), inverse, least)[0]), 0.0))
+        covariance, reach = estimated(chosen.scores(theta), inverse, least)
+        errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     return Solved(columns, theta, errors, reach, shift)
 
 
