@@ -11,6 +11,10 @@ from bench.arrays import Array
 #: with first-order residuals (0.9 a ms) nominal 95 % intervals covered .958/.923/.903 with it, .963/.935/.908 half
 #: again as wide, .963/.933/.918 more than twice as wide (J, viscous, Coulomb; tests/identify/test_coverage.py).
 WIDENED = 1.5
+#: Columns of the plain axis, which take as many degrees of freedom. What effects add is not counted: where residuals
+#: hang together so long that their number matters, a remainder is left, and the interval says nothing of the effect's
+#: columns (a servo's pendulum with four effects and ten independent blocks: one degree, an interval of 12.7 errors).
+PLAIN = 4
 
 
 def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float]:
@@ -29,7 +33,7 @@ def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float
     """
     middle, bandwidth = long_run_covariance(scores)
     independent = scores.shape[0] / bandwidth
-    degrees = max(independent - inverse.shape[0], 1.0)
+    degrees = max(independent - PLAIN, 1.0)
     covariance = inverse @ middle @ inverse * independent / degrees
     variance, floor = np.diag(covariance), least * np.diag(inverse)
     widened = np.sqrt(np.where(variance > 0.0, np.maximum(variance, floor) / np.maximum(variance, 1e-300), 1.0))

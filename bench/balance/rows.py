@@ -79,6 +79,7 @@ class Rows:
         width: float | None = None,
         every: bool = False,
         begins: float | None = None,
+        peak_effort: float | None = None,
     ) -> Rows:
         """Lay out a recording, or a part of one.
 
@@ -90,6 +91,7 @@ class Rows:
             width: of the filter instead of the one chosen from the recording - s.
             every: whether a row stands for every sample, which a replay wants.
             begins: the recording, if this is a later part of it - s.
+            peak_effort: where the rig tells none, that of the recording in which a model was found - N*m (N).
 
         Raises:
             InputError: a signal is missing, or rig and recording do not fit together.
@@ -103,7 +105,7 @@ class Rows:
             conditioning = replace(found, filter=replace(smooth, stride=1) if every else smooth)
         constant, peak = rig.motor.torque_per_ampere, rig.motor.peak_current
         largest = float(np.abs(effort).max())
-        peak_effort = float(constant.torque(np.asarray(peak))) if constant and peak else largest
+        peak_effort = float(constant.torque(np.asarray(peak))) if constant and peak else peak_effort or largest
         parts = [part for part in trace.segments if part.stop - part.start > 4 * conditioning.filter.margin]
         begins = float(trace.time[0]) if begins is None else begins
         stretches = tuple(_stretch(trace, effort, part, conditioning, peak_effort, begins) for part in parts)
@@ -247,5 +249,6 @@ def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: C
         travel=max(float(s.position.max()) for s in signals) - min(float(s.position.min()) for s in signals),
         top_speed=max(float(np.abs(s.velocity).max()) for s in signals),
         rms_speed=float(np.sqrt(np.mean(speed**2))),
+        peak_effort=signals[0].peak_effort,
         rotor_inertia=rig.motor.rotor_inertia or 0.0,
     )

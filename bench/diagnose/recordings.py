@@ -58,7 +58,10 @@ class Recordings:
         if seen is not trace:
             rows = Rows.of(seen, rig)
             require_decidable(seen, rig, rows)
-        other = Rows.of(unseen, rig, width=rows.conditioning.filter.width) if unseen is not None else None
+        other = None
+        if unseen is not None:
+            width, peak = rows.conditioning.filter.width, rows.scope.peak_effort
+            other = Rows.of(unseen, rig, width=width, peak_effort=peak)
         return cls(rig, trace, holdout, rows, other, detected)
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -75,8 +76,10 @@ def replay(path: str | Path, trace: Trace, rig: Rig) -> Replay:
     if kind != rig.kind:
         raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
     effort, unit = rig.net_effort(trace)
+    stored = load_model(path) if "parameters" in table else None
+    peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
     try:
-        rows = Rows.of(trace, rig, width=balance.width, every=True)
+        rows = Rows.of(trace, rig, width=balance.width, every=True, peak_effort=peak)
     except UndeterminedError as error:
         raise UndeterminedError(f"the torque gap along {trace.origin}", error.reason, error.record) from error
     owners = lay_out(rows, balance.hypothesis).owners
@@ -87,8 +90,7 @@ def replay(path: str | Path, trace: Trace, rig: Rig) -> Replay:
     torque, simulated = np.full(len(trace), np.nan), np.full(len(trace), np.nan)
     torque[samples], simulated[samples] = rows.effort, rows.effort - balance.left(rows)
     velocity = np.full(len(trace), np.nan)
-    if "parameters" in table:
-        stored = load_model(path)
+    if stored is not None:
         happening = balance.recording in (EVERY, trace.origin)
         model = stored.model if happening else without_events(stored.model)
         bandwidth = holding_bandwidth(model, float(np.abs(measured_velocity(trace)).max()))

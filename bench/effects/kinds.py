@@ -17,6 +17,7 @@ import mujoco
 
 from bench.arrays import Array
 from bench.effects.effect import Effect
+from bench.effects.signals import Scope
 
 Number = float | Array
 Values = Mapping[str, Number]
@@ -95,6 +96,10 @@ class Mechanism(Effect):
 
 class Friction(Mechanism):
     """A mechanism that changes dry friction."""
+
+    def sought(self, scope: Scope) -> bool:
+        """Not in one direction, where it is no other than torque: friction that varies with position, an unbalance."""
+        return super().sought(scope) and not scope.one_way
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Added to the level of dry friction - N*m (N)."""

@@ -64,6 +64,7 @@ class Scope:
         width: of the filter, its standard deviation - s.
         travel: from the lowest to the highest position - rad (m).
         top_speed, rms_speed: rad/s (m/s).
+        peak_effort: as `Signals` has it - N*m (N).
         rotor_inertia: of the motor alone, 0 where the rig does not tell - kg*m**2 (kg).
     """
 
@@ -79,6 +80,7 @@ class Scope:
     travel: float
     top_speed: float
     rms_speed: float
+    peak_effort: float
     rotor_inertia: float
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -49,9 +48,7 @@ def stored_model(fitted: Fit, beside: Sequence[Present], rig: Rig) -> StoredMode
         present_of(term.effect, term.effect.report(fitted.strengths(index), term.shape, fitted.base))
         for index, term in enumerate(fitted.terms)
     ]
-    constant, current = rig.motor.torque_per_ampere, rig.motor.peak_current
-    peak = float(constant.torque(np.asarray(current))) if constant is not None and current is not None else math.inf
-    model = AxisModel(base, (*present, *beside), peak, winding_of(rig))
+    model = AxisModel(base, (*present, *beside), fitted.scope.peak_effort, winding_of(rig))
     return StoredModel(rig.name, model, float(fitted.theta[MISALIGNMENT]))
 
 
