@@ -133,6 +133,9 @@ def test_a_family_of_harmonics_is_one_effect():
     found = search(bare(trace), [catalogue()["cogging_torque"]], Policy(most=1))
     assert sorted(term.shape for term in found.last.terms) == [(6.0,), (9.0,)]
     assert found.stopped is None
+    cut = search(bare(trace), [catalogue()["cogging_torque"]], Policy(members=1))
+    assert len(cut.last.terms) == 1
+    assert cut.stopped == LIMIT
 
 
 def test_what_the_limit_cut_off_is_a_remainder():

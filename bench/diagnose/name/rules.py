@@ -183,6 +183,7 @@ class Rules:
         replaces: what puts one in the place of others.
         remainder: what is left unexplained.
         most: effects at most; a family of harmonics is one of them.
+        members: of a family at most: more waves or events draw anything.
     """
 
     promising: Promising = field(default_factory=Promising)
@@ -193,3 +194,4 @@ class Rules:
     replaces: ReplacesClearly = field(default_factory=ReplacesClearly)
     remainder: Remainder = field(default_factory=Remainder)
     most: int = 12
+    members: int = 12

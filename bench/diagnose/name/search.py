@@ -6,6 +6,7 @@ left), so a recording in which nothing is hidden ends without a name.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -73,7 +74,8 @@ def forward_selection(found: Searched, effects: Sequence[Effect], rules: Rules) 
         better = [after for after in finalists if _worthwhile(current, after, rules)]
         if not better:
             return Searched(steps)
-        if len({term.effect.name for term in min(better, key=lambda after: after.squares).terms}) > rules.most:
+        names = Counter(min(better, key=lambda after: after.squares).hypothesis.names)
+        if len(names) > rules.most or max(names.values()) > rules.members:
             return Searched(steps, LIMIT)
         chosen = polished(min(better, key=lambda after: after.squares), rules)
         steps = (*steps, Step(with_hum(backward_elimination(on_its_side(chosen, rules), rules)), tuple(tried)))
