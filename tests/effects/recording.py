@@ -46,7 +46,7 @@ def shape_of(effect: Effect) -> tuple[float, ...]:
 
 def scopes() -> Iterator[Scope]:
     """What recordings of all kinds show."""
-    rotary = Scope(ROTARY, "velocity", frozenset(), False, 6.0, 1e-3, 250e-6, 0.0, 2e-3, 60.0, 100.0, 40.0, 5e-4)
+    rotary = Scope(ROTARY, "velocity", frozenset(), False, 6.0, 1e-3, 250e-6, 0.0, 2e-3, 60.0, 100.0, 40.0, 6.0, 5e-4)
     recorded = (
         ("velocity", {"velocity", "current"}),
         ("velocity", {"position", "velocity", "current"}),
