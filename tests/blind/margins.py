@@ -64,8 +64,8 @@ def of_singles(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[
 def main(every: Annotated[int, typer.Option(min=1, help="Take every so many of the singles.")] = 4) -> None:
     """Print the margins; the blind set must have been recorded by `python -m tests.blind`."""
     folder, drawn = home(1, 8.0, None), draw(1, {"single": 252, "pair": 60, "null": 100, "outside": 32}, 8.0)
-    significance, null_chi = of_nulls(folder, [case for case in drawn if case.group == "null"])
-    shares, chi = of_singles(folder, [case for case in drawn if case.group == "single"][::every])
+    significance, null_chi = of_nulls(folder, [case for case in drawn if case.hidden.group == "null"])
+    shares, chi = of_singles(folder, [case for case in drawn if case.hidden.group == "single"][::every])
     typer.echo(
         f"{len(significance)} nulls: best candidate {np.max(significance):.1f} at most, median "
         f"{np.median(significance):.1f}; chi {np.quantile(null_chi, 0.95):.3f} at 95 %, {np.max(null_chi):.3f} at most"
