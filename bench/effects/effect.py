@@ -28,8 +28,8 @@ from bench.units import Quantity
 if TYPE_CHECKING:
     from bench.effects.kinds import Axis, Number
 
-#: Share of what stands above the noise floor that an effect must explain to be taken up. A hidden effect alone explains
-#: 0.90 at least and 0.98 in 95 of 100 (`python -m tests.blind.margins`); one of several explains less.
+#: Share of what stands above the noise floor that an effect must explain to be taken up; one alone explains 0.90 at
+#: least (`python -m tests.blind.margins`), one of several less.
 SHARE = 0.25
 #: The same for a pitch that repeats so many half cycles over the travel of a linear axis that no smooth error of the
 #: model copies it.
@@ -159,8 +159,6 @@ class Effect:
         """Values of quantities that need not be given."""
         return {quantity.name: quantity.preset for quantity in self.quantities if quantity.preset is not None}
 
-    # How it enters the torque balance.
-
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """The recording as it is without this fault of its sensors."""
         return signals
@@ -235,6 +233,10 @@ class Effect:
         """Whether its shapes, several if it is repeatable, are credible in such a recording."""
         return True
 
+    def credible(self, shape: Sequence[float]) -> bool:
+        """Whether a search may end with this shape, which it may pass on its way."""
+        return True
+
     def wave_number(self, shape: Sequence[float]) -> float | None:
         """Of its torque over position, if it is a wave - 1 (rad/m)."""
         return None
@@ -242,8 +244,6 @@ class Effect:
     def simpler_forms(self) -> tuple[str, ...]:
         """Names of effects that it becomes where some of its strengths are nil."""
         return ()
-
-    # How it is told.
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """The effect's quantities from fitted strengths and shape - SI."""

@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 
 from bench.diagnose.name.doubts import (
     Contested,
+    NotCredible,
     NotInHoldout,
     OneForMany,
     Simpler,
@@ -38,6 +39,7 @@ OFF: dict[type, tuple[str, Callable]] = {
     NoLongerNeeded: ("holds", lambda self, fitted, less, index, significant: False),
     ReplacesClearly: ("holds", lambda self, before, after: True),
     Remainder: ("holds", lambda self, fitted: False),
+    NotCredible: ("left", lambda self, fitted, evidence: fitted),
     NotInHoldout: ("left", lambda self, fitted, evidence: fitted),
     Contested: ("left", lambda self, fitted, evidence: fitted),
     WrongForm: ("left", lambda self, fitted, evidence: fitted),

@@ -7,10 +7,22 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from bench.diagnose.name.doubts import Contested, NotInHoldout, OneForMany, Simpler, TwoForOne, Unbelievable, WrongForm
+from bench.balance.fit import fit
+from bench.balance.hypothesis import Term
+from bench.diagnose.name.doubts import (
+    Contested,
+    Evidence,
+    NotCredible,
+    NotInHoldout,
+    OneForMany,
+    Simpler,
+    TwoForOne,
+    Unbelievable,
+    WrongForm,
+)
 from bench.diagnose.name.policy import Policy
 from bench.effects.catalogue import catalogue
-from tests.diagnose.constructed import SINES, moved, names, offset, only_during, recorded, vibration, wave
+from tests.diagnose.constructed import SINES, bare, moved, names, offset, only_during, recorded, vibration, wave
 from tests.diagnose.off import without
 
 POLICY = Policy()
@@ -40,6 +52,14 @@ def test_what_happens_in_the_holdout_at_any_time_is_no_event():
     holdout = recorded(OTHER, only_during(0.08, 2.5, 3.0), seed=1)
     assert names(POLICY, trace, EVENT, holdout) == ()
     assert names(without(NotInHoldout), trace, EVENT, holdout) == EVENT
+
+
+@pytest.mark.parametrize(("damping", "stays"), [(0.1, True), (0.6, False)])
+def test_a_coupling_that_hardly_rings_is_none(damping, stays):
+    plain = bare(recorded(MOTION))
+    fitted = fit(plain.rows, plain.hypothesis.plus(Term(catalogue()["elastic_coupling"], (200.0, damping))))
+    left = NotCredible().left(fitted, Evidence(plain, None, frozenset(), POLICY))
+    assert left.hypothesis.names == (("elastic_coupling",) if stays else ())
 
 
 def test_a_vibration_in_step_with_the_motion_is_no_spring():

@@ -91,6 +91,16 @@ class NotInHoldout:
 
 
 @dataclass(frozen=True)
+class NotCredible:
+    """An effect of a shape that a search may pass but not end with: a coupling that hardly rings."""
+
+    def left(self, fitted: Fit, evidence: Evidence) -> Fit:
+        """Without the terms that are not credible."""
+        kept = [term for term in fitted.terms if term.effect.credible(term.shape)]
+        return fitted if len(kept) == len(fitted.terms) else fit(fitted.rows, fitted.hypothesis.with_terms(kept))
+
+
+@dataclass(frozen=True)
 class Contested:
     """A name that something from outside the catalogue explains better, where a remainder is left.
 
@@ -250,6 +260,7 @@ class Unbelievable:
 
 #: All doubts, in the order in which they are raised.
 DOUBTS: tuple[Doubt, ...] = (
+    NotCredible(),
     NotInHoldout(),
     Contested(),
     WrongForm(),

@@ -28,9 +28,10 @@ from bench.units import Quantity
 #: Antiresonances - rad/s - and damping ratios that a search tries first.
 ANTIRESONANCES = tuple(2.0 * np.pi * float(f) for f in np.geomspace(8.0, 110.0, 28))
 DAMPINGS = (0.01, 0.04, 0.12)
-#: Damping ratio from which a coupling no longer rings, its quality 1/(2*D) being one, so that hardly anything tells it
-#: from a lag; those of the blind set have 0.04.
-OVERDAMPED = 0.5
+#: Damping ratio from which a coupling no longer rings, so that nothing tells it from a lag, and the one from which its
+#: quality 1/(2*D) is below one, so that hardly anything does; those of the blind set have 0.04 at most. On the way to
+#: another coupling a search may pass the latter.
+OVERDAMPED, DULL = 1.0, 0.5
 #: Share of the inertia that sits behind a coupling, at least and at most.
 BEHIND = (0.02, 0.98)
 
@@ -79,6 +80,10 @@ class ElasticCoupling(Mechanism):
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """It rings, and part of the inertia sits behind it."""
         return shape[1] < OVERDAMPED and BEHIND[0] < strengths[0] / base.inertia < BEHIND[1]
+
+    def credible(self, shape: Sequence[float]) -> bool:
+        """It rings well enough to be told from a lag."""
+        return shape[1] < DULL
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Stiffness J_l*w_a**2, damping 2*D*k/w_a, and the frequency at which both sides resonate."""
