@@ -79,11 +79,6 @@ class Rig(Table):
         """What its quantities are called, and their units."""
         return axis_kind(self.kind, self.source)
 
-    @property
-    def linear(self) -> bool:
-        """Whether the axis moves in metres."""
-        return not self.axis_kind.turns
-
     def effort(self, trace: Trace) -> tuple[Array, str]:
         """What drives the axis in a trace, and its unit: motor torque - N*m (force - N) wherever the rig tells how.
 

@@ -161,11 +161,6 @@ class Trace:
         lengths = (LINEAR.length_unit, LINEAR.speed_unit)
         return LINEAR if any(self.units.get(name) in lengths for name in ("position", "velocity")) else ROTARY
 
-    @property
-    def linear(self) -> bool:
-        """Whether the axis moves in metres rather than radians."""
-        return not self.axis_kind.turns
-
     def with_signals(self, signals: Mapping[str, Array], units: Mapping[str, str]) -> Trace:
         """The same recording with signals added or replaced."""
         return replace(self, signals={**self.signals, **signals}, units={**self.units, **units})

@@ -38,7 +38,7 @@ def test_files_are_those_of_a_case(folder):
     for name, entry in entries.items():
         assert sorted(p.name for p in (folder / name).iterdir()) == ["rig.toml", "run1.csv.gz", "run2.csv.gz"]
         rig = load_rig(folder / name / "rig.toml")
-        assert rig.linear == (name == "c")
+        assert rig.axis_kind.turns == (name != "c")
         assert rig.drive is not None
         for run in ("run1", "run2"):
             with gzip.open(folder / name / f"{run}.csv.gz", "rt") as file:

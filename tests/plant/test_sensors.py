@@ -106,7 +106,7 @@ def test_apparent_inertia_differs_from_the_true_one_only_by_the_hold():
 def test_linear_axes_record_force_in_newton():
     _, trace = record(Sensors(1e-3, kind=LINEAR))
     assert trace.units["force"] == "N"
-    assert trace.linear
+    assert not trace.axis_kind.turns
 
 
 def test_refuses_a_sample_period_off_the_ticks():

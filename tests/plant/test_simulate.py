@@ -89,7 +89,7 @@ def test_linear_axis_runs_within_its_stroke(tmp_path):
     path = tmp_path / "linear.toml"
     path.write_text(LINEAR, encoding="utf-8")
     simulated = simulate(load_rig(path))
-    assert simulated.trace.linear
+    assert not simulated.trace.axis_kind.turns
     assert 0.05 < np.ptp(simulated.trace["position"]) < 0.21
     assert torque_error(simulated)[0] < 1e-4
     truth = json.loads(simulated.truth.as_json())

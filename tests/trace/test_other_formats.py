@@ -81,7 +81,7 @@ def test_emps_in_the_units_the_rig_gives():
     raw = loadmat(path)
     columns = {"time": "t [s]", "position": "qm [m]", "position_reference": "qg [m]", "voltage": "vir [V]"}
     trace = read(path, columns)
-    assert trace.linear and len(trace) == 24841 and len(trace.segments) == 1
+    assert not trace.axis_kind.turns and len(trace) == 24841 and len(trace.segments) == 1
     assert trace.sample_period == pytest.approx(1e-3, rel=1e-9)
     assert trace.time_base is not None and not trace.time_base.resampled
     assert np.array_equal(trace["position"], raw["qm"][:, 0])
