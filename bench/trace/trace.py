@@ -102,6 +102,11 @@ class Trace:
                 "allowed: increasing times",
             )
 
+    def __reduce__(self) -> tuple[type[Trace], tuple[object, ...]]:
+        """Pickled as it was given: other processes take traces, and a read-only view of a dict does not travel."""
+        signals, units, metadata = dict(self.signals), dict(self.units), dict(self.metadata)
+        return Trace, (self.time, signals, units, self.origin, metadata, self.time_base, self.notes, self.continues)
+
     @classmethod
     def from_arrays(
         cls,

@@ -16,6 +16,7 @@ from bench.effects.effect import Detected
 from bench.rig.rig import load_rig
 from tests.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
 from tests.independent.effects import KINDS
+from tests.kept import kept
 
 AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
@@ -32,10 +33,11 @@ def recorded(tmp_path_factory):
     """The axis with a torsion spring, recorded twice."""
     spring = (KINDS["torsion_spring"].draw(AXIS, 0.6, np.random.default_rng(0), 4.0),)
     motions = [random_motion(AXIS, np.random.default_rng(k), 4.0) for k in range(2)]
-    runs = simulate([AXIS] * 2, motions, [spring] * 2, [SENSORS] * 2, seed=6, longest_step=STEP)
+    together = [AXIS] * 2, motions, [spring] * 2, [SENSORS] * 2
+    first, second = kept(lambda: [run.trace for run in simulate(*together, seed=6, longest_step=STEP)], __file__)
     path = tmp_path_factory.mktemp("rig") / "rig.toml"
     write_rig(AXIS, path)
-    return load_rig(path), runs[0].trace, runs[1].trace
+    return load_rig(path), first, second
 
 
 def added(recorded, terms, detected=None, with_holdout=True):

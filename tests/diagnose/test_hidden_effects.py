@@ -13,6 +13,7 @@ from bench.report.diagnosis import diagnosis_json
 from bench.rig.rig import load_rig
 from tests.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
 from tests.independent.effects import KINDS
+from tests.kept import kept
 
 AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
@@ -30,15 +31,19 @@ def recordings():
     rng, seconds = np.random.default_rng(3), 6.0
     effects = [tuple(KINDS[name].draw(AXIS, 0.6, rng, seconds) for name in names) for names in HIDDEN]
     motions = [random_motion(AXIS, np.random.default_rng(k), seconds) for k in range(2)]
-    runs = simulate(
-        [AXIS] * (2 * len(HIDDEN)),
-        [motions[k] for _ in HIDDEN for k in range(2)],
-        [effect for effect in effects for _ in range(2)],
-        [SENSORS] * (2 * len(HIDDEN)),
-        seed=4,
-        longest_step=STEP,
-    )
-    traces = [run.trace for run in runs]
+
+    def recorded():
+        runs = simulate(
+            [AXIS] * (2 * len(HIDDEN)),
+            [motions[k] for _ in HIDDEN for k in range(2)],
+            [effect for effect in effects for _ in range(2)],
+            [SENSORS] * (2 * len(HIDDEN)),
+            seed=4,
+            longest_step=STEP,
+        )
+        return [run.trace for run in runs]
+
+    traces = kept(recorded, __file__)
     return dict(zip(HIDDEN, zip(traces[::2], traces[1::2], strict=True), strict=True))
 
 

@@ -19,6 +19,7 @@ from tests.independent.references import random_motion
 from tests.independent.rig import Axis, write_rig
 from tests.independent.sensors import Noise, Sensors
 from tests.independent.simulate import simulate
+from tests.kept import kept
 
 ELASTIC = catalogue()["elastic_coupling"]
 PERIOD = 1e-3
@@ -39,8 +40,8 @@ def recorded(tmp_path_factory) -> tuple[Rig, dict[str, Trace]]:
     write_rig(AXIS, path)
     effects, motion = (COUPLING, BRISTLES), random_motion(AXIS, np.random.default_rng(SEED), 6.0)
     together = [AXIS] * 2, [motion] * 2, [(effect,) for effect in effects], [SENSORS] * 2
-    runs = simulate(*together, SEED, numbers=[0, 0], longest_step=STEP)
-    return load_rig(path), {effect.name: run.trace for effect, run in zip(effects, runs, strict=True)}
+    runs = kept(lambda: [run.trace for run in simulate(*together, SEED, numbers=[0, 0], longest_step=STEP)], __file__)
+    return load_rig(path), {effect.name: trace for effect, trace in zip(effects, runs, strict=True)}
 
 
 @pytest.mark.parametrize(("drag", "ends"), [(0.0, 4.0), (0.02, 4.0), (0.0, 3.7)])

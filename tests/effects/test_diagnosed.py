@@ -13,6 +13,7 @@ from bench.effects.catalogue import catalogue
 from bench.rig.rig import load_rig
 from tests.blind.parameters import WHOLE, compared
 from tests.independent import KINDS, Axis, Noise, Sensors, random_motion, simulate, write_rig
+from tests.kept import kept
 
 AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
@@ -45,16 +46,20 @@ def diagnosed(hidden, tmp_path_factory):
     path = tmp_path_factory.mktemp("rig") / "rig.toml"
     write_rig(AXIS, path)
     rig, count, motion = load_rig(path), len(hidden), random_motion(AXIS, np.random.default_rng(SEED), SECONDS)
-    runs = simulate(
-        [AXIS] * count,
-        [motion] * count,
-        [(effect,) for effect in hidden.values()],
-        [SENSORS] * count,
-        SEED,
-        numbers=[number(name) for name in hidden],
-        longest_step=STEP,
-    )
-    traces = dict(zip(hidden, (run.trace for run in runs), strict=True))
+
+    def recorded():
+        runs = simulate(
+            [AXIS] * count,
+            [motion] * count,
+            [(effect,) for effect in hidden.values()],
+            [SENSORS] * count,
+            SEED,
+            numbers=[number(name) for name in hidden],
+            longest_step=STEP,
+        )
+        return dict(zip(hidden, (run.trace for run in runs), strict=True))
+
+    traces = kept(recorded, __file__)
     return cache(lambda name: diagnose(traces[name], rig))
 
 

@@ -1,0 +1,38 @@
+"""Recordings of the independent integrator, kept on disk: made once, however many processes of tests ask for them."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from bench.files import whole
+
+T = TypeVar("T")
+TESTS = Path(__file__).resolve().parent
+
+
+def kept(make: Callable[[], T], *made_by: str) -> T:
+    """What `make` returned when it was last called with the integrator and its callers as they are now.
+
+    Args:
+        make: simulates; its result is pickled.
+        made_by: files that say what is simulated, the caller's `__file__` first.
+    """
+    digest = hashlib.sha256()
+    for path in (*map(Path, made_by), *sorted((TESTS / "independent").rglob("*.py"))):
+        if not path.name.startswith("test_") or str(path) in made_by:
+            digest.update(path.read_bytes())
+    folder = Path(tempfile.gettempdir()) / f"servobench-tests-{os.getuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    path = folder / f"{Path(made_by[0]).stem}-{digest.hexdigest()[:16]}.pickle"
+    if path.exists():
+        return pickle.loads(path.read_bytes())
+    result = make()
+    with whole(path) as part:
+        part.write_bytes(pickle.dumps(result))
+    return result

@@ -1,0 +1,18 @@
+"""What holds of every trace."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from bench.trace.trace import Trace
+
+
+def test_it_travels_to_another_process():
+    """All of it, and read-only again."""
+    trace = Trace(np.arange(3.0), {"velocity": np.ones(3)}, {"velocity": "rad/s"}, "here", {"drive": "x"}, notes=("y",))
+    copy = pickle.loads(pickle.dumps(trace))
+    np.testing.assert_array_equal(copy["velocity"], trace["velocity"])
+    assert (copy.units, copy.metadata, copy.notes, copy.origin) == (trace.units, trace.metadata, ("y",), "here")
+    with pytest.raises(TypeError):
+        copy.signals["velocity"] = np.zeros(3)
