@@ -28,6 +28,7 @@ class Quantity:
         linear_unit: SI unit on a linear axis, where it is not the rotary one with metres and newtons in it.
         null: value at which what it belongs to is exactly absent, if one says so.
         preset: value that it has where none is given, if it need not be.
+        instant: whether it is a time of the recording, whose zero means nothing.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Quantity:
     linear_unit: str | None = None
     null: float | None = None
     preset: float | None = None
+    instant: bool = False
 
 
 @cache

@@ -36,8 +36,8 @@ class LoadTorqueEvent(Mechanism):
     summary = "an external torque acts for a stretch of time"
     quantities = (
         Quantity("torque", "M_e", "N*m", null=0.0),
-        Quantity("start", "t_1", "s", lower=0.0),
-        Quantity("end", "t_2", "s", lower=0.0),
+        Quantity("start", "t_1", "s", lower=0.0, instant=True),
+        Quantity("end", "t_2", "s", lower=0.0, instant=True),
     )
     shapes = tuple(Shape(instant, reach=0.05, additive=True) for instant in quantities[1:])
     may_load = True

@@ -31,6 +31,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
     content = {
         "schema": SCHEMA,
         "verdict": diagnosis.verdict,
+        "because": diagnosis.because,
         "effects": [
             {
                 "name": effect.name,
@@ -118,7 +119,7 @@ def _step(step: Shrunk) -> dict[str, Any]:
 
 def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
     """Effects with their quantities, and the gaps they closed."""
-    caption = [f"verdict: {diagnosis.verdict.replace('_', ' ')}"]
+    caption = [f"verdict: {diagnosis.verdict.replace('_', ' ')}", *(f"  {said}" for said in diagnosis.because)]
     for name, gap in (("torque", diagnosis.torque), ("velocity", diagnosis.velocity)):
         for recording, pair in (("recording", gap.identify), ("holdout", gap.holdout)):
             if pair is not None:

@@ -2,7 +2,8 @@
 
 Of nulls: the most that any candidate would save, over noise power, per number and independent row (`Significant`), and
 residual over noise floor (`Remainder`). Of singles named rightly: the share of what stands above the noise floor that
-the hidden effect explains when it is taken up (`Explains`), and residual over noise floor with it.
+the hidden effect explains when it is taken up (`Explains`), and residual over noise floor with it. Of all that is
+explained: the torque gap of the holdout over that of the recording, noise at least (`Elsewhere`).
 """
 
 from __future__ import annotations
@@ -28,7 +29,10 @@ from bench.rig.rig import load_rig
 from bench.trace.read import read
 from tests.blind.draw import Drawn, draw
 from tests.blind.record import home, truth_of
+from tests.blind.run import diagnosis_of
 from tests.blind.score import same
+
+REMAINS = Policy().remainder.chi
 
 
 def bare(folder: Path) -> Fit:
@@ -61,7 +65,18 @@ def of_singles(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[
     return shares, chi
 
 
-def main(every: Annotated[int, typer.Option(min=1, help="Take every so many of the singles.")] = 4) -> None:
+def of_holdouts(folder: Path, cases: Sequence[Drawn]) -> list[float]:
+    """Gap of the holdout over that of the recording, noise at least, where nothing else speaks against a model."""
+    ratios = []
+    for case in track(cases, "holdouts", console=Console(stderr=True)):
+        torque = diagnosis_of(folder / case.name, frozenset()).torque
+        if torque.identify is not None and torque.holdout is not None:
+            least = max(torque.identify[1], torque.noise_floor)
+            ratios += [torque.holdout[1] / least] * (torque.identify[1] < REMAINS * torque.noise_floor)
+    return ratios
+
+
+def main(every: Annotated[int, typer.Option(min=1, help="Take every so many of singles and holdouts.")] = 5) -> None:
     """Print the margins; the blind set must have been recorded by `python -m tests.blind`."""
     folder, drawn = home(1, 8.0, None), draw(1, {"single": 252, "pair": 60, "null": 100, "outside": 32}, 8.0)
     significance, null_chi = of_nulls(folder, [case for case in drawn if case.hidden.group == "null"])
@@ -74,6 +89,8 @@ def main(every: Annotated[int, typer.Option(min=1, help="Take every so many of t
         f"{len(shares)} singles: share explained {np.min(shares):.2f} at least, {np.quantile(shares, 0.05):.2f} at "
         f"5 %; chi {np.quantile(chi, 0.95):.3f} at 95 %, {np.max(chi):.3f} at most"
     )
+    apart = of_holdouts(folder, drawn[::every])
+    typer.echo(f"{len(apart)} holdouts: gap {np.quantile(apart, 0.9):.2f} times at 90 %, {np.max(apart):.2f} at most")
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from bench.balance.stored import Balance
+from bench.diagnose.show.verdict import OBJECTIONS
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
 from bench.effects.kinds import Electronics, Friction, Mechanism, Sensing
@@ -81,6 +82,9 @@ def _decisions() -> Iterator[Mutant]:
         what = "doubt" if kind.__module__.endswith("doubts") else "rule"
         yield Mutant(f"{what} {kind.__name__} off", partial(setattr, kind, method, off), stages)
     yield Mutant("rule most off", _without_limit, stages)
+    for kind in map(type, OBJECTIONS):
+        quiet = partial(setattr, kind, "against", lambda self, shown: "")
+        yield Mutant(f"objection {kind.__name__} off", quiet, (paths("diagnose/test_verdict.py", *DECISIONS),))
     late = (paths(*reversed(DECISIONS)),)
     yield Mutant("judge torque gap off", _without_torque_gap, late)
     yield Mutant("judge velocity gap off", partial(_replace, ADD, "_comes_closer", lambda *_: True), late)

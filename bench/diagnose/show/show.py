@@ -15,6 +15,7 @@ from bench.diagnose.recordings import Recordings
 from bench.diagnose.show.gaps import shrinking, torque_gap, velocity_gap
 from bench.diagnose.show.next_experiment import NextExperiment, propose
 from bench.diagnose.show.suspicions import suspicions
+from bench.diagnose.show.verdict import Shown, verdict
 from bench.diagnose.where.where import Where, where
 from bench.plant.model_file import StoredModel
 
@@ -25,6 +26,7 @@ class Diagnosis:
 
     Attributes:
         verdict, effects, parameters: as the contract has them.
+        because: what speaks against its being all; empty unless something remains.
         where: shares of the gap before any effect; unexplained_share, unexplained_where: of what is left.
         torque, velocity: gaps before and after.
         bandwidth: of the cascade that held the models to the recordings - rad/s.
@@ -39,6 +41,7 @@ class Diagnosis:
     """
 
     verdict: str
+    because: list[str]
     effects: list[NamedEffect]
     where: list[Where]
     unexplained_share: float
@@ -71,16 +74,18 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
     rig, unit, kind = recordings.rig, recordings.unit, recordings.rig.axis_kind
     whole, kept, searched = added.extension.whole.fitted, added.refined, suspects.searched
     steps = shrinking(recordings, added)
-    remains = suspects.policy.remainder.holds(whole) or suspects.withheld or searched.stopped is not None
+    torque, velocity = torque_gap(steps, whole, unit), velocity_gap(recordings, steps)
+    comes_to, because = verdict(Shown(recordings, suspects, added, torque, velocity))
     return Diagnosis(
-        verdict="unexplained_remainder" if remains else "explained" if kept.effects else "nothing_missing",
+        verdict=comes_to,
+        because=because,
         effects=kept.effects,
         where=located,
         unexplained_share=whole.excess / max(bare.squares, 1e-300),
-        unexplained_where=where(whole, kind, unit)[:3] if remains else [],
+        unexplained_where=where(whole, kind, unit)[:3] if because else [],
         parameters=kept.parameters,
-        torque=torque_gap(steps, whole, unit),
-        velocity=velocity_gap(recordings, steps),
+        torque=torque,
+        velocity=velocity,
         bandwidth=added.gaps.bandwidth,
         closed_loop=added.closed_loop,
         refined=kept.gap,

@@ -1,0 +1,119 @@
+"""Nothing is explained while anything that is shown speaks against it."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from bench.balance.parameter import Parameter
+from bench.diagnose.diagnosis import diagnose
+from bench.diagnose.found import Gap, NamedEffect
+from bench.diagnose.show.verdict import OBJECTIONS, Drives, Elsewhere, MovesWorse, Undetermined, verdict
+from bench.effects.catalogue import catalogue
+from tests.diagnose.constructed import COULOMB, RIG, moved, recorded
+
+NONE = frozenset(catalogue())
+MOTION = moved(4.0)
+
+
+def parameter(value, reach):
+    return Parameter(value, "SI", reach / 1.96, (value - reach, value + reach))
+
+
+def named(name, **quantities):
+    return NamedEffect(catalogue()[name], {key: parameter(*found) for key, found in quantities.items()}, (), {})
+
+
+def shown(*effects, velocity=None, torque=None, friction=(0.08, 0.001), seconds=4.0):
+    """What a diagnosis shows, with what a test does not ask for as it is where all is well."""
+    quiet = Gap("SI", 0.01, (0.1, 0.01), None)
+    return SimpleNamespace(
+        effects=list(effects),
+        velocity=velocity or quiet,
+        torque=torque or quiet,
+        friction={"coulomb_friction_torque": (parameter(*friction), 1.0)},
+        recordings=SimpleNamespace(trace=SimpleNamespace(time=np.linspace(0.0, seconds, 5))),
+    )
+
+
+SPRING = named("torsion_spring", stiffness=(0.1, 0.01))
+
+
+@pytest.mark.parametrize(
+    ("identify", "holdout", "said"),
+    [
+        ((0.50, 0.10), None, ""),
+        ((0.50, 3.39), None, "recording is worse"),
+        ((0.50, 0.10), (0.5, 0.6), "holdout is worse"),
+        ((0.050, 0.055), None, ""),
+        (None, None, ""),
+    ],
+)
+def test_a_model_that_moves_worse_explains_nothing(identify, holdout, said):
+    """Worse by more than noise makes of it: sqrt(0.05**2 + 0.027**2) = 0.0568."""
+    against = MovesWorse().against(shown(SPRING, velocity=Gap("rad/s", 0.027, identify, holdout)))
+    assert said in against
+    assert bool(said) == bool(against)
+
+
+@pytest.mark.parametrize(
+    ("effect", "said"),
+    [
+        (SPRING, ""),
+        (named("torsion_spring", stiffness=(0.1, 0.11)), "stiffness"),
+        (named("load_torque_event", torque=(0.1, 0.01), start=(0.001, 0.05), end=(2.0, 0.05)), ""),
+        (named("load_torque_event", torque=(0.1, 0.01), start=(0.17, 1.7e6), end=(2.0, 0.05)), "start"),
+        (named("unbalance", amplitude=(0.1, 0.01), phase=(0.02, 0.3)), ""),
+        (named("unbalance", amplitude=(0.1, 0.01), phase=(0.02, 3.5)), "phase"),
+    ],
+)
+def test_a_quantity_that_is_not_told_explains_nothing(effect, said):
+    against = Undetermined().against(shown(effect))
+    assert said in against
+    assert bool(said) == bool(against)
+
+
+def test_friction_that_is_not_told_counts_where_its_torque_does():
+    assert "not determined" in Undetermined().against(shown(SPRING, friction=(0.08, 0.09)))
+    assert Undetermined().against(shown(SPRING, friction=(0.001, 0.002))) == ""
+    assert Undetermined().against(shown(friction=(0.08, 0.09))) == ""
+
+
+def test_friction_resists():
+    assert "is negative" in Drives().against(shown(friction=(-0.002, 0.001)))
+    assert "is negative" in Drives().against(shown(friction=(-0.02, 0.03)))
+    assert Drives().against(shown(friction=(-0.002, 0.003))) == ""
+
+
+def test_a_holdout_at_three_times_what_is_left_here_stands_apart():
+    near, far = (Gap("N*m", 0.01, (0.1, 0.008), (0.1, after)) for after in (0.029, 0.031))
+    assert Elsewhere().against(shown(torque=near)) == ""
+    assert "stands apart" in Elsewhere().against(shown(torque=far))
+
+
+def test_a_holdout_with_half_as_much_friction_again_is_no_proof_that_nothing_is_missing():
+    more = recorded(MOTION, lambda motion: 0.49 * COULOMB * motion.sign, seed=1)
+    same = diagnose(recorded(MOTION), RIG, recorded(MOTION, seed=1), excluded=NONE)
+    assert (same.verdict, same.because) == ("nothing_missing", [])
+    other = diagnose(recorded(MOTION), RIG, more, excluded=NONE)
+    assert other.verdict == "unexplained_remainder"
+    assert any("holdout stands apart" in said for said in other.because)
+
+
+def test_friction_that_drives_is_told():
+    found = diagnose(recorded(MOTION, lambda motion: -1.5 * COULOMB * motion.sign), RIG, excluded=NONE)
+    assert found.verdict == "unexplained_remainder"
+    assert any("coulomb friction torque" in said and "negative" in said for said in found.because)
+
+
+def test_each_objection_turns_the_verdict(monkeypatch):
+    """With all is well but one, that one alone is said; without it the model explains."""
+    for objection in OBJECTIONS:
+        for other in OBJECTIONS:
+            said = "no" if other is objection else ""
+            monkeypatch.setattr(type(other), "against", lambda self, shown, said=said: said)
+        assert verdict(shown(SPRING)) == ("unexplained_remainder", ["no"])
+    for other in OBJECTIONS:
+        monkeypatch.setattr(type(other), "against", lambda self, shown: "")
+    assert verdict(shown(SPRING)) == ("explained", [])
+    assert verdict(shown()) == ("nothing_missing", [])
