@@ -7,50 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.signal
 
-from bench.rig.rig import Rig
+from bench.assets import asset
+from bench.rig.rig import load_rig
 from bench.trace.read import read
 from tests.shared import SHARED
 
 DATA = SHARED / "data"
 
-EMPS = Rig.of(
-    {
-        "name": "EMPS",
-        "kind": "linear",
-        "offset": True,
-        "motor": {"force_per_volt": "35.15065188248547 N/V"},
-        # 243.45 V/(m/s) times 35.15065188248547 N/V
-        "drive": {
-            "position_gain": "160.18 1/s",
-            "velocity_gain": "8557.4262 N*s/m",
-            "control_period": "1 ms",
-        },
-        "trace": {
-            "columns": {
-                "time": "t [s]",
-                "position": "qm [m]",
-                "voltage": "vir [V]",
-                "position_reference": "qg [m]",
-            }
-        },
-    }
-)
-
-LAAS = Rig.of(
-    {
-        "name": "LAAS",
-        "kind": "rotary",
-        "trace": {
-            "columns": {
-                "time": "Time [s]",
-                "position": "Position [rad]",
-                "velocity": "Velocity [rad/s]",
-                "current": "Iq [A]",
-                "velocity_reference": "Reference Velocity [rad/s]",
-            }
-        },
-    }
-)
+EMPS, LAAS, XL330 = (load_rig(asset("data", "rigs", f"{name}.toml")) for name in ("emps", "laas", "bam_xl330"))
 
 
 def emps(name):
@@ -141,10 +105,3 @@ def holding_currents(harmonics):
     waves = [wave(n * position) for n in harmonics for wave in (np.sin, np.cos)]
     theta = np.linalg.lstsq(np.column_stack([forward, ~forward, *waves]).astype(float), current, rcond=None)[0]
     return {n: float(np.hypot(*theta[2 + 2 * k : 4 + 2 * k])) for k, n in enumerate(harmonics)}
-
-
-#: EPOS4 reports torque as a share of the motor's 9.84 mN*m.
-#: As published with the recordings: kT 0.387 N*m/A, R 4.02 ohm; the pendulum is left for the diagnosis to find.
-XL330 = Rig.of(
-    {"name": "XL330", "kind": "rotary", "motor": {"torque_constant": "0.387 N*m/A", "resistance": "4.02 ohm"}}
-)

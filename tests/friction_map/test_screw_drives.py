@@ -2,27 +2,16 @@
 
 import pytest
 
+from bench.assets import asset
 from bench.errors import UndeterminedError
 from bench.friction_map.map import friction_map
-from bench.rig.rig import Rig
+from bench.rig.rig import load_rig
 from bench.trace.read import read
 from tests.shared import SHARED, needs_shared
 
 pytestmark = [needs_shared, pytest.mark.slow]
 
-SCREWS = Rig.of(
-    {
-        "name": "screw drive",
-        "kind": "rotary",
-        "motor": {"rated_torque": "9.84 mN*m"},
-        "trace": {
-            "columns": {
-                "velocity": "Velocity actual value averaged [rpm]",
-                "torque": "Torque actual value averaged [%]",
-            }
-        },
-    }
-)
+SCREWS = load_rig(asset("data", "rigs", "tro2021.toml"))
 
 
 def steady_speeds(drive):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bench.assets import asset
 from bench.identify.modelled import modelled_effort
 from bench.identify.regression import identify
 from bench.rig.rig import Rig, load_rig
@@ -16,15 +17,7 @@ pytestmark = needs_shared
 
 LIMITS = (1e-3, 1.5e-2, 5e-3)
 
-EMPS = Rig.of(
-    {
-        "name": "EMPS",
-        "kind": "linear",
-        "offset": True,
-        "motor": {"force_per_volt": "35.15065188248547 N/V"},
-        "trace": {"columns": {"time": "t [s]", "position": "qm [m]", "voltage": "vir [V]"}},
-    }
-)
+EMPS = load_rig(asset("data", "rigs", "emps.toml"))
 #: Value and three standard deviations, A. Janot, M. Gautier, M. Brunot, NSIB workshop 2019.
 PUBLISHED = {
     "moving_mass": (95.1089, 3 * 0.1085),
