@@ -19,6 +19,8 @@ KEY, TITLE = "8", "Filtered acceleration, slow samples removed"
 WIDTH = 4
 #: The mean is late by (WIDTH - 1)/2 samples, the backward difference by half of one.
 DELAY = WIDTH // 2
+#: Shifts tried to find how late a signal is, and samples drawn to each side of an edge.
+REACH, EDGE = 4, 25
 
 
 @dataclass(frozen=True)
@@ -47,11 +49,19 @@ def filtered_acceleration(run: Run) -> tuple[Array, slice]:
     return mean, slice(DELAY, DELAY + mean.size)
 
 
+def acceleration_of_all(run: Run) -> Array:
+    """alpha_filt in step with every sample, (n,); at the ends, where its mean is cut short, of what there is of it."""
+    mean, synchronous = filtered_acceleration(run)
+    alpha = np.gradient(run.velocity, run.sample_period)
+    alpha[synchronous] = mean
+    return alpha
+
+
 def fast_samples(run: Run) -> FastSamples:
     """Samples with |omega| >= 20 rad/s.
 
     Raises:
-        UndeterminedError: the recording is too short or too slow.
+        UndeterminedError: the recording is too short or too slow, or turns one way only.
     """
     least = f"a run that passes {LEAST_SPEED:g} rad/s in both directions"
     if run.time.size <= WIDTH + 1:
@@ -64,16 +74,59 @@ def fast_samples(run: Run) -> FastSamples:
     return FastSamples(*(column[fast] for column in columns))
 
 
+def lateness(run: Run, late: int = 0) -> float:
+    """By how much alpha_filt, `late` samples later than on t_sync, comes after alpha - samples.
+
+    Where they differ least, a parabola through the mean squares at whole shifts telling the place in between. The mean
+    of differences is even about its middle, so the place is that middle whatever the motion and its noise.
+    """
+    mean = filtered_acceleration(run)[0]
+    shifts = np.arange(-REACH, REACH + 1)
+    middle = slice(2 * REACH, mean.size - 2 * REACH)
+    filtered = mean[middle]
+    starts = middle.start + DELAY + late - shifts
+    apart = [float(np.mean((filtered - run.acceleration[start : start + filtered.size]) ** 2)) for start in starts]
+    k = min(max(int(np.argmin(apart)), 1), len(apart) - 2)
+    before, at, after = apart[k - 1 : k + 2]
+    return float(shifts[k] + 0.5 * (before - after) / (before - 2.0 * at + after))
+
+
 def task(run: Run) -> Task:
-    """Draw the remaining samples over the original ones."""
+    """Draw the remaining samples over the original ones, and alpha_filt over alpha."""
     kept = fast_samples(run)
     acceleration, synchronous = filtered_acceleration(run)
+    in_step, as_it_comes = lateness(run), lateness(run, late=DELAY)
+    scatter = [float(np.std(np.diff(signal))) for signal in (run.acceleration, acceleration)]
+    return Task(
+        KEY,
+        TITLE,
+        (
+            f"alpha_filt is the mean of {WIDTH} backward differences. It is {DELAY} samples late, half a sample of "
+            "that from the difference itself; t_sync takes that back. Below 20 rad/s the sign of the speed is left "
+            "out, as friction is no constant there.",
+            f"Verified by the shift at which both differ least: on t_sync alpha_filt comes {in_step:+.2f} samples after α, which is itself half a "
+            f"sample late, so alpha_filt is in step with speed and torque; as the filter delivers it, {as_it_comes:+.2f}. "
+            "The graph of one edge shows it.",
+        ),
+        (
+            Number("samples remaining", float(kept.time.size), "1"),
+            Number("samples removed", float(run.time.size - kept.time.size), "1"),
+            Number("alpha_filt after alpha, on t_sync", in_step, "samples"),
+            Number("alpha_filt after alpha, as it comes", as_it_comes, "samples"),
+            Number("step to step scatter of alpha", scatter[0], "rad/s²"),
+            Number("step to step scatter of alpha_filt", scatter[1], "rad/s²"),
+        ),
+        (_remaining_chart(run, kept, acceleration, synchronous), _edge_chart(run, acceleration, synchronous)),
+    )
+
+
+def _remaining_chart(run: Run, kept: FastSamples, acceleration: Array, synchronous: slice) -> Chart:
     panels = (
         ("speed ω / (rad/s)", run.time, run.velocity, kept.velocity),
         ("filtered acceleration α / (rad/s²)", run.time[synchronous], acceleration, kept.acceleration),
         ("torque M / (N·m)", run.time, run.torque, kept.torque),
     )
-    chart = Chart(
+    return Chart(
         "Task 8: remaining samples over the original ones",
         tuple(
             Panel(
@@ -84,20 +137,25 @@ def task(run: Run) -> Task:
             for label, time, all_, rest in panels
         ),
     )
-    scatter = [float(np.std(np.diff(signal))) for signal in (run.acceleration, acceleration)]
-    return Task(
-        KEY,
-        TITLE,
-        (
-            f"alpha_filt is the mean of {WIDTH} backward differences. It is {DELAY} samples late, half a sample of "
-            "that from the difference itself; t_sync takes that back. Below 20 rad/s the sign of the speed is left "
-            "out, as friction is no constant there.",
-        ),
-        (
-            Number("samples remaining", float(kept.time.size), "1"),
-            Number("samples removed", float(run.time.size - kept.time.size), "1"),
-            Number("step to step scatter of alpha", scatter[0], "rad/s²"),
-            Number("step to step scatter of alpha_filt", scatter[1], "rad/s²"),
-        ),
-        (chart,),
+
+
+def _edge_chart(run: Run, acceleration: Array, synchronous: slice) -> Chart:
+    """alpha and alpha_filt, all of them, and around the steepest change of the torque."""
+    edge = int(np.argmax(np.abs(np.diff(acceleration)))) + DELAY
+    near = slice(max(edge - EDGE, DELAY), min(edge + EDGE, run.time.size - DELAY))
+    within = slice(near.start - DELAY, near.stop - DELAY)
+    late = run.time[synchronous] + DELAY * run.sample_period
+    whole = (
+        Curve(run.time, run.acceleration, "α", "wide"),
+        Curve(run.time[synchronous], acceleration, "α_filt on t_sync"),
     )
+    close = (
+        Curve(run.time[near], run.acceleration[near], "α, original", "wide"),
+        Curve(run.time[near], acceleration[within], "α_filt on t_sync", "bold dots"),
+        Curve(late[within], acceleration[within], "α_filt as it comes", "dashes"),
+    )
+    panels = (
+        Panel("t_sync / s", "acceleration α / (rad/s²)", whole),
+        Panel("t_sync / s, one edge", "acceleration α / (rad/s²)", close),
+    )
+    return Chart("Task 8: filtered acceleration over the original one", panels)
