@@ -3,7 +3,8 @@
     L*dIq/dt + R*Iq = U - Ke*omega  beyond it,  so  Iq = top*(omega_0 - omega)/(omega_0 - omega_c), late by tau = L/R
 
 At the corner itself Iq is constant, dIq/dt = 0: U = R*top + Ke*omega_c holds with inductance and without. So inductance
-moves what follows, the fall, and not the corner: it keeps the current up for about tau, in which speed rises by alpha*tau.
+moves what follows, the fall, and not the corner: it keeps the current up for about tau, in which speed rises by
+alpha*tau.
 """
 
 from __future__ import annotations

@@ -43,7 +43,9 @@ class Cover:
         students = content.get("student", [])
         unknown = sorted(set(content) - {"group", "student"})
         if unknown or not isinstance(students, list) or not all(_is_student(entry) for entry in students):
-            raise InputError(path, f"found {', '.join(unknown) or 'a student without name or number'}", f"allowed: {EXAMPLE}")
+            raise InputError(
+                path, f"found {', '.join(unknown) or 'a student without name or number'}", f"allowed: {EXAMPLE}"
+            )
         return cls(str(content.get("group", "")), tuple((str(s["name"]), str(s["number"])) for s in students))
 
     @property

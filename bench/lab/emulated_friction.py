@@ -1,4 +1,4 @@
-"""Friction emulated by the drive's software against friction in the mechanics: it depends on which current is recorded."""
+"""Friction emulated by the drive's software against friction in the mechanics: which current is recorded decides."""
 
 from __future__ import annotations
 
@@ -60,7 +60,9 @@ def _numbers(words: str, found: Friction, trace: Trace, rig: Rig, truth: AxisPar
         Number(f"J, {words}", found.inertia * KG_CM2, "kg·cm²", truth.inertia * KG_CM2, EXAMPLE),
         Number(f"K_fric_w, {words}", found.viscous, "N·m·s/rad", viscous, EXAMPLE),
         Number(f"K_fric_0, {words}", found.coulomb, "N·m", coulomb, EXAMPLE),
-        Number(f"K_fric_w, {words}, bench", default["viscous_friction_coefficient"].value, "N·m·s/rad", viscous, EXAMPLE),
+        Number(
+            f"K_fric_w, {words}, bench", default["viscous_friction_coefficient"].value, "N·m·s/rad", viscous, EXAMPLE
+        ),
         Number(f"K_fric_0, {words}, bench", default["coulomb_friction_torque"].value, "N·m", coulomb, EXAMPLE),
     ]
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from bench.axis_kind import OFFSET
-from bench.identify.regression import identify
 from dataclasses import replace
 
+from bench.axis_kind import OFFSET
+from bench.identify.regression import identify
 from bench.lab.result import EXAMPLE, Number, Task
 from bench.lab.rig import rotor_inertia, simulated_with
 from bench.lab.t06_inertia import KG_CM2

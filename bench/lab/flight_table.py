@@ -170,7 +170,9 @@ def _flights(columns: Sequence[Column], table: Array, where: str) -> FoundFlight
     numbers = list(dict.fromkeys(number for _, number in values))
     lonely = [number for number in numbers if ("y", number) not in values or ("z", number) not in values]
     if len(values) != expected or lonely:
-        raise InputError(where, "found columns y and z that do not pair", "allowed: y1,z1,y2,z2, ... or one y and one z")
+        raise InputError(
+            where, "found columns y and z that do not pair", "allowed: y1,z1,y2,z2, ... or one y and one z"
+        )
     points = []
     for number in numbers:
         sides = [_metres(*values[name, number], where) for name in "yz"]

@@ -48,7 +48,8 @@ def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
     says.append(_heat_says(left, ranges[0]))
     if any(number.name.endswith("cold") for number in numbers):
         says.append(
-            "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve stands apart and is none "
+            "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve stands apart "
+            "and is none "
             "to plan with. It changes nothing where the magnets limit, nor for heat."
         )
     numbers += [Number("RMS torque", left.rms_torque, "N·m"), Number("RMS current", left.rms_current, "A")]
@@ -70,7 +71,8 @@ def _peak_says(left: Reserve, speed: Array, torque: Array) -> str:
 def _thermal_says(left: Reserve) -> str:
     hot = ", the motor would overheat if this repeats" if left.thermal < 0.0 else ""
     return (
-        f"RMS current {left.rms_current:.3g} A at {left.mean_speed * RPM:.0f} rpm on average leaves {left.thermal:.3g} A "
+        f"RMS current {left.rms_current:.3g} A at {left.mean_speed * RPM:.0f} rpm on average leaves "
+        f"{left.thermal:.3g} A "
         f"({left.thermal_share:.0%}) to the continuous {left.continuous_current:.3g} A{hot}."
     )
 
@@ -79,7 +81,8 @@ def _heat_says(left: Reserve, limit: OperatingRange) -> str:
     """Why heat goes by current and not by torque."""
     by_torque = left.rms_torque / float(limit.torque_constant(np.asarray(left.continuous_current)))
     return (
-        f"Heat goes with the square of the current. The RMS torque of {left.rms_torque:.3g} N·m over the torque constant "
+        f"Heat goes with the square of the current. The RMS torque of {left.rms_torque:.3g} N·m over the "
+        "torque constant "
         f"at continuous current would say {by_torque:.3g} A; the iron saturates at the peaks, so they take more: "
         f"{left.rms_current:.3g} A."
     )

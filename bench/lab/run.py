@@ -16,9 +16,8 @@ from bench.lab.rig import torque_constant
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-
 #: A shorter recording is no run of the course.
-LEAST = 50
+LEAST = 100
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Where the values of an axis come from: its rig file, the motor's catalogue entry with its own source, or the embedded rig."""
+"""Where the values of an axis come from: rig file, motor catalogue with its own sources, or the embedded rig."""
 
 from __future__ import annotations
 

@@ -63,7 +63,9 @@ def task(flights: Flights, truth: Mapping[str, float]) -> Task:
         Number(name, float(value), units[name], truth.get(name)) for name, value in zip("abc", theta, strict=True)
     ]
     says, comparison = compare_solvers(y, z)
-    counts = f"{len(flights.points)} experiments, {y.size} points; RMS distance in z {np.sqrt(error / y.size) * 1e3:.2g} mm."
+    counts = (
+        f"{len(flights.points)} experiments, {y.size} points; RMS distance in z {np.sqrt(error / y.size) * 1e3:.2g} mm."
+    )
     return Task(KEY, TITLE, (counts, says, *flights.notes), (*numbers, Number("E", error, "m²")), (chart, comparison))
 
 

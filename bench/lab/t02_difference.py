@@ -34,7 +34,8 @@ def task() -> Task:
         KEY,
         TITLE,
         (
-            f"On sin(t), t = 0 : {SAMPLE_PERIOD:g} : 2π ({time.size} samples), the backward difference is at most {worst[0]:.2g} away from "
+            f"On sin(t), t = 0 : {SAMPLE_PERIOD:g} : 2π ({time.size} samples), the backward difference is at "
+            f"most {worst[0]:.2g} away from "
             f"cos(t), half a sample of delay; the bench's own derivative {worst[1]:.2g}. Its first value is 0 by "
             "definition.",
         ),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from bench.errors import InputError
 from bench.lab.result import Number, Task
-from bench.rig.motor import DATASHEET, Motor
 from bench.lab.sources import Sources, joined
+from bench.rig.motor import DATASHEET, Motor
 from bench.rig.rig import Rig
 
 KEY, TITLE = "3", "Torque constant from the datasheet"

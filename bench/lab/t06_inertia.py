@@ -87,7 +87,10 @@ def task(run: Run, rig: Rig, sources: Sources) -> Task:
         f"these samples. {_scatter(run, taken)}",
         *of_load,
     )
-    curves = (Curve(run.time, run.torque, "measured torque M", "wide"), Curve(run.time, inertia * run.acceleration, "J·α"))
+    curves = (
+        Curve(run.time, run.torque, "measured torque M", "wide"),
+        Curve(run.time, inertia * run.acceleration, "J·α"),
+    )
     panels = (
         Panel("time / s", "torque / (N·m)", curves),
         Panel("time / s", "M - J·α / (N·m)", (Curve(run.time, residual),)),

@@ -12,6 +12,7 @@ from bench.errors import UndeterminedError
 from bench.identify.lab import LEAST_SPEED
 from bench.lab.result import Chart, Curve, Number, Panel, Task
 from bench.lab.run import Run
+from bench.trace.filter import GaussianFilter
 
 KEY, TITLE = "8", "Filtered acceleration, slow samples removed"
 
@@ -19,8 +20,8 @@ KEY, TITLE = "8", "Filtered acceleration, slow samples removed"
 WIDTH = 4
 #: The mean is late by (WIDTH - 1)/2 samples, the backward difference by half of one.
 DELAY = WIDTH // 2
-#: Shifts tried to find how late a signal is, and samples drawn to each side of an edge.
-REACH, EDGE = 4, 25
+#: Width of the filter by which lateness is measured, and samples drawn to each side of an edge.
+SMOOTHING, EDGE = 5.0, 25
 
 
 @dataclass(frozen=True)
@@ -75,20 +76,17 @@ def fast_samples(run: Run) -> FastSamples:
 
 
 def lateness(run: Run, late: int = 0) -> float:
-    """By how much alpha_filt, `late` samples later than on t_sync, comes after alpha - samples.
+    """By how much alpha_filt, `late` samples later than on t_sync, comes after the speed's own derivative - samples.
 
-    Where they differ least, a parabola through the mean squares at whole shifts telling the place in between. The mean
-    of differences is even about its middle, so the place is that middle whatever the motion and its noise.
+    Both are smoothed by one filter that is even in time, so noise and smoothing are alike in them. What is late by tau
+    is alpha - tau*alpha', and tau its least-squares estimate.
     """
-    mean = filtered_acceleration(run)[0]
-    shifts = np.arange(-REACH, REACH + 1)
-    middle = slice(2 * REACH, mean.size - 2 * REACH)
-    filtered = mean[middle]
-    starts = middle.start + DELAY + late - shifts
-    apart = [float(np.mean((filtered - run.acceleration[start : start + filtered.size]) ** 2)) for start in starts]
-    k = min(max(int(np.argmin(apart)), 1), len(apart) - 2)
-    before, at, after = apart[k - 1 : k + 2]
-    return float(shifts[k] + 0.5 * (before - after) / (before - 2.0 * at + after))
+    mean, synchronous = filtered_acceleration(run)
+    speed = run.velocity[synchronous.start + late : synchronous.stop + late]
+    smooth = GaussianFilter(SMOOTHING * run.sample_period, run.sample_period)
+    slope, bend = smooth(speed, 1, 2)
+    behind = slope - smooth(mean[: speed.size], 0)[0]
+    return float(behind @ bend / (bend @ bend) / run.sample_period)
 
 
 def task(run: Run) -> Task:
@@ -104,15 +102,16 @@ def task(run: Run) -> Task:
             f"alpha_filt is the mean of {WIDTH} backward differences. It is {DELAY} samples late, half a sample of "
             "that from the difference itself; t_sync takes that back. Below 20 rad/s the sign of the speed is left "
             "out, as friction is no constant there.",
-            f"Verified by the shift at which both differ least: on t_sync alpha_filt comes {in_step:+.2f} samples after α, which is itself half a "
-            f"sample late, so alpha_filt is in step with speed and torque; as the filter delivers it, {as_it_comes:+.2f}. "
-            "The graph of one edge shows it.",
+            f"Verified against the speed's own derivative, both smoothed by a filter that is even in time: on t_sync "
+            f"alpha_filt comes {in_step:+.2f} samples after it, as the filter delivers it {as_it_comes:+.2f}. "
+            "α itself is "
+            "half a sample late, as the graph of one edge shows.",
         ),
         (
             Number("samples remaining", float(kept.time.size), "1"),
             Number("samples removed", float(run.time.size - kept.time.size), "1"),
-            Number("alpha_filt after alpha, on t_sync", in_step, "samples"),
-            Number("alpha_filt after alpha, as it comes", as_it_comes, "samples"),
+            Number("alpha_filt late, on t_sync", in_step, "samples"),
+            Number("alpha_filt late, as it comes", as_it_comes, "samples"),
             Number("step to step scatter of alpha", scatter[0], "rad/s²"),
             Number("step to step scatter of alpha_filt", scatter[1], "rad/s²"),
         ),

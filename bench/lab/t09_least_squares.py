@@ -78,7 +78,8 @@ def task(run: Run, rig: Rig, sources: Sources, load_inertia_before: Number | Non
     says = [
         f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted.time.size} samples of task 8; the theta with the least "
         "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
-        f"M_est is drawn for all {run.time.size} samples. It leaves {left:.3g} N·m RMS, {left / rms(run.torque):.2%} of "
+        f"M_est is drawn for all {run.time.size} samples. It leaves {left:.3g} N·m RMS, "
+        f"{left / rms(run.torque):.2%} of "
         f"the torque; over the fitted samples {np.sqrt(found.error / fitted.time.size):.3g} N·m.",
     ]
     if load_inertia_before is not None and loads:

@@ -19,7 +19,8 @@ from bench.rig.rig import Rig
 KEY, TITLE = "10", "Peak torque over speed"
 
 RPM = 60.0 / (2.0 * math.pi)
-#: The course drops samples of less torque - N*m - and starts at the first above 3.0 N*m, this share of the lab motor's peak.
+#: The course drops samples of less torque - N*m - and starts at the first above 3.0 N*m, this share of the lab
+#: motor's peak.
 LEAST_TORQUE, FULL_SHARE = 0.2, 3.0 / 3.5
 #: Speeds of the table - rpm, and samples that belong to one: within this of it - rad/s.
 SPEEDS, HALF_BIN = (1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0), 5.0
@@ -104,7 +105,8 @@ def task(run: Run, rig: Rig, sources: Sources, mains: float = 230.0) -> Task:
             numbers.append(Number(name, measured, "N·m"))
         numbers.append(Number(f"{name}, datasheet", sheet, "N·m", source=peak))
     says = (
-        f"The torque starts to decline at {found.corner * RPM:.0f} rpm, {(found.corner - limit[1]) * RPM:+.0f} rpm from "
+        f"The torque starts to decline at {found.corner * RPM:.0f} rpm, {(found.corner - limit[1]) * RPM:+.0f} "
+        "rpm from "
         "the datasheet's corner; task 11 says why. The corner is found by least squares on the current from its top to "
         "half of it: constant, then falling in proportion to speed with a lag, as the motor's circuit has it.",
         *_tail_says(velocity, torque, found),

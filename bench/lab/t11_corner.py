@@ -97,9 +97,7 @@ def split(
     lines = [extrapolated_corner(run.velocity, run.current) for run in runs]
     acceleration = (full - axis.coulomb_friction) / axis.inertia
     dependence = tuple(zip(TIME_CONSTANTS, corners[3:], lines[3:], strict=True))
-    return Split(
-        corners[0], corners[1], corners[2], dependence, lines[1], (runs[0], runs[1], runs[2]), acceleration
-    )
+    return Split(corners[0], corners[1], corners[2], dependence, lines[1], (runs[0], runs[1], runs[2]), acceleration)
 
 
 def speed_at(run: WindingRun, share: float) -> float:
@@ -197,20 +195,24 @@ def _fall_says(found: Split) -> str:
     _, cold, inductive = found.runs
     faster = [f"{(speed_at(inductive, s) - speed_at(cold, s)) * RPM:.0f} rpm at {s:.0%}" for s in SHARES]
     return (
-        "What inductance does is to flatten the fall: beyond the corner it keeps the current up for about L/R, in which "
-        f"speed rises by α·L/R. The same torque is there at a higher speed, by {', '.join(faster)} of the peak. Whoever "
+        "What inductance does is to flatten the fall: beyond the corner it keeps the current up for about L/R, "
+        "in which "
+        f"speed rises by α·L/R. The same torque is there at a higher speed, by {', '.join(faster)} of the "
+        "peak. Whoever "
         "reads the corner from the line through the fall, or at a few percent below the peak, counts this as a shift."
     )
 
 
 def _measured_says(measured: Decline, found: Split, synthetic: bool) -> str:
     text = (
-        f"Measured in task 10: {measured.corner * RPM:.0f} rpm, {(measured.corner - found.inductive) * RPM:+.1f} rpm from "
+        f"Measured in task 10: {measured.corner * RPM:.0f} rpm, "
+        f"{(measured.corner - found.inductive) * RPM:+.1f} rpm from "
         f"the simulation, and a fall that comes {measured.lag * 1e3:.1f} ms late (L/R as it acts)."
     )
     if synthetic:
         text += (
-            " This recording was made by the same equations: that they agree shows that corner and lag can be read from "
+            " This recording was made by the same equations: that they agree shows that corner and lag can be "
+            "read from "
             "noisy samples at 1 ms, and nothing about a motor."
         )
     return text

@@ -53,11 +53,14 @@ def report_course(data: Path | None, out: Path, progress: Callable[[float], None
 def _about(recordings: Recordings, results: Results) -> list[str]:
     done = [result for result in results if not isinstance(result, NotDone)]
     own = sum(not result.example for result in done)
-    origin = "Synthetic recordings of the rig in MuJoCo" if recordings.synthetic else f"Recordings in {recordings.folder}"
+    origin = (
+        "Synthetic recordings of the rig in MuJoCo" if recordings.synthetic else f"Recordings in {recordings.folder}"
+    )
     about = [
         f"{origin}; axis: {recordings.rig.name}. {own} of {len(results)} sections done on them, "
         f"{len(done) - own} on the embedded example, {len(results) - len(done)} not done.",
-        "Beside every number stands where it comes from: the recording, the rig file, the motor's datasheet, the course, an "
+        "Beside every number stands where it comes from: the recording, the rig file, the motor's datasheet, "
+        "the course, an "
         "assumption, a simulation, or the embedded example.",
     ]
     if recordings.synthetic:

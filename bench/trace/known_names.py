@@ -16,7 +16,14 @@ from bench.units import base_units, dimensionality
 ALIASES: dict[str, tuple[str, ...]] = {
     "time": ("t", "timestamp", "zeit"),
     "position": ("actual position", "actpos", "lage", "position actual value"),
-    "velocity": ("actual velocity", "actvel", "speed", "geschwindigkeit", "velocity actual value", "velocity actual value averaged"),
+    "velocity": (
+        "actual velocity",
+        "actvel",
+        "speed",
+        "geschwindigkeit",
+        "velocity actual value",
+        "velocity actual value averaged",
+    ),
     "acceleration": ("actual acceleration", "actacc"),
     "current": ("iq", "strom", "current actual value", "current actual value averaged"),
     "torque": ("actual torque", "torque actual value", "torque actual value averaged"),

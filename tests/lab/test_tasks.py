@@ -10,9 +10,9 @@ from bench.lab.catapult import FLIGHTS, fly
 from bench.lab.corner import decline, extrapolated_corner
 from bench.lab.recordings import Recordings
 from bench.lab.rig import lab_rig
+from bench.lab.run import Run
 from bench.lab.t01_catapult import by_normal_equations, by_orthogonal_solver, columns
 from bench.lab.t04_torque_constant_curve import coefficients
-from bench.lab.run import Run
 from bench.lab.t08_fast_samples import WIDTH, fast_samples, filtered_acceleration, lateness
 from bench.lab.t10_peak_torque import run_up
 
@@ -152,9 +152,8 @@ def test_9_the_torque_is_reconstructed_for_all_samples(done):
 
 
 def test_8_the_filtered_acceleration_is_in_step_with_the_speed(done):
-    # the difference itself is half a sample late, so what is in step comes half a sample before it
-    assert done["8"]["alpha_filt after alpha, on t_sync"].value == pytest.approx(-0.5, abs=0.1)
-    assert done["8"]["alpha_filt after alpha, as it comes"].value == pytest.approx(1.5, abs=0.1)
+    assert done["8"]["alpha_filt late, on t_sync"].value == pytest.approx(0.0, abs=0.01)
+    assert done["8"]["alpha_filt late, as it comes"].value == pytest.approx(2.0, abs=0.05)
     names = [curve.label for curve in done["8"].charts[1].panels[0].curves]
     assert names == ["α", "α_filt on t_sync"]
 
@@ -166,7 +165,7 @@ def test_8_lateness_of_a_known_shift():
     speed = 100.0 * np.sin(7.0 * time) + 0.02 * random.standard_normal(time.size)
     run = Run(time, speed, 0.0 * time, backward_difference(speed, period), 0.0 * time, 0.0 * time, period)
     for late in (0, 1, 2):
-        assert lateness(run, late) == pytest.approx(late - 0.5, abs=0.05)
+        assert lateness(run, late) == pytest.approx(late, abs=0.01)
 
 
 def test_10_peak_torque_and_corner(done):
@@ -227,8 +226,8 @@ def test_10_the_corner_is_where_the_decline_begins_whatever_the_lag(lag):
     noisy = current + 0.005 * random.standard_normal(time.size), speed + 0.026 * random.standard_normal(time.size)
     found = decline(noisy[1], noisy[0], 1e-3)
     print(f"lag {lag * 1e3:g} ms: corner {(found.corner - corner) * RPM:+.2f} rpm, lag {found.lag * 1e3:.2f} ms")
-    assert found.corner == pytest.approx(corner, abs=8.0 / RPM)
-    assert found.lag == pytest.approx(lag, abs=0.5e-3)
+    assert found.corner == pytest.approx(corner, abs=13.0 / RPM)  # one sample of the run-up
+    assert found.lag == pytest.approx(lag, abs=0.7e-3)
     assert found.no_load == pytest.approx(voltage / ke, rel=2e-3)
     if lag >= 3e-3:  # the line through the fall takes the lag for a shift
         assert found.extrapolated - corner > 20.0 / RPM
