@@ -43,7 +43,7 @@ def test_reserve_of_a_motion_by_hand(motor):
     assert found.beyond == 0.0
     assert found.rms_torque == pytest.approx(np.sqrt(10.0 / 4.0))
     assert found.mean_speed * RPM == pytest.approx(1775.0)
-    # kT = c + a*I**2 through 1.4 N*m at 1.8 A and 3.5 N*m at 5.7 A, its inverse by Cardano's other way: roots of a cubic
+    # kT = c + a*I**2 through 1.4 N*m at 1.8 A and 3.5 N*m at 5.7 A; current by the roots of a polynomial
     a = (3.5 / 5.7 - 1.4 / 1.8) / (5.7**2 - 1.8**2)
     c = 1.4 / 1.8 - a * 1.8**2
 
