@@ -30,3 +30,5 @@ def lab(
         report = report_course(data, out, done)
     console().print(course_table(report.results))
     tell_files(report.files)
+    if not report.usable:
+        raise typer.Exit(1)

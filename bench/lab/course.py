@@ -27,9 +27,26 @@ from bench.lab import (
 from bench.lab.flights import find_flights, read_flights
 from bench.lab.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION, Recordings, read_truth
 from bench.lab.result import NotDone, Number, Task
+from bench.lab.rig import rotor_inertia
 from bench.lab.run import Run
 from bench.lab.t06_inertia import KG_CM2
 from bench.plant.model import AxisParameters
+
+#: Tasks that are done on recordings, and not on the rig file or the embedded example alone.
+RECORDED = {
+    task.KEY
+    for task in (
+        t01_catapult,
+        t05_run_without_friction,
+        t06_inertia,
+        t07_run_with_friction,
+        t08_fast_samples,
+        t09_least_squares,
+        t10_peak_torque,
+        operating_range,
+        tracking,
+    )
+}
 
 Progress = Callable[[float], None]
 
@@ -59,19 +76,19 @@ class _Course:
     """Recordings read once, and what later tasks take from earlier ones."""
 
     def __init__(self, recordings: Recordings) -> None:
-        self.recordings, self.rig = recordings, recordings.rig
+        self.recordings, self.rig, self.sources = recordings, recordings.rig, recordings.sources
 
     def steps(self) -> list[tuple[str, str, Callable[[], Task]]]:
         """Number, title and work of every task."""
-        rig = self.rig
+        rig, sources, example = self.rig, self.sources, self.recordings.example
         return [
             (t01_catapult.KEY, t01_catapult.TITLE, self._catapult),
             (t02_difference.KEY, t02_difference.TITLE, t02_difference.task),
-            (t03_torque_constants.KEY, t03_torque_constants.TITLE, lambda: t03_torque_constants.task(rig)),
+            (t03_torque_constants.KEY, t03_torque_constants.TITLE, lambda: t03_torque_constants.task(rig, sources)),
             (
                 t04_torque_constant_curve.KEY,
                 t04_torque_constant_curve.TITLE,
-                lambda: t04_torque_constant_curve.task(rig),
+                lambda: t04_torque_constant_curve.task(rig, sources),
             ),
             (
                 t05_run_without_friction.KEY,
@@ -85,14 +102,14 @@ class _Course:
                 lambda: t07_run_with_friction.task(self.with_friction),
             ),
             (t08_fast_samples.KEY, t08_fast_samples.TITLE, lambda: t08_fast_samples.task(self.with_friction)),
-            (t09_least_squares.KEY, t09_least_squares.TITLE, self._least_squares),
+            (t09_least_squares.KEY, t09_least_squares.TITLE, lambda: self.least_squares),
             (t10_peak_torque.KEY, t10_peak_torque.TITLE, lambda: self.peak_torque),
             (t11_corner.KEY, t11_corner.TITLE, self._corner),
-            (estimators.KEY, estimators.TITLE, lambda: estimators.task(rig)),
+            (estimators.KEY, estimators.TITLE, lambda: estimators.task(example)),
             (operating_range.KEY, operating_range.TITLE, self._operating_range),
             (tracking.KEY, tracking.TITLE, self._tracking),
-            (equation_of_motion.KEY, equation_of_motion.TITLE, lambda: equation_of_motion.task(rig)),
-            (emulated_friction.KEY, emulated_friction.TITLE, lambda: emulated_friction.task(rig)),
+            (equation_of_motion.KEY, equation_of_motion.TITLE, lambda: equation_of_motion.task(example)),
+            (emulated_friction.KEY, emulated_friction.TITLE, lambda: emulated_friction.task(example)),
         ]
 
     @cached_property
@@ -105,29 +122,39 @@ class _Course:
 
     @cached_property
     def inertia(self) -> Task:
-        return t06_inertia.task(self.without_friction, self.rig)
+        return t06_inertia.task(self.without_friction, self.rig, self.sources)
+
+    @cached_property
+    def fastest(self) -> Run:
+        return self.recordings.run(FASTEST)
 
     @cached_property
     def peak_torque(self) -> Task:
-        return t10_peak_torque.task(self.recordings.run(FASTEST), self.rig)
+        return t10_peak_torque.task(self.fastest, self.rig, self.sources)
 
     def _catapult(self) -> Task:
         path = find_flights(self.recordings.folder)
         return t01_catapult.task(read_flights(path), read_truth(path / "truth.json"))
 
-    def _least_squares(self) -> Task:
-        return t09_least_squares.task(self.with_friction, self.rig, _number(lambda: self.inertia, "J_load"))
+    @cached_property
+    def least_squares(self) -> Task:
+        before = _number(lambda: self.inertia, "J_load")
+        return t09_least_squares.task(self.with_friction, self.rig, self.sources, before)
 
     def _corner(self) -> Task:
-        measured = _number(lambda: self.peak_torque, "measured corner")
-        return t11_corner.task(self.rig, self._axis(), measured=measured.value if measured else None)
+        try:
+            measured = t10_peak_torque.fall(self.fastest, self.rig)
+        except BenchError:  # task 10 says why
+            measured = None
+        synthetic = measured is not None and bool(self.fastest.truth)
+        return t11_corner.task(self.rig, self.sources, self._axis(), measured=measured, synthetic=synthetic)
 
     def _axis(self) -> AxisParameters:
-        """The axis as task 9 finds it; as the rig's `[simulation]` has it where there is no such recording."""
+        """The axis as task 9 finds it; the embedded example's where there is no such recording."""
         try:
             found = t09_least_squares.identify_friction(self.with_friction)
         except BenchError:
-            return AxisParameters.from_rig(self.rig)
+            return AxisParameters.from_rig(self.recordings.example)
         return AxisParameters(found.inertia, max(found.viscous, 0.0), max(found.coulomb, 0.0))
 
     def _operating_range(self) -> Task:
@@ -135,12 +162,15 @@ class _Course:
         return operating_range.task(self.rig, run.velocity, run.torque, "recording with friction")
 
     def _tracking(self) -> Task:
-        return tracking.task(self.rig, self._least_squares()["J_load"].value / KG_CM2)
+        identified = self.least_squares["J"].value / KG_CM2 - rotor_inertia(self.rig)
+        truth = self.with_friction.truth
+        axis = AxisParameters.from_rig(self.recordings.example) if truth else self._axis()
+        return tracking.task(self.rig, self.sources, axis, identified, known=bool(truth))
 
 
 def _number(task: Callable[[], Task], name: str) -> Number | None:
     """A number of an earlier task; None where that could not be done, which its own place in the course says."""
     try:
-        return task()[name]
+        return next((number for number in task().numbers if number.name == name), None)
     except BenchError:
         return None

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from bench.axis_kind import OFFSET
 from bench.identify.regression import identify
-from bench.lab.result import Number, Task
+from bench.lab.result import EXAMPLE, Number, Task
 from bench.lab.rig import rotor_inertia, simulated_with
 from bench.lab.t06_inertia import KG_CM2
 from bench.plant.model import AxisParameters
@@ -57,4 +59,4 @@ def task(rig: Rig) -> Task:
         f"With i = {RATIO:g} the motor feels J_load/i² and M_load/i. Simulated with {LOAD_TORQUE:g} N·m on the load "
         "and identified with a constant torque beside inertia and friction.",
     )
-    return Task(KEY, TITLE, says, numbers)
+    return Task(KEY, TITLE, says, tuple(replace(number, source=EXAMPLE) for number in numbers), example=True)

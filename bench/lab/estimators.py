@@ -7,7 +7,7 @@ import numpy as np
 from bench.arrays import Array, column_rms
 from bench.identify.lab import identify_as_in_the_lab, mean_inertia
 from bench.identify.regression import identify
-from bench.lab.result import Number, Task
+from bench.lab.result import EXAMPLE, Number, Task
 from bench.lab.rig import without_friction
 from bench.lab.run import run_of
 from bench.lab.t09_least_squares import identify_friction
@@ -43,10 +43,13 @@ def task(rig: Rig) -> Task:
             ("bench", identify(trace, rig)),
         ):
             rows[words].append([estimate[name].value for name in NAMES])
-    numbers = [Number("J, mean of M/α", _rms(mean, known[:1])[0], "%")]
+    numbers = [Number("J, mean of M/α", _rms(mean, known[:1])[0], "%", source=EXAMPLE)]
     errors = {words: _rms(np.array(values), known) for words, values in rows.items()}
     for words, error in errors.items():
-        numbers += [Number(f"{q}, {words}", e, "%") for q, e in zip(("J", "K_fric_w", "K_fric_0"), error, strict=True)]
+        numbers += [
+            Number(f"{q}, {words}", e, "%", source=EXAMPLE)
+            for q, e in zip(("J", "K_fric_w", "K_fric_0"), error, strict=True)
+        ]
     late, step, bench = (errors[words] for words in ("least squares, out of step", "least squares, in step", "bench"))
     says = (
         f"RMS error over {REPETITIONS} recordings of the fast run. The backward difference is half a sample late: "
@@ -56,7 +59,7 @@ def task(rig: Rig) -> Task:
         "torque, speed, acceleration and sign alike: smoothing α alone shortens its peaks against the torque's, and "
         "its noise draws J towards zero (or, in the mean of M/α, away from it, as 1/α is convex).",
     )
-    return Task(KEY, TITLE, says, tuple(numbers))
+    return Task(KEY, TITLE, says, tuple(numbers), example=True)
 
 
 def _recordings(rig: Rig) -> list[Trace]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from bench.arrays import Array, rms
+from bench.arrays import Array
+from bench.errors import InputError
 from bench.lab.result import Chart, Curve, Number, Panel, Task
 from bench.lab.t10_peak_torque import RPM
-from bench.rig.limits import OperatingRange, reserve
+from bench.rig.limits import OperatingRange, Reserve, reserve
 from bench.rig.rig import Rig
 
 KEY, TITLE = "range", "Operating range"
@@ -28,31 +29,88 @@ def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
         OperatingRange.of(rig.motor, voltage, rig.source)
         for voltage in [curve.mains_voltage for curve in rig.motor.peak_curves] or [230.0]
     ]
-    says, numbers, limits = [], [], []
+    says, numbers, curves = [], [], []
     for limit in ranges:
         volts = f"{limit.curve.mains_voltage:g} V"
         left = reserve(limit, speed, torque)
-        beyond = f"; {left.beyond:.1%} of the samples lie beyond the limit" if left.beyond else ""
-        says.append(
-            f"At {volts}: least reserve to the peak torque {left.peak:.3g} N·m ({left.peak_share:.0%}) at "
-            f"{speed[left.at] * RPM:.0f} rpm{beyond}. RMS torque {left.rms_torque:.3g} N·m at "
-            f"{left.mean_speed * RPM:.0f} rpm on average leaves {left.thermal:.3g} N·m ({left.thermal_share:.0%}) to "
-            f"the continuous torque{', the motor would overheat if this repeats' if left.thermal < 0.0 else ''}."
-        )
+        says.append(f"At {volts}: {_peak_says(left, speed, torque)} {_thermal_says(left)}")
         numbers += [
             Number(f"peak reserve, {volts}", left.peak, "N·m"),
-            Number(f"thermal reserve, {volts}", left.thermal, "N·m"),
+            Number(f"thermal reserve, {volts}", left.thermal, "A"),
         ]
-        limits += _limit_curves(limit, volts)
-    numbers.append(Number("RMS torque", rms(torque), "N·m"))
-    motion = Curve(np.abs(speed) * RPM, np.sign(speed * torque) * np.abs(torque), "motion", "dots")
-    panel = Panel("speed |n| / rpm", "torque M in the direction of motion / (N·m)", (motion, *limits))
+        curves += _limit_curves(limit, volts)
+        cold = _cold(limit, rig)
+        if cold is not None:
+            numbers.append(Number(f"peak reserve, {volts}, cold", reserve(cold, speed, torque).peak, "N·m"))
+            at = np.linspace(0.0, cold.curve.no_load_speed, 300)
+            curves.append(Curve(at * RPM, cold.peak(at), f"peak, {volts}, winding at 20 °C", "thin"))
+    left = reserve(ranges[0], speed, torque)
+    says.append(_heat_says(left, ranges[0]))
+    if any(number.name.endswith("cold") for number in numbers):
+        says.append(
+            "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve stands apart "
+            "and is none "
+            "to plan with. It changes nothing where the magnets limit, nor for heat."
+        )
+    numbers += [Number("RMS torque", left.rms_torque, "N·m"), Number("RMS current", left.rms_current, "A")]
+    panel = Panel(
+        "speed |n| / rpm", "torque M in the direction of motion / (N·m)", (*_motion(speed, torque, ranges[0]), *curves)
+    )
     return Task(KEY, f"{TITLE}: {what}", tuple(says), tuple(numbers), (Chart(f"Operating range: {what}", (panel,)),))
+
+
+def _peak_says(left: Reserve, speed: Array, torque: Array) -> str:
+    braking = speed[left.at] * torque[left.at] < 0.0
+    beyond = f"; {left.beyond:.1%} of the samples lie beyond the limit" if left.beyond else ""
+    return (
+        f"least reserve to the peak torque {left.peak:.3g} N·m ({left.peak_share:.0%}) at "
+        f"{speed[left.at] * RPM:.0f} rpm, {'braking' if braking else 'driving'}{beyond}."
+    )
+
+
+def _thermal_says(left: Reserve) -> str:
+    hot = ", the motor would overheat if this repeats" if left.thermal < 0.0 else ""
+    return (
+        f"RMS current {left.rms_current:.3g} A at {left.mean_speed * RPM:.0f} rpm on average leaves "
+        f"{left.thermal:.3g} A "
+        f"({left.thermal_share:.0%}) to the continuous {left.continuous_current:.3g} A{hot}."
+    )
+
+
+def _heat_says(left: Reserve, limit: OperatingRange) -> str:
+    """Why heat goes by current and not by torque."""
+    by_torque = left.rms_torque / float(limit.torque_constant(np.asarray(left.continuous_current)))
+    return (
+        f"Heat goes with the square of the current. The RMS torque of {left.rms_torque:.3g} N·m over the "
+        "torque constant "
+        f"at continuous current would say {by_torque:.3g} A; the iron saturates at the peaks, so they take more: "
+        f"{left.rms_current:.3g} A."
+    )
+
+
+def _motion(speed: Array, torque: Array, limit: OperatingRange) -> list[Curve]:
+    """The samples, those that brake below the axis, and the point that heats as they do together."""
+    left = reserve(limit, speed, torque)
+    effective = float(limit.torque_constant.torque(np.asarray(left.rms_current)))
+    return [
+        Curve(np.abs(speed) * RPM, np.sign(speed * torque) * np.abs(torque), "motion, braking below 0", "dots"),
+        Curve(np.array([left.mean_speed * RPM]), np.array([effective]), "RMS current at mean speed", "bold dots"),
+    ]
 
 
 def _limit_curves(limit: OperatingRange, volts: str) -> list[Curve]:
     speed = np.linspace(0.0, limit.curve.no_load_speed, 300)
+    braking = limit.available(speed, np.full_like(speed, -1.0))
     return [
         Curve(speed * RPM, limit.peak(speed), f"peak, {volts}"),
         Curve(speed * RPM, limit.continuous(speed), f"continuous, {volts}", "dashes"),
+        Curve(speed * RPM, -braking, f"peak braking, {volts}", "thin"),
     ]
+
+
+def _cold(limit: OperatingRange, rig: Rig) -> OperatingRange | None:
+    """None where the motor does not tell its circuit."""
+    try:
+        return limit.cold(rig.motor, rig.source)
+    except InputError:
+        return None

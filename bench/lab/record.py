@@ -12,10 +12,9 @@ import pyarrow as pa
 from bench.arrays import Array
 from bench.files import whole, write_text
 from bench.lab.catapult import record_flights
-from bench.lab.corner import corner_speed
 from bench.lab.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.lab.rig import lab_rig, torque_constant, without_friction
-from bench.lab.t11_corner import VELOCITY_GAIN, peak_current
+from bench.lab.t11_corner import VELOCITY_GAIN, peak_current, saturation
 from bench.lab.winding import STEP, Winding, WindingRun, run_winding
 from bench.plant.model import AxisParameters
 from bench.plant.sensors import Sensors
@@ -75,12 +74,12 @@ def _record_fastest(path: Path, rig: Rig, random: np.random.Generator) -> list[P
     velocity = velocity + sensors.velocity_noise * random.standard_normal(time.size)
     _write(path, time, velocity, current + sensors.current_noise * random.standard_normal(time.size))
     axis = AxisParameters.from_rig(rig)
-    up = slice(round(START / STEP), round(STOP / STEP))
+    circuit = Circuit.from_motor(rig.motor, peak_curve(rig.motor, MAINS, rig.source), rig.source)
     parameters = {
         "moment_of_inertia": (axis.inertia, "kg*m**2"),
         "viscous_friction_coefficient": (axis.viscous_friction_coefficient, "N*m*s/rad"),
         "coulomb_friction_torque": (axis.coulomb_friction, "N*m"),
-        "corner_speed": (corner_speed(run.velocity[up], run.current[up]), "rad/s"),
+        "corner_speed": (saturation(run, circuit.voltage), "rad/s"),
     }
     values = {name: {"value": value, "unit": unit} for name, (value, unit) in parameters.items()}
     content = {"schema": SCHEMA, "rig": rig.name, "kind": "rotary", "profile": "fastest run-up", "parameters": values}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,7 @@ from bench.assets import asset
 from bench.errors import InputError
 from bench.lab.rig import lab_rig
 from bench.lab.run import Run, run_of
+from bench.lab.sources import Sources, embedded
 from bench.plant.truth import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.trace.read import read, read_recording
@@ -31,11 +33,15 @@ class Recordings:
 
     Attributes:
         folder: where they lie.
-        rig: of the axis: `rig.toml` in the folder, else the lab's.
+        rig: of the axis: `rig.toml` in the folder; what that leaves out, motor, disk or all, is the lab's.
+        sources: where its values come from.
+        synthetic: whether they are the ones that travel with the bench.
     """
 
     folder: Path
     rig: Rig
+    sources: Sources
+    synthetic: bool = False
 
     @classmethod
     def in_folder(cls, folder: Path | None) -> Recordings:
@@ -45,20 +51,32 @@ class Recordings:
             InputError: no such folder, or a bad rig file in it.
         """
         if folder is None:
-            return cls(asset("data", "traces"), lab_rig())
+            return cls(asset("data", "traces"), lab_rig(), Sources.of(None), synthetic=True)
         if not folder.is_dir():
             raise InputError(folder, "no such folder", "give the folder that holds the course's recordings")
         own = folder / "rig.toml"
-        return cls(folder, load_rig(own) if own.exists() else lab_rig())
+        if not own.exists():
+            return cls(folder, lab_rig(), Sources.of(None))
+        kept = {key: value for key, value in embedded().items() if key != "simulation"}
+        return cls(folder, load_rig(own, kept), Sources.of(own))
+
+    @property
+    def example(self) -> Rig:
+        """A rig that can be simulated: the recorded axis where its rig file says how, else the lab's."""
+        given = self.sources.given
+        return self.rig if "simulation" in given and "drive" in given else lab_rig()
 
     def path(self, name: str) -> Path:
-        """File of a recording, whatever its ending and the case of its letters.
+        """File of a recording, whatever its ending, the case of its letters, and what else its name says.
+
+        `MaxAcc_Gruppe7.trace` and `MaxAcc (1).trace` serve where there is no plain `MaxAcc.trace`.
 
         Raises:
             InputError: none, or several.
         """
         files = sorted(path for path in self.folder.iterdir() if path.is_file() and _ending(path) in ENDINGS)
-        found = [path for path in files if _stem(path) == name.lower()]
+        found = [path for path in files if path.name.split(".")[0].lower() == name.lower()]
+        found = found or [path for path in files if name.lower() in _letters(path)]
         if len(found) == 1:
             return found[0]
         if found:
@@ -102,8 +120,8 @@ def _ending(path: Path) -> str:
     return Path(path.name.lower().removesuffix(".gz")).suffix
 
 
-def _stem(path: Path) -> str:
-    return path.name.split(".")[0].lower()
+def _letters(path: Path) -> str:
+    return re.sub("[^a-z]", "", path.name.split(".")[0].lower())
 
 
 def _require_signals(trace: Trace, path: Path) -> None:
@@ -114,5 +132,6 @@ def _require_signals(trace: Trace, path: Path) -> None:
     raise InputError(
         path,
         f"holds no {' and no '.join(missing)} by a name the bench knows; its columns are {labels}",
-        f'name them in a rig.toml beside it, e.g. [trace.columns] {missing[0]} = "column [unit]"',
+        "write a file rig.toml beside it with the line [trace.columns] and under it a line for each, "
+        f'e.g. {missing[0]} = "column [unit]"; what else a rig file has may be left out',
     )

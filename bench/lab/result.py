@@ -8,6 +8,9 @@ from typing import Literal
 from bench.arrays import Array
 from bench.errors import BenchError
 
+#: Where a number comes from.
+RECORDING, COMPUTED, SIMULATED, EXAMPLE = "recording", "computed", "simulated", "embedded example"
+
 
 @dataclass(frozen=True)
 class Number:
@@ -18,12 +21,14 @@ class Number:
         value: in `unit`.
         unit: as the course writes it.
         truth: the simulated axis' value in the same unit, where the recording is synthetic.
+        source: where it comes from, e.g. `recording`, `rig file`, `datasheet`, `assumed`; several joined by commas.
     """
 
     name: str
     value: float
     unit: str
     truth: float | None = None
+    source: str = RECORDING
 
 
 @dataclass(frozen=True)
@@ -33,7 +38,7 @@ class Curve:
     x: Array
     y: Array
     label: str = ""
-    style: Literal["line", "wide", "dashes", "dots", "bold dots"] = "line"
+    style: Literal["line", "thin", "wide", "dashes", "dots", "bold dots"] = "line"
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,7 @@ class Task:
         says: findings, a paragraph each.
         numbers: results.
         charts: diagrams.
+        example: whether it is about the embedded example, whatever was recorded.
     """
 
     key: str
@@ -71,6 +77,7 @@ class Task:
     says: tuple[str, ...] = ()
     numbers: tuple[Number, ...] = ()
     charts: tuple[Chart, ...] = ()
+    example: bool = False
 
     def __getitem__(self, name: str) -> Number:
         return next(number for number in self.numbers if number.name == name)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from bench.arrays import Array
+from bench.errors import UndeterminedError
+from bench.lab.flights import Flights
 from bench.lab.result import Chart, Curve, Number, Panel, Task
 
 KEY, TITLE = "1", "Catapult"
@@ -34,20 +36,26 @@ def by_orthogonal_solver(matrix: Array, b: Array) -> Array:
     return np.asarray(np.linalg.solve(r, q.T @ b), dtype=np.float64)
 
 
-def task(flights: Sequence[Array], truth: Mapping[str, float]) -> Task:
+def task(flights: Flights, truth: Mapping[str, float]) -> Task:
     """Coefficients and remaining quadratic error; path and points in one diagram; both solvers compared.
 
     Args:
-        flights: (n, 2) points y, z of each - m.
+        flights: as read.
         truth: a, b, c of the throw without scatter; empty for real ones.
+
+    Raises:
+        UndeterminedError: all points at fewer than three places y.
     """
-    points = np.concatenate(flights)
+    points = np.concatenate(flights.points)
     y, z = points[:, 0], points[:, 1]
     matrix = columns(y)
+    if np.linalg.matrix_rank(matrix) < matrix.shape[1]:
+        reason = "the points lie at fewer than three places y"
+        raise UndeterminedError("path of the throw", reason, "points all along the path")
     theta = by_orthogonal_solver(matrix, z)
     error = float(np.sum((z - matrix @ theta) ** 2))
     along = np.linspace(y.min(), y.max(), 300)
-    dots = tuple(Curve(f[:, 0], f[:, 1], f"experiment {k}", "dots") for k, f in enumerate(flights, start=1))
+    dots = tuple(Curve(f[:, 0], f[:, 1], f"experiment {k}", "dots") for k, f in enumerate(flights.points, start=1))
     path = Curve(along, columns(along) @ theta, "least squares")
     chart = Chart("Task 1: path and all points", (Panel("y / m", "z / m", (*dots, path)),))
     units = {"a": "1/m", "b": "1", "c": "m"}
@@ -55,8 +63,10 @@ def task(flights: Sequence[Array], truth: Mapping[str, float]) -> Task:
         Number(name, float(value), units[name], truth.get(name)) for name, value in zip("abc", theta, strict=True)
     ]
     says, comparison = compare_solvers(y, z)
-    counts = f"{len(flights)} experiments, {y.size} points; RMS distance in z {np.sqrt(error / y.size) * 1e3:.2g} mm."
-    return Task(KEY, TITLE, (counts, says), (*numbers, Number("E", error, "m²")), (chart, comparison))
+    counts = (
+        f"{len(flights.points)} experiments, {y.size} points; RMS distance in z {np.sqrt(error / y.size) * 1e3:.2g} mm."
+    )
+    return Task(KEY, TITLE, (counts, says, *flights.notes), (*numbers, Number("E", error, "m²")), (chart, comparison))
 
 
 def compare_solvers(y: Array, z: Array) -> tuple[str, Chart]:

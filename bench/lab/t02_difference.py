@@ -1,17 +1,18 @@
-"""Task 2: backward difference u'[k] = (u[k] - u[k-1])/T, tried on sin(t) against cos(t); beside it the bench's own."""
+"""Task 2: backward difference u'[k] = (u[k] - u[k-1])/T of sin(t), t = 0 : 0.001 : 2*pi; beside it the bench's own."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from bench.identify.lab import backward_difference
-from bench.lab.result import Chart, Curve, Number, Panel, Task
+from bench.lab.result import COMPUTED, Chart, Curve, Number, Panel, Task
 from bench.trace.filter import GaussianFilter
 
 KEY, TITLE = "2", "Backward difference"
 
 SAMPLE_PERIOD = 1e-3
-DURATION = 10.0
+#: One period, as the course has it: t = 0 : 0.001 : 2*pi.
+DURATION = 2.0 * np.pi
 #: Width of the bench's filter, as it chooses it for the lab's recordings - s.
 WIDTH = 2.0 * SAMPLE_PERIOD
 
@@ -33,13 +34,14 @@ def task() -> Task:
         KEY,
         TITLE,
         (
-            f"On sin(t) at {SAMPLE_PERIOD * 1e3:g} ms the backward difference is at most {worst[0]:.2g} away from "
+            f"On sin(t), t = 0 : {SAMPLE_PERIOD:g} : 2π ({time.size} samples), the backward difference is at "
+            f"most {worst[0]:.2g} away from "
             f"cos(t), half a sample of delay; the bench's own derivative {worst[1]:.2g}. Its first value is 0 by "
             "definition.",
         ),
         (
-            Number("largest error of the backward difference", worst[0], "1/s", SAMPLE_PERIOD / 2.0),
-            Number("largest error of the bench's derivative", worst[1], "1/s", WIDTH**2 / 2.0),
+            Number("largest error of the backward difference", worst[0], "1/s", SAMPLE_PERIOD / 2.0, COMPUTED),
+            Number("largest error of the bench's derivative", worst[1], "1/s", WIDTH**2 / 2.0, COMPUTED),
         ),
         (
             Chart(

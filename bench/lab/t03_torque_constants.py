@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from bench.errors import InputError
 from bench.lab.result import Number, Task
+from bench.lab.sources import Sources, joined
 from bench.rig.motor import DATASHEET, Motor
 from bench.rig.rig import Rig
 
 KEY, TITLE = "3", "Torque constant from the datasheet"
 
 
-def task(rig: Rig) -> Task:
+def task(rig: Rig, sources: Sources) -> Task:
     """kT at both points.
 
     Raises:
@@ -25,8 +26,16 @@ def task(rig: Rig) -> Task:
             f"{1 - peak / stall:.0%}. The stator's iron saturates: more current no longer raises the flux in "
             "proportion, so torque grows more slowly than current.",
         ),
-        (Number("kT from stall", stall, "N·m/A"), Number("kT from peak", peak, "N·m/A")),
+        (
+            Number("kT from stall", stall, "N·m/A", source=datasheet(sources)),
+            Number("kT from peak", peak, "N·m/A", source=datasheet(sources)),
+        ),
     )
+
+
+def datasheet(sources: Sources) -> str:
+    """Source of the four values."""
+    return joined(*(sources("motor", name) for name in DATASHEET))
 
 
 def torque_constants(motor: Motor, where: str) -> tuple[float, float]:

@@ -6,7 +6,8 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.lab.result import Chart, Curve, Number, Panel, Task
-from bench.lab.t03_torque_constants import torque_constants
+from bench.lab.sources import Sources
+from bench.lab.t03_torque_constants import datasheet, torque_constants
 from bench.rig.motor import Motor
 from bench.rig.rig import Rig
 
@@ -16,18 +17,18 @@ KEY, TITLE = "4", "Torque constant over current"
 def coefficients(motor: Motor, where: str) -> Array:
     """a - N*m/A**3, b - N*m/A**2, c - N*m/A of three linear equations.
 
-    kT'(0) = 0, kT(I0) = M0/I0, kT(Imax) = Mmax/Imax.
+    kT'(0) = 0, which is b = 0 and leaves two: kT(I0) = M0/I0, kT(Imax) = Mmax/Imax.
 
     Raises:
         InputError: the motor lacks one of the four values.
     """
     stall, peak = torque_constants(motor, where)
     low, high = motor.continuous_stall_current or 0.0, motor.peak_current or 0.0
-    conditions = np.array([[0.0, 1.0, 0.0], [low**2, low, 1.0], [high**2, high, 1.0]])
-    return np.linalg.solve(conditions, np.array([0.0, stall, peak]))
+    a, c = np.linalg.solve(np.array([[low**2, 1.0], [high**2, 1.0]]), np.array([stall, peak]))
+    return np.array([a, 0.0, c])
 
 
-def task(rig: Rig) -> Task:
+def task(rig: Rig, sources: Sources) -> Task:
     """Solve for the coefficients, check and draw the curve."""
     motor = rig.motor
     a, b, c = coefficients(motor, rig.source)
@@ -41,11 +42,14 @@ def task(rig: Rig) -> Task:
         KEY,
         TITLE,
         (
-            f"Checked: slope at zero {abs(b):.1g} N·m/A²; "
+            f"Checked: slope at zero {b:g} N·m/A²; "
             f"{'falls monotonically' if falls else 'does not fall everywhere'} "
             f"up to {currents[1]:g} A; both points of the datasheet met within {met.max():.1g} N·m/A.",
         ),
-        (Number("a", a, "N·m/A³"), Number("b", b, "N·m/A²"), Number("c", c, "N·m/A")),
+        tuple(
+            Number(name, float(value), unit, source=datasheet(sources))
+            for name, value, unit in zip("abc", (a, b, c), ("N·m/A³", "N·m/A²", "N·m/A"), strict=True)
+        ),
         (
             Chart(
                 "kT(Iq)",

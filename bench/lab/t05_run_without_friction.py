@@ -1,4 +1,4 @@
-"""Task 5: the recording without friction: speed, acceleration and torque in SI units on one time axis."""
+"""Task 5: the recording without friction: angle, speed, acceleration and torque in SI units on one time axis."""
 
 from __future__ import annotations
 
@@ -13,7 +13,11 @@ def task(run: Run, key: str = KEY, title: str = TITLE) -> Task:
     return Task(
         key,
         title,
-        (f"{run.time.size} samples, one each {run.sample_period * 1e3:.4g} ms, {run.time[-1]:.3g} s.",),
+        (
+            f"{run.time.size} samples, one each {run.sample_period * 1e3:.4g} ms, {run.time[-1]:.3g} s.",
+            "The course asks for four graphs and names three: speed, acceleration and torque. The fourth here is the "
+            "angle, which shows how far the disk turns and that the motion comes back.",
+        ),
         (
             Number("largest speed", extent(run.velocity), "rad/s"),
             Number("largest acceleration", extent(run.acceleration), "rad/s²"),

@@ -6,13 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.arrays import Array, rms
+from bench.axis_kind import COULOMB
+from bench.balance.rows import ONE_WAY
+from bench.errors import UndeterminedError
+from bench.identify.determined import RECORD
 from bench.identify.lab import least_squares
 from bench.lab.result import Chart, Curve, Number, Panel, Task
-from bench.lab.rig import rotor_inertia
 from bench.lab.run import Run
-from bench.lab.t06_inertia import KG_CM2
-from bench.lab.t08_fast_samples import FastSamples, fast_samples
+from bench.lab.sources import Sources
+from bench.lab.t06_inertia import KG_CM2, load_inertia, require_positive
+from bench.lab.t08_fast_samples import FastSamples, acceleration_of_all, fast_samples
 from bench.rig.rig import Rig
 
 KEY, TITLE = "9", "Moment of inertia and friction by least squares"
@@ -44,42 +48,60 @@ def identify_friction(run: Run) -> Friction:
     """The course's least squares on the fast samples of a recording.
 
     Raises:
-        UndeterminedError: they do not tell inertia and friction apart.
+        UndeterminedError: they do not tell inertia and friction apart, or torque and acceleration oppose each other.
     """
     samples = fast_samples(run)
+    weaker = 0.5 * (1.0 - abs(float(np.mean(np.sign(samples.velocity)))))
+    if weaker < ONE_WAY:
+        reason = "the axis moves one way only, so a constant torque and Coulomb friction are one number"
+        raise UndeterminedError("Coulomb friction", reason, RECORD[COULOMB])
     theta, _, error = least_squares(samples.acceleration, samples.velocity, samples.torque)
+    require_positive(float(theta[0]))
     return Friction(*theta.tolist(), error=error)
 
 
-def task(run: Run, rig: Rig, load_inertia: Number | None) -> Task:
-    """Identify, and draw the reconstructed torque over the measured one.
+def task(run: Run, rig: Rig, sources: Sources, load_inertia_before: Number | None) -> Task:
+    """Identify, and draw the reconstructed torque of every sample over the measured one.
 
     Args:
         run: with friction.
         rig: for the rotor's inertia.
-        load_inertia: J_load of task 6, if that could be done.
+        sources: of the rig's values.
+        load_inertia_before: J_load of task 6, if that could be done.
     """
-    found, samples = identify_friction(run), fast_samples(run)
-    rotor = rotor_inertia(rig) * KG_CM2
+    found, fitted = identify_friction(run), fast_samples(run)
+    every = FastSamples(run.time, run.velocity, acceleration_of_all(run), run.torque)
+    residual = run.torque - found.torque(every)
+    left = rms(residual)
     true = run.true("moment_of_inertia", KG_CM2)
-    load = found.inertia * KG_CM2 - rotor
-    says = ["A = [α_filt, ω, sgn(ω)], b = M; the theta with the least E = |A·theta - b|² is (J, K_fric_w, K_fric_0)."]
-    if load_inertia is not None:
-        says.append(f"J_load is {load / load_inertia.value - 1.0:+.2%} off the one of task 6.")
+    loads, _ = load_inertia(found.inertia, rig, sources, true)
+    says = [
+        f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted.time.size} samples of task 8; the theta with the least "
+        "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
+        f"M_est is drawn for all {run.time.size} samples. It leaves {left:.3g} N·m RMS, "
+        f"{left / rms(run.torque):.2%} of "
+        f"the torque; over the fitted samples {np.sqrt(found.error / fitted.time.size):.3g} N·m.",
+    ]
+    if load_inertia_before is not None and loads:
+        off = loads[0].value / load_inertia_before.value - 1.0
+        says.append(f"J_load is {off:+.2%} off the one of task 6.")
     curves = (
-        Curve(run.time, run.torque, "measured torque", "wide"),
-        Curve(samples.time, found.torque(samples), "reconstructed", "dots"),
+        Curve(run.time, run.torque, "measured torque M", "wide"),
+        Curve(run.time, found.torque(every), "M_est, all samples"),
+    )
+    panels = (
+        Panel("time / s", "torque / (N·m)", curves),
+        Panel("time / s", "M - M_est / (N·m)", (Curve(run.time, residual),)),
+    )
+    numbers = (
+        Number("J", found.inertia * KG_CM2, "kg·cm²", true),
+        Number("K_fric_w", found.viscous, "N·m·s/rad", run.true("viscous_friction_coefficient")),
+        Number("K_fric_0", found.coulomb, "N·m", run.true("coulomb_friction_torque")),
+        Number("E", found.error, "(N·m)²"),
+        *loads[:1],
+        Number("samples of M_est", float(every.time.size), "1"),
+        Number("RMS of M - M_est, all samples", left, "N·m"),
     )
     return Task(
-        KEY,
-        TITLE,
-        tuple(says),
-        (
-            Number("J", found.inertia * KG_CM2, "kg·cm²", true),
-            Number("K_fric_w", found.viscous, "N·m·s/rad", run.true("viscous_friction_coefficient")),
-            Number("K_fric_0", found.coulomb, "N·m", run.true("coulomb_friction_torque")),
-            Number("E", found.error, "(N·m)²"),
-            Number("J_load", load, "kg·cm²", None if true is None else true - rotor),
-        ),
-        (Chart("Task 9: reconstructed torque over the measured one", (Panel("time / s", "torque / (N·m)", curves),)),),
+        KEY, TITLE, tuple(says), numbers, (Chart("Task 9: reconstructed torque over the measured one", panels),)
     )

@@ -8,8 +8,12 @@ from matplotlib.figure import Figure, SubFigure
 
 from bench.lab.result import Chart, Curve, Panel
 
-#: Size of a figure - inch: width, and height of one panel or of several.
-WIDTH, SINGLE, STACKED = 8.0, 3.9, 7.0
+#: Size of a figure - inch: width, and height by the number of panels.
+WIDTH, HEIGHTS = 8.0, (3.3, 4.6, 5.4, 6.4)
+#: Size of the y labels by the number of panels, so that each fits beside its own.
+LABELS = ("medium", "small", "x-small", "x-small")
+#: Height that a row of the legend takes, and entries in one row.
+LEGEND_ROW, LEGEND_COLUMNS = 0.2, 4
 #: Curves of fewer points have larger dots.
 FEW = 200
 #: First measured, then what is made of it.
@@ -18,7 +22,8 @@ COLOURS = ("#4c5c6e", "#d9560b", "#3b7a57", "#7a4a8c", "#b0892b", "#2f7fb5")
 
 def chart_height(chart: Chart) -> float:
     """Height of a chart - inch."""
-    return SINGLE if len(chart.panels) == 1 else STACKED
+    rows = sum(_legend_rows(panel) for panel in chart.panels)
+    return HEIGHTS[min(len(chart.panels), len(HEIGHTS)) - 1] + LEGEND_ROW * max(rows - 1, 0)
 
 
 def chart_figure(chart: Chart) -> Figure:
@@ -36,22 +41,30 @@ def draw_chart(figure: Figure | SubFigure, chart: Chart) -> None:
         shared = axes[0] if axes and panel.x_label == chart.panels[0].x_label else None
         axes.append(figure.add_subplot(len(chart.panels), 1, k + 1, sharex=shared))
         below = chart.panels[k + 1].x_label if k + 1 < len(chart.panels) else None
-        _draw(axes[k], panel, label_x=below != panel.x_label)
+        size = LABELS[min(len(chart.panels), len(LABELS)) - 1]
+        _draw(axes[k], panel, below != panel.x_label, size)
+    figure.align_ylabels(axes)
 
 
-def _draw(axes: Axes, panel: Panel, label_x: bool) -> None:
+def _draw(axes: Axes, panel: Panel, label_x: bool, label_size: str) -> None:
     colours = COLOURS if len(panel.curves) <= len(COLOURS) else colormaps["tab20"].colors  # pyright: ignore
     for curve, colour in zip(panel.curves, colours, strict=False):
         _draw_curve(axes, curve, colour)
     if panel.log:
         axes.set(xscale="log", yscale="log")
-    axes.set_ylabel(panel.y_label)
+    axes.set_ylabel(panel.y_label, size=label_size)
     axes.tick_params(labelbottom=label_x)
     if label_x:
         axes.set_xlabel(panel.x_label)
     axes.grid(alpha=0.25)
-    if any(curve.label for curve in panel.curves):
-        axes.legend(loc="best", fontsize="small", frameon=True, framealpha=0.85, ncols=1 + (len(panel.curves) > 4))
+    if _legend_rows(panel):
+        # above the axes, where it covers no data
+        above = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.1}
+        axes.legend(fontsize="x-small", frameon=False, ncols=LEGEND_COLUMNS, **above)
+
+
+def _legend_rows(panel: Panel) -> int:
+    return -(-sum(bool(curve.label) for curve in panel.curves) // LEGEND_COLUMNS)
 
 
 def _draw_curve(axes: Axes, curve: Curve, colour: object) -> None:
@@ -63,4 +76,5 @@ def _draw_curve(axes: Axes, curve: Curve, colour: object) -> None:
     elif curve.style == "wide":
         axes.plot(curve.x, curve.y, "-", lw=4.0, alpha=0.4, color=colour, label=label)
     else:
-        axes.plot(curve.x, curve.y, "--" if curve.style == "dashes" else "-", lw=1.1, color=colour, label=label)
+        line, width = {"dashes": ("--", 1.1), "thin": (":", 0.9), "line": ("-", 1.1)}[curve.style]
+        axes.plot(curve.x, curve.y, line, lw=width, color=colour, label=label)

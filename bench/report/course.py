@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 
-from bench.lab.course import course
+from bench.lab.course import RECORDED, course
+from bench.lab.cover import Cover
 from bench.lab.recordings import Recordings
-from bench.lab.result import NotDone
+from bench.lab.result import NotDone, Task
 from bench.report.lab import Results, write_lab_report
 from bench.report.section import section
 
@@ -23,9 +25,14 @@ class CourseReport:
     results: Results
     files: list[Path]
 
+    @property
+    def usable(self) -> bool:
+        """Whether any task that needs a recording was done."""
+        return any(isinstance(result, Task) and result.key in RECORDED for result in self.results)
+
 
 def report_course(data: Path | None, out: Path, progress: Callable[[float], None]) -> CourseReport:
-    """Do the course and write `lab.html` and `lab.pdf`.
+    """Do the course and write `lab.json`, `lab.html` and `lab.pdf`.
 
     Args:
         data: folder with a student's recordings, or None for the synthetic ones.
@@ -33,17 +40,32 @@ def report_course(data: Path | None, out: Path, progress: Callable[[float], None
         progress: called with the share done.
 
     Raises:
-        InputError: no such folder, or one that cannot be written to.
+        InputError: no such folder, a bad rig or group file in it, or a report's folder that cannot be written to.
     """
-    recordings = Recordings.in_folder(data)
+    recordings, cover = Recordings.in_folder(data), Cover.in_folder(data)
     results = course(recordings, lambda share: progress(0.7 * share))
-    missing = sum(isinstance(result, NotDone) for result in results)
-    origin = "Synthetic recordings of the rig in MuJoCo" if data is None else f"Recordings in {data}"
-    about = [f"{origin}; axis: {recordings.rig.name}. {len(results) - missing} of {len(results)} sections done."]
-    if data is None:
-        about.append("Where a truth stands beside a number, it is the value that the axis was simulated with.")
-    files = write_lab_report(out, results, about, lambda share: progress(0.7 + 0.3 * share))
+    files = write_lab_report(
+        out, results, _about(recordings, results), lambda share: progress(0.7 + 0.3 * share), cover, recordings.rig.name
+    )
     return CourseReport(results, files)
+
+
+def _about(recordings: Recordings, results: Results) -> list[str]:
+    done = [result for result in results if not isinstance(result, NotDone)]
+    own = sum(not result.example for result in done)
+    origin = (
+        "Synthetic recordings of the rig in MuJoCo" if recordings.synthetic else f"Recordings in {recordings.folder}"
+    )
+    about = [
+        f"{origin}; axis: {recordings.rig.name}. {own} of {len(results)} sections done on them, "
+        f"{len(done) - own} on the embedded example, {len(results) - len(done)} not done.",
+        "Beside every number stands where it comes from: the recording, the rig file, the motor's datasheet, "
+        "the course, an "
+        "assumption, a simulation, or the embedded example.",
+    ]
+    if recordings.synthetic:
+        about.append("Where a truth stands beside a number, it is the value that the axis was simulated with.")
+    return about
 
 
 def course_table(results: Results) -> Table:
@@ -56,7 +78,8 @@ def course_table(results: Results) -> Table:
     table.add_column("unit", no_wrap=True)
     for printed in map(section, results):
         if printed.missing:
-            table.add_row(printed.key, f"not done: {printed.missing}", style="yellow")
+            table.add_row(printed.key, escape(f"not done: {printed.missing}"), style="yellow")
         for k, row in enumerate(printed.rows):
-            table.add_row(printed.key if k == 0 else "", row.name, row.value, row.truth, row.error, row.unit)
+            key = printed.key if k == 0 else ""
+            table.add_row(key, escape(row.name), row.value, row.truth, row.error, row.unit)
     return table

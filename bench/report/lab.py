@@ -1,4 +1,4 @@
-"""The lab course's report: one HTML file with its figures inside, and the same as a PDF."""
+"""The lab course's report: one HTML file with its figures inside, the same as a PDF, and its results as JSON."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from markupsafe import Markup
 from matplotlib import rc_context
 
 from bench.files import whole, write_text
+from bench.lab.cover import Cover
 from bench.lab.result import Chart, NotDone, Task
 from bench.report.charts import chart_figure
+from bench.report.lab_json import lab_json
 from bench.report.pdf import write_pages
 from bench.report.section import section
 
@@ -22,29 +24,38 @@ Results = Sequence[Task | NotDone]
 
 
 def write_lab_report(
-    out: Path, results: Results, about: Sequence[str], progress: Callable[[float], None] = lambda share: None
+    out: Path,
+    results: Results,
+    about: Sequence[str],
+    progress: Callable[[float], None] = lambda share: None,
+    cover: Cover | None = None,
+    axis: str = "",
 ) -> list[Path]:
-    """Write `lab.html` and `lab.pdf` into a folder.
+    """Write `lab.json`, `lab.html` and `lab.pdf` into a folder.
 
     Args:
         out: folder, made if it is not there.
         results: of the course.
         about: where the recordings come from, a paragraph each.
         progress: called with the share done.
+        cover: who hands it in; a blank sheet without.
+        axis: its name.
 
     Returns:
         Paths written.
     """
-    html, pdf = out / "lab.html", out / "lab.pdf"
-    write_text(html, lab_html(results, about))
+    data, html, pdf = out / "lab.json", out / "lab.html", out / "lab.pdf"
+    cover = cover or Cover()
+    write_text(data, lab_json(results, axis))
+    write_text(html, lab_html(results, about, cover))
     progress(0.5)
     with whole(pdf) as temporary:
-        write_pages(temporary, TITLE, about, [(section(result), _charts(result)) for result in results])
+        write_pages(temporary, TITLE, cover, about, [(section(result), _charts(result)) for result in results])
     progress(1.0)
-    return [html, pdf]
+    return [data, html, pdf]
 
 
-def lab_html(results: Results, about: Sequence[str]) -> str:
+def lab_html(results: Results, about: Sequence[str], cover: Cover | None = None) -> str:
     """The report as one HTML page that needs no other file."""
     environment = Environment(
         loader=PackageLoader("bench.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
@@ -52,7 +63,8 @@ def lab_html(results: Results, about: Sequence[str]) -> str:
     tasks = [
         (section(result), [_svg(c, f"{result.key}-{k}") for k, c in enumerate(_charts(result))]) for result in results
     ]
-    return environment.get_template("lab.html.j2").render(title=TITLE, about=about, tasks=tasks)
+    page = environment.get_template("lab.html.j2")
+    return page.render(title=TITLE, about=about, tasks=tasks, cover=cover or Cover())
 
 
 def _charts(result: Task | NotDone) -> tuple[Chart, ...]:

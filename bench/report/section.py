@@ -16,6 +16,7 @@ class Row:
     unit: str
     truth: str
     error: str
+    source: str
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,8 @@ class Section:
 def section(result: Task | NotDone) -> Section:
     """A task as it is printed."""
     heading = f"Task {result.key}: {result.title}" if result.key.isdigit() else result.title
+    if isinstance(result, Task) and result.example:
+        heading = f"{heading} (embedded example)"
     if isinstance(result, NotDone):
         return Section(result.key, heading, str(result.reason), (), ())
     return Section(result.key, heading, "", result.says, tuple(row(number) for number in result.numbers))
@@ -46,4 +49,5 @@ def row(number: Number) -> Row:
     """A number with five digits, and how far it is from its truth."""
     truth = number.truth
     error = f"{number.value / truth - 1.0:+.3%}" if truth else ""
-    return Row(number.name, f"{number.value:.5g}", number.unit, f"{truth:.5g}" if truth is not None else "", error)
+    shown = f"{truth:.5g}" if truth is not None else ""
+    return Row(number.name, f"{number.value:.5g}", number.unit, shown, error, number.source)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bench.arrays import Array, rms
 from bench.errors import InputError
+from bench.rig.circuit import COLD, Circuit
 from bench.rig.motor import Motor
 from bench.rig.peak_curve import PeakCurve
+from bench.rig.torque_constant import TorqueConstant
 
 #: Torque this share of the peak torque beyond a limit is still at it: noise of current and speed.
 AT_LIMIT = 0.01
@@ -24,12 +26,14 @@ class OperatingRange:
         continuous_torque: limited by heat, at standstill, M0 - N*m.
         curve: share of peak torque that voltage leaves at a speed.
         loss: share of continuous torque that speed-dependent losses take up to the no-load speed.
+        torque_constant: kT(Iq), which turns torque into the current that heats.
     """
 
     peak_torque: float
     continuous_torque: float
     curve: PeakCurve
     loss: float
+    torque_constant: TorqueConstant
 
     @classmethod
     def of(cls, motor: Motor, mains: float, where: str) -> OperatingRange:
@@ -41,12 +45,26 @@ class OperatingRange:
         if motor.peak_torque is None or motor.continuous_stall_torque is None:
             missing = "peak_torque" if motor.peak_torque is None else "continuous_stall_torque"
             raise InputError(f"{where}: motor.{missing}", "missing", "the operating range needs it")
+        constant = motor.torque_per_ampere
+        assert constant is not None, "a motor with a continuous stall torque has all four values of its datasheet"
         return cls(
             motor.peak_torque,
             motor.continuous_stall_torque,
             peak_curve(motor, mains, where),
             motor.continuous_torque_loss,
+            constant,
         )
+
+    def cold(self, motor: Motor, where: str) -> OperatingRange:
+        """The same motor with its winding at COLD: less voltage goes into its resistance, so the corner lies higher.
+
+        Raises:
+            InputError: the motor lacks what its circuit needs; names `where`.
+        """
+        circuit = Circuit.from_motor(motor, self.curve, where)
+        drop = circuit.resistance_at(COLD) * (motor.peak_current or 0.0)
+        corner = (circuit.voltage - drop) / circuit.back_emf_constant
+        return replace(self, curve=self.curve.model_copy(update={"corner_speed": corner}))
 
     def peak(self, speed: Array) -> Array:
         """Peak torque at speeds - rad/s, any shape - while the motor drives - N*m."""
@@ -74,10 +92,12 @@ class Reserve:
         peak_share: the same as a share of the peak torque.
         at: index of the sample where it is least.
         beyond: share of the samples beyond the limit by more than AT_LIMIT.
-        rms_torque: sqrt(mean(M**2)), which heats the winding - N*m.
+        rms_torque: sqrt(mean(M**2)) - N*m.
+        rms_current: sqrt(mean(Iq**2)), which heats the winding - A; more than the RMS torque says where iron saturates.
         mean_speed: mean(|omega|), at which it is compared - rad/s.
-        thermal: continuous torque there less the RMS torque - N*m; negative where the motor would overheat.
-        thermal_share: the same as a share of the continuous torque there.
+        continuous_current: that gives the continuous torque there - A.
+        thermal: continuous less RMS current - A; negative where the motor would overheat.
+        thermal_share: the same as a share of the continuous current there.
     """
 
     peak: float
@@ -85,7 +105,9 @@ class Reserve:
     at: int
     beyond: float
     rms_torque: float
+    rms_current: float
     mean_speed: float
+    continuous_current: float
     thermal: float
     thermal_share: float
 
@@ -94,16 +116,18 @@ def reserve(limits: OperatingRange, speed: Array, torque: Array) -> Reserve:
     """Reserve of a motion that repeats itself, speed - rad/s, torque - N*m, (n,) each."""
     left = limits.available(speed, torque) - np.abs(torque)
     at = int(np.argmin(left))
-    effective, mean = rms(torque), float(np.mean(np.abs(speed)))
-    allowed = float(limits.continuous(np.asarray(mean)))
+    effective, mean = rms(limits.torque_constant.current(torque)), float(np.mean(np.abs(speed)))
+    allowed = float(limits.torque_constant.current(limits.continuous(np.asarray(mean))))
     thermal_share = (allowed - effective) / allowed if allowed > 0.0 else -1.0
     return Reserve(
         peak=float(left[at]),
         peak_share=float(left[at]) / limits.peak_torque,
         at=at,
         beyond=float(np.mean(left < -AT_LIMIT * limits.peak_torque)),
-        rms_torque=effective,
+        rms_torque=rms(torque),
+        rms_current=effective,
         mean_speed=mean,
+        continuous_current=allowed,
         thermal=allowed - effective,
         thermal_share=thermal_share,
     )

@@ -138,15 +138,19 @@ class Rig(Table):
         return self.axis_kind.effort_unit
 
 
-def load_rig(path: str | Path) -> Rig:
+def load_rig(path: str | Path, defaults: Mapping[str, Any] | None = None) -> Rig:
     """Read and check a rig file.
+
+    Args:
+        path: of the file.
+        defaults: keys and whole tables for those that the file leaves out, as TOML gives them.
 
     Raises:
         InputError: no such file, no TOML, an unknown or missing key, a value of the wrong dimension or out of bounds.
     """
     path = Path(path)
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = {**(defaults or {}), **tomllib.loads(path.read_text(encoding="utf-8"))}
     except FileNotFoundError as error:
         raise InputError(path, "no such file", "give the path of a rig file (TOML)") from error
     except IsADirectoryError as error:

@@ -15,10 +15,17 @@ from bench.units import base_units, dimensionality
 #: Besides its own name; compared in lower case, with `_` as a space, after the last dot of a PLC path.
 ALIASES: dict[str, tuple[str, ...]] = {
     "time": ("t", "timestamp", "zeit"),
-    "position": ("actual position", "actpos", "position actual value"),
-    "velocity": ("actual velocity", "actvel", "speed", "velocity actual value", "velocity actual value averaged"),
+    "position": ("actual position", "actpos", "lage", "position actual value"),
+    "velocity": (
+        "actual velocity",
+        "actvel",
+        "speed",
+        "geschwindigkeit",
+        "velocity actual value",
+        "velocity actual value averaged",
+    ),
     "acceleration": ("actual acceleration", "actacc"),
-    "current": ("iq", "current actual value", "current actual value averaged"),
+    "current": ("iq", "strom", "current actual value", "current actual value averaged"),
     "torque": ("actual torque", "torque actual value", "torque actual value averaged"),
     "position_reference": ("reference position", "position demand value"),
     "velocity_reference": ("reference velocity", "velocity demand value"),

@@ -69,7 +69,7 @@ def test_the_command_makes_the_recordings_again(tmp_path):
         for signal in ("velocity", "current"):
             # written to 1e-3 deg/s and 0.1 mA; processors differ in the last place
             assert again[signal] == pytest.approx(stored[signal], abs=2e-4)
-    again, stored = (np.concatenate(read_flights(where / "catapult")) for where in (tmp_path, TRACES))
+    again, stored = (np.concatenate(read_flights(where / "catapult").points) for where in (tmp_path, TRACES))
     assert again == pytest.approx(stored, abs=2e-4)
 
 
@@ -170,22 +170,22 @@ def test_no_folder_is_an_error(tmp_path):
 
 
 def test_catapult_from_a_zip_with_german_tables_in_other_units(tmp_path):
-    flights = read_flights(TRACES / "catapult")
+    flights = read_flights(TRACES / "catapult").points
     with zipfile.ZipFile(tmp_path / "Katapult.zip", "w") as archive:
         for k, flight in enumerate(flights):
             rows = "\n".join(f"{100 * y:.4f};{100 * z:.4f}".replace(".", ",") for y, z in flight)
             archive.writestr(f"data/versuch{k:02}.txt", f"y [cm];z [cm]\n{rows}\n")
         archive.writestr("data/readme.md", "not a table")
-    again = read_flights(find_flights(tmp_path))
+    again = read_flights(find_flights(tmp_path)).points
     assert len(again) == 10
     assert np.concatenate(again) == pytest.approx(np.concatenate(flights), abs=1e-9)
 
 
 def test_catapult_tables_without_head_with_time_or_turned(tmp_path):
     (tmp_path / "catapult1.txt").write_text("0.0 1.0\n1.0 2.0\n2.0 1.5\n")
-    assert read_flights(find_flights(tmp_path))[0].tolist() == [[0.0, 1.0], [1.0, 2.0], [2.0, 1.5]]
+    assert read_flights(find_flights(tmp_path)).points[0].tolist() == [[0.0, 1.0], [1.0, 2.0], [2.0, 1.5]]
     (tmp_path / "catapult1.txt").write_text("t [s],z [mm],y [m]\n0,1000,0\n1,2000,1\n2,1500,2\n")
-    assert read_flights(find_flights(tmp_path))[0].tolist() == [[0.0, 1.0], [1.0, 2.0], [2.0, 1.5]]
+    assert read_flights(find_flights(tmp_path)).points[0].tolist() == [[0.0, 1.0], [1.0, 2.0], [2.0, 1.5]]
 
 
 @pytest.mark.parametrize(

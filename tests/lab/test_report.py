@@ -45,12 +45,13 @@ def bench(capsys, monkeypatch, tmp_path):
 def test_report_has_every_task_number_and_figure(lab, done):
     text = (lab.folder / "here" / "lab.html").read_text(encoding="utf-8")
     assert re.findall(r'<section id="task-([^"]+)"', text) == list(done)
-    assert text.count("<svg") == sum(len(task.charts) for task in done.values()) == 14
+    assert text.count("<svg") == sum(len(task.charts) for task in done.values()) == 15
     for label in LABELS:
         assert label in text, label
     for task in done.values():
         assert all(number.unit for number in task.numbers)
         assert all(f"<td>{number.name}</td>" in text.replace("&#39;", "'") for number in task.numbers)
+        assert all(number.source for number in task.numbers)
     assert not re.search(r'(?:src|href)="(?!#)', text), "the page must need no other file"
     content = (lab.folder / "here" / "lab.pdf").read_bytes()
     assert content.startswith(b"%PDF")
@@ -68,7 +69,7 @@ def test_lab_runs_alone_and_ends_naming_the_report(lab):
     assert lab.status == 0
     assert "K_fric_w" in lab.printed
     assert lab.printed.splitlines()[-2:] == ["wrote here/lab.html", "wrote here/lab.pdf"]
-    assert {path.name for path in (lab.folder / "here").iterdir()} == {"lab.html", "lab.pdf"}
+    assert {path.name for path in (lab.folder / "here").iterdir()} == {"lab.json", "lab.html", "lab.pdf"}
 
 
 def test_progress_of_the_report_ends_at_one(done, tmp_path):
@@ -76,7 +77,7 @@ def test_progress_of_the_report_ends_at_one(done, tmp_path):
     files = write_lab_report(tmp_path, [done["2"]], ["about"], shares.append)
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
-    assert [path.name for path in files] == ["lab.html", "lab.pdf"]
+    assert [path.name for path in files] == ["lab.json", "lab.html", "lab.pdf"]
 
 
 def test_lab_refuses_what_it_cannot_read_in_one_line(bench, tmp_path):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from bench.lab.corner import corner_speed
+from bench.lab.corner import extrapolated_corner
 from bench.lab.rig import lab_rig, torque_constant
 from bench.lab.t11_corner import TIME_CONSTANTS, VELOCITY_GAIN, cross_voltage
 from bench.lab.winding import CURRENT_LOOP, STEP, Winding, run_winding
@@ -68,7 +68,7 @@ def test_run_through_the_winding_agrees_with_an_independent_integrator(circuit):
     every = slice(None, None, round(1e-3 / STEP))
     current, speed, warming = independent(winding, axis, top, duration)
     off = np.abs(run.velocity[every] - speed).max(), np.abs(run.current[every] - current)[5:].max()
-    corners = corner_speed(speed, current) * RPM, corner_speed(run.velocity, run.current) * RPM
+    corners = extrapolated_corner(speed, current) * RPM, extrapolated_corner(run.velocity, run.current) * RPM
     print(f"speed off by {off[0]:.2g} rad/s, current by {off[1]:.2g} A, corner by {corners[1] - corners[0]:+.2g} rpm")
     assert off[0] < 0.15
     assert off[1] < 0.01
@@ -90,7 +90,13 @@ def test_11_split_against_closed_forms(done, circuit):
     assert task["shift by inductance"].value == pytest.approx(
         task["corner, cold, with inductance"].value - cold, abs=1e-9
     )
-    shifts = [task[f"shift by inductance, L/R = {tau * 1e3:g} ms"].value for tau in TIME_CONSTANTS]
+    assert task["shift by inductance"].value == pytest.approx(0.0, abs=1.0)
+    for tau in TIME_CONSTANTS:
+        assert task[f"corner, L/R = {tau * 1e3:g} ms"].value == pytest.approx(cold, abs=1.0)
+    # U = R*Imax + Ke*w with the winding as it starts, and as warm as it ends
+    ends = [(circuit.voltage - circuit.resistance_at(t) * 5.7) / circuit.back_emf_constant * RPM for t in (20.0, 22.3)]
+    assert ends[1] < cold < ends[0]
+    shifts = [task[f"fall later by, L/R = {tau * 1e3:g} ms"].value for tau in TIME_CONSTANTS]
     axis = AxisParameters.from_rig(lab_rig())
     full = (3.5 - axis.coulomb_friction) / axis.inertia * np.array(TIME_CONSTANTS) * RPM
     print("shift in rpm by L/R:", dict(zip(TIME_CONSTANTS, np.round(shifts, 1).tolist(), strict=True)))
@@ -105,7 +111,7 @@ def test_11_without_warming_the_hot_corner_is_the_datasheets(circuit):
     slow = replace(circuit, thermal_time_constant=1e9)
     winding = Winding(slow, torque_constant(rig), 5.7, HOT, False)
     run = run_winding(winding, axis, np.full(round(0.6 / STEP), 5000.0 / RPM), VELOCITY_GAIN)
-    assert corner_speed(run.velocity, run.current) * RPM == pytest.approx(2100.0, abs=0.5)
+    assert extrapolated_corner(run.velocity, run.current) * RPM == pytest.approx(2100.0, abs=0.5)
 
 
 def test_11_voltage_at_a_right_angle_meets_both_curves(circuit):

@@ -43,7 +43,17 @@ def test_reserve_of_a_motion_by_hand(motor):
     assert found.beyond == 0.0
     assert found.rms_torque == pytest.approx(np.sqrt(10.0 / 4.0))
     assert found.mean_speed * RPM == pytest.approx(1775.0)
-    assert found.thermal == pytest.approx(1.4 * (1.0 - 0.1 * 1775.0 / 5000.0) - np.sqrt(2.5))
+    # kT = c + a*I**2 through 1.4 N*m at 1.8 A and 3.5 N*m at 5.7 A; current by the roots of a polynomial
+    a = (3.5 / 5.7 - 1.4 / 1.8) / (5.7**2 - 1.8**2)
+    c = 1.4 / 1.8 - a * 1.8**2
+
+    def current(torque):
+        roots = np.roots([a, 0.0, c, -torque])
+        return min(root.real for root in roots if abs(root.imag) < 1e-9 and root.real > 0.0)
+
+    effective = np.sqrt((current(1.0) ** 2 + current(3.0) ** 2) / 4.0)
+    assert found.rms_current == pytest.approx(effective)
+    assert found.thermal == pytest.approx(current(1.4 * (1.0 - 0.1 * 1775.0 / 5000.0)) - effective)
     over = reserve(low, rpm(4000, 0), np.array([2.0, 0.1]))
     assert over.peak < 0.0
     assert over.beyond == 0.5
@@ -79,3 +89,12 @@ def test_a_bad_curve_in_a_rig_file_is_named(tmp_path, curve, words):
     for word in words:
         assert word in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_a_cold_winding_has_its_corner_higher_and_the_same_ends(motor):
+    low = OperatingRange.of(motor, 230.0, "rig")
+    cold = low.cold(motor, "rig")
+    # R falls to 70 %: n_0 - 0.7*(n_0 - n_c)
+    assert cold.curve.corner_speed * RPM == pytest.approx(5000.0 - 0.7 * 2900.0)
+    assert cold.peak(rpm(0, 5000)) == pytest.approx(low.peak(rpm(0, 5000)))
+    assert (cold.continuous_torque, cold.loss) == (low.continuous_torque, low.loss)
