@@ -75,10 +75,10 @@ class Conditioning:
 def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Conditioning:
     """Choose source, filter and thresholds for a recording.
 
-    All are read from the stretches that move. The cut-off is the frequency up to which effort and acceleration are coherent above one half; beyond it they no
-    longer tell the same story, be it for noise or for dynamics that a rigid axis does not have. It is raised where the
-    filter's reach around reversals would cost more than a tenth of the rows. Of velocity and position, the one whose
-    noise makes less of the acceleration is taken.
+    All are read from the stretches that move. The cut-off is the frequency up to which effort and acceleration are
+    coherent above one half; beyond it they no longer tell the same story, be it for noise or for dynamics that a rigid
+    axis does not have. It is raised where the filter's reach around reversals would cost more than a tenth of the rows.
+    Of velocity and position, the one whose noise makes less of the acceleration is taken.
 
     Args:
         trace: the recording.
