@@ -15,6 +15,8 @@ WIDENED = 1.5
 #: hang together so long that their number matters, a remainder is left, and the interval says nothing of the effect's
 #: columns (a servo's pendulum with four effects and ten independent blocks: one degree, an interval of 12.7 errors).
 PLAIN = 4
+#: Parts of equally many rows by acceleration or speed, and by time.
+LEVELS, QUARTERS = 8, 4
 
 
 def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float]:
@@ -38,6 +40,38 @@ def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float
     variance, floor = np.diag(covariance), least * np.diag(inverse)
     widened = np.sqrt(np.where(variance > 0.0, np.maximum(variance, floor) / np.maximum(variance, 1e-300), 1.0))
     return covariance * np.outer(widened, widened), float(special.stdtrit(degrees, 0.975))
+
+
+def left_out(columns: Array, residual: Array, time: Array) -> Array:
+    """How far intervals of 95 % have to reach for coefficients (p,) that depend on which rows they are read from.
+
+    What a model lacks comes back with every repetition of a motion, so its scores are alike from block to block of time
+    and a covariance over these does not see it. It differs by the state of motion: coefficients are formed without each
+    of eight levels of acceleration, without each of eight of speed, and without each quarter of the recording; the
+    largest of the three counts (delete-a-group jackknife, M. H. Quenouille, Biometrika 43, 1956, 353-360).
+
+    Args:
+        columns: (m, p), acceleration and speed first.
+        residual: (m,).
+        time: (m,) - s.
+    """
+    scale = np.sqrt(np.sum(columns**2, axis=0))
+    scaled = columns / np.where(scale > 0.0, scale, 1.0)
+    orders = (np.abs(columns[:, 0]), LEVELS), (np.abs(columns[:, 1]), LEVELS), (time, QUARTERS)
+    reaches = [_without_each(scaled, residual, order, count) for order, count in orders]
+    return np.max(reaches, axis=0) / np.where(scale > 0.0, scale, 1.0)
+
+
+def _without_each(columns: Array, residual: Array, order: Array, count: int) -> Array:
+    """Reach of intervals (p,) by coefficients without each of `count` parts of the rows, cut by an order of them."""
+    edges = np.linspace(0, order.size, count + 1).astype(int)
+    rows = np.split(np.argsort(order, kind="stable"), edges[1:-1])
+    parts = [columns[part] for part in rows]
+    grams = np.stack([part.T @ part for part in parts])
+    scores = np.stack([part.T @ residual[chosen] for part, chosen in zip(parts, rows, strict=True)])
+    inverses = np.linalg.pinv(grams.sum(axis=0) - grams, rcond=1e-10, hermitian=True)
+    moved = np.einsum("gij,gj->gi", inverses, scores)
+    return special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * np.sum(moved**2, axis=0))
 
 
 def long_run_covariance(scores: Array) -> tuple[Array, float]:

@@ -39,6 +39,7 @@ def identify(
     ] = None,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, with 95 % intervals."""
+    from bench.identify.estimate import RefusedEstimateError
     from bench.report.estimate import estimate_json, estimate_table, refinement_line
     from bench.rig.rig import load_rig
 
@@ -46,7 +47,13 @@ def identify(
     axis = axis.model_copy(update={"offset": axis.offset or offset})
     if estimator is Estimator.LAB and (refine or offset or cutoff):
         raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
-    estimate, refinement = _estimate(trace, axis, estimator, refine, cutoff)
+    try:
+        estimate, refinement = _estimate(trace, axis, estimator, refine, cutoff)
+    except RefusedEstimateError as refusal:
+        if json is not None:
+            write_json(json, estimate_json(refusal.estimate, refused=str(refusal)))
+        tell_warnings(refusal.estimate.warnings)
+        raise
     if json is not None:
         write_json(json, estimate_json(estimate, refinement))
     files = []

@@ -12,6 +12,7 @@ from bench.balance.normal_equations import NormalEquations
 from bench.balance.parameter import Parameter
 from bench.balance.rows import ONE_WAY
 from bench.errors import UndeterminedError
+from bench.identify.estimate import Estimate
 
 #: Rows that the regression must have for each of its columns.
 ROWS_PER_COLUMN = 20
@@ -27,12 +28,19 @@ PLACES = {
     OFFSET: -1,
 }
 
+#: Share of the effort's variance below which a model that explains it identifies nothing.
+LEAST_EXPLAINED = 0.5
+
 RECORD = {
     INERTIA: "a motion that accelerates and brakes hard several times",
     VISCOUS: "a motion with at least two clearly different speeds in each direction",
     COULOMB: "a motion in both directions, several seconds each",
     OFFSET: "a motion in both directions, several seconds each",
 }
+
+TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
+SMALLER = "nothing; the rig's rotor_inertia (gear_inertia, gear_ratio) or torque constant is another one's"
+EXPLAINED = "a motion in which inertia and friction take most of the effort, and ask bench diagnose what else acts"
 
 
 def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
@@ -48,6 +56,21 @@ def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
         name = f"{kind.spoken(COULOMB)} apart from {kind.spoken(OFFSET)}"
         raise UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
     require_friction(equations, kind)
+
+
+def left_open(equations: NormalEquations, kind: AxisKind) -> frozenset[str]:
+    """Terms of the equation of motion that the rows leave open; the others may be told without them."""
+    try:
+        require_inertia(equations, kind)
+    except UndeterminedError:
+        return frozenset({INERTIA, VISCOUS, COULOMB, OFFSET})
+    found = {COULOMB, OFFSET} if only_direction(equations) is not None else set[str]()
+    for term in (VISCOUS, COULOMB):
+        try:
+            _require_excited(equations, term, kind)
+        except UndeterminedError:
+            found.add(term)
+    return frozenset(found)
 
 
 def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
@@ -75,15 +98,19 @@ def only_direction(equations: NormalEquations) -> str | None:
 
 def _require_excited(equations: NormalEquations, column: str, kind: AxisKind) -> None:
     """A column must keep power above its noise, and enough of it beside the others."""
-    others = (term for term in (INERTIA, VISCOUS, COULOMB) if term != column)
+    share = independent_share(equations, column, [term for term in (INERTIA, VISCOUS, COULOMB) if term != column])
+    if not share >= INDEPENDENT_SHARE:
+        reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
+        raise UndeterminedError(kind.spoken(column), reason, RECORD[column])
+
+
+def independent_share(equations: NormalEquations, column: str, others: Sequence[str]) -> float:
+    """Share of a column's power that is neither noise nor explained by others; negative where noise is all of it."""
     chosen = equations.select([PLACES[column], *(PLACES[term] for term in others)])
     power = np.diag(chosen.gram.sum(axis=0))
     scale = np.sqrt(np.where(power > 0.0, power, 1.0))
     matrix = chosen.matrix / np.outer(scale, scale)
-    share = matrix[0, 0] - matrix[0, 1:] @ np.linalg.lstsq(matrix[1:, 1:], matrix[1:, 0], rcond=1e-9)[0]
-    if not share >= INDEPENDENT_SHARE:
-        reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
-        raise UndeterminedError(kind.spoken(column), reason, RECORD[column])
+    return float(matrix[0, 0] - matrix[0, 1:] @ np.linalg.lstsq(matrix[1:, 1:], matrix[1:, 0], rcond=1e-9)[0])
 
 
 def require_significant(inertia: Parameter, kind: AxisKind, told: Sequence[str] = ()) -> None:
@@ -98,3 +125,28 @@ def require_significant(inertia: Parameter, kind: AxisKind, told: Sequence[str] 
     if low <= 0.0 <= high:
         reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero", *told])
         raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])
+
+
+def require_sound(estimate: Estimate, kind: AxisKind, told: Sequence[str] = ()) -> None:
+    """UndeterminedError where numbers were found that identify nothing.
+
+    An inertia that may be zero or is negative, a load's that is negative, or a model that explains less than half of
+    the effort's variance.
+
+    Args:
+        estimate: as found.
+        kind: of the axis.
+        told: what else is suspicious about the recording, and may be why.
+    """
+    for name in (kind.inertia, "load_moment_of_inertia"):
+        found = estimate.parameters.get(name)
+        if found is not None and found.ci95[1] < 0.0:
+            reason = (
+                f"it comes out negative, {found.value:.3g} {found.unit} ({found.ci95[0]:.3g} to {found.ci95[1]:.3g})"
+            )
+            reason = "; ".join([reason, *told])
+            raise UndeterminedError(name.replace("_", " "), reason, TURNED if name == kind.inertia else SMALLER)
+    require_significant(estimate[kind.inertia], kind, told)
+    if estimate.explained < LEAST_EXPLAINED:
+        share = f"the model explains {max(estimate.explained, 0.0):.0%} of the {kind.effort}'s variance"
+        raise UndeterminedError(f"{kind.spoken(INERTIA)} and friction", "; ".join([share, *told]), EXPLAINED)

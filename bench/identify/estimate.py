@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from bench.balance.parameter import Parameter
+from bench.errors import UndeterminedError
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,7 @@ class Estimate:
         cutoff: half-power frequency of the filter - Hz; nan where nothing was filtered.
         source: signal that speed and acceleration came from.
         warnings: what a user should know before relying on it.
+        explained: share of the effort's variance that the model explains; nan where the estimator does not tell.
     """
 
     estimator: str
@@ -47,6 +50,20 @@ class Estimate:
     cutoff: float
     source: str
     warnings: tuple[str, ...] = ()
+    explained: float = math.nan
 
     def __getitem__(self, name: str) -> Parameter:
         return self.parameters[name]
+
+
+class RefusedEstimateError(UndeterminedError):
+    """The recording cannot answer; what was found all the same goes with it.
+
+    Args:
+        reason: why not.
+        estimate: what was found, less what the recording leaves open.
+    """
+
+    def __init__(self, reason: UndeterminedError, estimate: Estimate) -> None:
+        self.estimate = estimate
+        super().__init__(reason.quantity, reason.reason, reason.record)

@@ -128,5 +128,6 @@ def identify_as_in_the_lab(trace: Trace, rig: Rig) -> Estimate:
         samples_used=int(np.count_nonzero(fast)),
         cutoff=math.nan,
         source="velocity",
+        explained=1.0 - error / float(np.sum((torque[fast] - torque[fast].mean()) ** 2)),
         warnings=("intervals take residuals for independent, as the course does: they are too narrow",),
     )

@@ -39,8 +39,14 @@ def parameters_json(parameters: Mapping[str, Parameter]) -> dict[str, Any]:
     }
 
 
-def estimate_json(estimate: Estimate, refinement: Refinement | None = None) -> str:
-    """The estimate as the contract's JSON, with what polishing did where it was asked for."""
+def estimate_json(estimate: Estimate, refinement: Refinement | None = None, refused: str | None = None) -> str:
+    """The estimate as the contract's JSON.
+
+    Args:
+        estimate: what was identified.
+        refinement: what polishing did, where it was asked for.
+        refused: why the recording cannot answer, where it cannot.
+    """
     residual = estimate.residual
     polish = {} if refinement is None else {"refinement": dataclasses.asdict(refinement)}
     return json.dumps(
@@ -48,6 +54,8 @@ def estimate_json(estimate: Estimate, refinement: Refinement | None = None) -> s
             "schema": SCHEMA,
             "estimator": estimate.estimator,
             "parameters": parameters_json(estimate.parameters),
+            "explained": _number(estimate.explained),
+            "refused": refused,
             "residual": {
                 "rms": residual.rms,
                 "noise_floor": _number(residual.noise_floor),
@@ -85,8 +93,9 @@ def estimate_table(estimate: Estimate, title: str, truth: Mapping[str, float] | 
     cutoff = (
         f"; cut-off {estimate.cutoff:.3g} Hz, speed from {estimate.source}" if math.isfinite(estimate.cutoff) else ""
     )
+    explained = f", {estimate.explained:.2%} of its variance explained" if math.isfinite(estimate.explained) else ""
     caption = (
-        f"residual {residual.rms:.3g} {residual.unit} ({residual.relative:.2%} of the effort{floor})\n"
+        f"residual {residual.rms:.3g} {residual.unit} ({residual.relative:.2%} of the effort{explained}{floor})\n"
         f"{estimate.samples_used} of {estimate.samples_read} samples{cutoff}"
     )
     table = Table(title=title, caption=caption, title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, GaussianFilter
@@ -23,8 +24,11 @@ SIGN_CONFIDENCE = 4.0
 KEPT = 0.9
 #: Widths from a reversal at which the filtered sign is within 1e-3 of one: 1 - erf(3.1/sqrt(2)) = 2e-3.
 SIGN_REACH = 3.1
-#: More samples than this tell nothing new about noise and spectrum.
-ENOUGH = 2**17
+#: More samples than this tell nothing new about noise and spectrum; more are taken in pieces spread over the recording.
+ENOUGH, PIECE = 2**17, 2**13
+#: Share of the fastest stretch's effective speed above which a stretch moves. Where the axis stands, coarse signals
+#: hide their noise and effort follows nothing.
+MOVES = 0.1
 
 
 @dataclass(frozen=True)
@@ -71,10 +75,10 @@ class Conditioning:
 def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Conditioning:
     """Choose source, filter and thresholds for a recording.
 
-    The cut-off is the frequency up to which effort and acceleration are coherent above one half; beyond it they no
-    longer tell the same story, be it for noise or for dynamics that a rigid axis does not have. It is raised where the
-    filter's reach around reversals would cost more than a tenth of the rows. Of velocity and position, the one whose
-    noise makes less of the acceleration is taken.
+    All are read from the stretches that move. The cut-off is the frequency up to which effort and acceleration are
+    coherent above one half; beyond it they no longer tell the same story, be it for noise or for dynamics that a rigid
+    axis does not have. It is raised where the filter's reach around reversals would cost more than a tenth of the rows.
+    Of velocity and position, the one whose noise makes less of the acceleration is taken.
 
     Args:
         trace: the recording.
@@ -85,33 +89,52 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
         InputError: neither velocity nor position.
         UndeterminedError: the recording is too short.
     """
-    longest = max(trace.segments, key=lambda part: part.stop - part.start)
-    part = slice(longest.start, min(longest.stop, longest.start + ENOUGH))
     least = GaussianFilter(LEAST_WIDTH * trace.sample_period, trace.sample_period)
-    if part.stop - part.start < 8 * least.margin:
+    longest = max(part.stop - part.start for part in trace.segments)
+    if longest < 8 * least.margin:
         raise UndeterminedError(
             trace.axis_kind.spoken(INERTIA),
-            f"the longest stretch without a hole has {part.stop - part.start} samples",
+            f"the longest stretch without a hole has {longest} samples",
             f"at least {8 * least.margin} samples without a hole",
         )
-    noise = {name: white_noise(trace[name][part]) for name in ("velocity", "position") if name in trace}
-    if not noise:
+    recorded = [name for name in ("velocity", "position") if name in trace]
+    if not recorded:
         raise InputError(trace.origin, "holds neither velocity nor position", "identification needs one of them")
+    parts = moving(trace, recorded[0], 2 * least.margin)
+    noise = {name: white_noise(*(trace[name][part] for part in parts)) for name in recorded}
     rank = {name: noise[name] * least.noise_gain(2 if name == "position" else 1) for name in noise}
     source = min(rank, key=lambda name: rank[name])
-    frequency, coherence = _coherence(
-        trace[source][part], effort[part], trace.sample_period, 2 - (source != "position")
-    )
+    pairs = [(trace[source][part], effort[part]) for part in parts]
+    frequency, coherence = _coherence(pairs, trace.sample_period, 2 - (source != "position"))
     peak = int(np.argmax(coherence))
     speed_noise = noise[source] / (np.sqrt(2.0) * trace.sample_period) if source == "position" else noise[source]
     if cutoff is None:
         below = np.flatnonzero(np.append(coherence[peak:], 0.0) < COHERENCE)[0]
         coherent = float(frequency[min(peak + below, frequency.size - 1)])
-        speed = raw_speed(trace[source][part], source, trace.sample_period)
-        sign = known_sign(speed, SIGN_CONFIDENCE * speed_noise)
-        cutoff = max(coherent, _least_cutoff(sign, trace.sample_period))
+        speeds = (raw_speed(values, source, trace.sample_period) for values, _ in pairs)
+        signs = [known_sign(speed, SIGN_CONFIDENCE * speed_noise) for speed in speeds]
+        cutoff = max(coherent, _least_cutoff(signs, trace.sample_period))
     chosen = GaussianFilter.from_cutoff(cutoff, trace.sample_period)
-    return Conditioning(chosen, source, noise[source], white_noise(effort[part]), speed_noise, float(coherence[peak]))
+    effort_noise = white_noise(*(effort[part] for part in parts))
+    return Conditioning(chosen, source, noise[source], effort_noise, speed_noise, float(coherence[peak]))
+
+
+def moving(trace: Trace, source: str, least: int) -> list[slice]:
+    """Stretches of at least `least` samples in which the axis moves, ENOUGH samples of them at most, in order.
+
+    Noise and spectrum are read where they matter: the longest stretch of a recording in many may be one at rest.
+    """
+    parts = [part for part in trace.segments if part.stop - part.start >= least]
+    if sum(part.stop - part.start for part in parts) > ENOUGH:
+        parts = [
+            slice(start, min(start + PIECE, part.stop))
+            for part in parts
+            for start in range(part.start, part.stop - least + 1, PIECE)
+        ]
+    speeds = np.array([rms(raw_speed(trace[source][part], source, trace.sample_period)) for part in parts])
+    fast = [part for part, speed in zip(parts, speeds, strict=True) if speed >= MOVES * speeds.max()]
+    few = max(1, ENOUGH // PIECE) if sum(part.stop - part.start for part in fast) > ENOUGH else len(fast)
+    return [fast[k] for k in np.linspace(0, len(fast) - 1, min(few, len(fast))).astype(int)]
 
 
 def raw_speed(values: Array, source: str, sample_period: float) -> Array:
@@ -124,28 +147,45 @@ def known_sign(speed: Array, threshold: float) -> Array:
     return np.sign(speed) * (np.abs(speed) > threshold)
 
 
-def _least_cutoff(sign: Array, sample_period: float) -> float:
+def _least_cutoff(signs: Sequence[Array], sample_period: float) -> float:
     """Lowest cut-off that still leaves KEPT of the rows - Hz.
 
     A filter of width s loses 3.1*s at both ends of each run of one sign, where its reach spans a reversal.
+
+    Args:
+        signs: of the speed, stretch by stretch.
+        sample_period: s.
     """
-    edges = np.flatnonzero(np.diff(sign) != 0.0) + 1
-    starts = np.r_[0, edges]
-    runs = np.diff(np.r_[starts, sign.size])[sign[starts] != 0.0] * sample_period
+    runs = np.concatenate([_runs(sign) for sign in signs]) * sample_period
     widths = LEAST_WIDTH * sample_period * 1.1 ** np.arange(80)
     kept = np.array([np.sum(np.maximum(runs - 2.0 * SIGN_REACH * width, 0.0)) for width in widths])
     widest = float(widths[np.flatnonzero(kept >= KEPT * kept[0])[-1]])
     return GaussianFilter(widest, sample_period).cutoff
 
 
-def _coherence(source: Array, effort: Array, sample_period: float, order: int) -> tuple[Array, Array]:
+def _runs(sign: Array) -> NDArray[np.int64]:
+    """Samples of each run of one known sign."""
+    starts = np.r_[0, np.flatnonzero(np.diff(sign) != 0.0) + 1]
+    return np.diff(np.r_[starts, sign.size])[sign[starts] != 0.0]
+
+
+def _coherence(pairs: Sequence[tuple[Array, Array]], sample_period: float, order: int) -> tuple[Array, Array]:
     """Magnitude-squared coherence of effort and the source's derivative over frequency - Hz, Welch's estimate.
 
-    At least sixteen half-overlapping windows, as the estimate's bias is about one over their number. As
-    `scipy.signal.coherence` has it (Hann windows, each less its mean); importing that costs 0.3 s.
+    At least sixteen half-overlapping windows, as the estimate's bias is about one over their number; none spans a hole,
+    so no longer than the stretches that hold most of the samples. As `scipy.signal.coherence` has it (Hann windows,
+    each less its mean); importing that costs 0.3 s.
+
+    Args:
+        pairs: source and effort, stretch by stretch.
+        sample_period: s.
+        order: of the source's derivative that is acceleration.
     """
-    length = int(np.clip(2 ** int(np.log2(effort.size / 8)), 16, 1024))
-    one, other = (_spectra(values, length) for values in (np.diff(source, order), effort[order:]))
+    sizes = np.sort([effort.size - order for _, effort in pairs])[::-1]
+    usual = int(sizes[np.searchsorted(np.cumsum(sizes), 0.5 * sizes.sum())])
+    length = int(np.clip(2 ** int(np.log2(min((sizes.sum() + order) / 8, usual))), 16, 1024))
+    long = [(np.diff(source, order), effort[order:]) for source, effort in pairs if effort.size - order >= length]
+    one, other = (np.concatenate([_spectra(pair[k], length) for pair in long]) for k in (0, 1))
     shared = np.abs(np.sum(one.conj() * other, axis=0)) ** 2
     power = np.sum(np.abs(one) ** 2, axis=0) * np.sum(np.abs(other) ** 2, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):  # a signal that never changes has no power to share

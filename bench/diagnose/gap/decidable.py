@@ -15,7 +15,7 @@ from bench.balance.rows import Rows, clear_motion
 from bench.diagnose.name.rules import Rules, row_correlation
 from bench.errors import InputError, UndeterminedError
 from bench.identify.determined import require_friction, require_inertia
-from bench.identify.regression import equations_of
+from bench.identify.solution import equations_of
 from bench.rig.rig import Rig
 from bench.trace.filter import LEAST_WIDTH
 from bench.trace.trace import Trace

@@ -1,0 +1,172 @@
+"""An estimate that moves with the filter's cut-off is none: it is formed over a decade of them, and one is chosen.
+
+What a rigid axis lacks - a drive that answers the noise of its speed, coarse signals, a soft coupling - stands at high
+frequency mostly and biases the estimate the more, the more of it the filter passes. So an estimate counts only if it
+agrees with those of all lower cut-offs within their errors (O. V. Lepski, Theory of Probability and its Applications
+35(3), 1991, 454-466). Of those the highest is taken, which on sound recordings is the most precise, unless another has
+a clearly narrower interval. Where some were rejected, the interval counts what bias may be left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS, AxisKind
+from bench.balance import layout
+from bench.balance.fit import fit
+from bench.balance.hum import with_hum
+from bench.balance.hypothesis import Hypothesis
+from bench.balance.normal_equations import BLOCKS, NormalEquations
+from bench.balance.rows import Rows
+from bench.errors import UndeterminedError
+from bench.identify.determined import left_open, only_direction
+from bench.identify.solution import equations_of, solved_with_shift
+from bench.rig.rig import Rig
+from bench.trace.filter import GaussianFilter
+from bench.trace.trace import Trace
+
+#: Cut-offs tried, below the highest: a decade in four steps.
+BELOW = 10.0 ** -np.arange(0.25, 1.01, 0.25)
+#: Share of the interval at the highest cut-off that counts, below which the interval at another one is narrower; on 100
+#: recordings of axes that lack nothing the narrowest was 0.70 of it.
+NARROWER = 0.6
+#: Share of a value that filters of different widths may differ by where there is no noise at all.
+ROUNDING = 1e-4
+#: Places of what is told among the columns.
+TERMS = {INERTIA: layout.INERTIA, VISCOUS: layout.VISCOUS, COULOMB: layout.COULOMB}
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """An estimate at one cut-off.
+
+    Attributes:
+        rows: of the recording's first part.
+        hypothesis: without effects.
+        equations: of these rows.
+        theta, half_widths: J, K_w and K_0 and how far their intervals of 95 % reach (3,); nan where they are open.
+    """
+
+    rows: Rows
+    hypothesis: Hypothesis
+    equations: NormalEquations
+    theta: Array
+    half_widths: Array
+
+    @property
+    def cutoff(self) -> float:
+        """Half-power frequency - Hz."""
+        return self.rows.conditioning.filter.cutoff
+
+    @classmethod
+    def of(cls, rows: Rows, rig: Rig) -> Tried:
+        """The estimate of these rows."""
+        hypothesis = with_hum(fit(rows, Hypothesis())).hypothesis
+        equations = equations_of(rows, hypothesis).coarsened(BLOCKS)
+        open_terms = left_open(equations, rig.axis_kind)
+        told = np.array([term not in open_terms for term in TERMS])
+        theta, half_widths = np.full(3, np.nan), np.full(3, np.nan)
+        if told.any():
+            found = solved_with_shift(equations, rows, rig.offset and only_direction(equations) is None)
+            theta, half_widths = _of_base(found.theta), found.reach * _of_base(found.errors)
+        return cls(rows, hypothesis, equations, np.where(told, theta, np.nan), np.where(told, half_widths, np.nan))
+
+    @property
+    def tells(self) -> bool:
+        """Whether it tells the inertia."""
+        return bool(np.isfinite(self.half_widths[0]))
+
+    def agrees(self, other: Tried) -> bool:
+        """Whether what both tell is the same within their intervals."""
+        away = np.abs(self.theta - other.theta) - ROUNDING * np.abs(self.theta)
+        return not bool(np.any(away > np.hypot(self.half_widths, other.half_widths)))  # nan, what is open, says neither
+
+
+def _of_base(values: Array) -> Array:
+    return values[[*TERMS.values()]]
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The cut-off taken, and what the others say of it.
+
+    Attributes:
+        tried: the estimate there, of the recording's first part.
+        doubt: how far J, K_w and K_0 may be off (3,) where the estimate moves with the cut-off; else 0.
+        warnings: that it moves.
+    """
+
+    tried: Tried
+    doubt: Array
+    warnings: tuple[str, ...] = ()
+
+
+def choose(first: Trace, rig: Rig, cutoff: float | None) -> Chosen:
+    """The cut-off whose estimate can be relied on; the one that is asked for, if one is.
+
+    Args:
+        first: the recording, or its first part.
+        rig: of the axis.
+        cutoff: half-power frequency to take - Hz.
+
+    Raises:
+        UndeterminedError: the recording is too short, or never moves clearly.
+        InputError: a signal is missing, or rig and recording do not fit together.
+    """
+    highest = Tried.of(Rows.of(first, rig, cutoff=cutoff), rig)
+    if cutoff is not None:
+        return Chosen(highest, np.zeros(3))
+    telling = [tried for tried in (highest, *_lower(first, rig, highest)) if tried.tells]
+    return _chosen(telling, rig.axis_kind) if telling else Chosen(highest, np.zeros(3))
+
+
+def _lower(first: Trace, rig: Rig, highest: Tried) -> Iterator[Tried]:
+    """Estimates at lower cut-offs, until the filter is too long for the motion."""
+    conditioning = highest.rows.conditioning
+    for share in BELOW:
+        smooth = GaussianFilter.from_cutoff(highest.cutoff * float(share), first.sample_period)
+        try:
+            yield Tried.of(Rows.of(first, rig, conditioning=replace(conditioning, filter=smooth)), rig)
+        except UndeterminedError:
+            return
+
+
+def _chosen(telling: Sequence[Tried], kind: AxisKind) -> Chosen:
+    """The one to rely on, of estimates from high to low cut-off."""
+    accepted = [telling[-1]]
+    for tried in telling[-2::-1]:
+        if not all(tried.agrees(lower) for lower in accepted):
+            break
+        accepted.append(tried)
+    rejected = telling[: len(telling) - len(accepted)]
+    doubts = [_doubt(tried, rejected, accepted[:k]) for k, tried in enumerate(accepted)]
+    wide = [float(np.hypot(tried.half_widths[0], off[0])) for tried, off in zip(accepted, doubts, strict=True)]
+    best = int(np.argmin(wide))
+    if not rejected and wide[best] >= NARROWER * wide[-1]:
+        best = len(accepted) - 1
+    warnings = (_moves(accepted[best], telling, kind),) if rejected else ()
+    return Chosen(accepted[best], doubts[best], warnings)
+
+
+def _doubt(taken: Tried, rejected: Sequence[Tried], lower: Sequence[Tried]) -> Array:
+    """How far J, K_w and K_0 may be off (3,): no more than they moved, nor than lower cut-offs leave room for."""
+    if not rejected:
+        return np.zeros(3)
+    moved = np.abs(rejected[-1].theta - taken.theta)
+    room = [np.abs(other.theta - taken.theta) + other.half_widths for other in lower]
+    return np.nan_to_num(np.fmin.reduce([moved, *room]))
+
+
+def _moves(taken: Tried, telling: Sequence[Tried], kind: AxisKind) -> str:
+    """That a quantity moves with the cut-off, and how."""
+    away = [np.abs(tried.theta - taken.theta) / np.hypot(tried.half_widths, taken.half_widths) for tried in telling]
+    term = int(np.argmax(np.nan_to_num(away).max(axis=0)))
+    course = ", ".join(f"{tried.theta[term]:.4g} at {tried.cutoff:.3g} Hz" for tried in telling)
+    return (
+        f"{kind.parameter([*TERMS][term])} moves with the filter's cut-off ({course}): taken at {taken.cutoff:.3g} Hz, "
+        "its interval counts what it may still be off; bench diagnose may tell why"
+    )
