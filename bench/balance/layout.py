@@ -62,22 +62,25 @@ def delays(rows: Rows, hypothesis: Hypothesis) -> tuple[float, float]:
     return sum(moving for moving, _ in found), sum(resting for _, resting in found)
 
 
+def effort_lag(hypothesis: Hypothesis) -> float:
+    """Lag to undo on the reported effort - s."""
+    return sum(term.effect.effort_lag(term.shape) for term in hypothesis.terms)
+
+
 def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
     """Columns of a hypothesis."""
     seen, (moving, resting) = seen_by(rows, hypothesis), delays(rows, hypothesis)
-    made_of = _made_of(rows, hypothesis)
+    made_of, late = _made_of(rows, hypothesis), effort_lag(hypothesis)
     order = 1 if rows.conditioning.source == "position" else 0
 
     def motion(signals: Signals) -> list[Column]:
         values = getattr(signals, rows.conditioning.source)
         return [[(values, order + 1)], [(values, order)]]
 
-    def rest(signals: Signals) -> list[Column]:
-        return [[(signals.sign, 0)], [(-signals.effort, 1)]]
-
     parts = [
         rows.memory.get(("motion", *made_of), lambda: seen.table(motion, moving)),
-        rows.memory.get(("rest", *made_of), lambda: seen.table(rest, resting)),
+        rows.memory.get(("sign", *made_of), lambda: seen.table(lambda s: [[(s.sign, 0)]], resting)),
+        rows.memory.get(("shift", late, *made_of), lambda: seen.table(lambda s: [[(-s.effort, 1)]], resting + late)),
     ]
     owners = [BASE] * 4
     if hypothesis.hum:
@@ -90,7 +93,10 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
         owners += [index] * table.shape[1]
     columns = np.concatenate(parts, axis=1)
     held_by = np.array(owners)
-    return Layout(columns, held_by, seen.effort, _noise(rows, hypothesis, held_by, moving))
+    effort = seen.effort
+    if late:
+        effort = rows.memory.get(("effort", late, *made_of), lambda: seen.table(lambda s: [[(s.effort, 0)]], late)[:, 0])
+    return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving))
 
 
 def term_columns(rows: Rows, seen: Rows, hypothesis: Hypothesis, index: int) -> Array:
@@ -140,7 +146,8 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.int64], moving
     conditioning = rows.conditioning
     smooth, order = conditioning.filter, conditioning.order
     noise = np.zeros((owners.size, owners.size))
-    noise[MISALIGNMENT, MISALIGNMENT] = (conditioning.effort_noise * smooth.noise_gain(1)) ** 2
+    hearing = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
+    noise[MISALIGNMENT, MISALIGNMENT] = conditioning.effort_noise**2 * hearing
     omega = np.linspace(0.0, REACH / smooth.width, FREQUENCIES)
     accelerated = (1j * omega) ** (order + 1) * (1.0 + 1j * omega * moving)
     heard = {INERTIA: accelerated, VISCOUS: (1j * omega) ** order * (1.0 + 1j * omega * moving)}

@@ -167,6 +167,10 @@ class Effect:
         """Lags to undo on the columns of motion, and on all others, where speed comes from `source` - s."""
         return 0.0, 0.0
 
+    def effort_lag(self, shape: Sequence[float]) -> float:
+        """Lag to undo on the reported effort - s."""
+        return 0.0
+
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Resisting torque per unit of each strength - N*m (N) per unit, raw samples before the filter."""
         return []

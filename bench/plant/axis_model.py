@@ -18,7 +18,7 @@ from bench.rig.load import Load
 from bench.rig.rig import Rig
 
 #: Hooks of electronics and sensing that the drive has to do with.
-IN_THE_LOOP = ("flowing", "acting", "delivered", "seen")
+IN_THE_LOOP = ("flowing", "acting", "delivered", "seen", "acted")
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ import numpy as np
 from mujoco.batch import Batch
 
 from bench.arrays import Array
-from bench.effects.kinds import Electronics, Friction, Mechanism, Moment
+from bench.effects.kinds import Electronics, Friction, Mechanism, Moment, Sensing
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.plant.axis_model import AxisModel
 from bench.plant.rows import Rows, gather
@@ -42,6 +42,7 @@ class TickedEffects:
         self._flowing = _through(electronics, "flowing")
         self._acting = _through(electronics, "acting")
         self._delivered = _through(electronics, "delivered")
+        self._acted = _through(gather(models, Sensing), "acted")
         self._friction = _FrictionLevels(batch, models)
         dof = batch.model.joint(AXIS).dofadr[0]
         self._inertia = _through(self._mechanisms, "added_inertia")
@@ -64,7 +65,7 @@ class TickedEffects:
         """
         middle = 1.5 * velocity - 0.5 * self._before
         self._before = velocity.copy()
-        reported, torque = self._driven(middle, demand)
+        reported, torque = self._driven(time + 0.5 * self._step, middle, demand)
         at = Moment(time + 0.5 * self._step, position, middle, torque)
         if self._factors:
             torque = torque.copy()
@@ -80,14 +81,17 @@ class TickedEffects:
                 self._armature[rows.index] += rows.effect.added_inertia(rows.values, rows.axis, rows.moment(at))
         return reported, torque
 
-    def _driven(self, velocity: Array, demand: Array) -> tuple[Array, Array]:
-        """Electronics in the order of the signal: what flows of a demand, what of it acts, what torque it makes."""
+    def _driven(self, time: float | Array, velocity: Array, demand: Array) -> tuple[Array, Array]:
+        """In the order of the signal: what flows of a demand, what that truly is, what of it acts, what torque it makes."""
         reported = demand.copy()
         for rows in self._flowing:
             i = rows.index
             flows = rows.effect.flowing(rows.values, rows.axis, velocity[i], demand[i], rows.memory, self._step)
             reported[i], rows.memory = flows
         torque = reported.copy()
+        for rows in self._acted:
+            at = time[rows.index] if isinstance(time, np.ndarray) else time
+            torque[rows.index] = rows.effect.acted(rows.values, rows.axis, torque[rows.index], at)
         for rows in self._acting:
             i = rows.index
             torque[i], rows.memory = rows.effect.acting(rows.values, torque[i], rows.memory, self._step)

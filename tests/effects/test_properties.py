@@ -213,6 +213,9 @@ def test_what_it_sees_is_what_a_simulated_sensor_or_drive_does_undone(effect):
     elif isinstance(effect, Electronics) and effect.overrides("acting_along"):
         acts = effect.acting_along(effect.report([], shape, BASE), RECORDED.torque, STEP)
         np.testing.assert_allclose(effect.see(RECORDED, shape).torque, acts, atol=1e-12)
+    elif isinstance(effect, Sensing) and effect.overrides("unrecorded"):
+        acts = effect.unrecorded(effect.report([], shape, BASE), RECORDED.torque, STEP)
+        np.testing.assert_allclose(effect.see(RECORDED, shape).torque, acts, atol=1e-12)
     else:
         assert not effect.overrides("see")
 
@@ -238,6 +241,38 @@ def test_a_delay_is_that_of_the_simulated_signal(effect):
         late, listen = passes(reported(effect), wave, step)[-5000:], np.exp(-1j * omega * time[-5000:])
         gain = np.sum(late * listen) / np.sum(wave[-5000:] * listen)
         assert gain == pytest.approx(1.0 / (1.0 + 1j * omega * max(declared)), rel=1e-3)
+
+
+@every
+def test_a_lag_of_the_effort_is_that_of_the_recorded_one_and_is_undone(effect):
+    """A sine comes out of the recorder as behind a first-order lag of the declared time, and back as it was."""
+    shape = shape_of(effect)
+    declared = effect.effort_lag(shape)
+    assert effect.effort_lag([2.0 * value for value in shape]) == pytest.approx(2.0 * declared)
+    hooks = [effect.overrides(hook) for hook in ("effort_lag", "recorded", "unrecorded")]
+    assert hooks == [declared > 0.0] * 3
+    if not declared:
+        return
+    step, omega = 1e-4, 2.0 * np.pi * 30.0
+    time, values = step * np.arange(10000), effect.report([], shape, BASE)
+    wave = np.sin(omega * time)
+    late, listen = effect.recorded(values, wave, step), np.exp(-1j * omega * time[-5000:])
+    gain = np.sum(late[-5000:] * listen) / np.sum(wave[-5000:] * listen)
+    assert gain == pytest.approx(1.0 / (1.0 + 1j * omega * declared), rel=1e-3)
+    np.testing.assert_allclose(effect.unrecorded(values, late, step)[5000:-1], wave[5000:-1], atol=1e-3)
+
+
+@every
+def test_what_a_sensor_of_the_current_misreads_is_what_its_columns_explain(effect):
+    """Reported less acting effort is the columns' sum, so far as it is small; nothing else of a sensor has columns."""
+    if not isinstance(effect, Sensing):
+        return
+    assert effect.overrides("acted") == effect.overrides("columns")
+    if effect.overrides("columns"):
+        values = reported(effect)
+        acts = effect.acted(values, AXIS, RECORDED.effort, RECORDED.time)
+        columns = np.array(plain(effect, RECORDED)).T
+        np.testing.assert_allclose(columns @ ([5e-4] * columns.shape[1]), RECORDED.effort - acts, atol=1e-12)
 
 
 @every

@@ -86,6 +86,14 @@ class Effect:
         """Current that makes torque, `step` after `memory` was it, while the measured one is `current` - A."""
         raise NotImplementedError
 
+    def true_current(self, rows: Rows, reading: np.ndarray) -> np.ndarray:
+        """Current that flows while the sensor of the drive reads one - A."""
+        raise NotImplementedError
+
+    def recorded_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
+        """Current that is recorded, `step` after `memory` was it, while the drive reads `current` - A."""
+        raise NotImplementedError
+
     def measured(self, position: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Angle and speed as the sensor sees them - rad, rad/s."""
         raise NotImplementedError
