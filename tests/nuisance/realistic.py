@@ -10,7 +10,7 @@ import csv
 import io
 from collections.abc import Sequence
 from concurrent.futures import as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 
@@ -31,8 +31,8 @@ from tests.nuisance.answer import Answer, ask
 
 #: Severity of each effect, and how many there are.
 SEVERITY, MANY = (0.15, 0.4), (4, 6)
-#: Of the first recording, about - s.
-DURATION = 8.0
+#: Of the first recording, about; the control period of all axes, so that they are simulated together - s.
+DURATION, CONTROL_PERIOD = 6.0, 250e-6
 HEADINGS = ("case", "hidden", "severities", "missed", "false", "verdict", "inertia_half_widths", "seconds", "said")
 
 
@@ -70,7 +70,7 @@ def one(seed: int, place: int) -> Drawn:
     """The case at a place; the same however many are drawn."""
     rng = np.random.default_rng([seed, place, 3])
     name = f"realistic-{place:03d}"
-    axis = random_rig(rng, name)
+    axis = replace(random_rig(rng, name), control_period=CONTROL_PERIOD)
     names = any_effects(int(rng.integers(MANY[0], MANY[1] + 1)), rng)
     severities = severities_of(seed, place, len(names))
     effects = [CATALOGUE[effect].draw(axis, s, rng, DURATION) for effect, s in zip(names, severities, strict=True)]

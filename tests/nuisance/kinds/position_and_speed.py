@@ -8,8 +8,10 @@ from tests.independent.sensors import rounded
 from tests.nuisance.nuisance import Nuisance
 
 TURN = 2.0 * np.pi
-#: What reported speed alone shows.
-SPEED_LAGS = frozenset({"velocity_filter_lag", "current_loop_lag", "encoder_eccentricity"})
+#: A motion that is reported late, and a torque that acts late.
+LAGS = frozenset({"velocity_filter_lag", "current_loop_lag"})
+#: What speed and position show only together.
+SPEED_LAGS = LAGS | {"encoder_eccentricity"}
 
 
 class SpeedScaled(Nuisance):
@@ -124,11 +126,12 @@ class SpeedClipped(Nuisance):
 
 
 class SpeedHeld(Nuisance):
-    """Speed comes over a slower bus than current and is held in between."""
+    """Speed comes over a slower bus than current and is held in between: on average it does lag the motion."""
 
     strengths = (2.0, 4.0)
     unit = "samples"
     refusal_is_right = True
+    right_names = LAGS
     unsuited = SPEED_LAGS
 
     def in_file(self, signals, strength, axis, rng):
@@ -137,11 +140,12 @@ class SpeedHeld(Nuisance):
 
 
 class PositionLate(Nuisance):
-    """Position is read some time before the sample it is stored with."""
+    """Position is read some time before the sample it is stored with: speed taken from it does lag the motion."""
 
     strengths = (0.5, 1.0)
     unit = "ms"
-    unsuited = frozenset({"velocity_filter_lag"})
+    right_names = LAGS
+    unsuited = SPEED_LAGS
 
     def exact(self, fine, strength, axis, rng):
         return fine.but(position=np.interp(fine.time - strength * 1e-3, fine.time, fine["position"]))
