@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
-from concurrent.futures import as_completed
+import json
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -20,19 +21,19 @@ from rich.progress import Progress
 
 from tests.blind.__main__ import workers
 from tests.blind.draw import Drawn
-from tests.blind.record import recorded, truth_of
 from tests.blind.score import same, twins
-from tests.independent.case import Hidden
+from tests.independent.case import Hidden, record, write_case
 from tests.independent.draw import any_effects
 from tests.independent.effects import CATALOGUE
 from tests.independent.rig import random_rig
 from tests.independent.sensors import random_sensors
 from tests.nuisance.answer import Answer, ask
+from tests.nuisance.record import LONGEST_STEP, TOGETHER
 
 #: Severity of each effect, and how many there are.
 SEVERITY, MANY = (0.15, 0.4), (4, 6)
 #: Of the first recording, about; the control period of all axes, so that they are simulated together - s.
-DURATION, CONTROL_PERIOD = 6.0, 250e-6
+DURATION, CONTROL_PERIOD = 5.0, 250e-6
 HEADINGS = ("case", "hidden", "severities", "missed", "false", "verdict", "inertia_half_widths", "seconds", "said")
 
 
@@ -90,9 +91,34 @@ def scored(folder: Path, drawn: Sequence[Drawn], seed: int, jobs: int, show: boo
         for task in as_completed(tasks):
             case = tasks[task]
             severities = severities_of(seed, case.number, len(case.hidden.effects))
-            scores[case.name] = judged(case.name, truth_of(folder, case.name), tuple(severities), task.result())
+            truth = json.loads((folder / case.name / "truth.json").read_text(encoding="utf-8"))
+            scores[case.name] = judged(case.name, truth, tuple(severities), task.result())
             progress.advance(bar)
     return [scores[case.name] for case in drawn]
+
+
+def recorded(folder: Path, drawn: Sequence[Drawn], seed: int, pool: Executor) -> Iterator[int]:
+    """Record what is not recorded yet; yields how many cases are done, as they are."""
+    missing = [case for case in drawn if not _kept(folder / case.name / "truth.json", case)]
+    yield len(drawn) - len(missing)
+    tasks = [pool.submit(_record, folder, missing[k : k + TOGETHER], seed) for k in range(0, len(missing), TOGETHER)]
+    for task in as_completed(tasks):
+        yield task.result()
+
+
+def _kept(truth: Path, case: Drawn) -> bool:
+    """Whether this very case is recorded, not one of its name that was drawn by other rules."""
+    return truth.exists() and json.loads(truth.read_text(encoding="utf-8"))["drawn"] == repr(case.hidden)
+
+
+def _record(folder: Path, drawn: Sequence[Drawn], seed: int) -> int:
+    cases, numbers = [case.hidden for case in drawn], [case.number for case in drawn]
+    runs = record(cases, seed, numbers=numbers, longest_step=LONGEST_STEP)
+    for case, pair in zip(cases, runs, strict=True):
+        entry = write_case(folder, case, pair) | {"drawn": repr(case)}
+        # last, since it says that the case is complete
+        (folder / case.name / "truth.json").write_text(json.dumps(entry, indent=1), encoding="utf-8")
+    return len(drawn)
 
 
 def answered(place: Path) -> Answer:
