@@ -108,7 +108,7 @@ def recorded(folder: Path, drawn: Sequence[Drawn], seed: int, pool: Executor) ->
 
 def _kept(truth: Path, case: Drawn) -> bool:
     """Whether this very case is recorded, not one of its name that was drawn by other rules."""
-    return truth.exists() and json.loads(truth.read_text(encoding="utf-8"))["drawn"] == repr(case.hidden)
+    return truth.exists() and json.loads(truth.read_text(encoding="utf-8")).get("drawn") == repr(case.hidden)
 
 
 def _record(folder: Path, drawn: Sequence[Drawn], seed: int) -> int:

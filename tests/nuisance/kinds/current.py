@@ -62,16 +62,14 @@ class CurrentCoarse(Nuisance):
 
 
 class TorqueConstantDrift(Nuisance):
-    """The sensor's gain drifts over the recording, or magnets warm: torque per reported ampere changes."""
+    """Magnets warm, or the sensor's gain drifts: torque per reported ampere falls; the rig's kT holds at the start."""
 
     strengths = (0.01, 0.02)
     right_names = frozenset({"torque_constant_drift"})
     unsuited = frozenset({"friction_warmup"})
 
     def exact(self, fine, strength, axis, rng):
-        # of the mean gain nothing is known but the rig's, which holds in the middle
-        share = fine.time / fine.time[-1] - 0.5
-        return fine.but(current=fine["current"] * (1.0 + strength * share))
+        return fine.but(current=fine["current"] * (1.0 + strength * fine.time / fine.time[-1]))
 
 
 class CurrentOffsetDrift(Nuisance):
