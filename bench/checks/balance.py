@@ -23,7 +23,7 @@ from bench.trace.trace import Trace
 #: Samples a window: motions and noises differ, the length that explains most is taken.
 LENGTHS = (4, 16, 64, 256)
 #: Windows that a comparison needs.
-LEAST = 24
+LEAST = 60
 #: Columns of the motion alone; behind them, those of position.
 MOTION = 4
 EFFORTS = ("torque", "force", "current", "voltage")

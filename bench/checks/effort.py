@@ -10,7 +10,7 @@ from bench.trace.trace import Trace
 NAME = "effort_follows_motion"
 #: Share of the effort that motion (and position) must explain, and below which it is told. The least of any clean
 #: recording is 0.48 (`python -m tests.checks`).
-REFUSED, TOLD = 0.2, 0.45
+REFUSED, TOLD = 0.3, 0.45
 #: Effort less loud than this many times its noise tells neither way.
 AUDIBLE = 3.0
 #: Share by which position must explain more than motion to be what the effort follows.

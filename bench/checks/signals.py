@@ -33,6 +33,8 @@ CLIPPED, ROW = 0.005, 5
 AT_LIMIT = 0.02
 #: Share of the largest value by which the motion must ask for more, for what lies beyond to be lost; and the windows.
 BEYOND, WINDOWS = 0.05, 8
+#: Samples of these windows: short, to lie within a clipped stretch.
+SHORT = (4, 16)
 #: Steps within a signal's spread that are told, and refused.
 FINE, COARSE = 8.0, 1.0
 #: Samples from which a spread says something.
@@ -136,7 +138,7 @@ def _clipped(trace: Trace, rig: Rig | None, name: str, side: float) -> Check | N
 def _asks_for_more(trace: Trace, rig: Rig | None, name: str, standing: NDArray[np.bool_], side: float) -> bool:
     """Whether the motion, by what the other windows say of the axis, takes more effort than stands there."""
     found = effort_of(trace, rig)
-    fitted = balance(trace, found[0]) if found is not None and found[1] == name else None
+    fitted = balance(trace, found[0], SHORT) if found is not None and found[1] == name else None
     if fitted is None:
         return False
     counted = np.concatenate([[0], np.cumsum(standing)])

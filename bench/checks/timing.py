@@ -100,17 +100,17 @@ def _missed(trace: Trace, rig: Rig | None, parts: list[slice], speeds: list[Arra
     if float(np.std(every)) <= STEADY * rms(every):
         return None
     effort = effort_of(trace, rig)
-    changes, alike = _followed(speeds)
+    changes, alike = followed(speeds)
     if changes <= CHANGES or alike >= ALIKE:
         return None
     if effort is not None:
-        rough, like = _followed([effort[0][part] for part in parts])
+        rough, like = followed([effort[0][part] for part in parts])
         if rough <= CHANGES or like >= ALIKE:
             return None
     return changes
 
 
-def _followed(signals: list[Array]) -> tuple[float, float]:
+def followed(signals: list[Array]) -> tuple[float, float]:
     """RMS change from sample to sample over the spread, and the best correlation of successive changes."""
     spread = float(np.std(np.concatenate(signals)))
     changes = rms(np.concatenate([np.diff(values) for values in signals]))

@@ -9,6 +9,7 @@ another ratio. What remains, as share of the displacements, says whether both ar
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -37,18 +38,44 @@ def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
     """Hold the speed of a recording against its position; the recording stays as it is."""
     if not {"position", "velocity"} <= set(trace.signals):
         return trace, absent(NAME, "not both position and velocity are recorded", ALLOWED)
+    found = compared(trace)
+    if found is None:
+        return trace, absent(NAME, f"hardly any motion, or no stretch of {2 * SPAN} samples without a hole", ALLOWED)
+    return trace, _judged(found)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Speed against position.
+
+    Attributes:
+        ratio: of speed to the derivative of position.
+        lag: by which speed is late - s.
+        remainder: what is not the position's, as share of the displacements.
+    """
+
+    ratio: float
+    lag: float
+    remainder: float
+
+
+def compared(trace: Trace) -> Comparison | None:
+    """Speed and position of a recording compared; None where it is too short or hardly moves."""
     spans = [_spans(trace, part) for part in stretches(trace, 2 * SPAN)]
     if not spans:
-        return trace, absent(NAME, f"no stretch of {2 * SPAN} samples without a hole", ALLOWED)
+        return None
     moved, claimed, change = (np.concatenate(column) for column in zip(*spans, strict=True))
-    least = STEPS * _step(trace)
-    if max(rms(moved), rms(claimed)) <= least:
-        return trace, absent(NAME, "hardly any motion", ALLOWED)
-    ratio, lag, remainder = _compared(moved, claimed, change, trace.sample_period)
-    return trace, _judged(ratio, lag, remainder)
+    if max(rms(moved), rms(claimed)) <= STEPS * _step(trace):
+        return None
+    columns = np.column_stack([moved, change, np.full(moved.size, SPAN * trace.sample_period)])
+    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    theta = np.linalg.lstsq(columns / scale, claimed, rcond=1e-9)[0] / scale
+    left = rms(claimed - columns @ theta)
+    return Comparison(float(theta[0]), -float(theta[1]), left / max(rms(claimed), 1e-300))
 
 
-def _judged(ratio: float, lag: float, remainder: float) -> Check:
+def _judged(both: Comparison) -> Check:
+    ratio, lag, remainder = both.ratio, both.lag, both.remainder
     units = "check the units (and signs) of both columns and of the time, or leave one of the two columns out"
     if abs(ratio - 1.0) > REFUSED and remainder < REMAINDER:
         thousands = math.log10(abs(ratio)) / 3.0 if ratio else 0.0
@@ -73,15 +100,6 @@ def _spans(trace: Trace, part: slice) -> tuple[Array, ...]:
     position, velocity = trace["position"][part], trace["velocity"][part]
     travelled = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2.0)]) * period
     return tuple(values[SPAN:] - values[:-SPAN] for values in (position, travelled, velocity))
-
-
-def _compared(moved: Array, claimed: Array, change: Array, period: float) -> tuple[float, float, float]:
-    """Ratio, lag - s, and remainder as share of what speed claims."""
-    columns = np.column_stack([moved, change * period, np.ones(moved.size)])
-    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    theta = np.linalg.lstsq(columns / scale, claimed, rcond=1e-9)[0] / scale
-    left = rms(claimed - columns @ theta)
-    return float(theta[0]), float(-theta[1]) * period, left / max(rms(claimed), 1e-300)
 
 
 def _step(trace: Trace) -> float:
