@@ -11,7 +11,17 @@ from bench.trace.trace import Trace
 from tests.checks.damage import changed, doubled, keeping, losing, stale, with_samples, without
 from tests.independent.axes import PLAIN
 
-NAMES = ["velocity_is_derivative_of_position", "position_wraps", "lost_samples", "time_is_regular", "signal_moves", "signal_clips", "resolution", "effort_follows_motion", "sampling_rate_plausible"]
+NAMES = [
+    "velocity_is_derivative_of_position",
+    "position_wraps",
+    "lost_samples",
+    "time_is_regular",
+    "signal_moves",
+    "signal_clips",
+    "resolution",
+    "effort_follows_motion",
+    "sampling_rate_plausible",
+]
 
 
 def test_the_gate_has_the_contracts_checks_and_a_sound_recording_passes_all(sound, rig):
