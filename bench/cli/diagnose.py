@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import JsonOption, RigOption, console, tell_files, tell_warnings, write_json
+from bench.console import JsonOption, RigOption, console, tell_files, tell_warnings, told_in_json, write_json
 
 
 def diagnose(
@@ -19,9 +19,10 @@ def diagnose(
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
+    from bench.checks.gate import spoken
     from bench.diagnose.diagnosis import diagnose as run_diagnosis
     from bench.effects.present import named
-    from bench.report.diagnosis import diagnosis_json, diagnosis_table, write_diagnosis
+    from bench.report.diagnosis import SCHEMA, diagnosis_json, diagnosis_table, write_diagnosis
     from bench.report.progress import progress
     from bench.rig.rig import load_rig
     from bench.trace.read import read
@@ -29,7 +30,7 @@ def diagnose(
     axis = load_rig(rig)
     excluded = frozenset(named(name, "--without").name for name in without or [])
     other = read(holdout, axis.trace.columns) if holdout else None
-    with progress(f"diagnosing {trace.name}") as done:
+    with told_in_json(json, SCHEMA), progress(f"diagnosing {trace.name}") as done:
         found = run_diagnosis(read(trace, axis.trace.columns), axis, other, excluded, done)
     if json is not None:
         write_json(json, diagnosis_json(found))
@@ -37,4 +38,4 @@ def diagnose(
     if json != Path("-"):
         console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
         tell_files(files)
-    tell_warnings(found.warnings)
+    tell_warnings([*found.warnings, *spoken(found.checks)])

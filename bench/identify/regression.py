@@ -16,6 +16,8 @@ from bench.balance.hypothesis import Hypothesis
 from bench.balance.normal_equations import BLOCKS, NormalEquations, join
 from bench.balance.parameter import Parameter
 from bench.balance.rows import Rows
+from bench.checks.check import Check
+from bench.checks.gate import PARTS, gate, joined, passed, require
 from bench.errors import UndeterminedError
 from bench.identify.cutoffs import TERMS, choose
 from bench.identify.determined import left_open, only_direction, require_determined, require_inertia, require_sound
@@ -40,6 +42,7 @@ class Gathered:
         samples_read: of all parts.
         doubt: how far J, K_w and K_0 may be off as they move with the filter's cut-off (3,).
         warnings: that they move.
+        checks: of all parts.
     """
 
     equations: NormalEquations
@@ -49,6 +52,7 @@ class Gathered:
     samples_read: int
     doubt: Array
     warnings: tuple[str, ...] = ()
+    checks: tuple[Check, ...] = ()
 
 
 def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = None) -> Estimate:
@@ -63,7 +67,7 @@ def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = No
     Raises:
         RefusedEstimateError: the recording does not determine one of them; what it does goes with it.
         UndeterminedError: it determines none.
-        InputError: a signal is missing, or rig and trace do not fit together.
+        InputError: a signal is missing, rig and trace do not fit together, or a check of the recording fails.
     """
     return solve(gather(trace, rig, cutoff), rig)
 
@@ -74,20 +78,24 @@ def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Ga
     The first part decides how all are filtered, and whether the mains hum in them.
     """
     parts = iter([trace] if isinstance(trace, Trace) else trace)
-    first = next(parts)
+    gated = passed(next(parts), rig)
+    first = gated.trace
     chosen = choose(first, rig, cutoff)
     rows, hypothesis = chosen.tried.rows, chosen.tried.hypothesis
 
-    def gathered(part: Trace) -> tuple[NormalEquations, int]:
+    def gathered(part: Trace) -> tuple[NormalEquations, int, tuple[Check, ...]]:
         if part is first:
-            return chosen.tried.equations, len(part)
-        laid = Rows.of(part, rig, conditioning=rows.conditioning, begins=float(first.time[0]))
-        return equations_of(laid, hypothesis), len(part)
+            return chosen.tried.equations, len(part), gated.checks
+        sound = gate(part, rig, PARTS)
+        laid = Rows.of(sound.trace, rig, conditioning=rows.conditioning, begins=float(first.time[0]))
+        return equations_of(laid, hypothesis), len(sound.trace), sound.checks
 
-    equations, read = zip(*in_parallel(gathered, chain([first], parts)), strict=True)
+    equations, read, checks = zip(*in_parallel(gathered, chain([first], parts)), strict=True)
+    together = joined(checks)
+    require(together, first)
     unit = rig.net_effort(first)[1]
-    joined = join(equations).coarsened(BLOCKS)
-    return Gathered(joined, rows, hypothesis, unit, sum(read), chosen.doubt, chosen.warnings)
+    whole = join(equations).coarsened(BLOCKS)
+    return Gathered(whole, rows, hypothesis, unit, sum(read), chosen.doubt, chosen.warnings, together)
 
 
 def solve(gathered: Gathered, rig: Rig) -> Estimate:
@@ -131,6 +139,7 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
         source=gathered.rows.conditioning.source,
         warnings=(*gathered.warnings, *_shifted(found.shift, gathered.rows), *negative(parameters, kind)),
         explained=1.0 - power / max(squares - equations.count * mean**2, 1e-300),
+        checks=gathered.checks,
     )
     return replace(estimate, warnings=(*estimate.warnings, *_remaining(estimate)))
 

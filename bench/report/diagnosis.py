@@ -18,6 +18,7 @@ from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where.where import Where
 from bench.files import write_text
 from bench.plant.model_file import model_toml, model_xml, tables_toml
+from bench.report.checks import checks_json
 from bench.report.estimate import parameters_json
 from bench.report.figures import MEASURED, MODELLED, save
 
@@ -54,6 +55,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
         "next_experiment": _experiment(diagnosis),
         "stopped": diagnosis.stopped,
         "model": {"mjcf": "model.xml" if diagnosis.model is not None else None, "toml": "model.toml"},
+        "checks": checks_json(diagnosis.checks),
         "warnings": diagnosis.warnings,
     }
     return json.dumps(content, indent=2)
