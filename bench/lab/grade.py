@@ -18,8 +18,8 @@ from bench.lab.students import SCHEMA, seal
 from bench.lab.submission import Answer, Submission
 from bench.units import convert, dimensionality, same_dimension
 
-#: An answer is a mistake's figure within this share of it; of E, a sum of squares, within twice that.
-RECOGNISED = 0.02
+#: An answer is a mistake's figure within the tolerance of a right one; E, which has none, within this share of it.
+OF_ERROR = 0.04
 
 Verdict = Literal["right", "wrong", "wrong unit", "not answered", "not judged"]
 
@@ -180,8 +180,7 @@ def _apart(mark: Mark, way: Mapping[str, float]) -> float:
     figure = _number(way.get(mark.asked.name))
     if not math.isfinite(figure) or figure == 0.0:
         return math.inf
-    allowed = RECOGNISED * (2.0 if mark.asked.tolerance is None else 1.0)
-    return abs(mark.value / figure - 1.0) / allowed
+    return abs(mark.value / figure - 1.0) / (mark.asked.tolerance or OF_ERROR)
 
 
 def unit_advice(mark: Mark) -> str:
