@@ -86,4 +86,3 @@ def _values(recordings: Recordings, done: dict[str, Task], periods: dict[str, fl
     found |= {f"T_{name}": (period, "recording") for name, period in periods.items()}
     known = {name: {"value": value, "source": source} for name, (value, source) in found.items() if value is not None}
     return json.dumps(known, indent=2) + "\n"
-

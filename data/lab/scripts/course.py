@@ -1,4 +1,4 @@
-"""What every script of the course needs: recordings in SI, values of motor and disk, kT(Iq), graphs, printed results."""
+"""What every script of the course needs: recordings in SI, values of motor and disk, kT(Iq), graphs, results."""
 
 import json
 from pathlib import Path
@@ -31,9 +31,7 @@ def torque_constant(current):
     """kT(Iq) = a*Iq**2 + b*Iq + c: flat at zero, through stall and peak."""
     i0, imax = value("continuous_stall_current"), value("peak_current")
     conditions = [[0, 1, 0], [i0**2, i0, 1], [imax**2, imax, 1]]
-    a, b, c = np.linalg.solve(
-        conditions, [0, value("continuous_stall_torque") / i0, value("peak_torque") / imax]
-    )
+    a, b, c = np.linalg.solve(conditions, [0, value("continuous_stall_torque") / i0, value("peak_torque") / imax])
     return a * current**2 + b * current + c
 
 
@@ -50,7 +48,7 @@ def show(name, number, unit):
 def graph(file, *panels, x="time / s"):
     """One graph above the other; a panel is its y label and curves (x, y, style, label)."""
     figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(8, 1.5 + 1.8 * len(panels)))
-    for axis, (label, *curves) in zip(axes[:, 0], panels):
+    for axis, (label, *curves) in zip(axes[:, 0], panels, strict=True):
         for along, up, style, name in curves:
             axis.plot(along, up, style, label=name, markersize=3)
         axis.set_ylabel(label)

@@ -9,7 +9,7 @@ A = np.column_stack([y**2, y, np.ones_like(y)])
 theta = np.linalg.lstsq(A, z, rcond=None)[0]
 E = np.sum((z - A @ theta) ** 2)
 
-for name, number, unit in zip("abc", theta, ("1/m", "1", "m")):
+for name, number, unit in zip("abc", theta, ("1/m", "1", "m"), strict=True):
     show(name, number, unit)
 show("E", E, "m^2")
 

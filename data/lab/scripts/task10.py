@@ -5,7 +5,8 @@ from course import RPM, graph, recording, show, torque, value
 
 t, omega, current, T = recording("MaxAcc")
 M = torque(current)
-start = np.argmax(M > 3.0 / 3.5 * value("peak_torque"))
+top = value("peak_torque")
+start = np.argmax(M / top > 3.0 / 3.5)
 kept = (M >= 0.2) & (np.arange(M.size) >= start)
 
 show("peak torque", M[kept].max(), "N*m")
