@@ -42,10 +42,12 @@ class Hypothesis:
     Attributes:
         terms: in the order in which they were added.
         hum: frequencies of the mains in this recording's sensors - Hz.
+        step: between the values of the effort, if its last digit matters; else 0 - N*m (N).
     """
 
     terms: tuple[Term, ...] = ()
     hum: tuple[float, ...] = ()
+    step: float = 0.0
 
     def plus(self, term: Term) -> Hypothesis:
         """This hypothesis and one term more."""

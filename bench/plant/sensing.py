@@ -1,4 +1,4 @@
-"""What drive and recording have of motion and current: a sensor's faults are in both, a filter's in the recording alone."""
+"""What drive and recording have of motion and current: sensors' faults are in both, filters in the recording alone."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ class TickedEffects:
         return reported, torque
 
     def _driven(self, time: float | Array, velocity: Array, demand: Array) -> tuple[Array, Array]:
-        """In the order of the signal: what flows of a demand, what that truly is, what of it acts, what torque it makes."""
+        """In the order of the signal: what flows of a demand, what that truly is, what acts, what torque it makes."""
         reported = demand.copy()
         for rows in self._flowing:
             i = rows.index
