@@ -256,11 +256,8 @@ def _balanced(layout: Layout, determined: NDArray[np.bool_] | None) -> tuple[Arr
 
     Torque and speed are not further apart in time than they were latched: a larger shift is a lag, which is an effect.
     """
-    columns, effort = (
-        (layout.columns, layout.effort)
-        if determined is None
-        else (layout.columns[determined], layout.effort[determined])
-    )
+    sure = slice(None) if determined is None else determined
+    columns, effort = layout.columns[sure], layout.effort[sure]
     theta, held = least_squares(columns, effort, layout.noise), {}
     for place, (low, high) in layout.bounds.items():
         if low <= theta[place] <= high:
