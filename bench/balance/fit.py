@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.balance.friction_levels import multiply, with_friction, with_levels
+from bench.balance.friction_levels import follows_load, multiply, with_friction, with_levels, with_load, with_pulls
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.last_digit import rounding
 from bench.balance.layout import COULOMB, DIGIT, INERTIA, VISCOUS, Layout, delays, lay_out, seen_by
@@ -36,8 +36,7 @@ class Fit:
 
     Attributes:
         rows: the recording.
-        hypothesis: what was fitted.
-        layout: its columns.
+        hypothesis, layout: what was fitted, and its columns.
         theta: (p,): J, K_w, K_0, misalignment, last digit, sines and cosines of hum, then the effects' strengths.
         held: places of strengths that are at a bound.
         determined: (m,) rows whose torque the recording determines: not those that hang on the instant of an impact.
@@ -154,7 +153,8 @@ class Fit:
     @cached_property
     def beside(self) -> Rows:
         """The recording as one term more would see it."""
-        return with_friction(seen_by(self.rows, self.hypothesis), self.hypothesis, len(self.terms))
+        seen = with_friction(seen_by(self.rows, self.hypothesis), self.hypothesis, len(self.terms))
+        return with_load(seen, ((term, self.strengths(index)) for index, term in enumerate(self.terms)))
 
     def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array:
         """Columns (m, k) of raw signals as one term more would see them; `of_motion`: accelerations or speeds."""
@@ -206,7 +206,8 @@ def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
     theta, held = _balanced(layout, None)
     for _ in range(LEVEL_ROUNDS):
         found = with_loads(with_levels(hypothesis, theta, layout.owners), theta, layout.owners)
-        loaded = any(term.load is not None for term in hypothesis.terms)
+        found = with_pulls(found, theta, layout.owners)
+        loaded = follows_load(hypothesis) or any(term.load is not None for term in hypothesis.terms)
         settled = not (loaded or multiply(hypothesis)) or _alike(found, hypothesis)
         hypothesis = found
         if settled:
@@ -245,7 +246,7 @@ def _open(fitted: Fit, term: Term, index: int) -> Array:
 def _alike(found: Hypothesis, before: Hypothesis) -> bool:
     """Whether levels and loads have settled."""
     for new, old in zip(found.terms, before.terms, strict=True):
-        for values, others in ((new.level, old.level), (new.load or (), old.load or ())):
+        for values, others in ((new.level, old.level), (new.load or (), old.load or ()), (new.pull, old.pull)):
             if len(values) != len(others) or not np.allclose(values, others, rtol=1e-3, atol=1e-6):
                 return False
     return True

@@ -18,12 +18,14 @@ class Term:
         level: strengths over K_0 that others see of it, if it is dry friction; () until a fit has found them.
         load: strengths over load inertia by which it acts on the load behind a coupling, () until a fit has found them;
             None where it acts on the motor.
+        pull: strengths by which it loads what transmits the torque, if others follow that and a fit has found them.
     """
 
     effect: Effect
     shape: tuple[float, ...] = ()
     level: tuple[float, ...] = ()
     load: tuple[float, ...] | None = None
+    pull: tuple[float, ...] = ()
 
     @property
     def key(self) -> tuple[str, tuple[float, ...]]:

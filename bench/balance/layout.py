@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.balance.friction_levels import with_friction
+from bench.balance.friction_levels import with_friction, with_load
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.last_digit import cut_off
 from bench.balance.load_side import loads_of
@@ -113,6 +113,8 @@ def term_columns(rows: Rows, seen: Rows, hypothesis: Hypothesis, index: int) -> 
     """Columns (m, k) of one term; none of one that only changes how the recording is seen."""
     term = hypothesis.terms[index]
     friction = with_friction(seen, hypothesis, index)
+    if term.effect.overrides("friction_under_load"):
+        friction = with_load(friction, ((other, other.pull) for other in hypothesis.terms))
     loads = loads_of(hypothesis) if term.effect.couples else ()
     lag = delays(rows, hypothesis)[0 if term.effect.of_motion else 1]
     if loads or friction is not seen:

@@ -64,6 +64,7 @@ class Balance:
         effects = [
             {"name": term.effect.name, "shape": list(term.shape), "level": list(term.level)}
             | ({} if term.load is None else {"load": list(term.load)})
+            | ({"pull": list(term.pull)} if term.pull else {})
             for term in self.hypothesis.terms
         ]
         return {
@@ -89,6 +90,7 @@ class Balance:
                 _floats(entry["shape"]),
                 _floats(entry["level"]),
                 _floats(entry["load"]) if "load" in entry else None,
+                _floats(entry.get("pull", [])),
             )
             for entry in table.get("effects", [])
         )

@@ -7,9 +7,11 @@ from bench.effects.current_filter_lag import EFFECT
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from tests.effects.axes import PERIOD, VALUES, Reversals, model, plant
-from tests.effects.damaged import SINGLES, diagnosed, filtered, inertia_holds, late, names
+from tests.effects.damaged import AXIS, SINGLES, diagnosed, filtered, inertia_holds, late, names
 
 NAME = "current_filter_lag"
+#: Of a recursive filter of one sample's time constant: the mean of its impulse response, 1/(e - 1) samples - s.
+DELAY = 1e-3 / (np.e - 1.0)
 
 
 def test_lags_a_ramp_and_is_undone():
@@ -33,7 +35,7 @@ def test_a_filter_of_a_millisecond_keeps_the_names_of_singles(single):
     found = diagnosed(single or "null", filtered)
     assert names(found) == {NAME, single} - {None}
     (lag,) = [effect.parameters["time_constant"] for effect in found.effects if effect.name == NAME]
-    assert lag.value == pytest.approx(1e-3, abs=3e-4)
+    assert lag.value == pytest.approx(DELAY, abs=AXIS.control_period)
     assert inertia_holds(found)
 
 
