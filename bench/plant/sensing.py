@@ -73,7 +73,7 @@ def misreads_effort(model: AxisModel) -> bool:
 
 def true_effort(model: AxisModel, effort: Array, since: float, step: float) -> Array:
     """Effort of one axis that acted, from the recorded one, (n,) at a constant step - s - from an instant on - s."""
-    pairs, time = _pairs(model.of_kind(Sensing)), since + step * np.arange(effort.size)
+    pairs, time = _pairs(model.of_kind(Sensing)), since + step * np.arange(effort.size, dtype=np.float64)
     for present, effect in reversed(pairs):
         effort = effect.unrecorded(dict(present.values), effort, step)
     for present, effect in pairs:
