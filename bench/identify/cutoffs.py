@@ -20,6 +20,7 @@ from bench.balance import layout
 from bench.balance.fit import fit
 from bench.balance.hum import with_hum
 from bench.balance.hypothesis import Hypothesis
+from bench.balance.last_digit import plain
 from bench.balance.normal_equations import BLOCKS, NormalEquations
 from bench.balance.rows import Rows
 from bench.errors import UndeterminedError
@@ -65,7 +66,7 @@ class Tried:
     @classmethod
     def of(cls, rows: Rows, rig: Rig) -> Tried:
         """The estimate of these rows."""
-        hypothesis = with_hum(fit(rows, Hypothesis())).hypothesis
+        hypothesis = with_hum(fit(rows, plain(rows))).hypothesis
         equations = equations_of(rows, hypothesis).coarsened(BLOCKS)
         open_terms = left_open(equations, rig.axis_kind)
         told = np.array([term not in open_terms for term in TERMS])

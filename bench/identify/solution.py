@@ -11,6 +11,7 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.balance import layout
 from bench.balance.covariance import estimated, left_out
 from bench.balance.hypothesis import Hypothesis
+from bench.balance.last_digit import rounding
 from bench.balance.layout import Layout, lay_out
 from bench.balance.noise import noise_floor, white_power
 from bench.balance.normal_equations import NormalEquations, normal_equations, solved
@@ -107,8 +108,10 @@ class Left:
         laid = lay_out(rows, hypothesis)
         theta = found.theta[: laid.owners.size]
         offset = float(found.theta[-1]) if found.theta.size > laid.owners.size else 0.0
-        residual = laid.effort - laid.columns @ theta - offset
-        floor = noise_floor(rows, white_power(rows, hypothesis, laid, theta), residual).coloured
+        modelled = laid.columns @ theta + offset
+        residual, cut = laid.effort - modelled, float(theta[laid.owners == layout.DIGIT].sum())
+        rounded = rounding(rows, hypothesis.step, modelled, cut)
+        floor = noise_floor(rows, white_power(rows, hypothesis, laid, theta), residual, rounded).coloured
         return cls(laid, residual, floor)
 
     def misfit(self, rows: Rows, found: Solved) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from bench.arrays import rms
 from bench.axis_kind import COULOMB, OFFSET, AxisKind
 from bench.balance.fit import Fit, fit
-from bench.balance.hypothesis import Hypothesis
+from bench.balance.last_digit import plain
 from bench.balance.parameter import Parameter
 from bench.balance.rows import Rows, clear_motion
 from bench.diagnose.name.rules import Rules, row_correlation
@@ -62,10 +62,10 @@ def require_decidable(trace: Trace, rig: Rig, rows: Rows) -> Fit:
         UndeterminedError: with what to record instead.
     """
     _require_length(trace, rows)
-    equations = equations_of(rows, Hypothesis())
+    equations = equations_of(rows, plain(rows))
     require_inertia(equations, rig.axis_kind)
     require_friction(equations, rig.axis_kind)
-    bare = fit(rows, Hypothesis())
+    bare = fit(rows, plain(rows))
     require_audible(bare, rig.net_effort(trace)[1], rig.axis_kind)
     return bare
 
