@@ -38,7 +38,7 @@ class DirectionalLoadFriction(Friction):
         Quantity("load_ratio", "K_e/K_m", "dimensionless", lower=0.0),
     )
     derived = (Quantity("load_coefficient", "K_e", "dimensionless", lower=0.0),)
-    shapes = (Shape(quantities[1], RATIOS),)
+    shapes = (Shape(quantities[1], RATIOS, reach=0.3),)
     copies_torque = True
     replaces = frozenset({"load_dependent_friction"})
 
