@@ -115,7 +115,7 @@ def solve(gathered: Gathered, rig: Rig) -> Estimate:
 
 def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estimate:
     equations, unit, kind = gathered.equations, gathered.effort_unit, rig.axis_kind
-    parameters = parameters_of(found, kind, unit, np.hypot(left.misfit(gathered.rows, found), _padded(gathered, found)))
+    parameters = parameters_of(found, kind, unit, np.hypot(left.misfit(found), _padded(gathered, found)))
     parameters |= load_inertia(parameters, rig)
     chosen = equations.select(found.columns)
     power, squares = max(chosen.residual_power(found.theta), 0.0), float(chosen.power.sum())
