@@ -25,6 +25,7 @@ from bench.identify.estimate import Estimate, RefusedEstimateError, Residual
 from bench.identify.load_inertia import load_inertia
 from bench.identify.parallel import in_parallel
 from bench.identify.solution import NOISE_ALONE, SURE, Left, Solved, equations_of, solved_with_shift
+from bench.identify.tolerance import by_tolerance
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95
 from bench.trace.trace import Trace
@@ -41,6 +42,7 @@ class Gathered:
         effort_unit: N*m, N, or what the rig allows.
         samples_read: of all parts.
         doubt: how far J, K_w and K_0 may be off as they move with the filter's cut-off (3,).
+        tolerance: how far coefficients may be off by the rig's tolerances (p,).
         warnings: that they move.
         checks: of all parts.
     """
@@ -51,6 +53,7 @@ class Gathered:
     effort_unit: str
     samples_read: int
     doubt: Array
+    tolerance: Array
     warnings: tuple[str, ...] = ()
     checks: tuple[Check, ...] = ()
 
@@ -95,7 +98,8 @@ def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Ga
     require(together, first)
     unit = rig.net_effort(first)[1]
     whole = join(equations).coarsened(BLOCKS)
-    return Gathered(whole, rows, hypothesis, unit, sum(read), chosen.doubt, chosen.warnings, together)
+    tolerance = by_tolerance(gated.trace, rig, chosen.tried)
+    return Gathered(whole, rows, hypothesis, unit, sum(read), chosen.doubt, tolerance, chosen.warnings, together)
 
 
 def solve(gathered: Gathered, rig: Rig) -> Estimate:
@@ -123,7 +127,9 @@ def solve(gathered: Gathered, rig: Rig) -> Estimate:
 
 def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estimate:
     equations, unit, kind = gathered.equations, gathered.effort_unit, rig.axis_kind
-    parameters = parameters_of(found, kind, unit, np.hypot(left.misfit(gathered.rows, found), _padded(gathered, found)))
+    doubt = np.pad(gathered.doubt, (0, found.theta.size - gathered.doubt.size))
+    more = np.sqrt(left.misfit(found) ** 2 + doubt**2 + gathered.tolerance**2)
+    parameters = parameters_of(found, kind, unit, more)
     parameters |= load_inertia(parameters, rig)
     chosen = equations.select(found.columns)
     power, squares = max(chosen.residual_power(found.theta), 0.0), float(chosen.power.sum())
@@ -137,16 +143,16 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
         samples_used=chosen.count * smooth.stride,
         cutoff=smooth.cutoff,
         source=gathered.rows.conditioning.source,
-        warnings=(*gathered.warnings, *_shifted(found.shift, gathered.rows), *negative(parameters, kind)),
+        warnings=(
+            *gathered.warnings,
+            *_of_rig(rig),
+            *_shifted(found.shift, gathered.rows),
+            *negative(parameters, kind),
+        ),
         explained=1.0 - power / max(squares - equations.count * mean**2, 1e-300),
         checks=gathered.checks,
     )
     return replace(estimate, warnings=(*estimate.warnings, *_remaining(estimate)))
-
-
-def _padded(gathered: Gathered, found: Solved) -> Array:
-    """Doubt of all coefficients (p,): that of J, K_w and K_0, which come first."""
-    return np.pad(gathered.doubt, (0, found.theta.size - gathered.doubt.size))
 
 
 def parameters_of(found: Solved, kind: AxisKind, effort_unit: str, more: Array | None = None) -> dict[str, Parameter]:
@@ -177,6 +183,11 @@ def _remaining(estimate: Estimate) -> Iterator[str]:
             f"the model explains {estimate.explained:.2%} of the effort's variance and leaves "
             f"{residual.rms / residual.noise_floor:.3g} times what noise alone would: bench diagnose may tell why"
         )
+
+
+def _of_rig(rig: Rig) -> Iterator[str]:
+    if rig.motor.disagreement is not None:
+        yield f"{rig.source}: {rig.motor.disagreement}"
 
 
 def _shifted(shift: tuple[float, float], rows: Rows) -> Iterator[str]:

@@ -114,7 +114,7 @@ class Left:
         floor = noise_floor(rows, white_power(rows, hypothesis, laid, theta), residual, rounded).coloured
         return cls(laid, residual, floor)
 
-    def misfit(self, rows: Rows, found: Solved) -> Array:
+    def misfit(self, found: Solved) -> Array:
         """How far intervals of 95 % have to reach because of what stands above the noise (p,); 0 where nothing does."""
         above = 1.0 - (NOISE_ALONE * self.floor) ** 2 / max(float(np.mean(self.residual**2)), 1e-300)
         reaches = np.zeros(found.theta.size)
@@ -123,5 +123,5 @@ class Left:
             if found.offset:
                 columns = np.column_stack([columns, np.ones(self.residual.size)])
             free = [k for k in range(found.theta.size) if not (found.held and k == layout.MISALIGNMENT)]
-            reaches[free] = np.sqrt(above) * left_out(columns[:, free], self.residual, rows.time)
+            reaches[free] = np.sqrt(above) * left_out(columns[:, free], self.residual)
         return reaches
