@@ -22,7 +22,7 @@ def test_nothing_fails_on_recordings_of_others(recordings):
 
 
 def test_nothing_fails_on_axes_drawn_at_random(tmp_path):
-    drawn = list(independent(12, tmp_path))
+    drawn = list(independent(6, tmp_path, duration=3.0))
     assert {name: found for name, trace, rig in drawn if (found := failing(trace, rig))} == {}
 
 
