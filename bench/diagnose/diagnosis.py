@@ -10,7 +10,6 @@ from bench.balance.fit import Fit
 from bench.balance.quantities import uncertain
 from bench.checks.gate import passed
 from bench.diagnose.add.add import add
-from bench.diagnose.gap.decidable import require_positive
 from bench.diagnose.gap.gap import gap
 from bench.diagnose.name.name import name
 from bench.diagnose.name.policy import Policy
@@ -18,7 +17,8 @@ from bench.diagnose.recordings import Recordings
 from bench.diagnose.show.show import Diagnosis, show
 from bench.diagnose.show.suspicions import suspicions
 from bench.diagnose.where.where import where
-from bench.identify.determined import require_significant
+from bench.identify.determined import require_masses, require_significant
+from bench.identify.load_inertia import load_inertia
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -66,10 +66,10 @@ def require_weight(recordings: Recordings, fitted: Fit) -> None:
     """Refuse effects that leave no inertia which the recording tells, before a model is made of them.
 
     Raises:
-        UndeterminedError: its interval holds zero.
-        InputError: it is negative.
+        UndeterminedError: its interval holds zero, or it or the load's is negative.
     """
     kind = recordings.rig.axis_kind
-    inertia = uncertain(fitted).base(recordings.base_units)[kind.parameter(INERTIA)]
-    require_significant(inertia, kind, suspicions(recordings.trace, recordings.rig, {}))
-    require_positive(inertia, recordings.trace.origin)
+    found = uncertain(fitted).base(recordings.base_units)
+    told = suspicions(recordings.trace, recordings.rig, {})
+    require_significant(found[kind.parameter(INERTIA)], kind, told)
+    require_masses(found | load_inertia(found, recordings.rig), kind, told)

@@ -133,7 +133,13 @@ class Rig(Table):
         return trace["voltage"], "V"
 
     def within_tolerance(self) -> Iterator[Rig]:
-        """This rig with one value at the end of its tolerance, for each value of motor and load that has one."""
+        """This rig with one value at the end of its tolerance, for each value of motor and load that has one.
+
+        A torque constant that disagrees with the back-EMF constant may as well be the one that this asks for.
+        """
+        if self.motor.of_back_emf is not None:
+            constant = "force_constant" if self.motor.force_constant is not None else "torque_constant"
+            yield self.model_copy(update={"motor": self.motor.model_copy(update={constant: self.motor.of_back_emf})})
         tables = {"motor": self.motor} | ({} if self.load is None else {"load": self.load})
         for name, table in tables.items():
             for field in type(table).model_fields:
