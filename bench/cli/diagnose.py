@@ -32,9 +32,9 @@ def diagnose(
     other = read(holdout, axis.trace.columns) if holdout else None
     with told_in_json(json, SCHEMA), progress(f"diagnosing {trace.name}") as done:
         found = run_diagnosis(read(trace, axis.trace.columns), axis, other, excluded, done)
+    files = write_diagnosis(out, found, f"{axis.name}: {trace.name}") if out is not None else []
     if json is not None:
         write_json(json, diagnosis_json(found))
-    files = write_diagnosis(out, found, f"{axis.name}: {trace.name}") if out is not None else []
     if json != Path("-"):
         console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
         tell_files(files)

@@ -57,13 +57,13 @@ def identify(
             write_json(json, estimate_json(refusal.estimate, refused=str(refusal)))
         tell_warnings(refusal.estimate.warnings)
         raise
-    if json is not None:
-        write_json(json, estimate_json(estimate, refinement))
     files = []
     if out is not None:
         from bench.report.identification import write_identification  # matplotlib: 0.35 s
 
         files = write_identification(out, trace, axis, estimate, refinement)
+    if json is not None:
+        write_json(json, estimate_json(estimate, refinement))
     if json != Path("-"):
         console().print(estimate_table(estimate, f"{axis.name}: {trace.name}"))
         if refinement is not None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ from bench.axis_kind import AxisKind
 from bench.balance.parameter import Parameter
 from bench.identify.estimate import Estimate
 from bench.report.checks import checks_json
+from bench.structured import json_text
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
     from bench.identify.refine import Refinement
@@ -50,7 +50,7 @@ def estimate_json(estimate: Estimate, refinement: Refinement | None = None, refu
     """
     residual = estimate.residual
     polish = {} if refinement is None else {"refinement": dataclasses.asdict(refinement)}
-    return json.dumps(
+    return json_text(
         {
             "schema": SCHEMA,
             "estimator": estimate.estimator,
@@ -68,8 +68,7 @@ def estimate_json(estimate: Estimate, refinement: Refinement | None = None, refu
             "checks": checks_json(estimate.checks),
             "warnings": list(estimate.warnings),
             **polish,
-        },
-        indent=2,
+        }
     )
 
 

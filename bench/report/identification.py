@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.checks.gate import gate
-from bench.files import write_text
+from bench.files import held, write_text
 from bench.identify.estimate import Estimate
 from bench.report.estimate import estimate_json
 from bench.report.figures import identification_figure, save
@@ -39,6 +39,7 @@ def write_identification(
     cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
     moved = motion(first, effort, condition(first, effort, cutoff))
     figure, text = out / "identification.png", out / "identify.json"
-    save(identification_figure(moved, estimate, rig.axis_kind, f"{rig.name}: {trace.name}"), figure)
-    write_text(text, estimate_json(estimate, refinement) + "\n")
+    with held(out):
+        save(identification_figure(moved, estimate, rig.axis_kind, f"{rig.name}: {trace.name}"), figure)
+        write_text(text, estimate_json(estimate, refinement) + "\n")
     return [figure, text]
