@@ -53,8 +53,8 @@ class Recordings:
         seen, unseen = trace, holdout
         for effect, those in detected.items():
             if effect.faulty_signal == rows.conditioning.source:
-                seen = _mended(seen, effect, those)
-                unseen = None if unseen is None else _mended(unseen, effect, those)
+                seen = _mended(seen, rig, effect, those)
+                unseen = None if unseen is None else _mended(unseen, rig, effect, those)
         if seen is not trace:
             rows = Rows.of(seen, rig)
             require_decidable(seen, rig, rows)
@@ -76,6 +76,8 @@ class Recordings:
         return {kind.parameter(term): kind.parameter_unit(term, self.unit) for term in (INERTIA, VISCOUS, COULOMB)}
 
 
-def _mended(trace: Trace, effect: Effect, found: Detected) -> Trace:
+def _mended(trace: Trace, rig: Rig, effect: Effect, found: Detected) -> Trace:
     """A recording with a fault of its sensor undone; without the faulty signal where that stays wrong all the same."""
-    return effect.corrected(trace, found.values) if found.mends else trace.without(effect.faulty_signal)
+    if found.mends or rig.asks_for_speed(trace):
+        return effect.corrected(trace, found.values)
+    return trace.without(effect.faulty_signal)

@@ -125,6 +125,12 @@ class Rig(Table):
         gravity = self.load.gravity_torque(trace["position"])
         return (effort, unit) if gravity is None else (effort - gravity, unit)
 
+    def asks_for_speed(self, trace: Trace) -> bool:
+        """Whether the effort in a trace is made of a voltage less what the speed induces, kT*(U - Ke*w)/R."""
+        if {self.axis_kind.effort, "current"} & set(trace.signals):
+            return False
+        return self.motor.force_per_volt is None and self.motor.torque_per_volt is None
+
     def _effort_of_voltage(self, trace: Trace) -> tuple[Array, str]:
         gain = self.motor.force_per_volt or self.motor.torque_per_volt
         if gain is not None:
