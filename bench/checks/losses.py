@@ -83,7 +83,7 @@ def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
     for _ in range(PASSES):
         damage = damage_of(right)
         lost, stale = lost + damage.lost, stale + damage.stale
-        if lost + stale > most or not damage.lost and not damage.stale:
+        if lost + stale > most or (not damage.lost and not damage.stale):
             break
         right = repaired(right, damage)
     if not lost and not stale:
