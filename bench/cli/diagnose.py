@@ -23,6 +23,7 @@ def diagnose(
     from bench.effects.present import named
     from bench.report.diagnosis import diagnosis_json, diagnosis_table, write_diagnosis
     from bench.report.progress import progress
+    from bench.report.provenance import provenance
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
@@ -31,9 +32,10 @@ def diagnose(
     other = read(holdout, axis.trace.columns) if holdout else None
     with progress(f"diagnosing {trace.name}") as done:
         found = run_diagnosis(read(trace, axis.trace.columns), axis, other, excluded, done)
+    basis = provenance(rig, [trace], {"without": sorted(excluded)}, holdout)
     if json is not None:
-        write_json(json, diagnosis_json(found))
-    files = write_diagnosis(out, found, f"{axis.name}: {trace.name}") if out is not None else []
+        write_json(json, diagnosis_json(found, basis))
+    files = write_diagnosis(out, found, f"{axis.name}: {trace.name}", basis) if out is not None else []
     if json != Path("-"):
         console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
         tell_files(files)

@@ -11,23 +11,27 @@ from bench import __version__
 from bench.errors import InputError
 
 
-def provenance(rig: Path, traces: Sequence[Path], options: Mapping[str, Any]) -> dict[str, Any]:
+def provenance(
+    rig: Path, traces: Sequence[Path], options: Mapping[str, Any], holdout: Path | None = None
+) -> dict[str, Any]:
     """The contract's `provenance`.
 
     Args:
         rig: file of the axis.
         traces: files of the recordings, in the order given.
         options: of the command that change its result.
+        holdout: file of the recording that was not fitted.
 
     Raises:
         InputError: a file cannot be read.
     """
-    return {
+    found = {
         "version": __version__,
         "rig_sha256": sha256(rig),
         "traces": [{"file": str(trace), "sha256": sha256(trace)} for trace in traces],
         "options": dict(options),
     }
+    return found if holdout is None else found | {"holdout": {"file": str(holdout), "sha256": sha256(holdout)}}
 
 
 def sha256(path: Path) -> str:

@@ -8,6 +8,7 @@ from bench.balance.fit import Fit
 from bench.balance.parameter import Parameter
 from bench.balance.stored import Balance
 from bench.diagnose.add.add import Added
+from bench.diagnose.add.same_axis import SameAxis
 from bench.diagnose.found import Gap, NamedEffect, Rejected, Shrunk
 from bench.diagnose.gap.decidable import impacts, left_open
 from bench.diagnose.name.name import Suspects
@@ -33,6 +34,7 @@ class Diagnosis:
         closed_loop: velocity gap under the rig's drive without and with what shows only there - rad/s (m/s).
         refined: velocity gap of held-out motion before and after values were refined by simulation; None if not kept.
         steps: the bare axis, then the model after each addition.
+        holdout: whether it is of the same axis, and in what it differs.
         next_experiment: that tells apart what this recording does not.
         rejected: names that held-out motion spoke against.
         stopped: what ended the search before it was done; None if nothing did.
@@ -54,6 +56,7 @@ class Diagnosis:
     refined: tuple[float, float] | None
     steps: list[Shrunk]
     rejected: tuple[Rejected, ...]
+    holdout: SameAxis
     next_experiment: NextExperiment | None
     stopped: str | None
     model: StoredModel | None
@@ -91,6 +94,7 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
         refined=kept.gap,
         steps=steps,
         rejected=added.rejected,
+        holdout=added.compared,
         next_experiment=propose(recordings, suspects, added),
         stopped=searched.stopped,
         model=kept.model,
