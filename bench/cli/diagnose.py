@@ -11,9 +11,13 @@ from bench.console import JsonOption, RigOption, console, tell_files, tell_warni
 
 
 def diagnose(
-    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    traces: Annotated[
+        list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
+    ],
     rig: RigOption,
-    holdout: Annotated[Path | None, typer.Option("--holdout", help="Another recording of the axis.")] = None,
+    holdout: Annotated[
+        Path | None, typer.Option("--holdout", help="Another recording of the axis, not fitted.")
+    ] = None,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
@@ -30,13 +34,15 @@ def diagnose(
     axis = load_rig(rig)
     excluded = frozenset(named(name, "--without").name for name in without or [])
     other = read(holdout, axis.trace.columns) if holdout else None
-    with progress(f"diagnosing {trace.name}") as done:
-        found = run_diagnosis(read(trace, axis.trace.columns), axis, other, excluded, done)
-    basis = provenance(rig, [trace], {"without": sorted(excluded)}, holdout)
+    names = ", ".join(trace.name for trace in traces)
+    with progress(f"diagnosing {names}") as done:
+        recordings = [read(trace, axis.trace.columns) for trace in traces]
+        found = run_diagnosis(recordings, axis, other, excluded, done)
+    basis = provenance(rig, traces, {"without": sorted(excluded)}, holdout)
     if json is not None:
         write_json(json, diagnosis_json(found, basis))
-    files = write_diagnosis(out, found, f"{axis.name}: {trace.name}", basis) if out is not None else []
+    files = write_diagnosis(out, found, f"{axis.name}: {names}", basis) if out is not None else []
     if json != Path("-"):
-        console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
+        console().print(diagnosis_table(found, f"{axis.name}: {names}"))
         tell_files(files)
     tell_warnings(found.warnings)

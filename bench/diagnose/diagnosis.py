@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from bench.axis_kind import INERTIA
 from bench.balance.fit import Fit
@@ -26,7 +26,7 @@ POLICY = Policy()
 
 
 def diagnose(
-    trace: Trace,
+    trace: Trace | Sequence[Trace],
     rig: Rig,
     holdout: Trace | None = None,
     excluded: frozenset[str] = frozenset(),
@@ -36,7 +36,7 @@ def diagnose(
     """Find what is missing, name it, add it, and show the gap shrink.
 
     Args:
-        trace: the recording.
+        trace: the recording, or a list of several of one axis, which are joined (`bench.trace.join`).
         rig: of the axis.
         holdout: another recording of it, not used to fit.
         excluded: effects that are not tried.

@@ -2,7 +2,7 @@
 
     M = M_e for t_1 <= t < t_2, else 0
 
-M_e - N*m (N); t - time since the recording's start - s.
+M_e - N*m (N); t - time since the recording's start (that of the first, of several that are joined) - s.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class LoadTorqueEvent(Mechanism):
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """One within the stretch; its edges shared between the samples around them."""
-        start, end = ((signals.time - edge) / signals.sample_period + 0.5 for edge in shape)
+        start, end = ((signals.began + signals.time - edge) / signals.sample_period + 0.5 for edge in shape)
         return [[(np.clip(start, 0.0, 1.0) - np.clip(end, 0.0, 1.0), 0)]]
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
@@ -92,7 +92,8 @@ class LoadTorqueEvent(Mechanism):
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
         """While it acts."""
-        acts = np.asarray((at.time >= values["start"]) & (at.time < values["end"]), dtype=np.float64)
+        time = at.began + at.time
+        acts = np.asarray((time >= values["start"]) & (time < values["end"]), dtype=np.float64)
         return values["torque"] * acts
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import special
@@ -16,6 +16,9 @@ from scipy import special
 from bench.balance.parameter import Parameter
 from bench.identify.estimate import Between
 from bench.statistics import NORMAL95
+
+#: Chance of being told that recordings differ which do not, of all quantities together.
+ALARM = 0.01
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,32 @@ def between(found: Sequence[Parameter]) -> Between:
     own = float(np.sqrt(np.mean([half_width(each) ** 2 for each in found])))
     reach = max(float(special.stdtrit(values.size - 1, 0.975)) * spread, own) * math.sqrt(1.0 + 1.0 / values.size)
     return Between(spread, (mean - reach, mean + reach))
+
+
+def widened(found: Parameter, apart: Excess, own: Sequence[Parameter]) -> Parameter:
+    """A joint value whose interval counts by what recordings differ, as far as its weights do not average it out.
+
+    Args:
+        found: with the interval that the recordings' own errors give it.
+        apart: by how much recordings differ beyond these.
+        own: what each recording tells alone.
+    """
+    if not apart.variance:
+        return found
+    weights = 1.0 / (np.array([half_width(each) / NORMAL95 for each in own]) ** 2 + apart.variance)
+    more = math.sqrt(apart.variance * float(weights @ weights)) / float(weights.sum())
+    reach = math.hypot(half_width(found), apart.reach * more)
+    interval = (found.value - reach, found.value + reach)
+    return replace(found, std_error=math.hypot(found.std_error, more), ci95=interval)
+
+
+def told_apart(name: str, own: Sequence[Parameter]) -> str:
+    """That recordings differ in a quantity by more than they know of their own errors."""
+    low, high = min(each.value for each in own), max(each.value for each in own)
+    return (
+        f"the recordings differ in {name} by more than their own intervals say ({low:.4g} to {high:.4g} "
+        f"{own[0].unit}): the joint interval counts it, `between` says what the next one may tell"
+    )
 
 
 def half_width(found: Parameter) -> float:

@@ -24,7 +24,7 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, Axi
 from bench.balance.normal_equations import NormalEquations, join, solved
 from bench.balance.parameter import Parameter
 from bench.errors import InputError, UndeterminedError
-from bench.identify.between import Excess, between, excess
+from bench.identify.between import ALARM, Excess, between, excess, told_apart
 from bench.identify.determined import left_open, only_direction, require_determined, require_sound
 from bench.identify.estimate import Between, Estimate, RefusedEstimateError, Residual
 from bench.identify.load_inertia import load_inertia
@@ -33,9 +33,6 @@ from bench.identify.regression import Gathered, gather, negative
 from bench.identify.solution import Left
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-
-#: Chance of being told that recordings differ which do not, of all quantities together.
-ALARM = 0.01
 
 
 def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutoff: float | None = None) -> Estimate:
@@ -83,14 +80,18 @@ def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutof
         recordings=tuple(member.alone for member in members),
         between=_between(members, kind),
     )
-    return _sound(estimate, joined, kind)
+    return _sound(estimate, joined, excesses[INERTIA], kind)
 
 
-def _sound(estimate: Estimate, joined: NormalEquations, kind: AxisKind) -> Estimate:
-    """The estimate, if the recordings together determine it and it can be one."""
+def _sound(estimate: Estimate, joined: NormalEquations, apart: Excess, kind: AxisKind) -> Estimate:
+    """The estimate, if the recordings together determine it and it can be one; `apart`: by how much inertia differs."""
+    told = []
+    if apart.variance:
+        unit = estimate[kind.inertia].unit
+        told = [f"it differs from recording to recording by {math.sqrt(apart.variance):.2g} {unit}, and few are given"]
     try:
         require_determined(joined, kind)
-        require_sound(estimate, kind)
+        require_sound(estimate, kind, told)
     except UndeterminedError as refusal:
         unknown = {kind.parameter(term) for term in left_open(joined, kind)}
         told = {name: found for name, found in estimate.parameters.items() if name not in unknown}
@@ -202,12 +203,7 @@ def _differences(members: Sequence[Member], excesses: Mapping[str, Excess], kind
     for term in told:
         name = kind.parameter(term)
         values = [m.alone.parameters[name] for m in members if name in m.alone.parameters]
-        values = values or [member.along for member in members if member.along is not None]
-        low, high = min(p.value for p in values), max(p.value for p in values)
-        yield (
-            f"the recordings differ in {name} by more than their own intervals say ({low:.4g} to {high:.4g} "
-            f"{values[0].unit}): the joint interval counts it, `between` says what the next one may tell"
-        )
+        yield told_apart(name, values or [member.along for member in members if member.along is not None])
     silent = [kind.parameter(term) for term, found in excesses.items() if not found.degrees and term != OFFSET]
     if told and silent:
         yield (

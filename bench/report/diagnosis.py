@@ -20,7 +20,7 @@ from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where.where import Where
 from bench.files import write_text
 from bench.plant.model_file import model_toml, model_xml, tables_toml
-from bench.report.estimate import parameters_json
+from bench.report.estimate import between_json, parameters_json, recordings_json
 from bench.report.figures import MEASURED, MODELLED, save
 
 SCHEMA = "bench.diagnose/1"
@@ -55,6 +55,8 @@ def diagnosis_json(diagnosis: Diagnosis, provenance: Mapping[str, Any] | None = 
             "where": [_where(account) for account in diagnosis.unexplained_where],
         },
         "parameters": parameters_json(diagnosis.parameters),
+        "recordings": recordings_json(diagnosis.recordings, provenance),
+        "between": between_json(diagnosis.between) if diagnosis.recordings else None,
         "gap": {"torque": _gap(diagnosis.torque), "velocity": _velocity_gap(diagnosis)},
         "steps": [_step(step) for step in diagnosis.steps[1:]],
         "rejected": [{"name": found.name, "reason": found.reason} for found in diagnosis.rejected],
