@@ -23,8 +23,7 @@ RATE = 8.0 * BAND
 
 def with_hum(fitted: Fit) -> Fit:
     """The fit with the lines of the mains that its residual shows taken into the hypothesis."""
-    width, times = fitted.rows.conditioning.filter.width, _by_recording(fitted)
-    duration = max(float(time[-1] - time[0]) for time, _ in times) if len(times) > 1 else fitted.scope.duration
+    width, duration, times = fitted.rows.conditioning.filter.width, fitted.scope.duration, _by_recording(fitted)
     found = list(fitted.hypothesis.hum)
     for line in LINES:
         known = any(abs(line - other) < 1.0 for other in found)

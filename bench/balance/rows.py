@@ -245,6 +245,8 @@ def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: C
     used = [part.used for part in stretches]
     speed = np.concatenate([s.velocity[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
     direction = np.concatenate([s.sign[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
+    ends = {s.began: float(s.time[-1]) for s in signals}
+    starts = {s.began: float(s.time[0]) for s in reversed(signals)}
     drift = 0.0
     if "position" not in trace:  # of the mean of integrated white noise, sigma*sqrt(T_s*T/3)
         drift = conditioning.source_noise * float(np.sqrt(trace.sample_period * (trace.time[-1] - trace.time[0]) / 3.0))
@@ -253,7 +255,7 @@ def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: C
         source=conditioning.source,
         signals=frozenset(trace.signals),
         one_way=bool(0.5 * (1.0 - abs(float(np.mean(direction)))) < ONE_WAY),
-        duration=float(_since_first(signals[-1])[-1] - _since_first(signals[0])[0]),
+        duration=max(ends[begun] - starts[begun] for begun in starts),
         sample_period=trace.sample_period,
         latched=rig.drive.control_period if rig.drive is not None else trace.sample_period,
         drift=drift,

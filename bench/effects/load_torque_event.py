@@ -21,7 +21,7 @@ from bench.units import Quantity
 
 #: Points in time between which events are sought.
 EDGES = 240
-#: Longest events together, as share of the recording.
+#: Longest events together, as share of the recording (of the longest, of several).
 LONGEST = 0.6
 #: Share of what stands above the noise floor that an event must explain.
 NEEDED = 0.5
@@ -64,6 +64,9 @@ class LoadTorqueEvent(Mechanism):
         spanned = np.concatenate([np.zeros((1, basis.shape[1])), np.cumsum(basis, axis=0)])[edges]
         first, last = np.triu_indices(edges.size, 1)
         kept = (edges[last] - edges[first]) < LONGEST * time.size
+        if time[-1] - time[0] > fitted.scope.duration:  # through all of one of several recordings: that is how they are
+            instants = time[np.minimum(edges, time.size - 1)]
+            kept &= instants[last] - instants[first] <= LONGEST * fitted.scope.duration
         first, last = first[kept], last[kept]
         count = edges[last] - edges[first]
         power = count - np.sum((spanned[last] - spanned[first]) ** 2, axis=1)
