@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,6 +14,9 @@ from bench.files import write_text
 if TYPE_CHECKING:
     from rich.console import Console
 
+TracesArgument = Annotated[
+    list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
+]
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 
@@ -27,6 +31,21 @@ def write_json(path: Path, text: str) -> None:
         typer.echo(text)
     else:
         write_text(path, text + "\n")
+
+
+@contextmanager
+def told_in_json(path: Path | None, schema: str) -> Iterator[None]:
+    """Write what the gate found of a recording that cannot answer, before the error goes its way."""
+    from bench.checks.gate import UnanswerableError
+
+    try:
+        yield
+    except UnanswerableError as error:
+        if path is not None:
+            from bench.report.checks import refusal_json
+
+            write_json(path, refusal_json(schema, error.checks, str(error)))
+        raise
 
 
 def console() -> Console:

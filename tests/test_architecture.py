@@ -17,6 +17,7 @@ LAYERS = (
     {"errors", "units", "usual_units", "unit_registry", "axis_kind", "arrays", "statistics", "assets", "files"},
     {"trace"},
     {"rig"},
+    {"checks"},
     {"effects"},
     {"plant"},
     {"balance"},

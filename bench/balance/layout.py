@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.balance.friction_levels import with_friction
+from bench.balance.friction_levels import with_friction, with_load
 from bench.balance.hypothesis import Hypothesis, Term
+from bench.balance.last_digit import cut_off
 from bench.balance.load_side import loads_of
 from bench.balance.rows import Rows
 from bench.effects.effect import Load
@@ -18,7 +19,7 @@ from bench.effects.signals import Signals
 from bench.trace.filter import Column
 
 #: Owners of columns that belong to no effect.
-BASE, HUM = -1, -2
+BASE, HUM, DIGIT = -1, -2, -3
 #: Places of J, K_w, K_0 and of the time by which torque is behind speed among the columns.
 INERTIA, VISCOUS, COULOMB, MISALIGNMENT = range(4)
 #: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
@@ -30,16 +31,19 @@ class Layout:
     """A hypothesis in columns.
 
     Attributes:
-        columns: (m, p): J, K_w, K_0, misalignment, sines and cosines of hum, then the effects' in order.
-        owners: (p,) index of the term a column belongs to, BASE or HUM.
+        columns: (m, p): J, K_w, K_0, misalignment, the effort's last digit where it matters, sines and cosines of hum,
+            then the effects' in order.
+        owners: (p,) index of the term a column belongs to, BASE, DIGIT or HUM.
         effort: (m,) what they are to explain - N*m (N).
         noise: (p, p) covariance of what the sensors' noise makes of the columns in a row.
+        bounds: lowest and highest value of strengths that are not free, by their places.
     """
 
     columns: Array
     owners: NDArray[np.int64]
     effort: Array
     noise: Array
+    bounds: Mapping[int, tuple[float, float]]
 
 
 def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:
@@ -62,24 +66,31 @@ def delays(rows: Rows, hypothesis: Hypothesis) -> tuple[float, float]:
     return sum(moving for moving, _ in found), sum(resting for _, resting in found)
 
 
+def effort_lag(hypothesis: Hypothesis) -> float:
+    """Lag to undo on the reported effort - s."""
+    return sum(term.effect.effort_lag(term.shape) for term in hypothesis.terms)
+
+
 def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
     """Columns of a hypothesis."""
     seen, (moving, resting) = seen_by(rows, hypothesis), delays(rows, hypothesis)
-    made_of = _made_of(rows, hypothesis)
+    made_of, late = _made_of(rows, hypothesis), effort_lag(hypothesis)
     order = 1 if rows.conditioning.source == "position" else 0
 
     def motion(signals: Signals) -> list[Column]:
         values = getattr(signals, rows.conditioning.source)
         return [[(values, order + 1)], [(values, order)]]
 
-    def rest(signals: Signals) -> list[Column]:
-        return [[(signals.sign, 0)], [(-signals.effort, 1)]]
-
     parts = [
         rows.memory.get(("motion", *made_of), lambda: seen.table(motion, moving)),
-        rows.memory.get(("rest", *made_of), lambda: seen.table(rest, resting)),
+        rows.memory.get(("sign", *made_of), lambda: seen.table(lambda s: [[(s.sign, 0)]], resting)),
+        rows.memory.get(("shift", late, *made_of), lambda: seen.table(lambda s: [[(-s.effort, 1)]], resting + late)),
     ]
-    owners = [BASE] * 4
+    owners, bounds = [BASE] * 4, {MISALIGNMENT: (-rows.scope.latched, rows.scope.latched)}
+    if hypothesis.step:
+        parts.append(rows.memory.get(("digit", resting, *made_of), lambda: seen.table(cut_off, resting)))
+        bounds[len(owners)] = (0.0, 0.5 * hypothesis.step)
+        owners.append(DIGIT)
     if hypothesis.hum:
         made = ("hum", hypothesis.hum, resting)
         parts.append(rows.memory.get(made, lambda: seen.table(lambda s: _hum(s, hypothesis.hum, rows.starts), resting)))
@@ -90,13 +101,20 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
         owners += [index] * table.shape[1]
     columns = np.concatenate(parts, axis=1)
     held_by = np.array(owners)
-    return Layout(columns, held_by, seen.effort, _noise(rows, hypothesis, held_by, moving))
+    effort = seen.effort
+    if late:
+        effort = rows.memory.get(
+            ("effort", late, *made_of), lambda: seen.table(lambda s: [[(s.effort, 0)]], late)[:, 0]
+        )
+    return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds)
 
 
 def term_columns(rows: Rows, seen: Rows, hypothesis: Hypothesis, index: int) -> Array:
     """Columns (m, k) of one term; none of one that only changes how the recording is seen."""
     term = hypothesis.terms[index]
     friction = with_friction(seen, hypothesis, index)
+    if term.effect.overrides("friction_under_load"):
+        friction = with_load(friction, ((other, other.pull) for other in hypothesis.terms))
     loads = loads_of(hypothesis) if term.effect.couples else ()
     lag = delays(rows, hypothesis)[0 if term.effect.of_motion else 1]
     if loads or friction is not seen:
@@ -142,7 +160,8 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.int64], moving
     conditioning = rows.conditioning
     smooth, order = conditioning.filter, conditioning.order
     noise = np.zeros((owners.size, owners.size))
-    noise[MISALIGNMENT, MISALIGNMENT] = (conditioning.effort_noise * smooth.noise_gain(1)) ** 2
+    hearing = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
+    noise[MISALIGNMENT, MISALIGNMENT] = conditioning.effort_noise**2 * hearing
     omega = np.linspace(0.0, REACH / smooth.width, FREQUENCIES)
     accelerated = (1j * omega) ** (order + 1) * (1.0 + 1j * omega * moving)
     heard = {INERTIA: accelerated, VISCOUS: (1j * omega) ** order * (1.0 + 1j * omega * moving)}

@@ -10,6 +10,7 @@ lowest tenth over windows of time is taken at each frequency, and a first-order 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.balance.hypothesis import Hypothesis
-from bench.balance.layout import INERTIA, MISALIGNMENT, VISCOUS, Layout, delays
+from bench.balance.layout import INERTIA, MISALIGNMENT, VISCOUS, Layout, delays, effort_lag
 from bench.balance.rows import Rows
 
 #: Rows of a window, longer ones first, and windows of a length that it takes; else white noise is assumed.
@@ -44,13 +45,14 @@ class Floor:
     white: float
 
 
-def noise_floor(rows: Rows, power: Callable[[Array], Array], residual: Array) -> Floor:
+def noise_floor(rows: Rows, power: Callable[[Array], Array], residual: Array, rounded: float = 0.0) -> Floor:
     """RMS of noise in a residual.
 
     Args:
         rows: the recording.
         power: of white noise in the torque balance before the filter, over angular frequency - (N*m)**2 (N**2).
         residual: (m,) of the used rows - N*m (N).
+        rounded: RMS of what rounding of the effort leaves beside - N*m (N).
     """
     smooth = rows.conditioning.filter
     omega = np.linspace(0.0, np.pi / smooth.sample_period, 2048)
@@ -63,13 +65,13 @@ def noise_floor(rows: Rows, power: Callable[[Array], Array], residual: Array) ->
     coloured = white * (1.0 + excess / (1.0 + (omega / corner) ** 2))
     scale = smooth.sample_period / np.pi
     floor, least = (float(np.sqrt(scale * np.trapezoid(spectrum, omega))) for spectrum in (coloured, white))
-    return Floor(floor, least)
+    return Floor(math.hypot(floor, rounded), math.hypot(least, rounded))
 
 
 def white_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> Callable[[Array], Array]:
     """Power of white noise of effort and speed in the torque balance, over angular frequency - (N*m)**2 (N**2).
 
-    s_M**2*|1 + tau*s|**2*<(1 - dM_model/dM)**2> + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
+    s_M**2*|(1 + tau*s)*(1 + T*s)|**2*<(1 - dM_model/dM)**2> + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
     """
     conditioning = rows.conditioning
     left = _left_of_effort(rows, hypothesis, layout, theta)
@@ -83,7 +85,8 @@ def white_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
                 heard = term.effect.noise_of_motion(term.shape, omega)
                 kinetic = kinetic + theta[layout.owners == index][0] * s * heard
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
-        effort = left * conditioning.effort_noise**2 * np.abs(1.0 + theta[MISALIGNMENT] * s) ** 2
+        late = (1.0 + theta[MISALIGNMENT] * s) * (1.0 + effort_lag(hypothesis) * s)
+        effort = left * conditioning.effort_noise**2 * np.abs(late) ** 2
         return effort + conditioning.source_noise**2 * np.abs(kinetic) ** 2
 
     return power

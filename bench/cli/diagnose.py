@@ -7,13 +7,20 @@ from typing import Annotated
 
 import typer
 
-from bench.console import JsonOption, RigOption, console, tell_files, tell_warnings, write_json
+from bench.console import (
+    JsonOption,
+    RigOption,
+    TracesArgument,
+    console,
+    tell_files,
+    tell_warnings,
+    told_in_json,
+    write_json,
+)
 
 
 def diagnose(
-    traces: Annotated[
-        list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
-    ],
+    traces: TracesArgument,
     rig: RigOption,
     holdout: Annotated[
         Path | None, typer.Option("--holdout", help="Another recording of the axis, not fitted.")
@@ -23,9 +30,10 @@ def diagnose(
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
+    from bench.checks.gate import spoken
     from bench.diagnose.diagnosis import diagnose as run_diagnosis
     from bench.effects.present import named
-    from bench.report.diagnosis import diagnosis_json, diagnosis_table, write_diagnosis
+    from bench.report.diagnosis import SCHEMA, diagnosis_json, diagnosis_table, write_diagnosis
     from bench.report.progress import progress
     from bench.report.provenance import provenance
     from bench.rig.rig import load_rig
@@ -35,7 +43,7 @@ def diagnose(
     excluded = frozenset(named(name, "--without").name for name in without or [])
     other = read(holdout, axis.trace.columns) if holdout else None
     names = ", ".join(trace.name for trace in traces)
-    with progress(f"diagnosing {names}") as done:
+    with told_in_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
         recordings = [read(trace, axis.trace.columns) for trace in traces]
         found = run_diagnosis(recordings, axis, other, excluded, done)
     basis = provenance(rig, traces, {"without": sorted(excluded)}, holdout)
@@ -45,4 +53,4 @@ def diagnose(
     if json != Path("-"):
         console().print(diagnosis_table(found, f"{axis.name}: {names}"))
         tell_files(files)
-    tell_warnings(found.warnings)
+    tell_warnings([*found.warnings, *spoken(found.checks)])

@@ -31,7 +31,7 @@ class CurrentLoopLag(Electronics):
     summary = "torque acts later than the reported current"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
     shapes = (Shape(quantities[0], LAGS, reach=1.0),)
-    not_beside = frozenset({"velocity_filter_lag"})
+    not_beside = frozenset({"velocity_filter_lag", "current_filter_lag"})
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """The torque that acts; what is made of it sees that."""
@@ -46,13 +46,13 @@ class CurrentLoopLag(Electronics):
         return [scope.latched / NORMAL95]
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
-        """A lag of the speed, unless position tells that."""
+        """A lag of the speed, unless position tells that; and, as only the difference shows, one of the current."""
         told = scope.source == "position" or {"position", "velocity"} <= scope.signals
-        return () if told else ("velocity_filter_lag",)
+        return () if told else ("velocity_filter_lag", "current_filter_lag")
 
-    def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float]:
+    def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """A lag of the speed by as much."""
-        return {"time_constant": values["time_constant"]}
+        return {"time_constant": values["time_constant"]} if name == "velocity_filter_lag" else None
 
     def acting(self, values: Values, reported: Array, before: Array, step: float) -> tuple[Array, Array]:
         """Exact for a current that is held over the step."""

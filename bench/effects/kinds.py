@@ -3,7 +3,8 @@
 - `Mechanism`: on the mechanics. Natively, as a part of the MuJoCo model (`add`), or where MuJoCo has no such part by
   what it does in every step: the level of dry friction, a resisting torque, the inertia, the motor's torque.
 - `Electronics`: between the current that is demanded, the one that is reported and the torque that the motor makes.
-- `Sensing`: between the motion and what the drive sees of it (`seen`), or what is recorded of that (`filtered`).
+- `Sensing`: between the motion and what the drive sees of it (`seen`), or what is recorded of that (`filtered`); and
+  between the current and what the drive takes it for (`acted`), or what is recorded of that (`recorded`).
 
 Hooks are neutral unless an effect overrides them. They take values and states as numbers or as arrays of axes, (k,).
 """
@@ -91,6 +92,10 @@ class Mechanism(Effect):
         """Multiplies the motor's torque."""
         return 1.0
 
+    def load_torque(self, values: Values, at: Moment) -> Number:
+        """Resisting torque by which a load is driven or drives, through what transmits it - N*m (N)."""
+        return 0.0
+
     def added_inertia(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Added to the inertia - kg*m**2 (kg)."""
         return 0.0
@@ -105,6 +110,10 @@ class Friction(Mechanism):
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Added to the level of dry friction - N*m (N)."""
+        return 0.0
+
+    def friction_under_load(self, values: Values, axis: Axis, at: Moment, load: Number) -> Number:
+        """Added to the level of dry friction beside torques of the load - N*m (N)."""
         return 0.0
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
@@ -161,3 +170,15 @@ class Sensing(Effect):
     def unfiltered(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
         """Velocity that the drive has, from the one that the recording holds, (n,)."""
         return velocity
+
+    def acted(self, values: Values, axis: Axis, effort: Array, time: Number) -> Array:
+        """Effort that acts while the drive's sensor tells one - N*m (N) - at a time since the recording's start - s."""
+        return effort
+
+    def recorded(self, values: Mapping[str, float], effort: Array, step: float) -> Array:
+        """Effort that the recording holds, from the one that the drive has, (n,) at a constant step - s."""
+        return effort
+
+    def unrecorded(self, values: Mapping[str, float], effort: Array, step: float) -> Array:
+        """Effort that the drive has, from the one that the recording holds, (n,)."""
+        return effort

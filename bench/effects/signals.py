@@ -26,6 +26,7 @@ class Signals:
         peak_effort: effort at the motor's peak current - N*m (N); the recording's largest where the rig tells none.
         sample_period: s.
         source: signal that speed and acceleration are taken from, `velocity` or `position`.
+        load: torque of the load as named effects make it - N*m (N).
         began: the recording, since the start of the first of several that are joined - s.
     """
 
@@ -39,6 +40,7 @@ class Signals:
     peak_effort: float
     sample_period: float
     source: str = "velocity"
+    load: Array | float = 0.0
     began: float = 0.0
 
 

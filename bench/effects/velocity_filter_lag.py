@@ -40,7 +40,7 @@ class VelocityFilterLag(Sensing):
     summary = "reported velocity lags the motion"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
     shapes = (Shape(quantities[0], LAGS, reach=1.0),)
-    not_beside = frozenset({"current_loop_lag"})
+    not_beside = frozenset({"current_loop_lag", "current_filter_lag"})
     faulty_signal = "velocity"
 
     def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
@@ -56,12 +56,12 @@ class VelocityFilterLag(Sensing):
         return [scope.latched / NORMAL95]
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
-        """A lag of the torque, unless position tells that."""
-        return () if "position" in scope.signals else ("current_loop_lag",)
+        """A lag of the torque, unless position tells that; and, as only the difference shows, one of the current."""
+        return () if "position" in scope.signals else ("current_loop_lag", "current_filter_lag")
 
-    def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float]:
+    def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """A lag of the torque by as much."""
-        return {"time_constant": values["time_constant"]}
+        return {"time_constant": values["time_constant"]} if name == "current_loop_lag" else None
 
     def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
         """The lag, where both position and speed are recorded and disagree by one."""

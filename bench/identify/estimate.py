@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bench.balance.parameter import Parameter
+from bench.checks.check import Check
 from bench.errors import UndeterminedError
 
 
@@ -68,6 +69,7 @@ class Estimate:
         source: signal that speed and acceleration came from.
         warnings: what a user should know before relying on it.
         explained: share of the effort's variance that the model explains; nan where the estimator does not tell.
+        checks: what the gate found before the fit.
         recordings: each alone, where several were fitted together.
         between: how they differ, by the names of the quantities that at least two of them tell alone.
     """
@@ -81,6 +83,7 @@ class Estimate:
     source: str
     warnings: tuple[str, ...] = ()
     explained: float = math.nan
+    checks: tuple[Check, ...] = ()
     recordings: tuple[Alone, ...] = ()
     between: Mapping[str, Between] = field(default_factory=dict)
 

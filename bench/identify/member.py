@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -18,6 +20,7 @@ from bench.identify.estimate import Alone, RefusedEstimateError
 from bench.identify.regression import Gathered, parameters_of, solve
 from bench.identify.solution import Left, Solved, solved_with_shift
 from bench.rig.rig import Rig
+from bench.statistics import NORMAL95
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,7 @@ class Member:
         along: where it moves in one direction only, its friction that way, in which any offset is; else None.
         scales: standard error and half width of an interval of 95 % of what it does not tell alone, over the standard
             error that `solved` has.
+        tolerances: how far J, K_w, K_0 and offset may be off by the rig's tolerances.
         warnings: of its own fit.
     """
 
@@ -39,6 +43,7 @@ class Member:
     alone: Alone
     along: Parameter | None
     scales: tuple[float, float]
+    tolerances: dict[str, float]
     warnings: tuple[str, ...]
 
     @classmethod
@@ -51,9 +56,14 @@ class Member:
         kind, origin, equations = rig.axis_kind, gathered.rows.origin, gathered.equations
         own = solved_with_shift(equations, gathered.rows, rig.offset)
         along, scales = None, (1.0, own.reach)
-        if only_direction(equations) is not None:
+        one_way = only_direction(equations) is not None  # no offset was fitted then: it is in the friction
+        places = {INERTIA: layout.INERTIA, VISCOUS: layout.VISCOUS, COULOMB: layout.COULOMB}
+        places |= {OFFSET: layout.COULOMB if one_way else -1} if own.offset else {}
+        tolerances = {kind.parameter(term): float(gathered.tolerance[place]) for term, place in places.items()}
+        tolerances |= {"load_moment_of_inertia": tolerances[kind.inertia]}
+        if one_way:
             bare = solved_with_shift(equations, gathered.rows, False)
-            misfit = Left.of(gathered.rows, gathered.hypothesis, bare).misfit(gathered.rows, bare)
+            misfit = Left.of(gathered.rows, gathered.hypothesis, bare).misfit(bare)
             more = np.hypot(misfit, np.pad(gathered.doubt, (0, misfit.size - gathered.doubt.size)))
             along = parameters_of(bare, kind, gathered.effort_unit, more)[kind.parameter(COULOMB)]
             error = max(float(bare.errors[layout.COULOMB]), 1e-300)
@@ -63,9 +73,9 @@ class Member:
         except RefusedEstimateError as refusal:
             found, reason = refusal.estimate, str(refusal)
         except UndeterminedError as refusal:
-            return cls(gathered, own, Alone(origin, {}, str(refusal)), along, scales, ())
+            return cls(gathered, own, Alone(origin, {}, str(refusal)), along, scales, tolerances, ())
         told = {name: one for name, one in found.parameters.items() if name != kind.inertia or not _holds_zero(one)}
-        return cls(gathered, own, Alone(origin, told, reason), along, scales, found.warnings)
+        return cls(gathered, own, Alone(origin, told, reason), along, scales, tolerances, found.warnings)
 
     @property
     def _shared(self) -> list[int]:
@@ -101,6 +111,18 @@ class Member:
         power, ways = np.linalg.eigh((whole[np.ix_(shared, shared)] - beside.T @ taken) / np.outer(scale, scale))
         return (ways * np.maximum(power, 0.0)) @ ways.T * np.outer(scale, scale)
 
+    @cached_property
+    def own(self) -> dict[str, Parameter]:
+        """What it tells alone, less what the rig's tolerances make of it, which are the same in all recordings."""
+        found = dict(self.alone.parameters)
+        for name, reach in self.tolerances.items():
+            if name in found:
+                before = found[name]
+                half = math.sqrt(max(half_width(before) ** 2 - reach**2, 0.0))
+                error = math.sqrt(max(before.std_error**2 - (reach / NORMAL95) ** 2, 0.0))
+                found[name] = replace(before, std_error=error, ci95=(before.value - half, before.value + half))
+        return found
+
     def known(self, kind: AxisKind) -> Array:
         """What it knows of these: `matrix` over the variance that its covariance shows on the mean (s, s)."""
         matrix, (covariance, _) = self.matrix, self.covariance(kind)
@@ -111,7 +133,7 @@ class Member:
         found = self.solved.covariance[np.ix_(self._shared, self._shared)]
         names = [kind.parameter(term) for term in (INERTIA, VISCOUS, COULOMB, OFFSET)][: len(self._shared)]
         errors = np.sqrt(np.maximum(np.diag(found), 1e-300)).tolist()
-        told = self.alone.parameters
+        told = self.own
         scales = np.array(
             [
                 (told[name].std_error / error, half_width(told[name]) / error) if name in told else self.scales

@@ -23,6 +23,7 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.balance.normal_equations import NormalEquations, join, solved
 from bench.balance.parameter import Parameter
+from bench.checks.gate import joined
 from bench.errors import InputError, UndeterminedError
 from bench.identify.between import ALARM, Excess, between, excess, told_apart
 from bench.identify.determined import left_open, only_direction, require_determined, require_sound
@@ -32,6 +33,7 @@ from bench.identify.member import Member
 from bench.identify.regression import Gathered, gather, negative
 from bench.identify.solution import Left
 from bench.rig.rig import Rig
+from bench.statistics import NORMAL95
 from bench.trace.trace import Trace
 
 
@@ -50,13 +52,15 @@ def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutof
     """
     gathered = [gather(trace, rig, cutoff) for trace in traces]
     _require_distinct(gathered)
-    kind, unit, joined = rig.axis_kind, gathered[0].effort_unit, _joined(gathered)
+    kind, unit, whole = rig.axis_kind, gathered[0].effort_unit, _joined(gathered)
     members = [Member.of(one, rig) for one in gathered]
     terms = [INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else [])]
     excesses = {term: _excess(members, kind, term) for term in terms}
     joint = Joint.of(members, list(excesses.values()), kind)
     parameters = {}
     for term, value, error, reach in zip(terms, *(row.tolist() for row in joint.numbers), strict=True):
+        tolerance = float(np.mean([member.tolerances[kind.parameter(term)] for member in members]))
+        error, reach = math.hypot(error, tolerance / NORMAL95), math.hypot(reach, tolerance)
         interval = (value - reach, value + reach)
         parameters[kind.parameter(term)] = Parameter(value, kind.parameter_unit(term, unit), error, interval)
     filters = [one.rows.conditioning.filter for one in gathered]
@@ -76,24 +80,25 @@ def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutof
             *_offset(gathered, members, rig),
             *negative(parameters, kind),
         ),
-        explained=1.0 - left / max(_variation(joined), 1e-300),
+        explained=1.0 - left / max(_variation(whole), 1e-300),
+        checks=joined([one.checks for one in gathered]),
         recordings=tuple(member.alone for member in members),
         between=_between(members, kind),
     )
-    return _sound(estimate, joined, excesses[INERTIA], kind)
+    return _sound(estimate, whole, excesses[INERTIA], kind)
 
 
-def _sound(estimate: Estimate, joined: NormalEquations, apart: Excess, kind: AxisKind) -> Estimate:
+def _sound(estimate: Estimate, whole: NormalEquations, apart: Excess, kind: AxisKind) -> Estimate:
     """The estimate, if the recordings together determine it and it can be one; `apart`: by how much inertia differs."""
     told = []
     if apart.variance:
         unit = estimate[kind.inertia].unit
         told = [f"it differs from recording to recording by {math.sqrt(apart.variance):.2g} {unit}, and few are given"]
     try:
-        require_determined(joined, kind)
+        require_determined(whole, kind)
         require_sound(estimate, kind, told)
     except UndeterminedError as refusal:
-        unknown = {kind.parameter(term) for term in left_open(joined, kind)}
+        unknown = {kind.parameter(term) for term in left_open(whole, kind)}
         told = {name: found for name, found in estimate.parameters.items() if name not in unknown}
         raise RefusedEstimateError(refusal, replace(estimate, parameters=told)) from refusal
     return estimate
@@ -178,8 +183,8 @@ def _excess(members: Sequence[Member], kind: AxisKind, term: str) -> Excess:
     name = kind.parameter(term)
     groups: dict[str, list[Parameter]] = {}
     for member in members:
-        if name in member.alone.parameters:
-            groups.setdefault("both", []).append(member.alone.parameters[name])
+        if name in member.own:
+            groups.setdefault("both", []).append(member.own[name])
         elif term == COULOMB and member.along is not None:
             groups.setdefault(str(only_direction(member.gathered.equations)), []).append(member.along)
     return excess(list(groups.values()))
@@ -230,7 +235,7 @@ def _offset(gathered: Sequence[Gathered], members: Sequence[Member], rig: Rig) -
 
 def _between(members: Sequence[Member], kind: AxisKind) -> dict[str, Between]:
     """Of each quantity that at least two recordings tell alone; the shift is not the axis'."""
-    own = [member.alone.parameters for member in members]
+    own = [member.own for member in members]
     found = {
         name: [told[name] for told in own if name in told] for name in dict.fromkeys(n for told in own for n in told)
     }

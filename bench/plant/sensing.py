@@ -1,9 +1,11 @@
-"""What drive and recording have of the motion: the encoder's effects are in both, a filter's in the recording alone."""
+"""What drive and recording have of motion and current: sensors' faults are in both, filters in the recording alone."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from bench.arrays import Array
 from bench.effects.kinds import Sensing
@@ -63,11 +65,30 @@ def true_motion(model: AxisModel, position: Array, velocity: Array) -> tuple[Arr
     return position, velocity
 
 
+def misreads_effort(model: AxisModel) -> bool:
+    """Whether the effort that is recorded is not the one that acts."""
+    effects = [effect for _, effect in _pairs(model.of_kind(Sensing))]
+    return any(effect.overrides(hook) for effect in effects for hook in ("acted", "unrecorded"))
+
+
+def true_effort(model: AxisModel, effort: Array, since: float, step: float) -> Array:
+    """Effort of one axis that acted, from the recorded one, (n,) at a constant step - s - from an instant on - s."""
+    pairs, time = _pairs(model.of_kind(Sensing)), since + step * np.arange(effort.size, dtype=np.float64)
+    for present, effect in reversed(pairs):
+        effort = effect.unrecorded(dict(present.values), effort, step)
+    for present, effect in pairs:
+        effort = effect.acted(dict(present.values), model.axis, effort, time)
+    return effort
+
+
 def reported_states(model: AxisModel, states: States) -> States:
     """A motion of one axis as its sensors report it."""
     step = float(states.time[1] - states.time[0])
     position, velocity = reported(model, states.position[:, 0], states.velocity[:, 0], step)
-    return replace(states, position=position[:, None], velocity=velocity[:, None])
+    torque = states.torque[:, 0]
+    for present, effect in _pairs(model.of_kind(Sensing)):
+        torque = effect.recorded(dict(present.values), torque, step)
+    return replace(states, position=position[:, None], velocity=velocity[:, None], torque=torque[:, None])
 
 
 def _pairs(sensing: Sequence[Present]) -> list[tuple[Present, Sensing]]:

@@ -12,7 +12,7 @@ from bench.arrays import Array
 from bench.effects.kinds import Electronics, Sensing
 from bench.plant.axis_model import AxisModel
 from bench.plant.blocks import blocks, samples_in
-from bench.plant.sensing import filtered, filters, seen, true_motion, true_velocity
+from bench.plant.sensing import filtered, filters, misreads_effort, seen, true_effort, true_motion, true_velocity
 from bench.plant.track import (
     HoldingInputs,
     holding_cascade,
@@ -99,12 +99,12 @@ class Inputs:
     Attributes:
         holding: the inputs but for the electronics.
         model: whose electronics act.
-        lagged: effort at all steps as far as it depends on what came before - N*m (N) - (steps,); None if it does not.
+        acting: effort at all steps, faults of its sensor and lags undone - N*m (N) - (steps,); None without any.
     """
 
     holding: HoldingInputs
     model: AxisModel
-    lagged: Array | None
+    acting: Array | None
 
     @property
     def start(self) -> tuple[float, float]:
@@ -116,8 +116,8 @@ class Inputs:
         last = self.holding.steps - 1
         known = min(start, last), min(stop, last + 1)
         controls = self.holding(*known)
-        if self.lagged is not None:
-            controls[:, 2] = self.lagged[slice(*known)]
+        if self.acting is not None:
+            controls[:, 2] = self.acting[slice(*known)]
         for values, effect in _electronics(self.model):
             controls[:, 2] = effect.delivered(values, self.model.axis, controls[:, 2])
         if stop - start == controls.shape[0]:
@@ -143,9 +143,10 @@ def inputs_of(stretches: Iterable[Stretch]) -> list[Inputs]:
             stretch.substeps,
             held.misalignment,
         )
-        key = id(held.trace), part.start, id(held.effort), held.misalignment, held.model.of_kind(Electronics)
+        drive = held.model.of_kind(Electronics), held.model.of_kind(Sensing)
+        key = id(held.trace), part.start, id(held.effort), held.misalignment, *drive
         if key not in efforts:
-            efforts[key] = _lagged(held.model, holding)
+            efforts[key] = _acting(held.model, holding, stretch.since)
         found.append(Inputs(holding, held.model, efforts[key]))
     return found
 
@@ -158,14 +159,15 @@ def _motion(stretch: Stretch) -> tuple[Array, Array]:
     return true_motion(model, position, velocity)
 
 
-def _lagged(model: AxisModel, holding: HoldingInputs) -> Array | None:
-    lags = [(values, effect) for values, effect in _electronics(model) if effect.overrides("acting_along")]
-    if not lags:
+def _acting(model: AxisModel, holding: HoldingInputs, since: float) -> Array | None:
+    electronics = _electronics(model)
+    if not misreads_effort(model) and not any(effect.overrides("acting_along") for _, effect in electronics):
         return None
     effort = np.empty(holding.steps)
     for start, stop in blocks(holding.steps, 8 * 4):
         effort[start:stop] = holding.feedforward(start, stop)
-    for values, effect in lags:
+    effort = true_effort(model, effort, since, holding.timestep)
+    for values, effect in electronics:
         effort = effect.acting_along(values, effort, holding.timestep)
     return effort
 

@@ -17,7 +17,7 @@ import numpy as np
 from mujoco.batch import Batch
 
 from bench.arrays import Array
-from bench.effects.kinds import Electronics, Friction, Mechanism, Moment
+from bench.effects.kinds import Electronics, Friction, Mechanism, Moment, Sensing
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.plant.axis_model import AxisModel
 from bench.plant.rows import Rows, gather
@@ -42,6 +42,7 @@ class TickedEffects:
         self._flowing = _through(electronics, "flowing")
         self._acting = _through(electronics, "acting")
         self._delivered = _through(electronics, "delivered")
+        self._acted = _through(gather(models, Sensing), "acted")
         self._friction = _FrictionLevels(batch, models)
         dof = batch.model.joint(AXIS).dofadr[0]
         self._inertia = _through(self._mechanisms, "added_inertia")
@@ -67,7 +68,7 @@ class TickedEffects:
         """
         middle = 1.5 * velocity - 0.5 * self._before
         self._before = velocity.copy()
-        reported, torque = self._driven(middle, demand)
+        reported, torque = self._driven(time + 0.5 * self._step, middle, demand)
         at = Moment(time + 0.5 * self._step, position, middle, torque, began)
         if self._factors:
             torque = torque.copy()
@@ -83,14 +84,17 @@ class TickedEffects:
                 self._armature[rows.index] += rows.effect.added_inertia(rows.values, rows.axis, rows.moment(at))
         return reported, torque
 
-    def _driven(self, velocity: Array, demand: Array) -> tuple[Array, Array]:
-        """Electronics in the order of the signal: what flows of a demand, what of it acts, what torque it makes."""
+    def _driven(self, time: float | Array, velocity: Array, demand: Array) -> tuple[Array, Array]:
+        """In the order of the signal: what flows of a demand, what that truly is, what acts, what torque it makes."""
         reported = demand.copy()
         for rows in self._flowing:
             i = rows.index
             flows = rows.effect.flowing(rows.values, rows.axis, velocity[i], demand[i], rows.memory, self._step)
             reported[i], rows.memory = flows
         torque = reported.copy()
+        for rows in self._acted:
+            at = time[rows.index] if isinstance(time, np.ndarray) else time
+            torque[rows.index] = rows.effect.acted(rows.values, rows.axis, torque[rows.index], at)
         for rows in self._acting:
             i = rows.index
             torque[i], rows.memory = rows.effect.acting(rows.values, torque[i], rows.memory, self._step)
@@ -108,8 +112,10 @@ class _FrictionLevels:
         self._excesses = _through(mechanisms, "friction_excess")
         self._factors = _through(mechanisms, "friction_factor")
         self._differences = _through(mechanisms, "friction_difference")
+        self._under_load = _through(mechanisms, "friction_under_load")
+        self._loads = _through(gather(models, Mechanism), "load_torque") if self._under_load else []
         self._levels: Array | None = None
-        if self._excesses or self._factors or self._differences:
+        if self._excesses or self._factors or self._differences or self._under_load:
             actuator = mujoco.mj_name2id(batch.model, mujoco.mjtObj.mjOBJ_ACTUATOR, BRISTLES)
             if actuator >= 0:
                 self._levels = batch.expand("actuator_biasprm")[:, actuator, BRISTLE_LEVELS]
@@ -124,6 +130,13 @@ class _FrictionLevels:
         level = self._coulomb.copy()
         for rows in self._excesses:
             level[rows.index] += rows.effect.friction_excess(rows.values, rows.axis, rows.moment(at))
+        if self._under_load:
+            load = np.zeros(level.size)
+            for rows in self._loads:
+                load[rows.index] += rows.effect.load_torque(rows.values, rows.moment(at))
+            for rows in self._under_load:
+                values, axis, i = rows.values, rows.axis, rows.index
+                level[i] += rows.effect.friction_under_load(values, axis, rows.moment(at), load[i])
         half = np.zeros(level.size)
         for rows in self._differences:
             half[rows.index] += 0.5 * rows.effect.friction_difference(rows.values, rows.axis)

@@ -15,6 +15,7 @@ from rich.table import Table
 from bench.axis_kind import AxisKind
 from bench.balance.parameter import Parameter
 from bench.identify.estimate import Alone, Between, Estimate
+from bench.report.checks import checks_json
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
     from bench.identify.refine import Refinement
@@ -74,6 +75,7 @@ def estimate_json(
             },
             "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
             "filter": {"cutoff": _number(estimate.cutoff), "unit": "Hz", "source": estimate.source},
+            "checks": checks_json(estimate.checks),
             "warnings": list(estimate.warnings),
             **polish,
         },

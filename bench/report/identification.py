@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.axis_kind import MISALIGNMENT
+from bench.checks.gate import gate
 from bench.files import write_text
 from bench.identify.estimate import Estimate
 from bench.report.estimate import estimate_json
@@ -44,7 +45,7 @@ def write_identification(
     """
     figures = []
     for number, trace in enumerate(traces, 1):
-        first = next(stream(trace, rig.trace.columns))
+        first = gate(next(stream(trace, rig.trace.columns)), rig).trace
         effort, _ = rig.net_effort(first)
         cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
         moved = motion(first, effort, condition(first, effort, cutoff))

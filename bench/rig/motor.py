@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from pydantic import Field, model_validator
@@ -26,8 +27,13 @@ from bench.rig.values import (
     TorquePerAmpere,
     TorquePerVolt,
     Voltage,
+    tolerance_of,
 )
 
+#: Of constants whose tolerance is not stated, as datasheets have it.
+USUAL_TOLERANCE = 0.1
+#: kT over Ke in one unit: with the values of an equivalent DC machine, of one phase, between lines.
+CONVENTIONS = (1.0, 1.5, math.sqrt(3.0))
 DATASHEET = ("continuous_stall_torque", "continuous_stall_current", "peak_torque", "peak_current")
 
 
@@ -95,6 +101,34 @@ class Motor(Table):
     def inertia(self) -> float:
         """Of what moves in the motor - kg*m**2 (kg); 0 when the rig does not tell."""
         return self.rotor_inertia or self.moving_mass or 0.0
+
+    @property
+    def of_back_emf(self) -> float | None:
+        """The torque constant that the back-EMF constant asks for - N*m/A (N/A) -, where the two disagree; else None.
+
+        A motor gives as power what it takes as electricity, kT*w*I = Ke*w*I; 3/2 and sqrt(3) times that where Ke is of
+        one phase or between lines, in effective values. Of these the nearest counts.
+        """
+        constant, back_emf = self.torque_per_ampere, self.back_emf_constant
+        if constant is None or back_emf is None:
+            return None
+        stated = tolerance_of(self.torque_constant or self.force_constant) / constant.constant
+        stated = math.hypot(stated, tolerance_of(back_emf) / back_emf) or USUAL_TOLERANCE
+        nearest = min(
+            (share * back_emf for share in CONVENTIONS), key=lambda asked: abs(constant.constant / asked - 1.0)
+        )
+        return None if abs(constant.constant / nearest - 1.0) <= stated else nearest
+
+    @property
+    def disagreement(self) -> str | None:
+        """That torque constant and back-EMF constant are not those of one motor; None where they may be."""
+        if self.of_back_emf is None or self.torque_per_ampere is None:
+            return None
+        return (
+            f"torque constant ({self.torque_per_ampere.constant:.4g}) and back-EMF constant "
+            f"({self.back_emf_constant:.4g}) disagree: by the second the first would be {self.of_back_emf:.4g}; "
+            "intervals reach as far"
+        )
 
     @property
     def rated_effort(self) -> float | None:

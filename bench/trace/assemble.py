@@ -60,6 +60,7 @@ def assemble(recording: Recording, columns: Mapping[str, str] | None = None) -> 
         metadata=metadata,
         time_base=used.time_base,
         notes=(*recording.notes, *notes, *used.notes),
+        wraps=used.wraps,
     )
 
 

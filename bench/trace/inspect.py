@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from rich import box
@@ -126,9 +127,9 @@ def _summary(name: str, unit: str, column: str, values: Array, recorded: Array) 
     return SignalSummary(name, unit, column, float(values.min()), float(values.max()), effective, resolution)
 
 
-def to_json(inspection: Inspection) -> str:
-    """The inspection as JSON, its fields under their names."""
-    return json.dumps({"schema": SCHEMA, **asdict(inspection)}, indent=2)
+def to_json(inspection: Inspection, more: Mapping[str, object] = MappingProxyType({})) -> str:
+    """The inspection as JSON, its fields under their names, and what others have to say of the recording."""
+    return json.dumps({"schema": SCHEMA, **asdict(inspection), **more}, indent=2)
 
 
 def table(inspection: Inspection) -> Group:

@@ -128,6 +128,7 @@ def _trace(pieces: Mapping[str, Chosen], recording: Recording, notes: tuple[str,
         time_base=base.time_base,
         notes=(*notes, *base.notes),
         continues=_continues(last, base.time, base.time_base.sample_period, recording.origin),
+        wraps=base.wraps,
     )
 
 

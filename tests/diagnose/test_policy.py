@@ -138,6 +138,22 @@ def test_a_family_of_harmonics_is_one_effect():
     assert cut.stopped == LIMIT
 
 
+class OneAtATime(NoLongerNeeded):
+    """Lets go of the first effect as soon as there is a second one."""
+
+    def holds(self, fitted, less, index, significant):
+        return index == 0
+
+
+def test_what_is_taken_up_and_let_go_in_turn_ends():
+    """Each of two effects is worth taking up beside the other, and the other is let go for it."""
+    trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
+    effects = [catalogue()[name] for name in ("torque_offset", "cogging_torque")]
+    found = search(bare(trace), effects, Policy(no_longer_needed=OneAtATime()))
+    assert [len(step.fitted.terms) for step in found.steps] == [0, 1, 1]
+    assert found.stopped is None
+
+
 def test_what_the_limit_cut_off_is_a_remainder():
     trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
     others = frozenset(catalogue()) - {"torque_offset", "cogging_torque"}

@@ -35,7 +35,7 @@ CASCADE = Cascade(
 )
 WINDING = Winding(AXIS.torque_constant, AXIS.resistance, AXIS.inductance, AXIS.back_emf_constant)
 
-LAG = "velocity_filter_lag"
+LAG, CURRENT_LAG = "velocity_filter_lag", "current_filter_lag"
 #: Values that disturb this axis well and that it still bears.
 VALUES: dict[str, dict[str, float]] = {
     "stribeck_friction": {"static_friction": 0.14, "stribeck_velocity": 5.0},
@@ -59,6 +59,11 @@ VALUES: dict[str, dict[str, float]] = {
     "current_loop_lag": {"time_constant": 2e-3},
     "velocity_filter_lag": {"time_constant": 2e-3},
     "encoder_eccentricity": {"amplitude": 0.02, "phase": 0.9},
+    "current_filter_lag": {"time_constant": 2e-3},
+    "current_gain_asymmetry": {"gain_difference": 0.15},
+    "current_offset_drift": {"rate": 0.3},
+    "torque_constant_drift": {"rate": -0.3},
+    "directional_load_friction": {"motor_coefficient": 0.1, "load_ratio": 2.0},
 }
 
 
@@ -152,10 +157,11 @@ class Reversals:
 def truth(cases: list[tuple[str, ...]], motion: Reversals) -> list[dict[str, np.ndarray]]:
     """The independent axis with each set of effects along a motion: true and measured signals at every tick.
 
-    The bench filters the velocity that is recorded and not the one of the drive; so is it done here, by lsim.
+    The bench filters what is recorded of velocity and current, once a tick, and not what the drive has of them; so is
+    it done here, by lsim.
     """
     count = len(cases)
-    effects = [[independent(name) for name in names if name != LAG] for names in cases]
+    effects = [[independent(name) for name in names if name not in (LAG, CURRENT_LAG)] for names in cases]
     recorded = simulate([AXIS] * count, [motion] * count, effects, [IDEAL] * count)
     signals = [{**r.true, "measured_position": r.trace["position"]} for r in recorded]
     for names, found in zip(cases, signals, strict=True):
@@ -163,4 +169,7 @@ def truth(cases: list[tuple[str, ...]], motion: Reversals) -> list[dict[str, np.
             velocity = found["measured_velocity"]
             time = PERIOD * np.arange(velocity.size)
             found["measured_velocity"] = lsim(([1.0], [VALUES[LAG]["time_constant"], 1.0]), velocity, time)[1]
+        if CURRENT_LAG in names:
+            time, lag = PERIOD * np.arange(found["current"].size), VALUES[CURRENT_LAG]["time_constant"]
+            found["current"] = lsim(([1.0], [lag, 1.0]), found["current"], time, X0=lag * found["current"][0])[1]
     return signals

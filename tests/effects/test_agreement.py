@@ -30,7 +30,7 @@ def test_same_motion(case, truths):
         off, changed = rms(values[:, 0] - true[name]), rms(true[name] - bare[name])
         print(f"{' + '.join(case)}: {name} {off:.1e} of {changed:.3g}")
         assert off < FLOOR[name] + SHARE.get(case, 0.01) * changed
-    off = rms((states.torque[:, 0] - AXIS.torque_constant * true["current"])[:-1])
+    off = rms((seen.torque[:, 0] - AXIS.torque_constant * true["current"])[:-1])
     changed = AXIS.torque_constant * rms(true["current"] - bare["current"])
     print(f"{' + '.join(case)}: torque {off:.1e} of {changed:.3g} N*m")
     # the independent current is that of a moment, the bench's the mean of a step

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.effects.kinds import Electronics, Mechanism, Sensing
+from bench.effects.kinds import Electronics, Mechanism, Moment, Sensing
 from bench.plant.model import build_spec
 from bench.trace.known_names import SI_UNITS
 from bench.trace.trace import Trace
@@ -149,7 +149,7 @@ def test_several_of_a_repeatable_one_are_told_apart(effect):
 @every
 def test_the_level_of_friction_is_what_its_columns_make_of_dry_friction(effect):
     """Column by column: dry friction all of it, friction in proportion to speed none of it."""
-    hooks = ("friction_excess", "friction_factor", "friction_difference")
+    hooks = ("friction_excess", "friction_factor", "friction_difference", "friction_under_load")
     assert effect.overrides("level") == any(effect.overrides(hook) for hook in hooks)
     shape, faster = shape_of(effect), replace(RECORDED, velocity=2.0 * RECORDED.velocity)
     columns, scaled = plain(effect, RECORDED), plain(effect, faster)
@@ -166,6 +166,16 @@ def test_stiffness_is_the_slope_of_its_torque_over_position(effect):
     slopes = [a - b for a, b in zip(higher, lower, strict=True)]
     straight = slopes and all(np.ptp(slope) < 1e-9 for slope in slopes)
     assert effect.stiffness(strengths) == pytest.approx(1.3 * sum(float(s[0]) for s in slopes) if straight else 0.0)
+
+
+@every
+def test_a_torque_of_the_load_is_its_columns_in_a_simulation(effect):
+    """What a gear transmits is the same to the balance and to MuJoCo."""
+    if isinstance(effect, Mechanism) and effect.overrides("load_torque"):
+        moment = Moment(RECORDED.time, RECORDED.position, RECORDED.velocity, RECORDED.effort)
+        columns = np.array(plain(effect, RECORDED)).T
+        found = effect.load_torque(reported(effect), moment)
+        np.testing.assert_allclose(columns @ ([5e-4] * columns.shape[1]), found * np.ones(len(columns)), atol=1e-12)
 
 
 @every
@@ -213,6 +223,9 @@ def test_what_it_sees_is_what_a_simulated_sensor_or_drive_does_undone(effect):
     elif isinstance(effect, Electronics) and effect.overrides("acting_along"):
         acts = effect.acting_along(effect.report([], shape, BASE), RECORDED.torque, STEP)
         np.testing.assert_allclose(effect.see(RECORDED, shape).torque, acts, atol=1e-12)
+    elif isinstance(effect, Sensing) and effect.overrides("unrecorded"):
+        acts = effect.unrecorded(effect.report([], shape, BASE), RECORDED.torque, STEP)
+        np.testing.assert_allclose(effect.see(RECORDED, shape).torque, acts, atol=1e-12)
     else:
         assert not effect.overrides("see")
 
@@ -238,6 +251,38 @@ def test_a_delay_is_that_of_the_simulated_signal(effect):
         late, listen = passes(reported(effect), wave, step)[-5000:], np.exp(-1j * omega * time[-5000:])
         gain = np.sum(late * listen) / np.sum(wave[-5000:] * listen)
         assert gain == pytest.approx(1.0 / (1.0 + 1j * omega * max(declared)), rel=1e-3)
+
+
+@every
+def test_a_lag_of_the_effort_is_that_of_the_recorded_one_and_is_undone(effect):
+    """A sine comes out of the recorder as behind a first-order lag of the declared time, and back as it was."""
+    shape = shape_of(effect)
+    declared = effect.effort_lag(shape)
+    assert effect.effort_lag([2.0 * value for value in shape]) == pytest.approx(2.0 * declared)
+    hooks = [effect.overrides(hook) for hook in ("effort_lag", "recorded", "unrecorded")]
+    assert hooks == [declared > 0.0] * 3
+    if not declared:
+        return
+    step, omega = 1e-4, 2.0 * np.pi * 30.0
+    time, values = step * np.arange(10000), effect.report([], shape, BASE)
+    wave = np.sin(omega * time)
+    late, listen = effect.recorded(values, wave, step), np.exp(-1j * omega * time[-5000:])
+    gain = np.sum(late[-5000:] * listen) / np.sum(wave[-5000:] * listen)
+    assert gain == pytest.approx(1.0 / (1.0 + 1j * omega * declared), rel=1e-3)
+    np.testing.assert_allclose(effect.unrecorded(values, late, step)[5000:-1], wave[5000:-1], atol=1e-3)
+
+
+@every
+def test_what_a_sensor_of_the_current_misreads_is_what_its_columns_explain(effect):
+    """Reported less acting effort is the columns' sum, so far as it is small; nothing else of a sensor has columns."""
+    if not isinstance(effect, Sensing):
+        return
+    assert effect.overrides("acted") == effect.overrides("columns")
+    if effect.overrides("columns"):
+        values = reported(effect)
+        acts = effect.acted(values, AXIS, RECORDED.effort, RECORDED.time)
+        columns = np.array(plain(effect, RECORDED)).T
+        np.testing.assert_allclose(columns @ ([5e-4] * columns.shape[1]), RECORDED.effort - acts, atol=1e-12)
 
 
 @every

@@ -55,7 +55,8 @@ class Plant:
         position, velocity: of the motor - rad, rad/s - (n,).
         load_position, load_velocity: of the load, where a coupling separates it; unused elsewhere.
         current, acting_current: that the drive measures, and that makes torque - A.
-        motor_torque: during the last step - N*m.
+        recorded_current: the one that is measured, behind its filter if there is one - A.
+        motor_torque, load_torque: during the last step, of the motor and of what its gear carries - N*m.
         measured_position, measured_velocity: what ideal electronics would read from the sensor.
         sensed_velocity: the same before the filter on the speed, if there is one.
     """
@@ -66,7 +67,7 @@ class Plant:
             setattr(self, name, np.array([getattr(axis, name) for axis in axes], dtype=float))
         self.position, self.velocity = np.full(n, position, dtype=float), np.full(n, velocity, dtype=float)
         self.current, self.motor_torque, self.time, self.midtime = np.zeros(n), np.zeros(n), 0.0, 0.0
-        self._before = self.velocity
+        self.recorded_current, self._before = self.current, self.velocity
         self._acting = _members(self, effects)
         self.load_position, self.load_velocity = self.position.copy(), self.velocity.copy()
         self._load_before = self.load_velocity.copy()
@@ -99,8 +100,11 @@ class Plant:
         for rows in self._with("torque_factor"):
             self.motor_torque[rows.index] *= rows.effect.torque_factor(rows)
         net = self.motor_torque.copy()
+        self.load_torque = np.zeros_like(net)
         for rows in self._with("resisting_torque"):
-            net[rows.index] -= rows.effect.resisting_torque(rows)
+            torque = rows.effect.resisting_torque(rows)
+            net[rows.index] -= torque
+            self.load_torque[rows.index] += torque * rows.effect.transmitted
         for rows in self._with("transmitted_torque"):
             net[rows.index] -= self._move_load(rows, step)
         forward, backward = self._friction_levels()
@@ -118,19 +122,26 @@ class Plant:
     def _drive_current(self, demand: np.ndarray, step: float) -> np.ndarray:
         """Current that makes torque, at the middle of the step; the measured one is advanced to its end."""
         limited = self._with("driven_current")
-        lagging = self._with("acting_current")
+        lagging, misread = self._with("acting_current"), self._with("true_current")
         before, self.current = self.current, demand
         middle = demand
-        if limited or lagging:
+        if limited or lagging or misread:
             self.current, middle = demand.copy(), demand.copy()
         for rows in limited:
             i = rows.index
             self.current[i] = rows.effect.driven_current(rows, demand[i], before[i], step)
             middle[i] = 0.5 * (before[i] + self.current[i])
+        for rows in misread:
+            middle[rows.index] = rows.effect.true_current(rows, middle[rows.index])
         for rows in lagging:
             measured, start = middle[rows.index].copy(), rows.memory
             middle[rows.index] = rows.effect.acting_current(measured, start, step / 2.0)
             rows.memory = rows.effect.acting_current(measured, start, step)
+        self.recorded_current = self.current
+        for rows in self._with("recorded_current"):
+            rows.memory = rows.effect.recorded_current(self.current[rows.index], rows.memory, step)
+            self.recorded_current = self.recorded_current.copy()
+            self.recorded_current[rows.index] = rows.memory
         return middle
 
     def _friction_levels(self) -> tuple[np.ndarray, np.ndarray]:
@@ -226,6 +237,8 @@ HOOKS = (
     "transmitted_torque",
     "driven_current",
     "acting_current",
+    "true_current",
+    "recorded_current",
     "measured",
     "filtered",
 )

@@ -122,11 +122,11 @@ class _Batch:
                 velocity = rounded(seen + fed_back * noise[tick], rounding)
                 demand = drive.current(reference[:, tick], position, velocity)
                 row[0], row[1], row[2] = plant.position, plant.velocity, plant.motor_torque
-                row[3], row[4], row[5], row[6] = position, plant.measured_velocity, plant.current, noise[tick]
+                row[3], row[4], row[5], row[6] = position, plant.measured_velocity, plant.recorded_current, noise[tick]
                 for substep in range(substeps):
                     plant.advance(demand, period / substeps)
                     if substep == 0:
-                        row[5] = np.where(self._ages() == 0, plant.current, row[5])
+                        row[5] = np.where(self._ages() == 0, plant.recorded_current, row[5])
             if not np.isfinite(block).all():
                 lost = [self.axes[k].name for k in np.flatnonzero(~np.isfinite(block).all(axis=(0, 1)))]
                 raise FloatingPointError(f"diverged: {', '.join(lost)}")

@@ -16,7 +16,7 @@ from bench.balance.hypothesis import Term
 from bench.balance.load_side import on_other_side, outer_loads
 from bench.balance.shapes import shaped
 from bench.diagnose.name.candidates import Candidate, candidates, joins
-from bench.diagnose.name.rules import Rules
+from bench.diagnose.name.rules import Rules, worth
 from bench.effects.effect import Effect
 
 #: Said of a search that its limit ended.
@@ -74,11 +74,22 @@ def forward_selection(found: Searched, effects: Sequence[Effect], rules: Rules) 
         better = [after for after in finalists if _worthwhile(current, after, rules)]
         if not better:
             return Searched(steps)
-        names = Counter(min(better, key=lambda after: after.squares).hypothesis.names)
+        best = min(better, key=lambda after: after.squares)
+        names = Counter(best.hypothesis.names)
         if len(names) > rules.most or max(names.values()) > rules.members:
             return Searched(steps, LIMIT)
-        chosen = polished(min(better, key=lambda after: after.squares), rules)
-        steps = (*steps, Step(with_hum(backward_elimination(on_its_side(chosen, rules), rules)), tuple(tried)))
+        chosen = with_hum(backward_elimination(on_its_side(polished(best, rules), rules), rules))
+        if _been_there(chosen, steps, rules):
+            return Searched(steps)
+        steps = (*steps, Step(chosen, tuple(tried)))
+
+
+def _been_there(fitted: Fit, steps: Sequence[Step], rules: Rules) -> bool:
+    """Whether an earlier step had the same effects and left no more: what is taken up and let go in turn never ends."""
+    least = rules.significant.threshold(fitted, 1)
+    names = Counter(fitted.hypothesis.names)
+    same = [step.fitted for step in steps if Counter(step.fitted.hypothesis.names) == names]
+    return any(worth(earlier, fitted) <= least for earlier in same)
 
 
 def _worthwhile(current: Fit, after: Fit, rules: Rules) -> bool:
@@ -92,7 +103,8 @@ def replacement(fitted: Fit, effect: Effect, rules: Rules) -> Fit | None:
     shape = effect.in_place_of(current) if joins(current, effect) else None
     if shape is None:
         return None
-    after = fit(fitted.rows, current.hypothesis.plus(Term(effect, shape)))
+    first = fit(fitted.rows, current.hypothesis.plus(Term(effect, shape)))
+    after = shaped(first.rows, first.hypothesis, len(current.terms))  # from where levels and loads have settled
     return backward_elimination(after, rules) if rules.replaces.holds(fitted, after) else None
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from bench.balance.fit import Fit
 from bench.balance.parameter import Parameter
 from bench.balance.stored import Balance
+from bench.checks.check import Check
 from bench.diagnose.add.add import Added
 from bench.diagnose.add.same_axis import SameAxis
 from bench.diagnose.found import Gap, NamedEffect, Rejected, Shrunk
@@ -44,6 +45,7 @@ class Diagnosis:
         model, balance: with all effects; no model where MuJoCo cannot have them.
         recordings, between: J, K_w and K_0 of each of several recordings alone, and their spread; () and {} of one.
         warnings: what a user should know.
+        checks: what the gate found before the fit.
     """
 
     verdict: str
@@ -68,6 +70,7 @@ class Diagnosis:
     recordings: tuple[Alone, ...] = ()
     between: Mapping[str, Between] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+    checks: tuple[Check, ...] = ()
 
 
 def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Suspects, added: Added) -> Diagnosis:

@@ -28,6 +28,8 @@ class Effect:
     name: ClassVar[str]
     outside_catalogue: ClassVar[bool] = False
     on_linear_axis: ClassVar[bool] = True
+    #: Whether its resisting torque is one of a load that a gear transmits.
+    transmitted: ClassVar[bool] = False
 
     @classmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
@@ -84,6 +86,14 @@ class Effect:
 
     def acting_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
         """Current that makes torque, `step` after `memory` was it, while the measured one is `current` - A."""
+        raise NotImplementedError
+
+    def true_current(self, rows: Rows, reading: np.ndarray) -> np.ndarray:
+        """Current that flows while the sensor of the drive reads one - A."""
+        raise NotImplementedError
+
+    def recorded_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
+        """Current that is recorded, `step` after `memory` was it, while the drive reads `current` - A."""
         raise NotImplementedError
 
     def measured(self, position: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

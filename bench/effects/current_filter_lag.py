@@ -1,0 +1,75 @@
+"""Current filter lag: the reported current is filtered, so that it shows torque later than it acts.
+
+    T*dM_reported/dt + M_reported = M
+
+T - time constant - s; M - torque that acts, M_reported = k_T*I of the reported current - N*m (N). The drive has the
+current without the filter, which is the recorder's. In the balance 1 + T*s on the reported torque undoes it exactly.
+It is the opposite of a lag of the torque or of the speed, and two such lags at once show as their difference: beside
+another one it is not sought, and where no position tells a lag of the speed the names stand for that difference.
+Source: W. Leonhard, Control of Electrical Drives (filtered current feedback).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.effects.current_loop_lag import LAGS
+from bench.effects.effect import Fitted, Proposal
+from bench.effects.first_order import lagged
+from bench.effects.kinds import Sensing
+from bench.effects.signals import Scope, Shape, Signals
+from bench.statistics import NORMAL95
+from bench.units import Quantity
+
+
+class CurrentFilterLag(Sensing):
+    """See the module."""
+
+    name = "current_filter_lag"
+    summary = "reported current is filtered: it shows torque later than it acts"
+    quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
+    shapes = (Shape(quantities[0], LAGS, reach=1.0),)
+    not_beside = frozenset({"current_loop_lag", "velocity_filter_lag"})
+
+    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+        """The torque that acts; what is made of it sees that."""
+        return replace(signals, torque=_unlagged(signals.torque, shape[0], signals.sample_period))
+
+    def effort_lag(self, shape: Sequence[float]) -> float:
+        """T."""
+        return shape[0]
+
+    def propose(self, fitted: Fitted) -> list[Proposal]:
+        """To first order, a shift of the torque beyond the one that a fit may take for how the drive latches."""
+        column = fitted.seen(lambda s: [[(-s.effort, 1)]], of_motion=False)
+        gain = float(fitted.gains(column, 1)[0])
+        beyond = column[:, 0] - fitted.span @ (fitted.span.T @ column[:, 0])
+        late = float(beyond @ fitted.residual)
+        return [Proposal((late / float(beyond @ beyond),), gain)] if gain > 0.0 and late > 0.0 else []
+
+    def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
+        """By the tick within which current and speed were taken."""
+        return [scope.latched / NORMAL95]
+
+    def ambiguous(self, scope: Scope) -> tuple[str, ...]:
+        """Lags of torque and speed, of which it may be the greater, unless position tells that of the speed."""
+        return () if "position" in scope.signals else ("current_loop_lag", "velocity_filter_lag")
+
+    def recorded(self, values: Mapping[str, float], effort: Array, step: float) -> Array:
+        """Exact for an effort that runs straight within the step; started where the effort is."""
+        return lagged(effort, values["time_constant"], step)
+
+    def unrecorded(self, values: Mapping[str, float], effort: Array, step: float) -> Array:
+        """M + T*dM/dt by central differences: what a held model is fed with needs no more."""
+        return _unlagged(effort, values["time_constant"], step)
+
+
+def _unlagged(effort: Array, time_constant: float, step: float) -> Array:
+    return effort + time_constant * np.gradient(effort, step) if effort.size > 1 else effort
+
+
+EFFECT = CurrentFilterLag()

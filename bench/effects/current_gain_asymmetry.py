@@ -1,0 +1,46 @@
+"""Current gain asymmetry: amperes per reading differ between positive and negative current.
+
+    M = M_reported*(1 + d/2*sgn(M_reported))
+
+d - gain of positive less that of negative current, over their mean; M - torque that acts, M_reported = k_T*I of the
+reported current - N*m (N). Two amplifiers or two half-bridge shunts, one for each sign, make it; the drive, too,
+believes the reading.
+Source: D.-W. Chung, S.-K. Sul, Analysis and compensation of current measurement error in vector-controlled AC motor
+drives, IEEE Transactions on Industry Applications 34(2), 1998 (scaling errors of current sensors).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.effects.kinds import Axis, Number, Sensing, Values
+from bench.effects.signals import Base, Signals
+from bench.trace.filter import Column
+from bench.units import Quantity
+
+
+class CurrentGainAsymmetry(Sensing):
+    """See the module."""
+
+    name = "current_gain_asymmetry"
+    summary = "amperes per reading differ between positive and negative current"
+    quantities = (Quantity("gain_difference", "d", "dimensionless", lower=-1.0, upper=1.0, null=0.0),)
+    copies_torque = True
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """-|M|/2: what the readings of positive current lack, and those of negative have too much."""
+        return [[(-0.5 * np.abs(signals.torque), 0)]]
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> dict[str, float]:
+        """The strength itself."""
+        return {"gain_difference": strengths[0]}
+
+    def acted(self, values: Values, axis: Axis, effort: Array, time: Number) -> Array:
+        """By the equation above."""
+        return effort + 0.5 * values["gain_difference"] * np.abs(effort)
+
+
+EFFECT = CurrentGainAsymmetry()

@@ -1,0 +1,48 @@
+"""Current offset drift: the zero of the current sensor drifts during the recording.
+
+    M = M_reported - r*t
+
+r - rate - N*m/s (N/s); t - time since the recording's start - s; M - torque that acts, M_reported = k_T*I of the
+reported current - N*m (N). The zero at the start is a constant torque, which `torque_offset` is; the drive, too,
+believes the reading. In one direction of motion a drifting zero is no other than friction that warms up, and is not
+sought.
+Source: D.-W. Chung, S.-K. Sul, Analysis and compensation of current measurement error in vector-controlled AC motor
+drives, IEEE Transactions on Industry Applications 34(2), 1998 (offset errors of current sensors).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bench.arrays import Array
+from bench.effects.kinds import Axis, Number, Sensing, Values
+from bench.effects.signals import Base, Scope, Signals
+from bench.trace.filter import Column
+from bench.units import Quantity
+
+
+class CurrentOffsetDrift(Sensing):
+    """See the module."""
+
+    name = "current_offset_drift"
+    summary = "the zero of the current sensor drifts during the recording"
+    quantities = (Quantity("rate", "r", "N*m/s", null=0.0),)
+
+    def sought(self, scope: Scope) -> bool:
+        """Where the axis goes both ways."""
+        return not scope.one_way
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Time."""
+        return [[(signals.time, 0)]]
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> dict[str, float]:
+        """The strength itself."""
+        return {"rate": strengths[0]}
+
+    def acted(self, values: Values, axis: Axis, effort: Array, time: Number) -> Array:
+        """By the equation above."""
+        return effort - values["rate"] * time
+
+
+EFFECT = CurrentOffsetDrift()

@@ -1,0 +1,45 @@
+"""Torque constant drift: torque per ampere changes during the recording.
+
+    M = M_reported*(1 + r*t)
+
+r - relative rate - 1/s; t - time since the recording's start - s; M - torque that acts, M_reported = k_T*I by the rig's
+torque constant - N*m (N). Magnets that warm lose about 0.1 % of it a kelvin, ferrites twice that; the gain of a warming
+current sensor drifts alike, and a recording of motion cannot tell the two apart: it is the reading that no longer
+stands for the torque.
+Source: T. Sebastian, Temperature effects on torque production and efficiency of PM motors using NdFeB magnets, IEEE
+Transactions on Industry Applications 31(2), 1995.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bench.arrays import Array
+from bench.effects.kinds import Axis, Number, Sensing, Values
+from bench.effects.signals import Base, Signals
+from bench.trace.filter import Column
+from bench.units import Quantity
+
+
+class TorqueConstantDrift(Sensing):
+    """See the module."""
+
+    name = "torque_constant_drift"
+    summary = "torque per ampere changes during the recording"
+    quantities = (Quantity("rate", "r", "1/s", null=0.0),)
+    copies_torque = True
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """The motor's torque times time: what the rig's constant overstates."""
+        return [[(-signals.torque * signals.time, 0)]]
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> dict[str, float]:
+        """The strength itself."""
+        return {"rate": strengths[0]}
+
+    def acted(self, values: Values, axis: Axis, effort: Array, time: Number) -> Array:
+        """By the equation above."""
+        return effort * (1.0 + values["rate"] * time)
+
+
+EFFECT = TorqueConstantDrift()
