@@ -7,10 +7,13 @@ from tokenize import TokenError
 
 import pint
 
+from bench.unit_grammar import require_unit
+
 #: What pint raises on texts that are no unit.
 _NO_UNIT = (
     pint.errors.PintError,
     AttributeError,
+    LookupError,
     TypeError,
     ValueError,
     AssertionError,
@@ -28,6 +31,7 @@ def _registry() -> pint.UnitRegistry:
 
 @cache
 def _unit(unit: str) -> pint.Unit:
+    require_unit(unit)
     return _registry().Unit(unit)
 
 

@@ -10,11 +10,15 @@ from functools import cache
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.names import short
+from bench.unit_grammar import LONGEST
 from bench.usual_units import USUAL_UNITS
 
-_NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _VALUE = re.compile(rf"([+-]?{_NUMBER})\s*(.*)")
 _TOLERANCE = re.compile(rf"([+-]?{_NUMBER})\s*(?:\+/-|±)\s*({_NUMBER})\s*(.*)")
+#: Characters of a value: as many digits as anyone writes, and a unit.
+_LONGEST = 64 + LONGEST
 
 
 @dataclass(frozen=True)
@@ -100,9 +104,9 @@ def parse(text: object, unit: str, where: object) -> float:
         InputError: no finite number with a unit, or of another dimension; names `where`.
     """
     allowed = f'allowed: a number with a unit of the dimension of {unit}, e.g. "1.5 {unit}"'
-    match = _VALUE.fullmatch(text.strip()) if isinstance(text, str) else None
+    match = _VALUE.fullmatch(text.strip()) if isinstance(text, str) and len(text) <= _LONGEST else None
     if match is None:
-        raise InputError(where, f"found {text!r}", allowed)
+        raise InputError(where, f"found {short(repr(text))}", allowed)
     number, given = match.groups()
     try:
         matches = same_dimension(given, unit)
@@ -120,7 +124,7 @@ def parse_with_tolerance(text: object, unit: str, where: object) -> tuple[float,
     Raises:
         InputError: as `parse`.
     """
-    match = _TOLERANCE.fullmatch(text.strip()) if isinstance(text, str) else None
+    match = _TOLERANCE.fullmatch(text.strip()) if isinstance(text, str) and len(text) <= _LONGEST else None
     if match is None:
         return parse(text, unit, where), 0.0
     number, tolerance, given = match.groups()

@@ -14,7 +14,8 @@ SOURCES = sorted((ROOT / "bench").rglob("*.py"))
 
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
-    {"errors", "units", "usual_units", "unit_registry", "axis_kind", "arrays", "statistics", "assets", "files"},
+    {"errors", "names", "bounds", "files", "structured", "assets"},
+    {"units", "usual_units", "unit_registry", "unit_grammar", "axis_kind", "arrays", "statistics"},
     {"trace"},
     {"rig"},
     {"checks"},

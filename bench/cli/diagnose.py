@@ -47,9 +47,9 @@ def diagnose(
         recordings = [read(trace, axis.trace.columns) for trace in traces]
         found = run_diagnosis(recordings, axis, other, excluded, done)
     basis = provenance(rig, traces, {"without": sorted(excluded)}, holdout)
+    files = write_diagnosis(out, found, f"{axis.name}: {names}", basis) if out is not None else []
     if json is not None:
         write_json(json, diagnosis_json(found, basis))
-    files = write_diagnosis(out, found, f"{axis.name}: {names}", basis) if out is not None else []
     if json != Path("-"):
         console().print(diagnosis_table(found, f"{axis.name}: {names}"))
         tell_files(files)

@@ -69,13 +69,13 @@ def identify(
             write_json(json, estimate_json(refusal.estimate, None, str(refusal), basis()))
         tell_warnings(refusal.estimate.warnings)
         raise
-    if json is not None:
-        write_json(json, estimate_json(estimate, refinement, None, basis()))
     files = []
     if out is not None:
         from bench.report.identification import write_identification  # matplotlib: 0.35 s
 
         files = write_identification(out, traces, axis, estimate, refinement, basis())
+    if json is not None:
+        write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):
         console().print(estimate_table(estimate, f"{axis.name}: {', '.join(trace.name for trace in traces)}"))
         if estimate.recordings:

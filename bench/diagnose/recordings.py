@@ -57,8 +57,8 @@ class Recordings:
         seen, unseen = trace, holdout
         for effect, those in detected.items():
             if effect.faulty_signal == rows.conditioning.source:
-                seen = effect.corrected(seen, those.values)
-                unseen = effect.corrected(unseen, those.values) if unseen is not None else None
+                seen = _mended(seen, effect, those)
+                unseen = None if unseen is None else _mended(unseen, effect, those)
         if seen is not trace:
             rows = Rows.of(seen, rig)
             require_decidable(seen, rig, rows)
@@ -78,3 +78,8 @@ class Recordings:
         """Names of J, K_w and K_0 on this kind of axis, with their units."""
         kind = self.rig.axis_kind
         return {kind.parameter(term): kind.parameter_unit(term, self.unit) for term in (INERTIA, VISCOUS, COULOMB)}
+
+
+def _mended(trace: Trace, effect: Effect, found: Detected) -> Trace:
+    """A recording with a fault of its sensor undone; without the faulty signal where that stays wrong all the same."""
+    return effect.corrected(trace, found.values) if found.mends else trace.without(effect.faulty_signal)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,11 +17,12 @@ from bench.diagnose.add.same_axis import SameAxis
 from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where.where import Where
-from bench.files import write_text
+from bench.files import held, write_text
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report.checks import checks_json
 from bench.report.estimate import between_json, parameters_json, recordings_json
-from bench.report.figures import MEASURED, MODELLED, save
+from bench.report.figures import MEASURED, MODELLED, save, title_figure
+from bench.structured import json_text
 
 SCHEMA = "bench.diagnose/1"
 #: Share of the gap above which the region that holds most of it is shaded.
@@ -69,7 +69,7 @@ def diagnosis_json(diagnosis: Diagnosis, provenance: Mapping[str, Any] | None = 
         "checks": checks_json(diagnosis.checks),
         "warnings": diagnosis.warnings,
     }
-    return json.dumps(content, indent=2)
+    return json_text(content)
 
 
 def _where(account: Where) -> dict[str, Any]:
@@ -208,7 +208,7 @@ def _at_fault(diagnosis: Diagnosis) -> list[str]:
 def where_figure(diagnosis: Diagnosis, title: str) -> Figure:
     """The gap against each coordinate, before any effect was added and, where something remains, after."""
     figure = Figure(figsize=(12.0, 6.5), layout="constrained")
-    figure.suptitle(title, x=0.01, ha="left", weight="bold")
+    title_figure(figure, title)
     after = {account.coordinate: account for account in diagnosis.unexplained_where}
     for axis, account in zip(figure.subplots(2, 4).ravel(), diagnosis.where, strict=False):
         order = np.argsort(account.centres)
@@ -231,7 +231,7 @@ def where_figure(diagnosis: Diagnosis, title: str) -> Figure:
 def gaps_figure(diagnosis: Diagnosis, title: str) -> Figure:
     """Torque and velocity gap of the bare axis and after each addition, on both recordings, against the noise floor."""
     figure = Figure(figsize=(12.0, 4.5), layout="constrained")
-    figure.suptitle(title, x=0.01, ha="left", weight="bold")
+    title_figure(figure, title)
     labels = [step.effect.replace("_", " ") or "J, friction" for step in diagnosis.steps]
     labels = [label if k == 0 else f"+ {label}" for k, label in enumerate(labels)]
     for axis, name, gap in zip(
@@ -260,13 +260,14 @@ def write_diagnosis(
 ) -> list[Path]:
     """Write `diagnosis.json`, two figures, `model.toml` and, where MuJoCo has all of it, `model.xml`; returns paths."""
     written = [out / "diagnosis.json", out / "where.png", out / "gaps.png", out / "model.toml"]
-    write_text(written[0], diagnosis_json(diagnosis, provenance) + "\n")
-    save(where_figure(diagnosis, title), written[1])
-    save(gaps_figure(diagnosis, title), written[2])
-    write_text(written[3], _model_toml(diagnosis))
-    if diagnosis.model is not None:
-        written.append(out / "model.xml")
-        write_text(written[-1], model_xml(diagnosis.model.model))
+    with held(out):
+        write_text(written[0], diagnosis_json(diagnosis, provenance) + "\n")
+        save(where_figure(diagnosis, title), written[1])
+        save(gaps_figure(diagnosis, title), written[2])
+        write_text(written[3], _model_toml(diagnosis))
+        if diagnosis.model is not None:
+            written.append(out / "model.xml")
+            write_text(written[-1], model_xml(diagnosis.model.model))
     return written
 
 

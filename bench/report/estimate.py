@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -16,6 +15,7 @@ from bench.axis_kind import AxisKind
 from bench.balance.parameter import Parameter
 from bench.identify.estimate import Alone, Between, Estimate
 from bench.report.checks import checks_json
+from bench.structured import json_text
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
     from bench.identify.refine import Refinement
@@ -57,7 +57,7 @@ def estimate_json(
     """
     residual = estimate.residual
     polish = {} if refinement is None else {"refinement": dataclasses.asdict(refinement)}
-    return json.dumps(
+    return json_text(
         {
             "schema": SCHEMA,
             "estimator": estimate.estimator,
@@ -78,8 +78,7 @@ def estimate_json(
             "checks": checks_json(estimate.checks),
             "warnings": list(estimate.warnings),
             **polish,
-        },
-        indent=2,
+        }
     )
 
 

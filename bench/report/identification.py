@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.axis_kind import MISALIGNMENT
 from bench.checks.gate import gate
-from bench.files import write_text
+from bench.files import held, write_text
 from bench.identify.estimate import Estimate
 from bench.report.estimate import estimate_json
 from bench.report.figures import identification_figure, save
@@ -43,17 +43,17 @@ def write_identification(
     Returns:
         Paths written.
     """
-    figures = []
-    for number, trace in enumerate(traces, 1):
-        first = gate(next(stream(trace, rig.trace.columns)), rig).trace
-        effort, _ = rig.net_effort(first)
-        cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
-        moved = motion(first, effort, condition(first, effort, cutoff))
-        figures.append(out / ("identification.png" if number == 1 else f"identification-{number}.png"))
-        title = f"{rig.name}: {trace.name}"
-        save(identification_figure(moved, _along(estimate, number - 1, rig), rig.axis_kind, title), figures[-1])
-    text = out / "identify.json"
-    write_text(text, estimate_json(estimate, refinement, None, provenance) + "\n")
+    figures, text = [], out / "identify.json"
+    with held(out):
+        for number, trace in enumerate(traces, 1):
+            first = gate(next(stream(trace, rig.trace.columns)), rig).trace
+            effort, _ = rig.net_effort(first)
+            cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
+            moved = motion(first, effort, condition(first, effort, cutoff))
+            figures.append(out / ("identification.png" if number == 1 else f"identification-{number}.png"))
+            title = f"{rig.name}: {trace.name}"
+            save(identification_figure(moved, _along(estimate, number - 1, rig), rig.axis_kind, title), figures[-1])
+        write_text(text, estimate_json(estimate, refinement, None, provenance) + "\n")
     return [*figures, text]
 
 

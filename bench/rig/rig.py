@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -12,6 +11,7 @@ from pydantic import Field, ValidationError, model_validator
 from bench.arrays import Array
 from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
+from bench.names import short
 from bench.rig.catalogue import catalogue_motor
 from bench.rig.drive import Drive
 from bench.rig.load import Load
@@ -19,6 +19,8 @@ from bench.rig.motor import Motor
 from bench.rig.peak_curve import PeakCurve
 from bench.rig.simulation import Simulation
 from bench.rig.values import Table, tolerance_of
+from bench.structured import read_toml
+from bench.trace.possible import require_possible
 from bench.trace.trace import Trace
 from bench.units import nearest
 
@@ -87,8 +89,10 @@ class Rig(Table):
         circuit U = R*I + Ke*w). Where the rig knows no constant, the effort stays in A, V or share of rated torque.
 
         Raises:
-            InputError: the trace holds none of the signals, or motor and trace disagree on the kind of axis.
+            InputError: the trace holds none of the signals, one of a magnitude that no axis has, or motor and trace
+                disagree on the kind of axis.
         """
+        require_possible(trace)
         if trace.axis_kind != self.axis_kind and ("velocity" in trace or "position" in trace):
             found = f"found a {trace.axis_kind.name} axis"
             raise InputError(trace.origin, found, f"allowed: a {self.kind} one, as {self.source} says")
@@ -165,14 +169,7 @@ def load_rig(path: str | Path, defaults: Mapping[str, Any] | None = None) -> Rig
         InputError: no such file, no TOML, an unknown or missing key, a value of the wrong dimension or out of bounds.
     """
     path = Path(path)
-    try:
-        table = {**(defaults or {}), **tomllib.loads(path.read_text(encoding="utf-8"))}
-    except FileNotFoundError as error:
-        raise InputError(path, "no such file", "give the path of a rig file (TOML)") from error
-    except IsADirectoryError as error:
-        raise InputError(path, "found a folder", "give the path of a rig file (TOML)") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(path, f"not TOML ({error})", "allowed: a rig file in UTF-8 TOML") from error
+    table = {**(defaults or {}), **read_toml(path, "a rig file")}
     motor = table.get("motor")
     if isinstance(motor, dict) and "model" in motor:
         table["motor"] = {**catalogue_motor(motor["model"], f"{path}: motor.model"), **motor}
@@ -196,9 +193,9 @@ def _input_error(path: Path, error: ValidationError) -> InputError:
     if detail["type"] == "missing":
         return InputError(where, "missing", "this key is required")
     message = detail["msg"].removeprefix("Value error, ")
-    return InputError(
-        where, f"found {detail['input']!r}" if keys else "inconsistent", f"allowed: {message[0].lower()}{message[1:]}"
-    )
+    tables = isinstance(detail["input"], dict) or not keys
+    found = "inconsistent" if tables else f"found {short(repr(detail['input']))}"
+    return InputError(where, found, f"allowed: {message[0].lower()}{message[1:]}")
 
 
 def _known_keys(keys: list[str]) -> list[str]:

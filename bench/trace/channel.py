@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -10,8 +9,6 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
-
-_NAME_UNIT = re.compile(r"(.*?)(?:\s*\[([^\[\]]*)\])?\s*", re.DOTALL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,9 +89,11 @@ def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:
 
 def split_label(label: str) -> tuple[str, str | None]:
     """Name and unit of a column head `name [unit]`; no unit gives None."""
-    match = _NAME_UNIT.fullmatch(label.strip())
-    assert match is not None  # the pattern takes any text
-    return match[1].strip(), (match[2] or "").strip() or None
+    label = label.strip()
+    start = label.rfind("[")
+    if start < 0 or not label.endswith("]") or "]" in label[start:-1]:
+        return label, None
+    return label[:start].strip(), label[start + 1 : -1].strip() or None
 
 
 def float_values(texts: Iterable[str], place: Callable[[int], str]) -> Array:

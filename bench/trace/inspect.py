@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -15,6 +14,8 @@ from rich.table import Table
 from rich.text import Text
 
 from bench.arrays import Array, rms
+from bench.names import plain
+from bench.structured import json_text
 from bench.trace.assemble import assemble, choose, in_si
 from bench.trace.read import read_recording
 
@@ -129,14 +130,14 @@ def _summary(name: str, unit: str, column: str, values: Array, recorded: Array) 
 
 def to_json(inspection: Inspection, more: Mapping[str, object] = MappingProxyType({})) -> str:
     """The inspection as JSON, its fields under their names, and what others have to say of the recording."""
-    return json.dumps({"schema": SCHEMA, **asdict(inspection), **more}, indent=2)
+    return json_text({"schema": SCHEMA, **asdict(inspection), **more})
 
 
 def table(inspection: Inspection) -> Group:
     """The inspection for a person."""
     facts = Table(box=None, show_header=False, pad_edge=False)
     for name, value in _facts(inspection):
-        facts.add_row(name, Text(value))
+        facts.add_row(name, Text(plain(value)))
     signals = Table(box=box.SIMPLE_HEAD)
     signals.add_column("signal")
     signals.add_column("column")
@@ -146,8 +147,8 @@ def table(inspection: Inspection) -> Group:
     for signal in inspection.signals:
         numbers = (signal.minimum, signal.maximum, signal.rms, signal.resolution)
         texts = ("constant" if number is None else f"{number:.5g}" for number in numbers)
-        signals.add_row(signal.name, Text(signal.column), signal.unit, *texts)
-    return Group(facts, signals, *(Text(f"note: {note}") for note in inspection.notes))
+        signals.add_row(signal.name, Text(plain(signal.column)), signal.unit, *texts)
+    return Group(facts, signals, *(Text(plain(f"note: {note}")) for note in inspection.notes))
 
 
 def _facts(inspection: Inspection) -> list[tuple[str, str]]:

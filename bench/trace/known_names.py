@@ -10,6 +10,7 @@ import re
 
 from bench.errors import InputError
 from bench.trace.signals import SI_UNITS, si_unit
+from bench.unit_grammar import LONGEST
 from bench.units import base_units, dimensionality
 
 #: Besides its own name; compared in lower case, with `_` as a space, after the last dot of a PLC path.
@@ -59,7 +60,8 @@ def signal_of(name: str) -> str | None:
 
 def unit_of(text: str | None) -> str | None:
     """Unit as pint reads it, from the text in a file such as `V (Voltage)`; None for `(None)` or an empty text."""
-    plain = _COMMENT.sub("", text or "").strip()
+    plain = (text or "").strip()
+    plain = _COMMENT.sub("", plain).strip() if len(plain) <= LONGEST else plain
     return _FOREIGN_UNITS.get(plain, plain) or None
 
 

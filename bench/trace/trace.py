@@ -176,6 +176,12 @@ class Trace:
         lengths = (LINEAR.length_unit, LINEAR.speed_unit)
         return LINEAR if any(self.units.get(name) in lengths for name in ("position", "velocity")) else ROTARY
 
+    def without(self, name: str) -> Trace:
+        """The same without one of its signals."""
+        signals, units = dict(self.signals), dict(self.units)
+        del signals[name], units[name]
+        return replace(self, signals=signals, units=units)
+
     def with_signals(self, signals: Mapping[str, Array], units: Mapping[str, str]) -> Trace:
         """The same recording with signals added or replaced."""
         return replace(self, signals={**self.signals, **signals}, units={**self.units, **units})

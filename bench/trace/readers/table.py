@@ -16,8 +16,10 @@ from bench.trace.source import Source, decode
 FORMAT = "CSV table"
 ENDINGS = (".csv", ".txt", ".tsv")
 
+#: Columns of a table; a recorder has some hundred channels at most.
+MOST_COLUMNS = 10_000
 _SEPARATORS = (",", ";", "\t")
-_NUMBER = re.compile(r"\s*[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?\s*")
+_NUMBER = re.compile(r"\s*[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?\s*")
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+\s*")
 
 
@@ -58,7 +60,7 @@ def read(source: Source) -> Recording:
     layout = _layout(source)
     body = source.content[layout.start :]
     table = numbers(body, layout, source.path)
-    has_blank_lines = re.search(rb"\n[ \t\r]*\n\s*\S", body) is not None
+    has_blank_lines = re.search(rb"\n[ \t\r]*\n", body.rstrip()) is not None
     channels = tuple(
         _channel(label, column, layout, source, None if has_blank_lines else layout.line)
         for label, column in zip(layout.labels, table.columns, strict=True)
@@ -81,6 +83,8 @@ def _layout(source: Source) -> Layout:
         raise InputError(
             f"{source.path}: line {line}", "found one column", "allowed: a first line 'time [unit],name [unit],...'"
         )
+    if len(labels) > MOST_COLUMNS:
+        raise InputError(source.path, f"found {len(labels)} columns", f"allowed: {MOST_COLUMNS}")
     if all(_NUMBER.fullmatch(label) for label in labels):
         raise InputError(
             f"{source.path}: line {line}", "found numbers, no header", "allowed: a first line 'name [unit],...'"
