@@ -15,6 +15,9 @@ from bench.names import plain
 if TYPE_CHECKING:
     from rich.console import Console
 
+TracesArgument = Annotated[
+    list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
+]
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 

@@ -53,7 +53,7 @@ def _demo(out: Path, progress: Callable[[float], None]) -> Demo:
     truth = write_truth(trace, simulated.truth)
     progress(0.8)
     estimate = identify(read(trace), rig)
-    figures = write_identification(out, trace, rig, estimate)
+    figures = write_identification(out, [trace], rig, estimate)
     progress(1.0)
     axis = simulated.truth.parameters
     known = {
