@@ -112,22 +112,34 @@ def uncertain(fitted: Fit) -> Uncertain:
     count = np.diff(edges)
     scores = np.add.reduceat(jacobian * (weight * fitted.left)[:, None], edges[:-1])
     scores += np.outer(count, noise @ numbers)
-    inverse = solved((jacobian.T * weight) @ jacobian, numbers, count.sum() * noise)[1]
+    place, known = fitted.theta.size, _known(fitted, slots)
+    seen = np.linalg.norm(jacobian, axis=0) * np.pad(known, (place, 0), constant_values=np.inf) > fitted.floor
+    told = np.ix_(seen, seen)
+    gram = ((jacobian.T * weight) @ jacobian)[told]
+    inverse = np.zeros(noise.shape)
+    inverse[told] = solved(gram, numbers[seen], count.sum() * noise[told])[1]
     conditioning = rows.conditioning
     covariance, reach = estimated(scores, inverse, conditioning.effort_noise**2 / conditioning.filter.stride)
+    covariance[place:, place:] += np.diag(np.where(np.isfinite(known), known, 0.0) ** 2)
     shapes = np.array([fitted.terms[index].shape[k] for index, k in slots])
-    place = fitted.theta.size
     for index, term in enumerate(fitted.terms):
-        errors = term.effect.shape_errors(term.shape, fitted.scope, fitted.time)
         own = [place + slot for slot, (owner, _) in enumerate(slots) if owner == index]
-        for at, (_, k) in zip(own, (slot for slot in slots if slot[0] == index), strict=True):
-            covariance[at, at] += errors[k] ** 2
         spread = term.effect.spread(fitted, index) if own else None
         if spread is not None:
             covariance[np.ix_(own, own)] += spread
     for moved in (*_misplaced(fitted), *_louder(fitted, slots)):
         covariance[: moved.size, : moved.size] += np.outer(moved, moved)
     return Uncertain(fitted, np.concatenate([fitted.theta, shapes]), covariance, reach, slots)
+
+
+def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
+    """Standard errors of the shapes (s,) that no fit is needed for, as of an instant between two rows; else infinity.
+
+    A shape that within its own changes the torque by less than noise does is known by it alone: no row moves with it.
+    """
+    errors = [term.effect.shape_errors(term.shape, fitted.scope, fitted.time) for term in fitted.terms]
+    known = np.array([errors[index][k] for index, k in slots])
+    return np.where(known > 0.0, known, np.inf)
 
 
 def _free(effect: Effect, rows: Rows) -> list[int]:
