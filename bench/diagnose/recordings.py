@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.balance.fit import Fit, fit
 from bench.balance.rows import Rows
 from bench.diagnose.gap.decidable import require_another, require_decidable, require_samples
 from bench.effects.catalogue import catalogue
@@ -22,6 +23,7 @@ class Recordings:
     Attributes:
         rig: of the axis.
         trace: the recording, or several as one.
+        seen: the same with faults of its sensors undone, as it is fitted.
         holdout: another one, not fitted; None without one.
         rows, other: both laid out.
         detected: effects that the recording's signals show, of which the torque balance holds none.
@@ -29,6 +31,7 @@ class Recordings:
 
     rig: Rig
     trace: Trace
+    seen: Trace
     holdout: Trace | None
     rows: Rows
     other: Rows | None
@@ -66,7 +69,15 @@ class Recordings:
         if unseen is not None:
             width, peak = rows.conditioning.filter.width, rows.scope.peak_effort
             other = Rows.of(unseen, rig, width=width, peak_effort=peak)
-        return cls(rig, trace, holdout, rows, other, detected)
+        return cls(rig, trace, seen, holdout, rows, other, detected)
+
+    def within_tolerance(self, fitted: Fit) -> list[Fit]:
+        """A balance of the whole recording fitted again with each of the rig's values at the end of its tolerance."""
+        if fitted.rows is not self.rows:
+            return []
+        same = self.rows.conditioning
+        rigs = self.rig.within_tolerance()
+        return [fit(Rows.of(self.seen, rig, conditioning=same), fitted.hypothesis) for rig in rigs]
 
     @property
     def unit(self) -> str:

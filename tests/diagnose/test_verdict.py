@@ -11,7 +11,9 @@ from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.show.verdict import OBJECTIONS, Drives, Elsewhere, MovesWorse, Undetermined, verdict
 from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
-from tests.diagnose.constructed import COULOMB, RIG, moved, recorded
+from bench.rig.rig import Rig
+from bench.statistics import NORMAL95
+from tests.diagnose.constructed import COULOMB, RIG, moved, offset, recorded
 
 NONE = frozenset(catalogue())
 MOTION = moved(4.0)
@@ -126,3 +128,21 @@ def test_an_inertia_below_the_rotor_s_is_refused():
     weak = trace.with_signals({"current": 1e-3 * trace["current"]}, {"current": "A"})
     with pytest.raises(UndeterminedError, match="load moment of inertia"):
         diagnose(weak, RIG, excluded=NONE)
+
+
+def test_the_rig_s_tolerances_are_in_every_interval():
+    """M = kT*I: inertia, friction and an offset are proportional to kT, so 5 % of one is 5 % of the others."""
+    trace, motor = recorded(MOTION, offset(0.05)), {"rotor_inertia": "4 kg*cm**2", "peak_current": "6 A"}
+    only = NONE - {"torque_offset"}
+    sharp, wide = (
+        diagnose(
+            trace, Rig.of({"name": "t", "kind": "rotary", "motor": motor | {"torque_constant": text}}), excluded=only
+        )
+        for text in ("0.7 N*m/A", "0.7 +/- 0.035 N*m/A")
+    )
+    told = [[found.parameters["moment_of_inertia"], found.effects[0].parameters["torque"]] for found in (sharp, wide)]
+    for own, found in zip(*told, strict=True):
+        assert found.value == own.value
+        half, before = found.ci95[1] - found.value, own.ci95[1] - own.value
+        assert half == pytest.approx(np.hypot(before, 0.05 * found.value), rel=1e-3)
+        assert found.std_error == pytest.approx(np.hypot(own.std_error, 0.05 / NORMAL95 * found.value), rel=1e-3)

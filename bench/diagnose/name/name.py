@@ -63,8 +63,11 @@ def named(
 ) -> tuple[list[NamedEffect], dict[str, Parameter]]:
     """Effects of a fitted balance and those beside it with their quantities, and J, K_w, K_0 beside them."""
     rig, unit = recordings.rig, recordings.unit
-    numbers = uncertain(fitted)
-    parameters = numbers.base(recordings.base_units)
+    numbers, others = uncertain(fitted), recordings.within_tolerance(fitted)
+    parameters = {
+        name: found.widened(*(float(other.theta[k] - fitted.theta[k]) for other in others))
+        for k, (name, found) in enumerate(numbers.base(recordings.base_units).items())
+    }
     parameters |= load_inertia(parameters, rig)
 
     def unit_of(effect: Effect, name: str) -> str:
@@ -75,7 +78,11 @@ def named(
     for index, term in enumerate(fitted.terms):
         less = fit(fitted.rows, fitted.hypothesis.without(index))
         evidence = {"residual_without": less.rms, "residual_with": fitted.rms, "noise_floor": fitted.floor}
-        found = numbers.quantities(index, unit_of)
+        reports = [term.effect.report(other.strengths(index), term.shape, other.base) for other in others]
+        found = {
+            key: value.widened(*(report[key] - value.value for report in reports))
+            for key, value in numbers.quantities(index, unit_of).items()
+        }
         effects.append(NamedEffect(term.effect, found, term.effect.ambiguous(fitted.scope), evidence))
     for effect, found in detected.items():
         values = {
