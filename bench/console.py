@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
+AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 
 

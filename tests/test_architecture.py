@@ -14,7 +14,19 @@ SOURCES = sorted((ROOT / "bench").rglob("*.py"))
 
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
-    {"errors", "units", "usual_units", "unit_registry", "axis_kind", "arrays", "statistics", "assets", "files"},
+    {
+        "errors",
+        "units",
+        "unit_names",
+        "unit_text",
+        "usual_units",
+        "unit_registry",
+        "axis_kind",
+        "arrays",
+        "statistics",
+        "assets",
+        "files",
+    },
     {"trace"},
     {"rig"},
     {"effects"},

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import JsonOption, RigOption, console, tell_files, tell_warnings, write_json
+from bench.console import AxisOption, JsonOption, RigOption, console, tell_files, tell_warnings, write_json
 
 
 def diagnose(
@@ -17,6 +17,7 @@ def diagnose(
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
+    axis_name: AxisOption = None,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
     from bench.diagnose.diagnosis import diagnose as run_diagnosis
@@ -26,11 +27,11 @@ def diagnose(
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
-    axis = load_rig(rig)
+    axis = load_rig(rig).on_axis(axis_name)
     excluded = frozenset(named(name, "--without").name for name in without or [])
-    other = read(holdout, axis.trace.columns) if holdout else None
+    other = read(holdout, axis.trace) if holdout else None
     with progress(f"diagnosing {trace.name}") as done:
-        found = run_diagnosis(read(trace, axis.trace.columns), axis, other, excluded, done)
+        found = run_diagnosis(read(trace, axis.trace), axis, other, excluded, done)
     if json is not None:
         write_json(json, diagnosis_json(found))
     files = write_diagnosis(out, found, f"{axis.name}: {trace.name}") if out is not None else []

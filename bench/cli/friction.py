@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import JsonOption, RigOption, console, tell_files, write_json
+from bench.console import AxisOption, JsonOption, RigOption, console, tell_files, write_json
 
 
 def friction(
@@ -15,6 +15,7 @@ def friction(
     rig: RigOption,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Figure to write: .png, .pdf or .svg.")] = None,
+    axis_name: AxisOption = None,
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
     from bench.friction_map.map import friction_map
@@ -22,8 +23,8 @@ def friction(
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
-    axis = load_rig(rig)
-    found = friction_map([read(trace, axis.trace.columns) for trace in traces], axis)
+    axis = load_rig(rig).on_axis(axis_name)
+    found = friction_map([read(trace, axis.trace) for trace in traces], axis)
     if out is not None:
         draw_friction(found, axis.name, out)
     if json is not None:

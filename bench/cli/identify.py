@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.console import JsonOption, RigOption, console, tell_files, tell_warnings, write_json
+from bench.console import AxisOption, JsonOption, RigOption, console, tell_files, tell_warnings, write_json
 from bench.errors import InputError
 
 if TYPE_CHECKING:
@@ -37,13 +37,14 @@ def identify(
     cutoff: Annotated[
         float | None, typer.Option("--cutoff", help="Filter's half-power frequency in Hz.", min=1e-6)
     ] = None,
+    axis_name: AxisOption = None,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, with 95 % intervals."""
     from bench.identify.estimate import RefusedEstimateError
     from bench.report.estimate import estimate_json, estimate_table, refinement_line
     from bench.rig.rig import load_rig
 
-    axis = load_rig(rig)
+    axis = load_rig(rig).on_axis(axis_name)
     axis = axis.model_copy(update={"offset": axis.offset or offset})
     if estimator is Estimator.LAB and (refine or offset or cutoff):
         raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
@@ -75,19 +76,19 @@ def _estimate(
     """Estimate by the method asked for, and what polishing did to it."""
     from bench.trace.read import read
 
-    columns = rig.trace.columns
+    how = rig.trace
     if estimator is Estimator.LAB:
         from bench.identify.lab import identify_as_in_the_lab
 
-        return identify_as_in_the_lab(read(trace, columns), rig), None
+        return identify_as_in_the_lab(read(trace, how), rig), None
     from bench.identify.regression import identify as regress
     from bench.report.progress import progress
     from bench.trace.stream import stream
 
     with progress(f"identifying {trace.name}") as done:
         if not refine:
-            return regress(stream(trace, columns), rig, cutoff), None
+            return regress(stream(trace, how), rig, cutoff), None
         from bench.identify.refine import refine as polish  # MuJoCo: 0.1 s
 
-        recording = read(trace, columns)
+        recording = read(trace, how)
         return polish(recording, rig, regress(recording, rig, cutoff), done)

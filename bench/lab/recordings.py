@@ -95,7 +95,7 @@ class Recordings:
             InputError: no such file, not a recording, or a signal missing in it.
         """
         path = self.path(name)
-        trace = read(path, self.rig.trace.columns)
+        trace = read(path, self.rig.trace)
         _require_signals(trace, path)
         return run_of(trace, self.rig, read_truth(truth_path(path)))
 

@@ -33,7 +33,7 @@ def write_identification(
     Returns:
         Paths written.
     """
-    first = next(stream(trace, rig.trace.columns))
+    first = next(stream(trace, rig.trace))
     effort, _ = rig.net_effort(first)
     cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
     moved = motion(first, effort, condition(first, effort, cutoff))

@@ -11,6 +11,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.errors import InputError
 
+_ELEMENT = re.compile(r"\S\[\d+\]\s*$")
 _NAME_UNIT = re.compile(r"(.*?)(?:\s*\[([^\[\]]*)\])?\s*", re.DOTALL)
 
 
@@ -29,6 +30,8 @@ class Channel:
         start: number of the first value among the file's samples.
         defect: why the values cannot be read; raised only where a trace needs them.
         open_unit: why the file leaves the unit open though it names one.
+        axis: of a file that tells several apart.
+        moments: whether the values are moments of a calendar or a clock, as times from the first of them.
     """
 
     name: str
@@ -40,6 +43,8 @@ class Channel:
     start: int = 0
     defect: InputError | None = None
     open_unit: str | None = None
+    axis: str | None = None
+    moments: bool = False
 
     @property
     def label(self) -> str:
@@ -91,9 +96,11 @@ def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:
 
 
 def split_label(label: str) -> tuple[str, str | None]:
-    """Name and unit of a column head `name [unit]`; no unit gives None."""
+    """Name and unit of a column head `name [unit]`; no unit gives None. `name[0]` is a name, of an element."""
     match = _NAME_UNIT.fullmatch(label.strip())
     assert match is not None  # the pattern takes any text
+    if _ELEMENT.search(label):
+        return label.strip(), None
     return match[1].strip(), (match[2] or "").strip() or None
 
 

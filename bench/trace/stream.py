@@ -12,12 +12,15 @@ import pyarrow.parquet as pq
 
 from bench.arrays import Array
 from bench.errors import InputError
-from bench.trace.assemble import Chosen, choose, in_si
 from bench.trace.channel import Recording
+from bench.trace.choose import choose
+from bench.trace.how import HowToRead, how_to_read
+from bench.trace.in_si import InSI, in_si
 from bench.trace.read import read
 from bench.trace.readers.parquet import DAMAGE, FORMAT, MAGIC, channel_of, damaged, is_moment
 from bench.trace.time_base import regular
 from bench.trace.trace import Trace
+from bench.trace.unwrap import Unwrapping
 
 #: Samples a chunk: small enough for the processor's cache, large enough to forget Python's share of the work.
 CHUNK = 1 << 17
@@ -28,7 +31,7 @@ JOINT = 0.01
 
 def stream(
     path: str | Path,
-    columns: Mapping[str, str] | None = None,
+    columns: Mapping[str, str] | HowToRead | None = None,
     signals: Collection[str] | None = None,
     chunk: int = CHUNK,
 ) -> Iterator[Trace]:
@@ -40,7 +43,7 @@ def stream(
 
     Args:
         path: file of any format.
-        columns: signal -> column name with unit, as for `read`.
+        columns: signal -> column name with unit, or all that a rig's `[trace]` tells, as for `read`.
         signals: the ones wanted, those of them that the file holds; None: all.
         chunk: samples, at least 2.
 
@@ -52,8 +55,9 @@ def stream(
             is_parquet = file.read(len(MAGIC)) == MAGIC
     except (OSError, ValueError):
         is_parquet = False  # `read` says what is wrong with it
-    if is_parquet and not _counts_from_first_moment(str(path)):
-        return _parquet(str(path), columns or {}, signals, chunk)
+    how = how_to_read(columns)
+    if is_parquet and how.sample_period is None and not _counts_from_first_moment(str(path)):
+        return _parquet(str(path), how, signals, chunk)
     return _cut(read(path, columns), signals, chunk)
 
 
@@ -94,35 +98,36 @@ def _cut(trace: Trace, signals: Collection[str] | None, chunk: int) -> Iterator[
         start = stop
 
 
-def _parquet(path: str, columns: Mapping[str, str], signals: Collection[str] | None, chunk: int) -> Iterator[Trace]:
+def _parquet(path: str, how: HowToRead, signals: Collection[str] | None, chunk: int) -> Iterator[Trace]:
     _keep_freed_memory()
     try:
         with pq.ParquetFile(path, memory_map=True) as file:
             fields = list(file.schema_arrow)
             empty = Recording(tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), FORMAT, path)
-            chosen, notes = choose(empty, columns)
+            chosen, notes = choose(empty, how)
             chosen = {name: it for name, it in chosen.items() if signals is None or name == "time" or name in signals}
             field_of = {name: fields[empty.channels.index(choice.channel)] for name, choice in chosen.items()}
             start, last = 0, None
+            wrapping: dict[str, Unwrapping] = {}
             for batch in _batches(file, [field.name for field in field_of.values()], chunk):
                 pieces = {
                     name: replace(choice, channel=channel_of(field_of[name], batch[field_of[name].name], path, start))
                     for name, choice in chosen.items()
                 }
-                last = _trace(pieces, empty, notes, last)
+                found = in_si(pieces, empty, how, wrapping)
+                last = _trace(found, empty, (*notes, *found.notes), last)
                 yield last
                 start += batch.num_rows
     except DAMAGE as error:
         raise damaged(path, error) from error
 
 
-def _trace(pieces: Mapping[str, Chosen], recording: Recording, notes: tuple[str, ...], last: Trace | None) -> Trace:
-    sampled, units = in_si(pieces, recording)
-    base = regular(sampled)
+def _trace(found: InSI, recording: Recording, notes: tuple[str, ...], last: Trace | None) -> Trace:
+    base = regular(found.signals)
     return Trace(
         time=base.time,
         signals=base.signals,
-        units=units,
+        units=found.units,
         origin=recording.origin,
         metadata={"format": FORMAT},
         time_base=base.time_base,
