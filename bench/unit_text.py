@@ -211,6 +211,7 @@ def _normalised(text: str) -> str:
     plain = _PEAK_TO_PEAK.sub(lambda match: f"{match[1]}*peak_to_peak", plain)
     plain = EFFECTIVE.sub(lambda match: f"{match[1][0] if match[1][0] in 'munk' else ''}Arms", plain)
     plain = _COMMENT.sub("", _PEAK.sub(lambda match: match[1], plain))
+    plain = re.sub(r"(?<=[^\W\d])\.(?=\s*(?:[/*]|$))", "", plain)  # of an abbreviation
     plain = re.sub(r"\bper\b", "/", plain)
     plain = re.sub(r"(?<![^\W\d/])[xX](?=\s*\d)|(?<=\d)\s*[xX](?=\s)", "*", plain).strip().lstrip("*").strip()
     if plain.startswith("(") and plain.endswith(")") and plain.count("(") == 1:
