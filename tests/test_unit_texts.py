@@ -1,4 +1,4 @@
-"""Units as drives, scopes and loggers write them, with where they are seen: the right factor, or a refusal that asks."""
+"""Units as drives, scopes and loggers write them, and where they are seen: the right factor, or a refusal that asks."""
 
 import math
 

@@ -22,6 +22,7 @@ from bench.cli.inspect import inspect
 from bench.cli.lab import lab
 from bench.cli.limits import limits
 from bench.cli.replay import replay
+from bench.cli.rigs import rigs
 from bench.cli.simulate import simulate
 from bench.errors import BenchError
 
@@ -40,7 +41,7 @@ def bench(
         typer.echo(context.get_help())
 
 
-for command in (demo, simulate, effects, inspect, identify, diagnose, replay, friction, lab, limits):
+for command in (demo, simulate, effects, inspect, identify, diagnose, replay, friction, lab, limits, rigs):
     app.command()(command)
 
 

@@ -142,7 +142,7 @@ def test_clocks_and_calendars(tmp_path, style, start):
 def test_a_clock_of_whole_seconds_asks_for_the_sample_period_and_takes_it(tmp_path):
     rows = lines(",", time=[clock(45_296.0 + 2.0 * t, "{h:02d}:{m:02d}:{s:02d}") for t in TIME])
     path = written(tmp_path / "run.csv", ["time,velocity [rpm],current [A]"], rows)
-    with pytest.raises(InputError, match="time already taken.*sample_period"):
+    with pytest.raises(InputError, match=r"time already taken.*sample_period"):
         read(path)
     trace = read(path, How(sample_period=2e-3))
     np.testing.assert_allclose(trace.time - trace.time[0], 2.0 * TIME, atol=1e-9)
