@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,6 +43,8 @@ _SPLIT = re.compile(r"[\s._/:()\[\],;|-]+|(?<=[a-z])(?=[A-Z])")
 _ROUND = re.compile(r"(.*?)\s*[({]([^(){}]*)[)}]\s*|(.*?)[,/]\s+(\S+)")
 #: Correlation from which a column is another's derivative, and samples that are looked at.
 DERIVATIVE, ENOUGH = 0.9, 200_000
+#: Units of time without one, and the share by which a position and its velocity may miss each other in it.
+TIMES, AGREEMENT = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}, 0.1
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,40 @@ def likely_signals(channels: Sequence[Channel]) -> dict[int, Likely]:
         if place not in given and key not in taken:
             given[place] = guess
             taken.add(key)
+    return _with_time_unit(given, channels)
+
+
+def _with_time_unit(given: dict[int, Likely], channels: Sequence[Channel]) -> dict[int, Likely]:
+    """A time without a unit takes the one in which position and velocity, both with theirs, agree."""
+    of = {guess.signal: (place, guess) for place, guess in given.items()}
+    if not {"time", "position", "velocity"} <= set(of):
+        return given
+    place, time = of["time"]
+    if time.unit is not None or channels[place].moments:
+        return given
+    angle, speed = (_in_si(channels[of[name][0]], of[name][1]) for name in ("position", "velocity"))
+    ticks = channels[place].values[:ENOUGH]
+    if angle is None or speed is None or not angle.size == speed.size == ticks.size:
+        return given
+    step = np.diff(angle)
+    travelled = 0.5 * (speed[1:] + speed[:-1]) * np.diff(ticks)
+    plain = np.abs(step) < 0.2 * np.ptp(angle)
+    power = float(travelled[plain] @ travelled[plain])
+    second = float(travelled[plain] @ step[plain]) / power if power > 0.0 else 0.0
+    for unit, factor in TIMES.items():
+        if abs(second / factor - 1.0) < AGREEMENT:
+            why = (*time.why, f"position and velocity agree in {unit}")
+            return {**given, place: replace(time, unit=unit, why=why)}
     return given
+
+
+def _in_si(channel: Channel, guess: Likely) -> Array | None:
+    if guess.unit is None:
+        return None
+    try:
+        return channel.values[:ENOUGH] * scale_of(guess.unit, wanted_units(guess.signal)).factor
+    except UnitError:
+        return None
 
 
 def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> list[Likely]:
