@@ -167,11 +167,16 @@ def _own_scale(signal: str, channel: Channel) -> Scale | None:
 
 def _named(recording: Recording, signal: str, name: str) -> Channel | None:
     """Channel that a rig's column text names; None when no such name is in the file."""
-    for key in (str, str.lower, lambda label: label.strip("#%/ ").removesuffix(".data").lower(), plain_name):
+    for key in (str, str.lower, _without_marks, plain_name):
         matches = [channel for channel in recording.channels if key(channel.name) == key(name)]
         if matches:
             return _one(recording, signal, matches)
     return None
+
+
+def _without_marks(name: str) -> str:
+    """A name without what comments, topics and paths put around it; parts of a path between dots."""
+    return name.strip("#%/ ").removesuffix(".data").replace("/", ".").lower()
 
 
 def _known(recording: Recording, signal: str) -> Channel | None:

@@ -58,6 +58,8 @@ def decode(content: bytes) -> str:
 
 def utf8(content: bytes) -> bytes:
     """Text as UTF-8; the same bytes where it is UTF-8, but for a character that is cut off at the end."""
+    if b"\n" not in content:
+        content = content.replace(b"\r", b"\n")  # as old recorders on a Mac end lines
     if content.isascii():
         return content  # a long file is not decoded for nothing
     try:

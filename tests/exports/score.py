@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import io
 import json
-import os
-import subprocess
 import sys
 import tempfile
+import traceback
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
+from bench.cli import main
 from tests.shared import SHARED
 
 EXPORTS = SHARED / "data" / "exports"
-ROOT = Path(__file__).resolve().parents[2]
+TRACEBACK = -1
 #: Each parameter under its letter in the truth, and the relative error that an answer may have.
 LIMITS = {
     "J": ("moment_of_inertia", "kg*m**2", 0.005),
@@ -75,8 +78,13 @@ def _error(parameters: dict[str, Any], letter: str, truth: float) -> float:
 
 
 def _run(*arguments: str) -> tuple[int, str]:
-    command = [sys.executable, "-m", "bench", *arguments]
-    done = subprocess.run(
-        command, cwd=ROOT, env=os.environ | {"OMP_NUM_THREADS": "1"}, capture_output=True, text=True, check=False
-    )
-    return done.returncode, " ".join(done.stderr.split())
+    """Exit status of a command and what it says on standard error; a traceback is no status of the bench's."""
+    said = io.StringIO()
+    with patch.object(sys, "argv", ["bench", *arguments]), redirect_stderr(said), redirect_stdout(io.StringIO()):
+        try:
+            main()
+        except SystemExit as end:
+            return int(end.code or 0), " ".join(said.getvalue().split())
+        except Exception:
+            return TRACEBACK, traceback.format_exc()
+    return 0, " ".join(said.getvalue().split())

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.readers.moments import seconds
 from bench.trace.source import Source
 
 FORMAT = "Parquet"
@@ -58,6 +59,11 @@ def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, s
     if is_moment(kind):
         unit = kind.unit
     channel = Channel(name, unit, np.empty(0), path, start=start)
+    if (pa.types.is_string(kind) or pa.types.is_large_string(kind)) and len(column):
+        texts = pa.chunked_array([column]) if isinstance(column, pa.Array) else column
+        moments = seconds(texts.cast(pa.string()).fill_null(""))
+        if moments is not None:
+            return replace(channel, unit="s", values=moments, moments=True)
     values = _numbers(column)
     if values is None:
         return replace(channel, defect=InputError(channel.place(), f"found {kind}", "allowed: numbers"))

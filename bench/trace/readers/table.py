@@ -174,7 +174,8 @@ def _filled_rows(table: pa.Table) -> np.ndarray | None:
 
 def _channels(table: pa.Table, layout: Layout, line: int | None, path: str) -> Iterator[Channel]:
     for number, (label, column) in enumerate(zip(layout.labels, table.columns, strict=True), 1):
-        channel = Channel(*split_label(label), np.empty(0), path, line=line)
+        name, unit = split_label(label)
+        channel = Channel(name or f"column {number}", unit, np.empty(0), path, line=line)
         if pa.types.is_string(column.type):
             channel = _of_text(channel, column, layout.decimal)
         elif pa.types.is_decimal(column.type):
