@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -28,6 +29,21 @@ def write_json(path: Path, text: str) -> None:
         typer.echo(text)
     else:
         write_text(path, text + "\n")
+
+
+@contextmanager
+def told_in_json(path: Path | None, schema: str) -> Iterator[None]:
+    """Write what the gate found of a recording that cannot answer, before the error goes its way."""
+    from bench.checks.gate import UnanswerableError
+
+    try:
+        yield
+    except UnanswerableError as error:
+        if path is not None:
+            from bench.report.checks import refusal_json
+
+            write_json(path, refusal_json(schema, error.checks, str(error)))
+        raise
 
 
 def console() -> Console:

@@ -241,3 +241,12 @@ def is_unit(text: str) -> bool:
     except ValueError:
         return False
     return bool(names)
+
+
+def in_pints_words(text: str) -> str:
+    """A unit text as pint writes it, e.g. `N*m` for `Nm`; as it is where it is no unit, or has a factor."""
+    try:
+        factor, names = _parsed(text, ())
+    except UnitError:
+        return text
+    return _spelled(names) if factor == 1.0 else text

@@ -13,7 +13,9 @@ from bench.errors import InputError
 from bench.unit_text import EFFECTIVE, UnitError, scale_of
 from bench.usual_units import USUAL_UNITS
 
-_VALUE = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
+_NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_VALUE = re.compile(rf"([+-]?{_NUMBER})\s*(.*)")
+_TOLERANCE = re.compile(rf"([+-]?{_NUMBER})\s*(?:\+/-|±)\s*({_NUMBER})\s*(.*)")
 
 
 @dataclass(frozen=True)
@@ -114,6 +116,20 @@ def parse(text: object, unit: str, where: object) -> float:
     if not math.isfinite(value):
         raise InputError(where, f"found {text!r}", allowed)
     return value
+
+
+def parse_with_tolerance(text: object, unit: str, where: object) -> tuple[float, float]:
+    """A value such as `"0.78 +/- 0.04 N*m/A"` and its tolerance, in `unit`; 0 where none is stated.
+
+    Raises:
+        InputError: as `parse`.
+    """
+    match = _TOLERANCE.fullmatch(text.strip()) if isinstance(text, str) else None
+    if match is None:
+        return parse(text, unit, where), 0.0
+    number, tolerance, given = match.groups()
+    value, end = (parse(f"{one!r} {given}", unit, where) for one in (float(number), float(number) + float(tolerance)))
+    return value, abs(end - value)
 
 
 def nearest(name: str, names: list[str]) -> str:

@@ -29,6 +29,7 @@ LAYERS = (
     },
     {"trace"},
     {"rig"},
+    {"checks"},
     {"effects"},
     {"plant"},
     {"balance"},

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from scipy import special
 
@@ -17,6 +19,8 @@ WIDENED = 1.5
 PLAIN = 4
 #: Parts of equally many rows by acceleration or speed, and by time.
 LEVELS, QUARTERS = 8, 4
+#: Share of a column's power that one part of the rows may hold at most.
+MOST = 0.9
 
 
 def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float]:
@@ -42,33 +46,45 @@ def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float
     return covariance * np.outer(widened, widened), float(special.stdtrit(degrees, 0.975))
 
 
-def left_out(columns: Array, residual: Array, time: Array) -> Array:
+def left_out(columns: Array, residual: Array) -> Array:
     """How far intervals of 95 % have to reach for coefficients (p,) that depend on which rows they are read from.
 
     What a model lacks comes back with every repetition of a motion, so its scores are alike from block to block of time
     and a covariance over these does not see it. It differs by the state of motion: coefficients are formed without each
     of eight levels of acceleration, without each of eight of speed, and without each quarter of the recording; the
-    largest of the three counts (delete-a-group jackknife, M. H. Quenouille, Biometrika 43, 1956, 353-360).
+    largest of the three counts (delete-a-group jackknife, M. H. Quenouille, Biometrika 43, 1956, 353-360). Levels and
+    quarters are equal in a mean of their shares of the rows and of the columns' power, so that none takes all rows that
+    accelerate, nor all that are slow.
 
     Args:
-        columns: (m, p), acceleration and speed first.
+        columns: (m, p) in order of time, acceleration and speed first.
         residual: (m,).
-        time: (m,) - s.
     """
     scale = np.sqrt(np.sum(columns**2, axis=0))
     scaled = columns / np.where(scale > 0.0, scale, 1.0)
-    orders = (np.abs(columns[:, 0]), LEVELS), (np.abs(columns[:, 1]), LEVELS), (time, QUARTERS)
-    reaches = [_without_each(scaled, residual, order, count) for order, count in orders]
+    power = scaled**2
+    accelerated, moved = np.argsort(power[:, 0]), np.argsort(power[:, 1])
+    cuts = [(accelerated, power[:, 0], LEVELS), (moved, power[:, 1], LEVELS)]
+    cuts.append((np.arange(residual.size), np.sum(power, axis=1), QUARTERS))
+    reaches = [_without_each(scaled[order], residual[order], _parts(mass[order], count)) for order, mass, count in cuts]
     return np.max(reaches, axis=0) / np.where(scale > 0.0, scale, 1.0)
 
 
-def _without_each(columns: Array, residual: Array, order: Array, count: int) -> Array:
-    """Reach of intervals (p,) by coefficients without each of `count` parts of the rows, cut by an order of them."""
-    edges = np.linspace(0, order.size, count + 1).astype(int)
-    rows = np.split(np.argsort(order, kind="stable"), edges[1:-1])
-    parts = [columns[part] for part in rows]
-    grams = np.stack([part.T @ part for part in parts])
-    scores = np.stack([part.T @ residual[chosen] for part, chosen in zip(parts, rows, strict=True)])
+def _parts(power: Array, count: int) -> list[slice]:
+    """Rows (m,) in their order cut into parts equal in the weighted mean of their shares of rows and of power."""
+    rows = np.arange(1, power.size + 1) / power.size
+    share = rows + (1.0 / (MOST * count)) * (np.cumsum(power) / max(float(np.sum(power)), 1e-300) - rows)
+    edges = [0, *np.searchsorted(share, np.arange(1, count) / count).tolist(), power.size]
+    return [slice(start, stop) for start, stop in pairwise(edges) if stop > start]
+
+
+def _without_each(columns: Array, residual: Array, parts: list[slice]) -> Array:
+    """Reach of intervals (p,) by coefficients without each part of the rows (m,)."""
+    count = len(parts)
+    if count < 2:
+        return np.full(columns.shape[1], np.inf)
+    grams = np.stack([columns[part].T @ columns[part] for part in parts])
+    scores = np.stack([columns[part].T @ residual[part] for part in parts])
     inverses = np.linalg.pinv(grams.sum(axis=0) - grams, rcond=1e-10, hermitian=True)
     moved = np.einsum("gij,gj->gi", inverses, scores)
     return special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * np.sum(moved**2, axis=0))

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.balance.friction_levels import multiply, with_friction, with_levels
+from bench.balance.friction_levels import follows_load, multiply, with_friction, with_levels, with_load, with_pulls
 from bench.balance.hypothesis import Hypothesis, Term
-from bench.balance.layout import COULOMB, INERTIA, MISALIGNMENT, VISCOUS, Layout, delays, lay_out, seen_by
+from bench.balance.last_digit import rounding
+from bench.balance.layout import COULOMB, DIGIT, INERTIA, VISCOUS, Layout, delays, lay_out, seen_by
 from bench.balance.load_side import with_loads
 from bench.balance.noise import Floor, noise_floor, white_power
 from bench.balance.normal_equations import solved
@@ -35,10 +36,9 @@ class Fit:
 
     Attributes:
         rows: the recording.
-        hypothesis: what was fitted.
-        layout: its columns.
-        theta: (p,): J, K_w, K_0, misalignment, sines and cosines of hum, then the strengths of the effects in order.
-        held: whether the misalignment is at its bound.
+        hypothesis, layout: what was fitted, and its columns.
+        theta: (p,): J, K_w, K_0, misalignment, last digit, sines and cosines of hum, then the effects' strengths.
+        held: places of strengths that are at a bound.
         determined: (m,) rows whose torque the recording determines: not those that hang on the instant of an impact.
     """
 
@@ -46,7 +46,7 @@ class Fit:
     hypothesis: Hypothesis
     layout: Layout
     theta: Array
-    held: bool
+    held: tuple[int, ...]
     determined: NDArray[np.bool_]
 
     @property
@@ -68,7 +68,11 @@ class Fit:
     @cached_property
     def noise(self) -> Floor:
         """What noise alone leaves under this model."""
-        return noise_floor(self.rows, white_power(self.rows, self.hypothesis, self.layout, self.theta), self.left)
+        step, modelled = self.hypothesis.step, self.effort - self.left
+        cut = float(self.theta[self.owners == DIGIT].sum())
+        rounded = rounding(self.rows, step, modelled, cut)
+        power = white_power(self.rows, self.hypothesis, self.layout, self.theta)
+        return noise_floor(self.rows, power, self.left, rounded)
 
     @property
     def floor(self) -> float:
@@ -107,7 +111,7 @@ class Fit:
 
     @cached_property
     def _basis(self) -> Array:
-        free = np.delete(self.columns, MISALIGNMENT, 1) if self.held else self.columns
+        free = np.delete(self.columns, self.held, 1) if self.held else self.columns
         return np.linalg.qr(free)[0]
 
     def strengths(self, index: int) -> list[float]:
@@ -149,7 +153,8 @@ class Fit:
     @cached_property
     def beside(self) -> Rows:
         """The recording as one term more would see it."""
-        return with_friction(seen_by(self.rows, self.hypothesis), self.hypothesis, len(self.terms))
+        seen = with_friction(seen_by(self.rows, self.hypothesis), self.hypothesis, len(self.terms))
+        return with_load(seen, ((term, self.strengths(index)) for index, term in enumerate(self.terms)))
 
     def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array:
         """Columns (m, k) of raw signals as one term more would see them; `of_motion`: accelerations or speeds."""
@@ -198,22 +203,23 @@ class Fit:
 def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
     """Least squares of a hypothesis; the levels that scaled frictions see are brought in line with what is found."""
     layout = lay_out(rows, hypothesis)
-    theta, held = _balanced(rows, layout, None)
+    theta, held = _balanced(layout, None)
     for _ in range(LEVEL_ROUNDS):
         found = with_loads(with_levels(hypothesis, theta, layout.owners), theta, layout.owners)
-        loaded = any(term.load is not None for term in hypothesis.terms)
+        found = with_pulls(found, theta, layout.owners)
+        loaded = follows_load(hypothesis) or any(term.load is not None for term in hypothesis.terms)
         settled = not (loaded or multiply(hypothesis)) or _alike(found, hypothesis)
         hypothesis = found
         if settled:
             break
         layout = lay_out(rows, hypothesis)
-        theta, held = _balanced(rows, layout, None)
+        theta, held = _balanced(layout, None)
     every = np.ones(layout.effort.size, dtype=bool)
     fitted = Fit(rows, hypothesis, layout, theta, held, every)
     determined = _determined(fitted)
     if determined is None or determined.all():
         return fitted
-    theta, held = _balanced(rows, layout, determined)
+    theta, held = _balanced(layout, determined)
     return Fit(rows, hypothesis, layout, theta, held, determined)
 
 
@@ -240,30 +246,29 @@ def _open(fitted: Fit, term: Term, index: int) -> Array:
 def _alike(found: Hypothesis, before: Hypothesis) -> bool:
     """Whether levels and loads have settled."""
     for new, old in zip(found.terms, before.terms, strict=True):
-        for values, others in ((new.level, old.level), (new.load or (), old.load or ())):
+        for values, others in ((new.level, old.level), (new.load or (), old.load or ()), (new.pull, old.pull)):
             if len(values) != len(others) or not np.allclose(values, others, rtol=1e-3, atol=1e-6):
                 return False
     return True
 
 
-def _balanced(rows: Rows, layout: Layout, determined: NDArray[np.bool_] | None) -> tuple[Array, bool]:
-    """Least squares (p,), and whether torque and speed would be further apart in time than they were latched.
+def _balanced(layout: Layout, determined: NDArray[np.bool_] | None) -> tuple[Array, tuple[int, ...]]:
+    """Least squares (p,) within bounds, and the places of what is held at one.
 
-    A larger shift is a lag, which is an effect: the misalignment is held at its bound.
+    Torque and speed are not further apart in time than they were latched: a larger shift is a lag, which is an effect.
     """
-    columns, effort = (
-        (layout.columns, layout.effort)
-        if determined is None
-        else (layout.columns[determined], layout.effort[determined])
-    )
-    theta = least_squares(columns, effort, layout.noise)
-    bound = rows.scope.latched
-    if abs(theta[MISALIGNMENT]) <= bound:
-        return theta, False
-    at = np.copysign(bound, theta[MISALIGNMENT])
-    kept = np.delete(np.arange(theta.size), MISALIGNMENT)
-    rest = least_squares(columns[:, kept], effort - at * columns[:, MISALIGNMENT], layout.noise[np.ix_(kept, kept)])
-    return np.insert(rest, MISALIGNMENT, at), True
+    sure = slice(None) if determined is None else determined
+    columns, effort = layout.columns[sure], layout.effort[sure]
+    theta, held = least_squares(columns, effort, layout.noise), {}
+    for place, (low, high) in layout.bounds.items():
+        if low <= theta[place] <= high:
+            continue
+        held[place] = float(np.clip(theta[place], low, high))
+        kept = np.delete(np.arange(theta.size), list(held))
+        rest = effort - columns[:, list(held)] @ list(held.values())
+        theta[list(held)] = list(held.values())
+        theta[kept] = least_squares(columns[:, kept], rest, layout.noise[np.ix_(kept, kept)])
+    return theta, tuple(held)
 
 
 def least_squares(columns: Array, effort: Array, noise: Array) -> Array:

@@ -2,11 +2,13 @@
 
     M = (K_0 + sum of added levels)*(1 + w_1)*(1 + w_2)*...
 
-Linear in the strengths only with the other strengths held, as share of K_0; a fit brings them in line.
+Linear in the strengths only with the other strengths held, as share of K_0; a fit brings them in line. So it is where
+friction follows the torque of a load, which is a matter of other strengths.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -55,3 +57,35 @@ def multiply(hypothesis: Hypothesis) -> bool:
     """Whether an effect scales what another adds."""
     rubs = [term.effect for term in hypothesis.terms if term.effect.overrides("level")]
     return len(rubs) > 1 and any(effect.scales_friction for effect in rubs)
+
+
+def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows:
+    """The recording with the torque that terms of some strengths make as a load; others are left out."""
+    known = [(term, strengths) for term, strengths in pulls if strengths and term.effect.overrides("load_torque")]
+    if not known:
+        return seen
+
+    def change(signals: Signals) -> Signals:
+        load = np.zeros(signals.time.size)
+        for term, strengths in known:
+            for strength, ((values, _),) in zip(strengths, term.effect.columns(signals, term.shape), strict=True):
+                load += strength * values
+        return replace(signals, load=load)
+
+    return seen.with_signals(change)
+
+
+def with_pulls(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> Hypothesis:
+    """The hypothesis with the strengths that a fit found of its loads, if the friction of a term follows them."""
+    if not follows_load(hypothesis):
+        return hypothesis
+
+    def pull(index: int, term: Term) -> tuple[float, ...]:
+        return tuple(theta[owners == index].tolist()) if term.effect.overrides("load_torque") else ()
+
+    return hypothesis.with_terms(replace(term, pull=pull(k, term)) for k, term in enumerate(hypothesis.terms))
+
+
+def follows_load(hypothesis: Hypothesis) -> bool:
+    """Whether the friction of a term follows the torque of the load."""
+    return any(term.effect.overrides("friction_under_load") for term in hypothesis.terms)

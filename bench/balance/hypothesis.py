@@ -18,12 +18,14 @@ class Term:
         level: strengths over K_0 that others see of it, if it is dry friction; () until a fit has found them.
         load: strengths over load inertia by which it acts on the load behind a coupling, () until a fit has found them;
             None where it acts on the motor.
+        pull: strengths by which it loads what transmits the torque, if others follow that and a fit has found them.
     """
 
     effect: Effect
     shape: tuple[float, ...] = ()
     level: tuple[float, ...] = ()
     load: tuple[float, ...] | None = None
+    pull: tuple[float, ...] = ()
 
     @property
     def key(self) -> tuple[str, tuple[float, ...]]:
@@ -42,10 +44,12 @@ class Hypothesis:
     Attributes:
         terms: in the order in which they were added.
         hum: frequencies of the mains in this recording's sensors - Hz.
+        step: between the values of the effort, if its last digit matters; else 0 - N*m (N).
     """
 
     terms: tuple[Term, ...] = ()
     hum: tuple[float, ...] = ()
+    step: float = 0.0
 
     def plus(self, term: Term) -> Hypothesis:
         """This hypothesis and one term more."""

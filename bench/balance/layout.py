@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.balance.friction_levels import with_friction
+from bench.balance.friction_levels import with_friction, with_load
 from bench.balance.hypothesis import Hypothesis, Term
+from bench.balance.last_digit import cut_off
 from bench.balance.load_side import loads_of
 from bench.balance.rows import Rows
 from bench.effects.effect import Load
@@ -18,7 +19,7 @@ from bench.effects.signals import Signals
 from bench.trace.filter import Column
 
 #: Owners of columns that belong to no effect.
-BASE, HUM = -1, -2
+BASE, HUM, DIGIT = -1, -2, -3
 #: Places of J, K_w, K_0 and of the time by which torque is behind speed among the columns.
 INERTIA, VISCOUS, COULOMB, MISALIGNMENT = range(4)
 #: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
@@ -30,16 +31,19 @@ class Layout:
     """A hypothesis in columns.
 
     Attributes:
-        columns: (m, p): J, K_w, K_0, misalignment, sines and cosines of hum, then the effects' in order.
-        owners: (p,) index of the term a column belongs to, BASE or HUM.
+        columns: (m, p): J, K_w, K_0, misalignment, the effort's last digit where it matters, sines and cosines of hum,
+            then the effects' in order.
+        owners: (p,) index of the term a column belongs to, BASE, DIGIT or HUM.
         effort: (m,) what they are to explain - N*m (N).
         noise: (p, p) covariance of what the sensors' noise makes of the columns in a row.
+        bounds: lowest and highest value of strengths that are not free, by their places.
     """
 
     columns: Array
     owners: NDArray[np.int64]
     effort: Array
     noise: Array
+    bounds: Mapping[int, tuple[float, float]]
 
 
 def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:
@@ -82,7 +86,11 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
         rows.memory.get(("sign", *made_of), lambda: seen.table(lambda s: [[(s.sign, 0)]], resting)),
         rows.memory.get(("shift", late, *made_of), lambda: seen.table(lambda s: [[(-s.effort, 1)]], resting + late)),
     ]
-    owners = [BASE] * 4
+    owners, bounds = [BASE] * 4, {MISALIGNMENT: (-rows.scope.latched, rows.scope.latched)}
+    if hypothesis.step:
+        parts.append(rows.memory.get(("digit", resting, *made_of), lambda: seen.table(cut_off, resting)))
+        bounds[len(owners)] = (0.0, 0.5 * hypothesis.step)
+        owners.append(DIGIT)
     if hypothesis.hum:
         made = ("hum", hypothesis.hum, resting)
         parts.append(rows.memory.get(made, lambda: seen.table(lambda s: _hum(s, hypothesis.hum), resting)))
@@ -95,14 +103,18 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
     held_by = np.array(owners)
     effort = seen.effort
     if late:
-        effort = rows.memory.get(("effort", late, *made_of), lambda: seen.table(lambda s: [[(s.effort, 0)]], late)[:, 0])
-    return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving))
+        effort = rows.memory.get(
+            ("effort", late, *made_of), lambda: seen.table(lambda s: [[(s.effort, 0)]], late)[:, 0]
+        )
+    return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds)
 
 
 def term_columns(rows: Rows, seen: Rows, hypothesis: Hypothesis, index: int) -> Array:
     """Columns (m, k) of one term; none of one that only changes how the recording is seen."""
     term = hypothesis.terms[index]
     friction = with_friction(seen, hypothesis, index)
+    if term.effect.overrides("friction_under_load"):
+        friction = with_load(friction, ((other, other.pull) for other in hypothesis.terms))
     loads = loads_of(hypothesis) if term.effect.couples else ()
     lag = delays(rows, hypothesis)[0 if term.effect.of_motion else 1]
     if loads or friction is not seen:

@@ -10,6 +10,7 @@ lowest tenth over windows of time is taken at each frequency, and a first-order 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -44,13 +45,14 @@ class Floor:
     white: float
 
 
-def noise_floor(rows: Rows, power: Callable[[Array], Array], residual: Array) -> Floor:
+def noise_floor(rows: Rows, power: Callable[[Array], Array], residual: Array, rounded: float = 0.0) -> Floor:
     """RMS of noise in a residual.
 
     Args:
         rows: the recording.
         power: of white noise in the torque balance before the filter, over angular frequency - (N*m)**2 (N**2).
         residual: (m,) of the used rows - N*m (N).
+        rounded: RMS of what rounding of the effort leaves beside - N*m (N).
     """
     smooth = rows.conditioning.filter
     omega = np.linspace(0.0, np.pi / smooth.sample_period, 2048)
@@ -63,7 +65,7 @@ def noise_floor(rows: Rows, power: Callable[[Array], Array], residual: Array) ->
     coloured = white * (1.0 + excess / (1.0 + (omega / corner) ** 2))
     scale = smooth.sample_period / np.pi
     floor, least = (float(np.sqrt(scale * np.trapezoid(spectrum, omega))) for spectrum in (coloured, white))
-    return Floor(floor, least)
+    return Floor(math.hypot(floor, rounded), math.hypot(least, rounded))
 
 
 def white_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> Callable[[Array], Array]:

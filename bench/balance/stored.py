@@ -25,7 +25,7 @@ class Balance:
 
     Attributes:
         hypothesis: its effects and their shapes.
-        theta: (p,) J, K_w, K_0, misalignment, strengths.
+        theta: (p,) J, K_w, K_0, misalignment, last digit, strengths.
         width: of the filter it was fitted through - s.
         recording: the one it was fitted to; what is occasional happened in it and in no other, unless EVERY.
     """
@@ -64,12 +64,14 @@ class Balance:
         effects = [
             {"name": term.effect.name, "shape": list(term.shape), "level": list(term.level)}
             | ({} if term.load is None else {"load": list(term.load)})
+            | ({"pull": list(term.pull)} if term.pull else {})
             for term in self.hypothesis.terms
         ]
         return {
             "recording": self.recording,
             "filter_width": self.width,
             "mains": list(self.hypothesis.hum),
+            "effort_step": self.hypothesis.step,
             "coefficients": self.theta.tolist(),
             "effects": effects,
         }
@@ -88,10 +90,11 @@ class Balance:
                 _floats(entry["shape"]),
                 _floats(entry["level"]),
                 _floats(entry["load"]) if "load" in entry else None,
+                _floats(entry.get("pull", [])),
             )
             for entry in table.get("effects", [])
         )
-        hypothesis = Hypothesis(terms, _floats(table.get("mains", [])))
+        hypothesis = Hypothesis(terms, _floats(table.get("mains", [])), float(table.get("effort_step", 0.0)))
         theta = np.array(_floats(table["coefficients"]))
         return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
 

@@ -7,7 +7,16 @@ from typing import Annotated
 
 import typer
 
-from bench.console import AxisOption, JsonOption, RigOption, console, tell_files, tell_warnings, write_json
+from bench.console import (
+    AxisOption,
+    JsonOption,
+    RigOption,
+    console,
+    tell_files,
+    tell_warnings,
+    told_in_json,
+    write_json,
+)
 
 
 def diagnose(
@@ -20,9 +29,10 @@ def diagnose(
     axis_name: AxisOption = None,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
+    from bench.checks.gate import spoken
     from bench.diagnose.diagnosis import diagnose as run_diagnosis
     from bench.effects.present import named
-    from bench.report.diagnosis import diagnosis_json, diagnosis_table, write_diagnosis
+    from bench.report.diagnosis import SCHEMA, diagnosis_json, diagnosis_table, write_diagnosis
     from bench.report.progress import progress
     from bench.rig.rig import load_rig
     from bench.trace.read import read
@@ -30,7 +40,7 @@ def diagnose(
     axis = load_rig(rig).on_axis(axis_name)
     excluded = frozenset(named(name, "--without").name for name in without or [])
     other = read(holdout, axis.trace) if holdout else None
-    with progress(f"diagnosing {trace.name}") as done:
+    with told_in_json(json, SCHEMA), progress(f"diagnosing {trace.name}") as done:
         found = run_diagnosis(read(trace, axis.trace), axis, other, excluded, done)
     if json is not None:
         write_json(json, diagnosis_json(found))
@@ -38,4 +48,4 @@ def diagnose(
     if json != Path("-"):
         console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
         tell_files(files)
-    tell_warnings(found.warnings)
+    tell_warnings([*found.warnings, *spoken(found.checks)])

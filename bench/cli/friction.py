@@ -7,7 +7,16 @@ from typing import Annotated
 
 import typer
 
-from bench.console import AxisOption, JsonOption, RigOption, console, tell_files, write_json
+from bench.console import (
+    AxisOption,
+    JsonOption,
+    RigOption,
+    console,
+    tell_files,
+    tell_warnings,
+    told_in_json,
+    write_json,
+)
 
 
 def friction(
@@ -18,13 +27,15 @@ def friction(
     axis_name: AxisOption = None,
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
+    from bench.checks.gate import spoken
     from bench.friction_map.map import friction_map
-    from bench.report.friction import draw_friction, friction_json, friction_table
+    from bench.report.friction import SCHEMA, draw_friction, friction_json, friction_table
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
     axis = load_rig(rig).on_axis(axis_name)
-    found = friction_map([read(trace, axis.trace) for trace in traces], axis)
+    with told_in_json(json, SCHEMA):
+        found = friction_map([read(trace, axis.trace) for trace in traces], axis)
     if out is not None:
         draw_friction(found, axis.name, out)
     if json is not None:
@@ -32,3 +43,4 @@ def friction(
     if json != Path("-"):
         console().print(friction_table(found, axis.name))
         tell_files([out] if out is not None else [])
+    tell_warnings(spoken(found.checks))

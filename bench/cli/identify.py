@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.console import AxisOption, JsonOption, RigOption, console, tell_files, tell_warnings, write_json
+from bench.console import (
+    AxisOption,
+    JsonOption,
+    RigOption,
+    console,
+    tell_files,
+    tell_warnings,
+    told_in_json,
+    write_json,
+)
 from bench.errors import InputError
 
 if TYPE_CHECKING:
@@ -40,8 +50,9 @@ def identify(
     axis_name: AxisOption = None,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, with 95 % intervals."""
+    from bench.checks.gate import spoken
     from bench.identify.estimate import RefusedEstimateError
-    from bench.report.estimate import estimate_json, estimate_table, refinement_line
+    from bench.report.estimate import SCHEMA, estimate_json, estimate_table, refinement_line
     from bench.rig.rig import load_rig
 
     axis = load_rig(rig).on_axis(axis_name)
@@ -49,7 +60,8 @@ def identify(
     if estimator is Estimator.LAB and (refine or offset or cutoff):
         raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
     try:
-        estimate, refinement = _estimate(trace, axis, estimator, refine, cutoff)
+        with told_in_json(json, SCHEMA):
+            estimate, refinement = _estimate(trace, axis, estimator, refine, cutoff)
     except RefusedEstimateError as refusal:
         if json is not None:
             write_json(json, estimate_json(refusal.estimate, refused=str(refusal)))
@@ -67,20 +79,22 @@ def identify(
         if refinement is not None:
             typer.echo(refinement_line(refinement, axis.axis_kind))
         tell_files(files)
-    tell_warnings(estimate.warnings)
+    tell_warnings([*estimate.warnings, *spoken(estimate.checks)])
 
 
 def _estimate(
     trace: Path, rig: Rig, estimator: Estimator, refine: bool, cutoff: float | None
 ) -> tuple[Estimate, Refinement | None]:
     """Estimate by the method asked for, and what polishing did to it."""
+    from bench.checks.gate import passed
     from bench.trace.read import read
 
     how = rig.trace
     if estimator is Estimator.LAB:
         from bench.identify.lab import identify_as_in_the_lab
 
-        return identify_as_in_the_lab(read(trace, how), rig), None
+        gated = passed(read(trace, how), rig)
+        return replace(identify_as_in_the_lab(gated.trace, rig), checks=gated.checks), None
     from bench.identify.regression import identify as regress
     from bench.report.progress import progress
     from bench.trace.stream import stream
@@ -90,5 +104,5 @@ def _estimate(
             return regress(stream(trace, how), rig, cutoff), None
         from bench.identify.refine import refine as polish  # MuJoCo: 0.1 s
 
-        recording = read(trace, how)
+        recording = passed(read(trace, how), rig).trace
         return polish(recording, rig, regress(recording, rig, cutoff), done)

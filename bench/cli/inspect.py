@@ -20,15 +20,20 @@ def inspect(
     axis_name: AxisOption = None,
 ) -> None:
     """Say what a recording holds: every column, what it is likely to be, rate, holes, signals with their range."""
+    from bench.checks.gate import gate
+    from bench.report.checks import checks_json, checks_table
     from bench.report.inspection import table
     from bench.rig.rig import load_rig
+    from bench.trace.assemble import assemble
     from bench.trace.how import How
     from bench.trace.inspect import inspect_recording, to_json
     from bench.trace.read import read_recording
 
-    how = load_rig(rig).on_axis(axis_name).trace if rig else How(axis=axis_name)
+    axis = load_rig(rig).on_axis(axis_name) if rig else None
+    how = axis.trace if axis is not None else How(axis=axis_name)
     recording = read_recording(trace)
     found = inspect_recording(recording, how)
+    checks = () if found.asks is not None else gate(assemble(recording, how), axis).checks
     files = [path for path in (out, draft) if path is not None]
     if draft is not None:
         from bench.files import write_text
@@ -40,7 +45,9 @@ def inspect(
 
         draw_signals(recording, how, out)
     if json is not None:
-        write_json(json, to_json(found))
+        write_json(json, to_json(found, {"checks": checks_json(checks)}))
     if json != Path("-"):
         console().print(table(found))
+        if checks:
+            console().print(checks_table(checks))
         tell_files(files)

@@ -12,20 +12,64 @@ from bench.console import console, tell_files
 
 def lab(
     data: Annotated[Path | None, typer.Option("--data", help="Folder of your recordings; else synthetic ones.")] = None,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the report.")] = Path("bench_lab"),
+    out: Annotated[Path, typer.Option("--out", help="Folder for the report, or the grades.")] = Path("bench_lab"),
     synthetic: Annotated[
         Path | None, typer.Option("--record", help="Only simulate the course's recordings, into this folder.")
     ] = None,
+    students: Annotated[
+        int | None, typer.Option("--students", help="With --record: a folder and an axis of its own for each.")
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", help="With --record: of everything drawn.")] = 0,
+    submissions: Annotated[
+        Path | None, typer.Option("--grade", help="Grade the filled forms in this folder; with --truth.")
+    ] = None,
+    truth: Annotated[Path | None, typer.Option("--truth", help="Sealed truth that --students wrote.")] = None,
+    notebooks: Annotated[
+        Path | None, typer.Option("--notebooks", help="Only write a notebook for each task, into this folder.")
+    ] = None,
 ) -> None:
-    """Do all tasks of the lab course; write one report as HTML and PDF."""
+    """Do all tasks of the lab course; write one report as HTML, PDF and JSON. Or prepare and grade a class."""
+    if synthetic is not None:
+        _record(synthetic, students, seed)
+    elif submissions is not None:
+        _grade(submissions, truth, out)
+    elif notebooks is not None:
+        from bench.lab.notebooks import write_notebooks
+
+        tell_files(write_notebooks(notebooks))
+    elif students is not None or truth is not None:
+        raise typer.BadParameter("--students goes with --record, --truth with --grade")
+    else:
+        _report(data, out)
+
+
+def _record(folder: Path, students: int | None, seed: int) -> None:
     from bench.lab.record import record
+    from bench.lab.students import record_class
+    from bench.report.progress import progress
+
+    with progress("recording") as done:
+        tell_files(record(folder, seed, done) if students is None else record_class(folder, students, seed, done))
+
+
+def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
+    from bench.report.grades import grade_class, grades_table
+
+    if truth is None:
+        raise typer.BadParameter("--grade needs --truth FILE, which --record --students wrote")
+    graded, bad, files = grade_class(submissions, truth, out)
+    console().print(grades_table(graded))
+    for error in bad:
+        typer.echo(f"not graded: {error}", err=True)
+    tell_files(files[:2])
+    if bad:
+        raise typer.Exit(1)
+
+
+def _report(data: Path | None, out: Path) -> None:
     from bench.report.course import course_table, report_course
     from bench.report.progress import progress
 
-    if synthetic is not None:
-        with progress("recording") as done:
-            tell_files(record(synthetic, progress=done))
-        return
     with progress("lab course") as done:
         report = report_course(data, out, done)
     console().print(course_table(report.results))

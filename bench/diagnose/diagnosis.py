@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from bench.axis_kind import INERTIA
 from bench.balance.fit import Fit
 from bench.balance.quantities import uncertain
+from bench.checks.gate import passed
 from bench.diagnose.add.add import add
 from bench.diagnose.gap.decidable import require_positive
 from bench.diagnose.gap.gap import gap
@@ -45,9 +47,11 @@ def diagnose(
 
     Raises:
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
-        InputError: rig and recording do not fit together.
+        InputError: rig and recording do not fit together, or a check of a recording fails.
     """
-    recordings = Recordings.of(trace, rig, holdout)
+    gated = passed(trace, rig)
+    unseen = passed(holdout, rig).trace if holdout is not None else None
+    recordings = Recordings.of(gated.trace, rig, unseen)
     bare = gap(recordings.rows)
     located = where(bare, rig.axis_kind, recordings.unit)
     suspects = name(recordings, bare, excluded, policy)
@@ -55,7 +59,7 @@ def diagnose(
     progress(0.6)
     added = add(recordings, suspects)
     progress(0.9)
-    return show(recordings, bare, located, suspects, added)
+    return replace(show(recordings, bare, located, suspects, added), checks=gated.checks)
 
 
 def require_weight(recordings: Recordings, fitted: Fit) -> None:

@@ -3,8 +3,7 @@
     motor torque = J*alpha + K_w*omega + K_0*sgn(omega) + sum over effects of strength_k * column_k(signals, shape)
 
 Strengths enter linearly; shapes (a Stribeck speed, a harmonic, a time constant) do not and are profiled. An effect
-overrides what is not neutral in it, and whoever deals with effects asks the object. How it acts in a simulation:
-`bench.effects.kinds`.
+overrides what is not neutral in it; the rest of the bench asks the object. In a simulation: `bench.effects.kinds`.
 """
 
 from __future__ import annotations
@@ -31,8 +30,7 @@ if TYPE_CHECKING:
 #: Share of what stands above the noise floor that an effect must explain to be taken up; one alone explains 0.90 at
 #: least (`python -m tests.blind.margins`), one of several less.
 SHARE = 0.25
-#: The same for a pitch that repeats so many half cycles over the travel of a linear axis that no smooth error of the
-#: model copies it.
+#: The same for a pitch that repeats so many half cycles over a linear axis' travel that no smooth error copies it.
 PITCH_SHARE, MANY = 0.1, 20.0
 
 #: What acts on the load behind a coupling: effect, its shape, its strengths over load inertia.

@@ -90,6 +90,10 @@ class Mechanism(Effect):
         """Multiplies the motor's torque."""
         return 1.0
 
+    def load_torque(self, values: Values, at: Moment) -> Number:
+        """Resisting torque by which a load is driven or drives, through what transmits it - N*m (N)."""
+        return 0.0
+
     def added_inertia(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Added to the inertia - kg*m**2 (kg)."""
         return 0.0
@@ -104,6 +108,10 @@ class Friction(Mechanism):
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Added to the level of dry friction - N*m (N)."""
+        return 0.0
+
+    def friction_under_load(self, values: Values, axis: Axis, at: Moment, load: Number) -> Number:
+        """Added to the level of dry friction beside torques of the load - N*m (N)."""
         return 0.0
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:

@@ -26,6 +26,7 @@ class Signals:
         peak_effort: effort at the motor's peak current - N*m (N); the recording's largest where the rig tells none.
         sample_period: s.
         source: signal that speed and acceleration are taken from, `velocity` or `position`.
+        load: torque of the load as named effects make it - N*m (N).
     """
 
     time: Array
@@ -38,6 +39,7 @@ class Signals:
     peak_effort: float
     sample_period: float
     source: str = "velocity"
+    load: Array | float = 0.0
 
 
 @dataclass(frozen=True)

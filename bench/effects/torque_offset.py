@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.kinds import Axis, Mechanism
+from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
 from bench.effects.mjcf import add_resisting_torque
 from bench.effects.signals import Base, Scope, Signals
 from bench.trace.filter import Column
@@ -41,6 +41,10 @@ class TorqueOffset(Mechanism):
     def instead_of_dry_friction(self, torque: float) -> Mapping[str, float]:
         """The torque itself."""
         return {"torque": torque}
+
+    def load_torque(self, values: Values, at: Moment) -> Number:
+        """A weight."""
+        return values["torque"]
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Part of the load's constant torque."""

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import mujoco
 
-from bench.effects.kinds import Axis, Mechanism
+from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
 from bench.effects.mjcf import AXIS
 from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
@@ -37,6 +37,10 @@ class TorsionSpring(Mechanism):
     def stiffness(self, strengths: Sequence[float]) -> float:
         """The strength itself."""
         return strengths[0]
+
+    def load_torque(self, values: Values, at: Moment) -> Number:
+        """By the equation above."""
+        return values["stiffness"] * at.position
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Stiffness of the joint."""

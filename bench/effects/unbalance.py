@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from bench.effects.kinds import Axis, Mechanism
+from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
 from bench.effects.mjcf import add_periodic_torque
 from bench.effects.signals import Base, Signals
 from bench.effects.waves import amplitude_and_phase
@@ -44,6 +44,10 @@ class Unbalance(Mechanism):
     def wave_number(self, shape: Sequence[float]) -> float:
         """One cycle a revolution."""
         return 1.0
+
+    def load_torque(self, values: Values, at: Moment) -> Number:
+        """By the equation above."""
+        return values["amplitude"] * np.sin(at.position + values["phase"])
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """A torque of one period a revolution: an eccentric body would add inertia that J holds already."""

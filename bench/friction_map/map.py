@@ -16,6 +16,9 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
+from bench.checks.check import Check
+from bench.checks.gate import STEADY as STEADY_CHECKS
+from bench.checks.gate import joined, passed
 from bench.effects.catalogue import catalogue
 from bench.effects.signals import Base
 from bench.errors import InputError, UndeterminedError
@@ -49,6 +52,7 @@ class FrictionMap:
         values: of the effect's quantities - SI.
         probability: that chance saves as many squares, for the best effect.
         unexplained: norm of what is left over that of the effort, without and with the best effect.
+        checks: of the recordings, the worst of each.
     """
 
     velocity: Array
@@ -63,6 +67,7 @@ class FrictionMap:
     values: dict[str, float]
     probability: float
     unexplained: tuple[float, float]
+    checks: tuple[Check, ...] = ()
 
 
 def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
@@ -70,10 +75,11 @@ def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
 
     Raises:
         UndeterminedError: fewer than LEAST speeds in a direction, or none twice as fast as another.
-        InputError: a recording holds no torque or speed, keeps no speed or was given twice, recordings give efforts in
-            different units, or torque and speed are counted in opposite directions.
+        InputError: a recording holds no torque or speed, fails a check, keeps no speed or was given twice, recordings
+            give efforts in different units, or torque and speed are counted in opposite directions.
     """
-    velocity, effort, unit = _points(recordings, rig)
+    gated = [passed(trace, rig, STEADY_CHECKS) for trace in recordings]
+    velocity, effort, unit = _points([one.trace for one in gated], rig)
     total = float(effort @ effort)
     plain = plain_curve(velocity, effort)
     if plain.theta[0] * (velocity @ velocity) + plain.theta[1] * np.abs(velocity).sum() < 0.0:
@@ -95,7 +101,19 @@ def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
     values = dict(catalogue()[name].report(kept.theta[3:].tolist(), kept.shape, base)) if name else {}
     left = (float(np.sqrt(plain.squares / total)), float(np.sqrt(best.squares / total)))
     return FrictionMap(
-        velocity, effort, unit, rig.axis_kind, plain, best, base, offset, name, values, probability, left
+        velocity,
+        effort,
+        unit,
+        rig.axis_kind,
+        plain,
+        best,
+        base,
+        offset,
+        name,
+        values,
+        probability,
+        left,
+        joined([one.checks for one in gated]),
     )
 
 

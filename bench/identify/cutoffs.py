@@ -20,11 +20,12 @@ from bench.balance import layout
 from bench.balance.fit import fit
 from bench.balance.hum import with_hum
 from bench.balance.hypothesis import Hypothesis
+from bench.balance.last_digit import plain
 from bench.balance.normal_equations import BLOCKS, NormalEquations
 from bench.balance.rows import Rows
 from bench.errors import UndeterminedError
 from bench.identify.determined import left_open, only_direction
-from bench.identify.solution import equations_of, solved_with_shift
+from bench.identify.solution import Left, equations_of, solved_with_shift
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
@@ -65,14 +66,15 @@ class Tried:
     @classmethod
     def of(cls, rows: Rows, rig: Rig) -> Tried:
         """The estimate of these rows."""
-        hypothesis = with_hum(fit(rows, Hypothesis())).hypothesis
+        hypothesis = with_hum(fit(rows, plain(rows))).hypothesis
         equations = equations_of(rows, hypothesis).coarsened(BLOCKS)
         open_terms = left_open(equations, rig.axis_kind)
         told = np.array([term not in open_terms for term in TERMS])
         theta, half_widths = np.full(3, np.nan), np.full(3, np.nan)
         if told.any():
             found = solved_with_shift(equations, rows, rig.offset and only_direction(equations) is None)
-            theta, half_widths = _of_base(found.theta), found.reach * _of_base(found.errors)
+            misfit = Left.of(rows, hypothesis, found).misfit(found)
+            theta, half_widths = _of_base(found.theta), _of_base(np.hypot(found.reach * found.errors, misfit))
         return cls(rows, hypothesis, equations, np.where(told, theta, np.nan), np.where(told, half_widths, np.nan))
 
     @property
@@ -96,7 +98,7 @@ class Chosen:
 
     Attributes:
         tried: the estimate there, of the recording's first part.
-        doubt: how far J, K_w and K_0 may be off (3,) where the estimate moves with the cut-off; else 0.
+        doubt: how far J, K_w and K_0 may be off (3,) as the estimate moves from higher cut-offs; 0 at the highest.
         warnings: that it moves.
     """
 
@@ -143,7 +145,8 @@ def _chosen(telling: Sequence[Tried], kind: AxisKind) -> Chosen:
             break
         accepted.append(tried)
     rejected = telling[: len(telling) - len(accepted)]
-    doubts = [_doubt(tried, rejected, accepted[:k]) for k, tried in enumerate(accepted)]
+    beyond = rejected[-1] if rejected else accepted[-1]
+    doubts = [_doubt(tried, beyond, accepted[:k]) for k, tried in enumerate(accepted)]
     wide = [float(np.hypot(tried.half_widths[0], off[0])) for tried, off in zip(accepted, doubts, strict=True)]
     best = int(np.argmin(wide))
     if not rejected and wide[best] >= NARROWER * wide[-1]:
@@ -152,11 +155,9 @@ def _chosen(telling: Sequence[Tried], kind: AxisKind) -> Chosen:
     return Chosen(accepted[best], doubts[best], warnings)
 
 
-def _doubt(taken: Tried, rejected: Sequence[Tried], lower: Sequence[Tried]) -> Array:
+def _doubt(taken: Tried, beyond: Tried, lower: Sequence[Tried]) -> Array:
     """How far J, K_w and K_0 may be off (3,): no more than they moved, nor than lower cut-offs leave room for."""
-    if not rejected:
-        return np.zeros(3)
-    moved = np.abs(rejected[-1].theta - taken.theta)
+    moved = np.abs(beyond.theta - taken.theta)
     room = [np.abs(other.theta - taken.theta) + other.half_widths for other in lower]
     return np.nan_to_num(np.fmin.reduce([moved, *room]))
 

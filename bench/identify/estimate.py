@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from bench.balance.parameter import Parameter
+from bench.checks.check import Check
 from bench.errors import UndeterminedError
 
 
@@ -40,6 +41,7 @@ class Estimate:
         source: signal that speed and acceleration came from.
         warnings: what a user should know before relying on it.
         explained: share of the effort's variance that the model explains; nan where the estimator does not tell.
+        checks: what the gate found before the fit.
     """
 
     estimator: str
@@ -51,6 +53,7 @@ class Estimate:
     source: str
     warnings: tuple[str, ...] = ()
     explained: float = math.nan
+    checks: tuple[Check, ...] = ()
 
     def __getitem__(self, name: str) -> Parameter:
         return self.parameters[name]

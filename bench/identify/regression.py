@@ -16,6 +16,8 @@ from bench.balance.hypothesis import Hypothesis
 from bench.balance.normal_equations import BLOCKS, NormalEquations, join
 from bench.balance.parameter import Parameter
 from bench.balance.rows import Rows
+from bench.checks.check import Check
+from bench.checks.gate import PARTS, gate, joined, passed, require
 from bench.errors import UndeterminedError
 from bench.identify.cutoffs import TERMS, choose
 from bench.identify.determined import left_open, only_direction, require_determined, require_inertia, require_sound
@@ -23,6 +25,7 @@ from bench.identify.estimate import Estimate, RefusedEstimateError, Residual
 from bench.identify.load_inertia import load_inertia
 from bench.identify.parallel import in_parallel
 from bench.identify.solution import NOISE_ALONE, SURE, Left, Solved, equations_of, solved_with_shift
+from bench.identify.tolerance import by_tolerance
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95
 from bench.trace.trace import Trace
@@ -39,7 +42,9 @@ class Gathered:
         effort_unit: N*m, N, or what the rig allows.
         samples_read: of all parts.
         doubt: how far J, K_w and K_0 may be off as they move with the filter's cut-off (3,).
+        tolerance: how far coefficients may be off by the rig's tolerances (p,).
         warnings: that they move.
+        checks: of all parts.
     """
 
     equations: NormalEquations
@@ -48,7 +53,9 @@ class Gathered:
     effort_unit: str
     samples_read: int
     doubt: Array
+    tolerance: Array
     warnings: tuple[str, ...] = ()
+    checks: tuple[Check, ...] = ()
 
 
 def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = None) -> Estimate:
@@ -63,7 +70,7 @@ def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = No
     Raises:
         RefusedEstimateError: the recording does not determine one of them; what it does goes with it.
         UndeterminedError: it determines none.
-        InputError: a signal is missing, or rig and trace do not fit together.
+        InputError: a signal is missing, rig and trace do not fit together, or a check of the recording fails.
     """
     return solve(gather(trace, rig, cutoff), rig)
 
@@ -74,20 +81,25 @@ def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Ga
     The first part decides how all are filtered, and whether the mains hum in them.
     """
     parts = iter([trace] if isinstance(trace, Trace) else trace)
-    first = next(parts)
+    gated = passed(next(parts), rig)
+    first = gated.trace
     chosen = choose(first, rig, cutoff)
     rows, hypothesis = chosen.tried.rows, chosen.tried.hypothesis
 
-    def gathered(part: Trace) -> tuple[NormalEquations, int]:
+    def gathered(part: Trace) -> tuple[NormalEquations, int, tuple[Check, ...]]:
         if part is first:
-            return chosen.tried.equations, len(part)
-        laid = Rows.of(part, rig, conditioning=rows.conditioning, begins=float(first.time[0]))
-        return equations_of(laid, hypothesis), len(part)
+            return chosen.tried.equations, len(part), gated.checks
+        sound = gate(part, rig, PARTS)
+        laid = Rows.of(sound.trace, rig, conditioning=rows.conditioning, begins=float(first.time[0]))
+        return equations_of(laid, hypothesis), len(sound.trace), sound.checks
 
-    equations, read = zip(*in_parallel(gathered, chain([first], parts)), strict=True)
+    equations, read, checks = zip(*in_parallel(gathered, chain([first], parts)), strict=True)
+    together = joined(checks)
+    require(together, first)
     unit = rig.net_effort(first)[1]
-    joined = join(equations).coarsened(BLOCKS)
-    return Gathered(joined, rows, hypothesis, unit, sum(read), chosen.doubt, chosen.warnings)
+    whole = join(equations).coarsened(BLOCKS)
+    tolerance = by_tolerance(gated.trace, rig, chosen.tried)
+    return Gathered(whole, rows, hypothesis, unit, sum(read), chosen.doubt, tolerance, chosen.warnings, together)
 
 
 def solve(gathered: Gathered, rig: Rig) -> Estimate:
@@ -115,7 +127,9 @@ def solve(gathered: Gathered, rig: Rig) -> Estimate:
 
 def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estimate:
     equations, unit, kind = gathered.equations, gathered.effort_unit, rig.axis_kind
-    parameters = parameters_of(found, kind, unit, np.hypot(left.misfit(gathered.rows, found), _padded(gathered, found)))
+    doubt = np.pad(gathered.doubt, (0, found.theta.size - gathered.doubt.size))
+    more = np.sqrt(left.misfit(found) ** 2 + doubt**2 + gathered.tolerance**2)
+    parameters = parameters_of(found, kind, unit, more)
     parameters |= load_inertia(parameters, rig)
     chosen = equations.select(found.columns)
     power, squares = max(chosen.residual_power(found.theta), 0.0), float(chosen.power.sum())
@@ -129,15 +143,16 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
         samples_used=chosen.count * smooth.stride,
         cutoff=smooth.cutoff,
         source=gathered.rows.conditioning.source,
-        warnings=(*gathered.warnings, *_shifted(found.shift, gathered.rows), *negative(parameters, kind)),
+        warnings=(
+            *gathered.warnings,
+            *_of_rig(rig),
+            *_shifted(found.shift, gathered.rows),
+            *negative(parameters, kind),
+        ),
         explained=1.0 - power / max(squares - equations.count * mean**2, 1e-300),
+        checks=gathered.checks,
     )
     return replace(estimate, warnings=(*estimate.warnings, *_remaining(estimate)))
-
-
-def _padded(gathered: Gathered, found: Solved) -> Array:
-    """Doubt of all coefficients (p,): that of J, K_w and K_0, which come first."""
-    return np.pad(gathered.doubt, (0, found.theta.size - gathered.doubt.size))
 
 
 def parameters_of(found: Solved, kind: AxisKind, effort_unit: str, more: Array | None = None) -> dict[str, Parameter]:
@@ -168,6 +183,11 @@ def _remaining(estimate: Estimate) -> Iterator[str]:
             f"the model explains {estimate.explained:.2%} of the effort's variance and leaves "
             f"{residual.rms / residual.noise_floor:.3g} times what noise alone would: bench diagnose may tell why"
         )
+
+
+def _of_rig(rig: Rig) -> Iterator[str]:
+    if rig.motor.disagreement is not None:
+        yield f"{rig.source}: {rig.motor.disagreement}"
 
 
 def _shifted(shift: tuple[float, float], rows: Rows) -> Iterator[str]:

@@ -11,6 +11,7 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.balance import layout
 from bench.balance.covariance import estimated, left_out
 from bench.balance.hypothesis import Hypothesis
+from bench.balance.last_digit import rounding
 from bench.balance.layout import Layout, lay_out
 from bench.balance.noise import noise_floor, white_power
 from bench.balance.normal_equations import NormalEquations, normal_equations, solved
@@ -107,11 +108,13 @@ class Left:
         laid = lay_out(rows, hypothesis)
         theta = found.theta[: laid.owners.size]
         offset = float(found.theta[-1]) if found.theta.size > laid.owners.size else 0.0
-        residual = laid.effort - laid.columns @ theta - offset
-        floor = noise_floor(rows, white_power(rows, hypothesis, laid, theta), residual).coloured
+        modelled = laid.columns @ theta + offset
+        residual, cut = laid.effort - modelled, float(theta[laid.owners == layout.DIGIT].sum())
+        rounded = rounding(rows, hypothesis.step, modelled, cut)
+        floor = noise_floor(rows, white_power(rows, hypothesis, laid, theta), residual, rounded).coloured
         return cls(laid, residual, floor)
 
-    def misfit(self, rows: Rows, found: Solved) -> Array:
+    def misfit(self, found: Solved) -> Array:
         """How far intervals of 95 % have to reach because of what stands above the noise (p,); 0 where nothing does."""
         above = 1.0 - (NOISE_ALONE * self.floor) ** 2 / max(float(np.mean(self.residual**2)), 1e-300)
         reaches = np.zeros(found.theta.size)
@@ -120,5 +123,5 @@ class Left:
             if found.offset:
                 columns = np.column_stack([columns, np.ones(self.residual.size)])
             free = [k for k in range(found.theta.size) if not (found.held and k == layout.MISALIGNMENT)]
-            reaches[free] = np.sqrt(above) * left_out(columns[:, free], self.residual, rows.time)
+            reaches[free] = np.sqrt(above) * left_out(columns[:, free], self.residual)
         return reaches

@@ -20,7 +20,7 @@ from bench.trace.trace import Trace
 
 KEY, TITLE = "emulation", "Friction in the drive's software and in the mechanics"
 
-MECHANICS, SETPOINT, PHASES = "in the mechanics", "emulated", "emulated, current of the phases"
+MECHANICS, SETPOINT, PHASES = "in the mechanics", "emulated", "emulated, phases"
 
 
 def recordings(rig: Rig) -> dict[str, Trace]:

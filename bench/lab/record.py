@@ -31,18 +31,21 @@ MAINS = 230.0
 TOP_SPEED, START, STOP, BRAKING = 4500.0 * 2.0 * np.pi / 60.0, 0.02, 0.6, 700.0
 
 
-def record(folder: Path, seed: int = 0, progress: Callable[[float], None] = lambda share: None) -> list[Path]:
-    """Simulate the lab's axis and write its recordings, each with its truth, and the catapult's flights.
+def record(
+    folder: Path, seed: int = 0, progress: Callable[[float], None] = lambda share: None, rig: Rig | None = None
+) -> list[Path]:
+    """Simulate an axis and write its recordings, each with its truth, and the catapult's flights.
 
     Args:
         folder: to write to.
         seed: of the sensors' noise.
         progress: called with the share done.
+        rig: of the axis, with `[drive]` and `[simulation]`; the lab's without.
 
     Returns:
         Paths written.
     """
-    rig = lab_rig()
+    rig = rig or lab_rig()
     paths = []
     for name, axis in ((WITHOUT_FRICTION, without_friction(rig)), (WITH_FRICTION, rig)):
         simulated = simulate(axis, "fast_reversals", seed)

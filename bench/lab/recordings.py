@@ -15,9 +15,12 @@ from bench.lab.run import Run, run_of
 from bench.lab.sources import Sources, embedded
 from bench.plant.truth import truth_path
 from bench.rig.rig import Rig, load_rig
-from bench.trace.read import read, read_recording
+from bench.trace.assemble import assemble
+from bench.trace.channel import Recording
+from bench.trace.choose import choose
+from bench.trace.how import how_to_read
+from bench.trace.read import read_recording
 from bench.trace.readers import READERS
-from bench.trace.trace import Trace
 from bench.units import nearest
 
 WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"
@@ -95,9 +98,9 @@ class Recordings:
             InputError: no such file, not a recording, or a signal missing in it.
         """
         path = self.path(name)
-        trace = read(path, self.rig.trace)
-        _require_signals(trace, path)
-        return run_of(trace, self.rig, read_truth(truth_path(path)))
+        recording = read_recording(path)
+        _require_signals(recording, path, self.rig.trace.columns)
+        return run_of(assemble(recording, self.rig.trace), self.rig, read_truth(truth_path(path)))
 
 
 def read_truth(path: Path) -> Mapping[str, float]:
@@ -124,11 +127,12 @@ def _letters(path: Path) -> str:
     return re.sub("[^a-z]", "", path.name.split(".")[0].lower())
 
 
-def _require_signals(trace: Trace, path: Path) -> None:
-    missing = [name for name in NEEDED if name not in trace]
+def _require_signals(recording: Recording, path: Path, columns: Mapping[str, str]) -> None:
+    chosen, _ = choose(recording, how_to_read(columns))
+    missing = [name for name in NEEDED if name not in chosen]
     if not missing:
         return
-    labels = ", ".join(f"'{channel.label}'" for channel in read_recording(path).channels)
+    labels = ", ".join(f"'{channel.label}'" for channel in recording.channels)
     raise InputError(
         path,
         f"holds no {' and no '.join(missing)} by a name the bench knows; its columns are {labels}",

@@ -93,7 +93,8 @@ def task(run: Run) -> Task:
     """Draw the remaining samples over the original ones, and alpha_filt over alpha."""
     kept = fast_samples(run)
     acceleration, synchronous = filtered_acceleration(run)
-    in_step, as_it_comes = lateness(run), lateness(run, late=DELAY)
+    # thousandths of a sample are rounding
+    in_step, as_it_comes = (round(lateness(run, late), 3) + 0.0 for late in (0, DELAY))
     scatter = [float(np.std(np.diff(signal))) for signal in (run.acceleration, acceleration)]
     return Task(
         KEY,

@@ -49,9 +49,7 @@ def task(rig: Rig, sources: Sources, axis: AxisParameters, identified: float, kn
     deviation = np.degrees(references.position[:, None] - states.position)
     rms = column_rms(deviation)
     numbers = []
-    source = joined(
-        SIMULATED, f"drive: {sources('drive', 'position_gain')}", f"disk: {sources('load', 'outer_diameter')}"
-    )
+    source = joined(SIMULATED, sources("drive", "position_gain"), sources("load", "outer_diameter"))
     for k, name in enumerate(loads):
         numbers.append(Number(f"largest deviation, {name}", float(np.abs(deviation[:, k]).max()), "deg", source=source))
         numbers.append(Number(f"RMS deviation, {name}", float(rms[k]), "deg", source=source))

@@ -108,7 +108,8 @@ class AxisModel:
 
 def scales_friction(effects: Sequence[Present]) -> bool:
     """Whether dry friction changes in every step."""
-    return any(p.effect.overrides("friction_factor") or p.effect.overrides("friction_excess") for p in effects)
+    hooks = ("friction_factor", "friction_excess", "friction_under_load")
+    return any(p.effect.overrides(hook) for p in effects for hook in hooks)
 
 
 def winding_of(rig: Rig) -> Winding | None:

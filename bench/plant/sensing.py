@@ -1,4 +1,4 @@
-"""What drive and recording have of motion and current: a sensor's faults are in both, a filter's in the recording alone."""
+"""What drive and recording have of motion and current: sensors' faults are in both, filters in the recording alone."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def misreads_effort(model: AxisModel) -> bool:
 
 def true_effort(model: AxisModel, effort: Array, since: float, step: float) -> Array:
     """Effort of one axis that acted, from the recorded one, (n,) at a constant step - s - from an instant on - s."""
-    pairs, time = _pairs(model.of_kind(Sensing)), since + step * np.arange(effort.size)
+    pairs, time = _pairs(model.of_kind(Sensing)), since + step * np.arange(effort.size, dtype=np.float64)
     for present, effect in reversed(pairs):
         effort = effect.unrecorded(dict(present.values), effort, step)
     for present, effect in pairs:

@@ -94,7 +94,7 @@ class Inputs:
     Attributes:
         holding: the inputs but for the electronics.
         model: whose electronics act.
-        acting: effort at all steps with the faults of its sensor and its lags undone - N*m (N) - (steps,); None without any.
+        acting: effort at all steps, faults of its sensor and lags undone - N*m (N) - (steps,); None without any.
     """
 
     holding: HoldingInputs

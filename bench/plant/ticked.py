@@ -82,7 +82,7 @@ class TickedEffects:
         return reported, torque
 
     def _driven(self, time: float | Array, velocity: Array, demand: Array) -> tuple[Array, Array]:
-        """In the order of the signal: what flows of a demand, what that truly is, what of it acts, what torque it makes."""
+        """In the order of the signal: what flows of a demand, what that truly is, what acts, what torque it makes."""
         reported = demand.copy()
         for rows in self._flowing:
             i = rows.index
@@ -109,8 +109,10 @@ class _FrictionLevels:
         self._excesses = _through(mechanisms, "friction_excess")
         self._factors = _through(mechanisms, "friction_factor")
         self._differences = _through(mechanisms, "friction_difference")
+        self._under_load = _through(mechanisms, "friction_under_load")
+        self._loads = _through(gather(models, Mechanism), "load_torque") if self._under_load else []
         self._levels: Array | None = None
-        if self._excesses or self._factors or self._differences:
+        if self._excesses or self._factors or self._differences or self._under_load:
             actuator = mujoco.mj_name2id(batch.model, mujoco.mjtObj.mjOBJ_ACTUATOR, BRISTLES)
             if actuator >= 0:
                 self._levels = batch.expand("actuator_biasprm")[:, actuator, BRISTLE_LEVELS]
@@ -125,6 +127,13 @@ class _FrictionLevels:
         level = self._coulomb.copy()
         for rows in self._excesses:
             level[rows.index] += rows.effect.friction_excess(rows.values, rows.axis, rows.moment(at))
+        if self._under_load:
+            load = np.zeros(level.size)
+            for rows in self._loads:
+                load[rows.index] += rows.effect.load_torque(rows.values, rows.moment(at))
+            for rows in self._under_load:
+                values, axis, i = rows.values, rows.axis, rows.index
+                level[i] += rows.effect.friction_under_load(values, axis, rows.moment(at), load[i])
         half = np.zeros(level.size)
         for rows in self._differences:
             half[rows.index] += 0.5 * rows.effect.friction_difference(rows.values, rows.axis)

@@ -47,7 +47,9 @@ def draw_chart(figure: Figure | SubFigure, chart: Chart) -> None:
 
 
 def _draw(axes: Axes, panel: Panel, label_x: bool, label_size: str) -> None:
-    colours = COLOURS if len(panel.curves) <= len(COLOURS) else colormaps["tab20"].colors  # pyright: ignore
+    colours = COLOURS
+    if len(panel.curves) > len(COLOURS):
+        colours = colormaps["tab10" if len(panel.curves) <= 10 else "tab20"].colors  # pyright: ignore
     for curve, colour in zip(panel.curves, colours, strict=False):
         _draw_curve(axes, curve, colour)
     if panel.log:
@@ -76,5 +78,5 @@ def _draw_curve(axes: Axes, curve: Curve, colour: object) -> None:
     elif curve.style == "wide":
         axes.plot(curve.x, curve.y, "-", lw=4.0, alpha=0.4, color=colour, label=label)
     else:
-        line, width = {"dashes": ("--", 1.1), "thin": (":", 0.9), "line": ("-", 1.1)}[curve.style]
+        line, width = {"dashes": ("--", 1.1), "thin": (":", 1.3), "line": ("-", 1.1)}[curve.style]
         axes.plot(curve.x, curve.y, line, lw=width, color=colour, label=label)

@@ -14,6 +14,7 @@ from bench.lab.course import RECORDED, course
 from bench.lab.cover import Cover
 from bench.lab.recordings import Recordings
 from bench.lab.result import NotDone, Task
+from bench.report.handin import write_sources
 from bench.report.lab import Results, write_lab_report
 from bench.report.section import section
 
@@ -32,7 +33,7 @@ class CourseReport:
 
 
 def report_course(data: Path | None, out: Path, progress: Callable[[float], None]) -> CourseReport:
-    """Do the course and write `lab.json`, `lab.html` and `lab.pdf`.
+    """Do the course and write `lab.json`, `lab.html` and `lab.pdf`, and the sources to hand in.
 
     Args:
         data: folder with a student's recordings, or None for the synthetic ones.
@@ -47,7 +48,8 @@ def report_course(data: Path | None, out: Path, progress: Callable[[float], None
     files = write_lab_report(
         out, results, _about(recordings, results), lambda share: progress(0.7 + 0.3 * share), cover, recordings.rig.name
     )
-    return CourseReport(results, files)
+    sources = write_sources(out / "sources", recordings, results)
+    return CourseReport(results, [*sources, *files])
 
 
 def _about(recordings: Recordings, results: Results) -> list[str]:
@@ -72,7 +74,7 @@ def course_table(results: Results) -> Table:
     """Every number with its unit, beside its truth where that is known; of what was not done, what is missing."""
     table = Table(box=box.SIMPLE_HEAD, title="Lab course", title_justify="left")
     table.add_column("task", no_wrap=True)
-    table.add_column("quantity")
+    table.add_column("quantity", overflow="fold")
     for heading in ("value", "truth", "error"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("unit", no_wrap=True)

@@ -18,6 +18,7 @@ from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where.where import Where
 from bench.files import write_text
 from bench.plant.model_file import model_toml, model_xml, tables_toml
+from bench.report.checks import checks_json
 from bench.report.estimate import parameters_json
 from bench.report.figures import MEASURED, MODELLED, save
 
@@ -54,6 +55,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
         "next_experiment": _experiment(diagnosis),
         "stopped": diagnosis.stopped,
         "model": {"mjcf": "model.xml" if diagnosis.model is not None else None, "toml": "model.toml"},
+        "checks": checks_json(diagnosis.checks),
         "warnings": diagnosis.warnings,
     }
     return json.dumps(content, indent=2)
@@ -120,6 +122,7 @@ def _step(step: Shrunk) -> dict[str, Any]:
 def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
     """Effects with their quantities, and the gaps they closed."""
     caption = [f"verdict: {diagnosis.verdict.replace('_', ' ')}", *(f"  {said}" for said in diagnosis.because)]
+    caption += _at_fault(diagnosis)
     for name, gap in (("torque", diagnosis.torque), ("velocity", diagnosis.velocity)):
         for recording, pair in (("recording", gap.identify), ("holdout", gap.holdout)):
             if pair is not None:
@@ -160,6 +163,12 @@ def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
             table.add_row(label, quantity.replace("_", " "), f"{found.value:.5g}", reach, found.unit)
             label = ""
     return table
+
+
+def _at_fault(diagnosis: Diagnosis) -> list[str]:
+    """That a sensor errs where the axis does not."""
+    sensors = [effect.name for effect in diagnosis.effects if effect.effect.kind == "measurement"]
+    return [f"at fault is the sensor, not the axis: {', '.join(sensors)}"] if sensors else []
 
 
 def where_figure(diagnosis: Diagnosis, title: str) -> Figure:

@@ -28,6 +28,8 @@ HOOKS = {
     "delivered": "between reported current and torque",
     "seen": "between motion and drive",
     "filtered": "between drive and recording",
+    "acted": "between the current that is read and the one that flows",
+    "recorded": "between drive and recording",
 }
 
 

@@ -14,6 +14,7 @@ from rich.table import Table
 from bench.axis_kind import AxisKind
 from bench.balance.parameter import Parameter
 from bench.identify.estimate import Estimate
+from bench.report.checks import checks_json
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
     from bench.identify.refine import Refinement
@@ -64,6 +65,7 @@ def estimate_json(estimate: Estimate, refinement: Refinement | None = None, refu
             },
             "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
             "filter": {"cutoff": _number(estimate.cutoff), "unit": "Hz", "source": estimate.source},
+            "checks": checks_json(estimate.checks),
             "warnings": list(estimate.warnings),
             **polish,
         },

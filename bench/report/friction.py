@@ -14,6 +14,7 @@ from rich.table import Table
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS
 from bench.effects.catalogue import catalogue
 from bench.friction_map.map import CHANCE, FrictionMap
+from bench.report.checks import checks_json
 from bench.report.figures import MEASURED, MODELLED, REST, save_as_named
 
 SCHEMA = "bench.friction/1"
@@ -32,6 +33,7 @@ def friction_json(found: FrictionMap) -> str:
         "best": found.best.name or None,
         "chance": found.probability,
         "unexplained": {"before": before, "after": after},
+        "checks": checks_json(found.checks),
         "velocity": {"unit": found.kind.speed_unit, "values": found.velocity.tolist()},
         "effort": {"unit": found.effort_unit, "values": found.effort.tolist()},
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bench.checks.gate import gate
 from bench.files import write_text
 from bench.identify.estimate import Estimate
 from bench.report.estimate import estimate_json
@@ -33,7 +34,7 @@ def write_identification(
     Returns:
         Paths written.
     """
-    first = next(stream(trace, rig.trace))
+    first = gate(next(stream(trace, rig.trace)), rig).trace
     effort, _ = rig.net_effort(first)
     cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
     moved = motion(first, effort, condition(first, effort, cutoff))

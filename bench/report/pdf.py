@@ -168,5 +168,5 @@ def _paragraph(text: str) -> list[Line]:
 
 
 def _table_line(row: Row) -> Line:
-    values = f"{row.name:<42.42}{row.value:>11}  {row.unit:<10}{row.truth:>9}{row.error:>9}"
-    return Line(f"{values}  {row.source:.32}".rstrip(), table=True)
+    values = f"{row.name:<46.46}{row.value:>11}  {row.unit:<10}{row.truth:>8}{row.error:>9}"
+    return Line(f"{values}  {row.source:.29}".rstrip(), table=True)

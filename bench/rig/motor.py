@@ -27,8 +27,14 @@ from bench.rig.values import (
     TorquePerAmpere,
     TorquePerVolt,
     Voltage,
+    times,
+    tolerance_of,
 )
 
+#: Of constants whose tolerance is not stated, as datasheets have it.
+USUAL_TOLERANCE = 0.1
+#: kT over Ke in one unit: with the values of an equivalent DC machine, of one phase, between lines.
+CONVENTIONS = (1.0, 1.5, math.sqrt(3.0))
 DATASHEET = ("continuous_stall_torque", "continuous_stall_current", "peak_torque", "peak_current")
 
 
@@ -102,14 +108,34 @@ class Motor(Table):
         root = math.sqrt(2.0)
         per_ampere = {name: getattr(self, name) for name in ("torque_constant", "force_constant")}
         amperes = {name: getattr(self, name) for name in ("continuous_stall_current", "peak_current")}
-        converted = {name: value / root for name, value in per_ampere.items() if value is not None}
-        converted |= {name: value * root for name, value in amperes.items() if value is not None}
+        converted = {name: times(value, 1.0 / root) for name, value in per_ampere.items() if value is not None}
+        converted |= {name: times(value, root) for name, value in amperes.items() if value is not None}
         return self.model_copy(update={**converted, "current": "peak"})
 
     @property
     def inertia(self) -> float:
         """Of what moves in the motor - kg*m**2 (kg); 0 when the rig does not tell."""
         return self.rotor_inertia or self.moving_mass or 0.0
+
+    @property
+    def disagreement(self) -> str | None:
+        """That torque constant and back-EMF constant are not those of one motor; None where they may be.
+
+        A motor gives as power what it takes as electricity, kT*w*I = Ke*w*I; 3/2 and sqrt(3) times that where Ke is of
+        one phase or between lines, in effective values.
+        """
+        constant, back_emf = self.torque_per_ampere, self.back_emf_constant
+        if constant is None or back_emf is None:
+            return None
+        stated = tolerance_of(self.torque_constant or self.force_constant) / constant.constant
+        stated = math.hypot(stated, tolerance_of(back_emf) / back_emf) or USUAL_TOLERANCE
+        ratio = constant.constant / back_emf
+        if any(abs(ratio / convention - 1.0) <= stated for convention in CONVENTIONS):
+            return None
+        return (
+            f"torque constant ({constant.constant:.4g}) and back-EMF constant ({back_emf:.4g}) disagree: their ratio, "
+            f"{ratio:.3g}, is not 1, 3/2 or sqrt(3) within {stated:.0%}; what is identified errs as the first does"
+        )
 
     @property
     def rated_effort(self) -> float | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -18,7 +18,7 @@ from bench.rig.load import Load
 from bench.rig.motor import Motor
 from bench.rig.peak_curve import PeakCurve
 from bench.rig.simulation import Simulation
-from bench.rig.values import Period, Table, Time
+from bench.rig.values import Period, Table, Time, tolerance_of
 from bench.trace.trace import Trace
 from bench.units import nearest
 
@@ -142,6 +142,16 @@ class Rig(Table):
             current = (trace["voltage"] - back_emf * trace["velocity"]) / resistance
             return constant.torque(current), self.effort_unit
         return trace["voltage"], "V"
+
+    def within_tolerance(self) -> Iterator[Rig]:
+        """This rig with one value at the end of its tolerance, for each value of motor and load that has one."""
+        tables = {"motor": self.motor} | ({} if self.load is None else {"load": self.load})
+        for name, table in tables.items():
+            for field in type(table).model_fields:
+                value = getattr(table, field)
+                if tolerance_of(value) > 0.0:
+                    moved = table.model_copy(update={field: value + tolerance_of(value)})
+                    yield self.model_copy(update={name: moved})
 
     @property
     def effort_unit(self) -> str:

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 from pydantic_core import PydanticCustomError
 
 from bench.axis_kind import ROTARY, AxisKind
 from bench.errors import InputError
-from bench.units import parse
+from bench.units import parse_with_tolerance
 
 
 class Table(BaseModel):
@@ -18,8 +26,39 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-def si(unit: str, translated: bool = False) -> BeforeValidator:
-    """Validator that turns `"22.4 kg*cm**2"` into a number in an SI unit.
+class Toleranced(float):
+    """A value of a rig, which knows how far from it the true one may lie.
+
+    Attributes:
+        tolerance: half width of the range that holds the true value at 95 % - the value's unit; 0 where none is stated.
+    """
+
+    tolerance: float
+
+    def __new__(cls, value: float, tolerance: float) -> Self:
+        """Of a value and its tolerance."""
+        made = super().__new__(cls, value)
+        made.tolerance = tolerance
+        return made
+
+    def __getnewargs__(self) -> tuple[float, float]:  # type: ignore[override]
+        """What copies and other processes make it from."""
+        return float(self), self.tolerance
+
+
+def tolerance_of(value: float | None) -> float:
+    """Tolerance of a value of a rig - its unit; 0 where none is stated."""
+    return value.tolerance if isinstance(value, Toleranced) else 0.0
+
+
+def times(value: float, factor: float) -> float:
+    """A value of a rig by a factor, its tolerance with it."""
+    tolerance = tolerance_of(value)
+    return Toleranced(value * factor, tolerance * factor) if tolerance else value * factor
+
+
+def si(unit: str, translated: bool = False) -> WrapValidator:
+    """Validator that turns `"22.4 kg*cm**2"`, or `"22.4 +/- 0.5 kg*cm**2"`, into a number in an SI unit.
 
     Args:
         unit: of the value on a rotary axis.
@@ -27,44 +66,49 @@ def si(unit: str, translated: bool = False) -> BeforeValidator:
             validation context.
     """
 
-    def read(text: object, info: ValidationInfo) -> float:
+    def read(text: object, check: ValidatorFunctionWrapHandler, info: ValidationInfo) -> float:
         kind: AxisKind = ROTARY if info.context is None or not translated else info.context["kind"]
         try:
-            return parse(text, kind.translated(unit), "")
+            value, tolerance = parse_with_tolerance(text, kind.translated(unit), "")
         except InputError as error:
             raise PydanticCustomError("unit", "{found}; {allowed}", vars(error)) from error
+        try:
+            checked = check(value)
+        except ValidationError as error:  # of the bounds, which are told of the text that stands in the file
+            raise PydanticCustomError("bounds", "{found}", {"found": error.errors()[0]["msg"]}) from error
+        return Toleranced(checked, tolerance) if tolerance else checked
 
-    return BeforeValidator(read)
+    return WrapValidator(read)
 
 
 _positive, _not_negative = Field(gt=0.0), Field(ge=0.0)
 
-Inertia = Annotated[float, si("kg*m**2"), _positive]
-Mass = Annotated[float, si("kg"), _positive]
-Length = Annotated[float, si("m"), _positive]
-Density = Annotated[float, si("kg/m**3"), _positive]
-Time = Annotated[float, si("s"), _positive]
+Inertia = Annotated[float, _positive, si("kg*m**2")]
+Mass = Annotated[float, _positive, si("kg")]
+Length = Annotated[float, _positive, si("m")]
+Density = Annotated[float, _positive, si("kg/m**3")]
+Time = Annotated[float, _positive, si("s")]
 Angle = Annotated[float, si("rad")]
-Period = Annotated[float, si("rad", translated=True), _positive]
-Rate = Annotated[float, si("1/s"), _not_negative]
-Current = Annotated[float, si("A"), _positive]
-Voltage = Annotated[float, si("V"), _positive]
-Resistance = Annotated[float, si("ohm"), _positive]
-Inductance = Annotated[float, si("H"), _positive]
-BackEmf = Annotated[float, si("V*s/rad", translated=True), _positive]
-Torque = Annotated[float, si("N*m"), _positive]
-Force = Annotated[float, si("N"), _positive]
-TorquePerAmpere = Annotated[float, si("N*m/A"), _positive]
-ForcePerAmpere = Annotated[float, si("N/A"), _positive]
-TorquePerVolt = Annotated[float, si("N*m/V"), _positive]
-ForcePerVolt = Annotated[float, si("N/V"), _positive]
-Speed = Annotated[float, si("rad/s", translated=True), _positive]
-VelocityNoise = Annotated[float, si("rad/s", translated=True), _not_negative]
-CurrentNoise = Annotated[float, si("A"), _not_negative]
-Resolution = Annotated[float, si("rad", translated=True), _not_negative]
-Viscous = Annotated[float, si("N*m*s/rad", translated=True), _not_negative]
-Coulomb = Annotated[float, si("N*m", translated=True), _not_negative]
+Period = Annotated[float, _positive, si("rad", translated=True)]
+Rate = Annotated[float, _not_negative, si("1/s")]
+Current = Annotated[float, _positive, si("A")]
+Voltage = Annotated[float, _positive, si("V")]
+Resistance = Annotated[float, _positive, si("ohm")]
+Inductance = Annotated[float, _positive, si("H")]
+BackEmf = Annotated[float, _positive, si("V*s/rad", translated=True)]
+Torque = Annotated[float, _positive, si("N*m")]
+Force = Annotated[float, _positive, si("N")]
+TorquePerAmpere = Annotated[float, _positive, si("N*m/A")]
+ForcePerAmpere = Annotated[float, _positive, si("N/A")]
+TorquePerVolt = Annotated[float, _positive, si("N*m/V")]
+ForcePerVolt = Annotated[float, _positive, si("N/V")]
+Speed = Annotated[float, _positive, si("rad/s", translated=True)]
+VelocityNoise = Annotated[float, _not_negative, si("rad/s", translated=True)]
+CurrentNoise = Annotated[float, _not_negative, si("A")]
+Resolution = Annotated[float, _not_negative, si("rad", translated=True)]
+Viscous = Annotated[float, _not_negative, si("N*m*s/rad", translated=True)]
+Coulomb = Annotated[float, _not_negative, si("N*m", translated=True)]
 Effort = Annotated[float, si("N*m", translated=True)]
-IntegralGain = Annotated[float, si("N*m/rad", translated=True), _not_negative]
-Feedforward = Annotated[float, si("kg*m**2", translated=True), _not_negative]
+IntegralGain = Annotated[float, _not_negative, si("N*m/rad", translated=True)]
+Feedforward = Annotated[float, _not_negative, si("kg*m**2", translated=True)]
 Temperature = Annotated[float, si("K")]

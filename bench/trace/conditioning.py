@@ -13,7 +13,7 @@ from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, GaussianFilter
-from bench.trace.noise import white_noise
+from bench.trace.noise import resolution, white_noise
 from bench.trace.trace import Trace
 
 #: Where effort and acceleration share half of their power, signal and noise are equal.
@@ -40,6 +40,7 @@ class Conditioning:
         source: signal that speed and acceleration come from, `velocity` or `position`.
         source_noise: white noise of that signal - its SI unit.
         effort_noise: white noise of torque or force - the effort's unit.
+        effort_step: between the values it takes; 0 where hardly one occurs twice - the effort's unit.
         speed_noise: of the raw speed whose sign is taken (central difference of a position) - rad/s (m/s).
         coherence: highest coherence of effort and acceleration over frequency.
     """
@@ -48,6 +49,7 @@ class Conditioning:
     source: str
     source_noise: float
     effort_noise: float
+    effort_step: float
     speed_noise: float
     coherence: float
 
@@ -115,8 +117,9 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
         signs = [known_sign(speed, SIGN_CONFIDENCE * speed_noise) for speed in speeds]
         cutoff = max(coherent, _least_cutoff(signs, trace.sample_period))
     chosen = GaussianFilter.from_cutoff(cutoff, trace.sample_period)
-    effort_noise = white_noise(*(effort[part] for part in parts))
-    return Conditioning(chosen, source, noise[source], effort_noise, speed_noise, float(coherence[peak]))
+    efforts = [effort[part] for part in parts]
+    loud, step = white_noise(*efforts), resolution(np.concatenate(efforts))
+    return Conditioning(chosen, source, noise[source], loud, step, speed_noise, float(coherence[peak]))
 
 
 def moving(trace: Trace, source: str, least: int) -> list[slice]:

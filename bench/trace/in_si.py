@@ -17,6 +17,7 @@ from bench.trace.known_names import scale_in
 from bench.trace.signals import SI_UNITS
 from bench.trace.trace import all_finite
 from bench.trace.unwrap import Unwrapping
+from bench.trace.wraps import Wraps
 
 #: Share of cells that may be empty as lost samples; a column with more of them is sampled by a clock of its own.
 FEW = 0.05
@@ -26,11 +27,13 @@ PERIOD = 0.01
 
 @dataclass(frozen=True)
 class InSI:
-    """Signals in SI units with the clock each was sampled by, their units, and what the user should know."""
+    """Signals in SI units with the clock each was sampled by, their units, what the user should know, and wraps
+    of the position that were undone."""
 
     signals: dict[str, Sampled]
     units: dict[str, str]
     notes: tuple[str, ...] = ()
+    wraps: Wraps | None = None
 
 
 def in_si(
@@ -67,11 +70,13 @@ def in_si(
                 channel.place(), f"found {values.size} values", f"allowed: {clock.time.size}, as its time has"
             )
         signals[name] = _known_samples(name, Sampled(clock, values), channel, notes)
+    wraps: Wraps | None = None
     for name in ("position", "position_reference"):
         if name in signals:
             unwrapping = (wrapping if wrapping is not None else {}).setdefault(name, Unwrapping(how.position_period))
-            signals[name] = _unwrapped(name, chosen[name], signals, unwrapping, notes)
-    return InSI(signals, units, tuple(notes))
+            signals[name], undone = _unwrapped(name, chosen[name], signals, unwrapping, notes)
+            wraps = undone if name == "position" else wraps
+    return InSI(signals, units, tuple(notes), wraps)
 
 
 def _one_kind_of_axis(units: Mapping[str, str], recording: Recording) -> None:
@@ -195,13 +200,13 @@ def _agreeing(clock: Clock, period: float, time: Channel, notes: list[str]) -> C
 
 def _unwrapped(
     name: str, choice: Chosen, signals: Mapping[str, Sampled], unwrapping: Unwrapping, notes: list[str]
-) -> Sampled:
+) -> tuple[Sampled, Wraps | None]:
     sampled = signals[name]
     speed = signals.get(name.replace("position", "velocity"))
     speeds = speed.values if speed is not None and speed.clock is sampled.clock else None
     found = unwrapping(sampled.values, sampled.clock.time, speeds, abs(choice.scale.factor), choice.channel.place)
     if found is None:
-        return sampled
+        return sampled, None
     if found.count:
         notes.append(f"{name} wraps {found.count} times by {found.period:.6g} {choice.scale.unit}; made continuous")
-    return replace(sampled, values=found.values)
+    return replace(sampled, values=found.values), Wraps(found.period, found.count) if found.count else None

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -249,6 +250,7 @@ def _rate(channel: Channel) -> float | None:
     return 1.0 / seconds if seconds > 0.0 else None
 
 
-def to_json(inspection: Inspection) -> str:
-    """The inspection as JSON, its fields under their names."""
-    return json.dumps({"schema": SCHEMA, **asdict(inspection), "suggestions": inspection.suggestions}, indent=2)
+def to_json(inspection: Inspection, more: Mapping[str, object] = MappingProxyType({})) -> str:
+    """The inspection as JSON, its fields under their names, and what others have to say of the recording."""
+    told = {"schema": SCHEMA, **asdict(inspection), "suggestions": inspection.suggestions, **more}
+    return json.dumps(told, indent=2)

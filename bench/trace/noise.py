@@ -1,4 +1,4 @@
-"""White noise of a signal, read from its highest frequencies, where a servo axis no longer moves."""
+"""White noise of a signal, read from its highest frequencies, where a servo axis no longer moves; its last digit."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ TOP = 0.3
 #: Variance of a mean of neighbouring Hann-weighted periodogram values over that of independent ones:
 #: 1 + 2*(2/3)**2 + 2*(1/6)**2 from the window's overlap of one and two bins.
 CORRELATION = 35.0 / 18.0
+#: Samples a distinct value at least, on average, in a signal of whose steps anything can be told.
+REPEATED = 4
 
 
 def white_noise(*stretches: NDArray[np.floating]) -> float:
@@ -54,3 +56,15 @@ def _windows(stretches: tuple[NDArray[np.floating], ...], window: int) -> NDArra
     parts = [np.diff(values, 2) for values in stretches if values.size >= window + 2]
     rows = [part[: part.size // window * window].reshape(-1, window) for part in parts]
     return np.concatenate(rows) if rows else np.empty((0, window))
+
+
+def resolution(values: NDArray[np.floating]) -> float:
+    """Step between the values that a signal takes, in its unit; 0 where hardly a value occurs twice.
+
+    The median, as steps that no sample fell on are missing, and a torque of a saturating motor has uneven ones.
+
+    Args:
+        values: (n,) samples.
+    """
+    levels = np.unique(values)
+    return float(np.median(np.diff(levels))) if 1 < levels.size <= values.size / REPEATED else 0.0

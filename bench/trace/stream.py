@@ -133,6 +133,7 @@ def _trace(found: InSI, recording: Recording, notes: tuple[str, ...], last: Trac
         time_base=base.time_base,
         notes=(*notes, *base.notes),
         continues=_continues(last, base.time, base.time_base.sample_period, recording.origin),
+        wraps=base.wraps,
     )
 
 

@@ -25,6 +25,7 @@ from bench.errors import InputError
 from bench.trace.clock import Clock, Sampled, without_duplicates
 from bench.trace.sample_base import LONGEST_STEP, STEADY, Base, find_base
 from bench.trace.trace import HOLE, TimeBase
+from bench.trace.wraps import Wraps, without_wraps
 
 #: Signals whose clock makes the time base, best first.
 LEADING = ("velocity", "position", "current", "torque", "force", "voltage")
@@ -34,12 +35,13 @@ _AKIMA = 5
 
 @dataclass(frozen=True)
 class Regular:
-    """Signals on one regular time base - s, SI - (m,) each, with what was found and what the user should know."""
+    """Signals on one regular time base - s, SI - (m,) each, what was found and undone, and what a user should know."""
 
     time: Array
     signals: Mapping[str, Array]
     time_base: TimeBase
     notes: tuple[str, ...]
+    wraps: Wraps | None = None
 
 
 def regular(signals: Mapping[str, Sampled]) -> Regular:
@@ -48,6 +50,7 @@ def regular(signals: Mapping[str, Sampled]) -> Regular:
     Raises:
         InputError: fewer than two samples, time running backwards, or more than 1 % of samples at times already taken.
     """
+    signals, wraps = without_wraps(signals)
     leader = next((name for name in LEADING if name in signals), next(iter(signals)))
     clocks = {id(signal.clock): signal.clock for signal in signals.values()}
     of_clock = {key: {n: s.values for n, s in signals.items() if id(s.clock) == key} for key in clocks}
@@ -77,7 +80,7 @@ def regular(signals: Mapping[str, Sampled]) -> Regular:
         time, placed = time[valid], {name: array[valid] for name, array in placed.items()}
     if time.size < 2:
         raise InputError(clock.place(None), f"found {time.size} samples common to all signals", "allowed: at least two")
-    return Regular(time, {name: placed[name] for name in signals}, found, tuple(notes))
+    return Regular(time, {name: placed[name] for name in signals}, found, tuple(notes), wraps)
 
 
 def _empty(signals: Mapping[str, Sampled]) -> Array:

@@ -18,6 +18,7 @@ from bench.errors import InputError
 
 if TYPE_CHECKING:
     from bench.trace.from_arrays import Arrays
+    from bench.trace.wraps import Wraps
 
 #: A step this many sample periods long is a hole, not jitter: no signal of a servo is known inside it.
 HOLE = 1.5
@@ -63,6 +64,7 @@ class Trace:
         metadata: what the source said about itself.
         time_base: what was found about the sample times, where a reader found something.
         notes: what a reader did, assumed or left out that the user should know.
+        wraps: of the position, which were undone.
         continues: whether it follows the trace before it, of the same recording, without a hole.
 
     Raises:
@@ -78,6 +80,7 @@ class Trace:
     time_base: TimeBase | None = None
     notes: tuple[str, ...] = ()
     continues: bool = False
+    wraps: Wraps | None = None
 
     def __post_init__(self) -> None:
         for name in ("signals", "units", "metadata"):

@@ -15,6 +15,8 @@ TOGETHER = [
     ("presliding_friction", "stribeck_friction"),
     ("elastic_coupling", "unbalance", "velocity_filter_lag"),
     ("encoder_eccentricity", "velocity_filter_lag", "voltage_limit"),
+    ("current_filter_lag", "current_gain_asymmetry", "current_loop_lag"),
+    ("directional_load_friction", "torsion_spring", "unbalance"),
 ]
 CASES = [(), *((name,) for name in VALUES), *TOGETHER]
 

@@ -23,6 +23,8 @@ SEED, SEVERITY, SECONDS, STEP = 3, 0.6, 6.0, 62.5e-6
 DIAGNOSED = [name for name, effect in catalogue().items() if not effect.undiagnosed]
 #: What is drawn beside its strength: without a viscous part, a difference of friction is a torque offset.
 BESIDE = {"direction_dependent_friction": {"viscous_share": 1.0}}
+#: What else the axis has: without a torque of the load, friction that follows it is one that follows the motor's.
+WITH = {"directional_load_friction": KINDS["unbalance"](0.3, 0.4)}
 #: Half widths of the intervals of 95 % within which every true value lies, and the chance that too few lie within one.
 REACH, CHANCE = 1.5, 0.01
 
@@ -51,7 +53,7 @@ def diagnosed(hidden, tmp_path_factory):
         runs = simulate(
             [AXIS] * count,
             [motion] * count,
-            [(effect,) for effect in hidden.values()],
+            [(effect, WITH[name]) if name in WITH else (effect,) for name, effect in hidden.items()],
             [SENSORS] * count,
             SEED,
             numbers=[number(name) for name in hidden],
@@ -75,7 +77,8 @@ def quantities(diagnosis, effect):
 @pytest.mark.parametrize("name", DIAGNOSED)
 def test_it_is_named_and_recovered(name, hidden, diagnosed):
     found = diagnosed(name)
-    assert [effect.name for effect in found.effects] == [name]
+    assert {effect.name for effect in found.effects} == {name, *(WITH[name].name for _ in range(name in WITH))}
+    assert len(found.effects) == 1 + (name in WITH)
     told = quantities(found, hidden[name])
     print({key: (one.true, one.value, one.half_widths) for key, one in told.items()})  # pytest -s
     assert told

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.effects.kinds import Electronics, Mechanism, Sensing
+from bench.effects.kinds import Electronics, Mechanism, Moment, Sensing
 from bench.plant.model import build_spec
 from bench.trace.known_names import SI_UNITS
 from bench.trace.trace import Trace
@@ -149,7 +149,7 @@ def test_several_of_a_repeatable_one_are_told_apart(effect):
 @every
 def test_the_level_of_friction_is_what_its_columns_make_of_dry_friction(effect):
     """Column by column: dry friction all of it, friction in proportion to speed none of it."""
-    hooks = ("friction_excess", "friction_factor", "friction_difference")
+    hooks = ("friction_excess", "friction_factor", "friction_difference", "friction_under_load")
     assert effect.overrides("level") == any(effect.overrides(hook) for hook in hooks)
     shape, faster = shape_of(effect), replace(RECORDED, velocity=2.0 * RECORDED.velocity)
     columns, scaled = plain(effect, RECORDED), plain(effect, faster)
@@ -166,6 +166,16 @@ def test_stiffness_is_the_slope_of_its_torque_over_position(effect):
     slopes = [a - b for a, b in zip(higher, lower, strict=True)]
     straight = slopes and all(np.ptp(slope) < 1e-9 for slope in slopes)
     assert effect.stiffness(strengths) == pytest.approx(1.3 * sum(float(s[0]) for s in slopes) if straight else 0.0)
+
+
+@every
+def test_a_torque_of_the_load_is_its_columns_in_a_simulation(effect):
+    """What a gear transmits is the same to the balance and to MuJoCo."""
+    if isinstance(effect, Mechanism) and effect.overrides("load_torque"):
+        moment = Moment(RECORDED.time, RECORDED.position, RECORDED.velocity, RECORDED.effort)
+        columns = np.array(plain(effect, RECORDED)).T
+        found = effect.load_torque(reported(effect), moment)
+        np.testing.assert_allclose(columns @ ([5e-4] * columns.shape[1]), found * np.ones(len(columns)), atol=1e-12)
 
 
 @every

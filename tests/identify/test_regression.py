@@ -6,7 +6,7 @@ import pytest
 from bench.balance.hypothesis import Hypothesis
 from bench.balance.layout import lay_out
 from bench.balance.rows import Rows
-from bench.errors import UndeterminedError
+from bench.errors import InputError, UndeterminedError
 from bench.identify.estimate import RefusedEstimateError
 from bench.identify.lab import identify_as_in_the_lab
 from bench.identify.regression import identify
@@ -166,12 +166,18 @@ def test_too_few_samples_are_refused():
         identify(trace, RIG)
 
 
-def test_a_turned_sensor_is_refused_and_told():
+def test_a_turned_sensor_is_refused():
     trace = recording(np.random.default_rng(13))
     turned = trace.with_signals({"current": -trace["current"]}, {})
+    with pytest.raises(InputError, match=r"inertia and friction are negative.*opposite signs"):
+        identify(turned, RIG)
+
+
+def test_an_inertia_below_zero_is_refused_and_told():
+    trace = recording(np.random.default_rng(13), Truth(inertia=-1.5e-3))
     with pytest.raises(
         RefusedEstimateError, match="moment of inertia cannot be determined: it comes out negative"
     ) as told:
-        identify(turned, RIG)
+        identify(trace, RIG)
     assert any("negative" in warning for warning in told.value.estimate.warnings)
     assert told.value.estimate["moment_of_inertia"].value < 0.0

@@ -56,7 +56,7 @@ class Plant:
         load_position, load_velocity: of the load, where a coupling separates it; unused elsewhere.
         current, acting_current: that the drive measures, and that makes torque - A.
         recorded_current: the one that is measured, behind its filter if there is one - A.
-        motor_torque: during the last step - N*m.
+        motor_torque, load_torque: during the last step, of the motor and of what its gear carries - N*m.
         measured_position, measured_velocity: what ideal electronics would read from the sensor.
         sensed_velocity: the same before the filter on the speed, if there is one.
     """
@@ -100,8 +100,11 @@ class Plant:
         for rows in self._with("torque_factor"):
             self.motor_torque[rows.index] *= rows.effect.torque_factor(rows)
         net = self.motor_torque.copy()
+        self.load_torque = np.zeros_like(net)
         for rows in self._with("resisting_torque"):
-            net[rows.index] -= rows.effect.resisting_torque(rows)
+            torque = rows.effect.resisting_torque(rows)
+            net[rows.index] -= torque
+            self.load_torque[rows.index] += torque * rows.effect.transmitted
         for rows in self._with("transmitted_torque"):
             net[rows.index] -= self._move_load(rows, step)
         forward, backward = self._friction_levels()

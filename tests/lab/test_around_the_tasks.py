@@ -50,10 +50,10 @@ def test_emulated_friction_gives_the_same_coefficients_as_friction_in_the_mechan
 
 def test_the_current_of_the_phases_shows_no_emulated_friction(done):
     task = done["emulation"]
-    near(task["J, emulated, current of the phases"], 0.005)
+    near(task["J, emulated, phases"], 0.005)
     for name in ("K_fric_w", "K_fric_0"):
         for way in ("", ", bench"):
-            found = task[f"{name}, emulated, current of the phases{way}"]
+            found = task[f"{name}, emulated, phases{way}"]
             assert found.truth == 0.0
             assert abs(found.value) < 0.02 * task[f"{name}, in the mechanics"].truth
     assert "least squares finds none" in task.says[2]

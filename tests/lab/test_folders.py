@@ -1,4 +1,4 @@
-"""A student's folder in the states that it comes in, end to end by the command: what can be done is done, the rest said."""
+"""A student's folder in the states that it comes in, end to end by the command."""
 
 import json
 import shutil
@@ -52,7 +52,7 @@ def wrong_sign_turned_by_the_advice(folder):
 
 
 def one_way(folder):
-    time, velocity, current = signals(folder, "JLoadAndFriction")
+    _, velocity, current = signals(folder, "JLoadAndFriction")
     forward = np.cumsum(velocity < 20.0) == np.argmax(velocity > 20.0)
     forward &= velocity > 20.0
     shifted = np.abs(velocity[forward]), current[forward] + 0.05 / 0.75
@@ -273,5 +273,5 @@ def test_flights_of_several_kinds_are_one_and_the_same(tmp_path):
     (tmp_path / "all.csv").write_text(f"flight,y [m],z [m]\n{rows}\n")
     assert np.array(read_flights(tmp_path / "all.csv").points) == pytest.approx(points)
     (tmp_path / "bad.mat").write_bytes((tmp_path / "block.mat").read_bytes()[:200])
-    with pytest.raises(Exception, match="bad.mat"):
+    with pytest.raises(Exception, match=r"bad\.mat"):
         read_flights(tmp_path / "bad.mat")

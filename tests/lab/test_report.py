@@ -1,16 +1,24 @@
 """The report and the commands `lab` and `limits`, as a user meets them."""
 
+import json
 import re
+import subprocess
 import sys
+from io import StringIO
 
 import pytest
+from rich.console import Console
 
 from bench.assets import asset
 from bench.cli import main
 from bench.errors import InputError
+from bench.lab.cover import Cover
 from bench.lab.result import NotDone
+from bench.report import pdf
+from bench.report.charts import chart_figure
 from bench.report.course import course_table
 from bench.report.lab import lab_html, write_lab_report
+from bench.report.section import section
 
 #: Labels of axes that the course asks for.
 LABELS = (
@@ -69,7 +77,7 @@ def test_lab_runs_alone_and_ends_naming_the_report(lab):
     assert lab.status == 0
     assert "K_fric_w" in lab.printed
     assert lab.printed.splitlines()[-2:] == ["wrote here/lab.html", "wrote here/lab.pdf"]
-    assert {path.name for path in (lab.folder / "here").iterdir()} == {"lab.json", "lab.html", "lab.pdf"}
+    assert {path.name for path in (lab.folder / "here").iterdir()} == {"sources", "lab.json", "lab.html", "lab.pdf"}
 
 
 def test_progress_of_the_report_ends_at_one(done, tmp_path):
@@ -105,3 +113,81 @@ def test_limits_names_what_the_rig_lacks(bench, tmp_path):
     status, _, err = bench("limits", trace, "--rig", "rig.toml")
     assert (status, err.count("\n")) == (2, 1)
     assert "peak_torque" in err
+
+
+def test_results_stand_as_json_beside_the_report(lab, done):
+    content = json.loads((lab.folder / "here" / "lab.json").read_text(encoding="utf-8"))
+    assert content["schema"] == "bench.lab/1"
+    assert [task["key"] for task in content["tasks"]] == list(done)
+    for task in content["tasks"]:
+        assert task["status"] == "done"
+        for number in task["numbers"]:
+            printed = done[task["key"]][number["name"]]
+            assert (number["value"], number["unit"], number["truth"]) == (printed.value, printed.unit, printed.truth)
+            assert number["source"] == printed.source != ""
+    examples = {task["key"] for task in content["tasks"] if task["embedded_example"]}
+    assert examples == {"estimators", "equation", "emulation"}
+
+
+@pytest.mark.parametrize("number", range(1, 12))
+def test_a_script_that_is_handed_in_gives_the_reports_numbers(lab, done, number):
+    """Each runs alone, by numpy and matplotlib, and draws the task's figure."""
+    folder = lab.folder / "here" / "sources"
+    script = folder / f"task{number:02}.py"
+    ran = subprocess.run([sys.executable, script.name], cwd=folder, capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stderr
+    assert "bench" not in script.read_text(encoding="utf-8").replace("benchmark", "")
+    found = [re.fullmatch(r"(.+) = (\S+) (\S+)", line) for line in ran.stdout.splitlines()]
+    assert found
+    task = done[str(number)]
+    for match in found:
+        name, value = match[1], float(match[2])
+        # task 11 leaves out the winding's warming, which is 15 rpm
+        tolerance = 0.01 if number == 11 else 1e-6
+        assert value == pytest.approx(task[name].value, rel=tolerance, abs=1e-9), name
+    assert (folder / f"task{number:02}.png").exists() == bool(task.charts)
+
+
+def test_a_cover_sheet_names_the_group(tmp_path):
+    assert Cover.in_folder(tmp_path) == Cover()
+    assert len(Cover().rows) == 3
+    path = tmp_path / "group.toml"
+    path.write_text('group = "7"\n[[student]]\nname = "Ada <L>"\nnumber = "12345"\n')
+    cover = Cover.in_folder(tmp_path)
+    assert "Ada &lt;L&gt;" in lab_html([], [], cover)
+    assert "12345" in lab_html([], [], cover)
+    write_lab_report(tmp_path / "out", [], ["about"], cover=cover)
+    for text, word in (("group = 7 =", "TOML"), ('[[student]]\nname = "A"\n', "number"), ("team = 1\n", "team")):
+        path.write_text(text)
+        with pytest.raises(InputError, match=word):
+            Cover.in_folder(tmp_path)
+
+
+def test_pages_of_the_pdf_are_full(done):
+    """No page but the cover and the last leaves more than two fifths of its height empty."""
+    blocks = [block for task in done.values() for block in (*pdf._text(section(task)), *task.charts)]
+    pages = list(pdf._paginated(blocks))
+    room = pdf.PAGE[1] - 2.0 * pdf.MARGIN
+    filled = [sum(part.height for part in page) / room for page in pages]
+    print("pages filled:", *(f"{share:.0%}" for share in filled))
+    assert all(share <= 1.0 + 1e-9 for share in filled)
+    assert all(share > 0.6 for share in filled[:-1])
+
+
+def test_a_legend_covers_no_data(done):
+    """Every legend lies above its axes, in the drawn figure."""
+    for task in done.values():
+        for chart in task.charts:
+            figure = chart_figure(chart)
+            figure.draw_without_rendering()
+            for axes in figure.axes:
+                legend = axes.get_legend()
+                if legend is not None:
+                    assert legend.get_window_extent().y0 >= axes.get_window_extent().y1 - 1.0, (task.key, chart.title)
+
+
+def test_the_advice_keeps_its_brackets_on_the_terminal():
+    reason = InputError("a.csv", "holds no velocity", 'write [trace.columns] velocity = "column [unit]"')
+    console = Console(file=StringIO(), width=200)
+    console.print(course_table([NotDone("6", "Inertia", reason)]))
+    assert '[trace.columns] velocity = "column [unit]"' in console.file.getvalue()

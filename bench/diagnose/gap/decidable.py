@@ -1,4 +1,4 @@
-"""Whether a recording lets a diagnosis decide at all: long enough, fast enough, loud enough, and signals that agree."""
+"""Whether a recording lets a diagnosis decide at all: long enough, fast enough and loud enough."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from bench.arrays import rms
 from bench.axis_kind import COULOMB, OFFSET, AxisKind
 from bench.balance.fit import Fit, fit
-from bench.balance.hypothesis import Hypothesis
+from bench.balance.last_digit import plain
 from bench.balance.parameter import Parameter
 from bench.balance.rows import Rows, clear_motion
 from bench.diagnose.name.rules import Rules, row_correlation
@@ -28,10 +28,6 @@ SMALL = 10.0
 #: Share of the acceleration's power that may be noise. Least squares loses as much of the inertia to it: 27 % of J at
 #: 0.27, 4 % at 0.04; the shared cases have 6e-5 at most.
 NOISY = 0.1
-#: Speed and derivative of position may differ by a gear's or a lag's worth, not by a unit's.
-AGREE = 1.5
-#: Samples over which displacements are compared, and the correlation from which one is a multiple of the other.
-SPAN, PROPORTIONAL = 20, 0.95
 
 WHAT = "whether the model lacks an effect"
 
@@ -64,14 +60,12 @@ def require_decidable(trace: Trace, rig: Rig, rows: Rows) -> Fit:
 
     Raises:
         UndeterminedError: with what to record instead.
-        InputError: position and velocity contradict each other.
     """
-    require_agreement(trace)
     _require_length(trace, rows)
-    equations = equations_of(rows, Hypothesis())
+    equations = equations_of(rows, plain(rows))
     require_inertia(equations, rig.axis_kind)
     require_friction(equations, rig.axis_kind)
-    bare = fit(rows, Hypothesis())
+    bare = fit(rows, plain(rows))
     require_audible(bare, rig.net_effort(trace)[1], rig.axis_kind)
     return bare
 
@@ -98,30 +92,6 @@ def impacts(fitted: Fit, unit: str) -> list[str]:
         f"recording does not tell: the verdict is by the others, on which {fitted.rms:.3g} {unit} are left; the torque "
         "gap counts all"
     ]
-
-
-def require_agreement(trace: Trace) -> None:
-    """InputError where reported velocity is not the derivative of reported position, but a multiple of it."""
-    if not {"position", "velocity"} <= set(trace.signals):
-        return
-    moved, reported = [], []
-    for part in trace.segments:
-        position, velocity = trace["position"][part], trace["velocity"][part]
-        travelled = np.cumsum((velocity[1:] + velocity[:-1]) / 2.0) * trace.sample_period
-        moved.append(position[1 + SPAN :] - position[1:-SPAN])
-        reported.append(travelled[SPAN:] - travelled[:-SPAN])
-    actual, claimed = np.concatenate(moved), np.concatenate(reported)
-    scale = math.sqrt(float(actual @ actual) * float(claimed @ claimed))
-    if abs(float(actual @ claimed)) < PROPORTIONAL * scale or scale == 0.0:
-        return
-    ratio = math.copysign(float(np.linalg.norm(claimed) / np.linalg.norm(actual)), float(actual @ claimed))
-    if 1.0 / AGREE < ratio < AGREE:
-        return
-    raise InputError(
-        f"{trace.origin}: velocity",
-        f"found {ratio:.4g} times the derivative of position",
-        "allowed: the same motion in both (check the units of the two columns, or leave one of them out)",
-    )
 
 
 def _require_length(trace: Trace, rows: Rows) -> None:

@@ -103,7 +103,8 @@ def replacement(fitted: Fit, effect: Effect, rules: Rules) -> Fit | None:
     shape = effect.in_place_of(current) if joins(current, effect) else None
     if shape is None:
         return None
-    after = fit(fitted.rows, current.hypothesis.plus(Term(effect, shape)))
+    first = fit(fitted.rows, current.hypothesis.plus(Term(effect, shape)))
+    after = shaped(first.rows, first.hypothesis, len(current.terms))  # from where levels and loads have settled
     return backward_elimination(after, rules) if rules.replaces.holds(fitted, after) else None
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from bench.balance.fit import Fit
 from bench.balance.parameter import Parameter
 from bench.balance.stored import Balance
+from bench.checks.check import Check
 from bench.diagnose.add.add import Added
 from bench.diagnose.found import Gap, NamedEffect, Rejected, Shrunk
 from bench.diagnose.gap.decidable import impacts, left_open
@@ -38,6 +39,7 @@ class Diagnosis:
         stopped: what ended the search before it was done; None if nothing did.
         model, balance: with all effects; no model where MuJoCo cannot have them.
         warnings: what a user should know.
+        checks: what the gate found before the fit.
     """
 
     verdict: str
@@ -59,6 +61,7 @@ class Diagnosis:
     model: StoredModel | None
     balance: Balance
     warnings: list[str] = field(default_factory=list)
+    checks: tuple[Check, ...] = ()
 
 
 def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Suspects, added: Added) -> Diagnosis:

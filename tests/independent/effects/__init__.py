@@ -8,6 +8,7 @@ from tests.independent.effects.current import (
 )
 from tests.independent.effects.effect import Effect, stack
 from tests.independent.effects.friction import (
+    DirectionalLoadFriction,
     DirectionDependentFriction,
     FrictionWarmup,
     LoadDependentFriction,
@@ -66,10 +67,11 @@ KINDS: dict[str, type[Effect]] = {
         CurrentGainAsymmetry,
         CurrentOffsetDrift,
         TorqueConstantDrift,
+        DirectionalLoadFriction,
     )
 }
 #: Drawn as a group of their own, so that a case of another group stays what it is.
-LATER = {kind.name: kind for kind in (CurrentFilterLag, CurrentGainAsymmetry, CurrentOffsetDrift, TorqueConstantDrift)}
+LATER = {kind.name: kind for kind in list(KINDS.values())[-5:]}
 CATALOGUE = {name: kind for name, kind in KINDS.items() if not kind.outside_catalogue and name not in LATER}
 OUTSIDE = {name: kind for name, kind in KINDS.items() if kind.outside_catalogue}
 
@@ -85,6 +87,7 @@ __all__ = [
     "CurrentLoopLag",
     "CurrentOffsetDrift",
     "DirectionDependentFriction",
+    "DirectionalLoadFriction",
     "Effect",
     "ElasticCoupling",
     "EncoderEccentricity",

@@ -28,6 +28,8 @@ class Effect:
     name: ClassVar[str]
     outside_catalogue: ClassVar[bool] = False
     on_linear_axis: ClassVar[bool] = True
+    #: Whether its resisting torque is one of a load that a gear transmits.
+    transmitted: ClassVar[bool] = False
 
     @classmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:

@@ -110,6 +110,27 @@ class LoadDependentFriction(Effect):
 
 
 @dataclass(frozen=True)
+class DirectionalLoadFriction(Effect):
+    """Level K_0 + |K_e*M_e - K_m*M|, M_e the load's torque on the gear, against its resistance; BAM's model M5.
+
+    K_m motor_coefficient, load_ratio K_e/K_m. Duclusaud et al., arXiv 2410.08650 (2024).
+    """
+
+    name: ClassVar[str] = "directional_load_friction"
+    motor_coefficient: float
+    load_ratio: float
+
+    @classmethod
+    def draw(cls, axis, severity, rng, duration):
+        return cls(0.25 * about(severity, rng), float(rng.uniform(1.5, 4.0)))
+
+    def friction_excess(self, rows):
+        external = -rows.load_torque
+        load_coefficient = self.load_ratio * self.motor_coefficient
+        return np.abs(load_coefficient * external - self.motor_coefficient * rows.motor_torque)
+
+
+@dataclass(frozen=True)
 class PositionDependentFriction(Effect):
     """Level K_0*(1 + a*sin(q + phi)); a relative_amplitude."""
 

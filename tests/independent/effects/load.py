@@ -15,6 +15,7 @@ class TorqueOffset(Effect):
     """Constant resisting torque - N*m."""
 
     name: ClassVar[str] = "torque_offset"
+    transmitted: ClassVar[bool] = True
     torque: float
 
     @classmethod
@@ -30,6 +31,7 @@ class Unbalance(Effect):
     """Eccentric mass under gravity, resisting torque A*sin(q + phi); A = m*g*r amplitude - N*m."""
 
     name: ClassVar[str] = "unbalance"
+    transmitted: ClassVar[bool] = True
     on_linear_axis: ClassVar[bool] = False
     amplitude: float
     phase: float = 0.0
@@ -47,6 +49,7 @@ class TorsionSpring(Effect):
     """Resisting torque k*q; k stiffness - N*m/rad."""
 
     name: ClassVar[str] = "torsion_spring"
+    transmitted: ClassVar[bool] = True
     stiffness: float
 
     @classmethod

@@ -1,0 +1,133 @@
+"""The gate before any fit: every check, in order, each seeing what the ones before have put right."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from bench.axis_kind import INERTIA
+from bench.checks import effort, losses, signals, timing, velocity, wraps
+from bench.checks.check import STATUSES, Check
+from bench.errors import BenchError, InputError, UndeterminedError
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+Looks = tuple[Callable[[Trace, Rig | None], tuple[Trace, Check]], ...]
+
+#: What repairs comes before what judges.
+CHECKS: Looks = (
+    signals.moves,
+    timing.regular,
+    wraps.check,
+    velocity.check,
+    losses.check,
+    timing.rate,
+    signals.clips,
+    signals.resolution,
+    effort.check,
+)
+#: Of a recording at one steady speed, which may never change and whose effort follows no motion.
+STEADY = tuple(check for check in CHECKS if check not in (signals.moves, timing.rate, signals.resolution, effort.check))
+#: Of a later part of a recording: what can go wrong there, not what holds for all of it.
+PARTS = tuple(check for check in CHECKS if check not in (timing.rate, signals.resolution, effort.check))
+
+
+class UnanswerableError(UndeterminedError):
+    """A sound recording that cannot answer.
+
+    Attributes:
+        checks: all of them, for whoever writes them down.
+    """
+
+    checks: tuple[Check, ...] = ()
+
+
+@dataclass(frozen=True)
+class Gated:
+    """A recording behind the gate.
+
+    Attributes:
+        trace: put right where that was possible.
+        checks: in the order of CHECKS.
+    """
+
+    trace: Trace
+    checks: tuple[Check, ...]
+
+
+def gate(trace: Trace, rig: Rig | None = None, looks: Looks = CHECKS) -> Gated:
+    """Run every check on a recording.
+
+    Args:
+        trace: the recording, or a part of one.
+        rig: of the axis, where it is known.
+        looks: the checks to run.
+
+    Raises:
+        InputError: rig and recording do not fit together.
+    """
+    found = []
+    for look in looks:
+        trace, one = look(trace, rig)
+        found.append(one)
+    return Gated(trace, tuple(found))
+
+
+def passed(trace: Trace, rig: Rig, looks: Looks = CHECKS) -> Gated:
+    """The gated recording.
+
+    Raises:
+        InputError, UnanswerableError: the first check that fails.
+    """
+    gated = gate(trace, rig, looks)
+    require(gated.checks, trace)
+    return gated
+
+
+def require(checks: Sequence[Check], trace: Trace) -> None:
+    """Raise the first check that fails.
+
+    Args:
+        checks: of a recording.
+        trace: the recording, or a part of it.
+    """
+    failed = next((check for check in checks if check.status == "fail"), None)
+    if failed is not None:
+        raise _error(failed, tuple(checks), trace)
+
+
+def _error(failed: Check, checks: tuple[Check, ...], trace: Trace) -> BenchError:
+    if not failed.unanswerable:
+        allowed = f"allowed: {failed.allowed}; {failed.advice}"
+        return InputError(f"{trace.origin}: {failed.name}", f"found: {failed.found}", allowed)
+    wanted = trace.axis_kind.spoken(INERTIA)
+    error = UnanswerableError(wanted, f"{trace.origin}: {failed.name}: {failed.found}", failed.advice)
+    error.checks = checks
+    return error
+
+
+def joined(parts: Sequence[Sequence[Check]]) -> tuple[Check, ...]:
+    """Checks of a recording from those of its parts: of each the worst, but what only some parts cannot answer.
+
+    A part in which the axis stands still answers nothing, and says nothing against the others.
+
+    Args:
+        parts: the first with every check.
+    """
+    names = [check.name for check in parts[0]]
+    return tuple(_worst([one for part in parts for one in part if one.name == name]) for name in names)
+
+
+def _worst(same: Sequence[Check]) -> Check:
+    silent = [one for one in same if one.status == "not_applicable" or (one.status == "fail" and one.unanswerable)]
+    told = [one for one in same if one not in silent] or silent
+    return min(told, key=lambda one: STATUSES.index(one.status))
+
+
+def spoken(checks: Sequence[Check]) -> list[str]:
+    """A line for every warning."""
+    return [
+        f"{check.name}: {check.found}; {check.advice}" if check.advice else f"{check.name}: {check.found}"
+        for check in checks
+        if check.status == "warn"
+    ]

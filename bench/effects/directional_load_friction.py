@@ -1,0 +1,76 @@
+"""Directional load friction: friction by transmitted torque differs between driving the load and being driven by it.
+
+    M = (K_0 + |K_m*M_motor + K_e*M_load|)*sgn(omega)
+
+K_m, K_e - coefficients on the motor's side and on the load's; M_motor - motor torque, M_load - resisting torque of the
+load without its inertia (gravity, a spring) - N*m (N). With K_e = 0 it is load-dependent friction. A gear that drives
+its load up passes (1 - K_m) of the motor's torque on and needs (1 + K_e) of the load's; let down, the load gives back
+(1 - K_e) of its own: so without a torque of the load nothing tells K_e, and it is tried only in the place of
+load-dependent friction, beside a load that is named.
+Source: M. Duclusaud, G. Passault, V. Padois, O. Ly, Extended friction models for the physics simulation of servo
+actuators, 2024, arXiv 2410.08650 (model M5; M6 adds squares to its rise at low speed).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.effects.effect import Fitted, Proposal
+from bench.effects.kinds import Axis, Friction, Moment, Number, Values
+from bench.effects.signals import Base, Shape, Signals
+from bench.trace.filter import Column
+from bench.units import Quantity
+
+#: Ratios that are tried, and again between the neighbours of the best.
+RATIOS = tuple(float(ratio) for ratio in np.geomspace(0.1, 10.0, 25))
+
+
+class DirectionalLoadFriction(Friction):
+    """See the module."""
+
+    name = "directional_load_friction"
+    summary = "friction by transmitted torque differs between driving and being driven"
+    quantities = (
+        Quantity("motor_coefficient", "K_m", "dimensionless", lower=0.0, null=0.0),
+        Quantity("load_ratio", "K_e/K_m", "dimensionless", lower=0.0),
+    )
+    derived = (Quantity("load_coefficient", "K_e", "dimensionless", lower=0.0),)
+    shapes = (Shape(quantities[1], RATIOS, reach=0.3),)
+    copies_torque = True
+    replaces = frozenset({"load_dependent_friction"})
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Magnitude of both torques, against the motion."""
+        return [[(signals.sign * np.abs(signals.torque + shape[0] * signals.load), 0)]]
+
+    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array:
+        """All of it."""
+        return strengths[0] * signals.sign * np.abs(signals.torque + shape[0] * signals.load)
+
+    def propose(self, fitted: Fitted) -> list[Proposal]:
+        """None: only in the place of what it replaces."""
+        return []
+
+    def in_place_of(self, fitted: Fitted) -> tuple[float, ...] | None:
+        """The best ratio beside a load, or none without one."""
+        if not any(term.effect.overrides("load_torque") for term in fitted.terms):
+            return None
+        best = max(fitted.tried(self, self.grid(fitted.scope)), key=lambda tried: tried.gain).shape[0]
+        step = RATIOS[1] / RATIOS[0]
+        closer = [(best * step**power,) for power in np.linspace(-1.0, 1.0, 25).tolist()]
+        return max(fitted.tried(self, closer), key=lambda tried: tried.gain).shape
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """K_m is the strength itself."""
+        motor, ratio = strengths[0], shape[0]
+        return {"motor_coefficient": motor, "load_ratio": ratio, "load_coefficient": motor * ratio}
+
+    def friction_under_load(self, values: Values, axis: Axis, at: Moment, load: Number) -> Number:
+        """By the equation above."""
+        return values["motor_coefficient"] * np.abs(at.effort + values["load_ratio"] * load)
+
+
+EFFECT = DirectionalLoadFriction()

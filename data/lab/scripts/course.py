@@ -1,0 +1,61 @@
+"""What every script of the course needs: recordings in SI, values of motor and disk, kT(Iq), graphs, results."""
+
+import json
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+HERE = Path(__file__).parent
+VALUES = json.loads((HERE / "values.json").read_text(encoding="utf-8"))
+KG_CM2, RPM = 1e4, 60 / (2 * np.pi)
+
+
+def value(name):
+    """A value of motor or disk in SI, as values.json has it with its source."""
+    return VALUES[name]["value"]
+
+
+def recording(name):
+    """t - s, omega - rad/s, Iq - A, and the sample period T - s."""
+    t, omega, current = np.loadtxt(HERE / "recordings" / f"{name}.csv", delimiter=",", skiprows=1, unpack=True)
+    return t, omega, current, VALUES[f"T_{name}"]["value"]
+
+
+def backward_difference(u, period):
+    """u'[k] = (u[k] - u[k-1])/T, first value 0."""
+    return np.diff(u, prepend=u[:1]) / period
+
+
+def torque_constant(current):
+    """kT(Iq) = a*Iq**2 + b*Iq + c: flat at zero, through stall and peak."""
+    i0, imax = value("continuous_stall_current"), value("peak_current")
+    conditions = [[0, 1, 0], [i0**2, i0, 1], [imax**2, imax, 1]]
+    a, b, c = np.linalg.solve(conditions, [0, value("continuous_stall_torque") / i0, value("peak_torque") / imax])
+    return a * current**2 + b * current + c
+
+
+def torque(current):
+    """M = kT(Iq)*Iq."""
+    return torque_constant(current) * current
+
+
+def show(name, number, unit):
+    """Print a result."""
+    print(f"{name} = {number:.9g} {unit}")
+
+
+def graph(file, *panels, x="time / s"):
+    """One graph above the other; a panel is its y label and curves (x, y, style, label)."""
+    figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(8, 1.5 + 1.8 * len(panels)))
+    for axis, (label, *curves) in zip(axes[:, 0], panels, strict=True):
+        for along, up, style, name in curves:
+            axis.plot(along, up, style, label=name, markersize=3)
+        axis.set_ylabel(label)
+        axis.grid(alpha=0.3)
+        if any(curve[3] for curve in curves):
+            axis.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=4, frameon=False, fontsize="small")
+    axes[-1, 0].set_xlabel(x)
+    figure.tight_layout()
+    figure.savefig(HERE / file, dpi=120)
+    plt.close(figure)

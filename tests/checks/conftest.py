@@ -1,0 +1,22 @@
+import pytest
+
+from bench.rig.rig import load_rig
+from tests.independent.axes import PLAIN
+from tests.independent.case import Hidden, record
+from tests.independent.rig import write_rig
+from tests.independent.sensors import Noise, Sensors
+
+
+@pytest.fixture(scope="session")
+def rig(tmp_path_factory):
+    path = tmp_path_factory.mktemp("plain") / "rig.toml"
+    write_rig(PLAIN, path)
+    return load_rig(path)
+
+
+@pytest.fixture(scope="session")
+def sound():
+    """Five seconds of one axis by the independent integrator: 1 kHz, position, speed and current with noise."""
+    sensors = Sensors(velocity=Noise(white=0.02), current=Noise(white=0.01))
+    ((run, _),) = record([Hidden("plain", PLAIN, (), sensors, "null", 0.02, 5.0)], seed=3)
+    return run.trace
