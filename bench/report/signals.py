@@ -30,13 +30,15 @@ def draw_signals(recording: Recording, how: HowToRead, path: Path) -> None:
         trace = assemble(recording, how)
     except InputError:
         channels = [channel for channel in of_axis(recording, how.axis) if _moves(channel)]
-        rows = [(np.arange(channel.values.size) * 1.0, channel.values, channel.label) for channel in channels]
+        rows = [
+            (np.arange(channel.values.size, dtype=np.float64), channel.values, channel.label) for channel in channels
+        ]
         label = "sample"
     else:
         edges = [part.stop for part in trace.segments[:-1]]
-        time = np.insert(trace.time, edges, np.nan)
+        time = np.asarray(np.insert(trace.time, edges, np.nan), dtype=np.float64)
         rows = [
-            (time, np.insert(values, edges, np.nan), f"{name} [{trace.units[name]}]")
+            (time, np.asarray(np.insert(values, edges, np.nan), dtype=np.float64), f"{name} [{trace.units[name]}]")
             for name, values in trace.signals.items()
         ]
         label = "time / s"

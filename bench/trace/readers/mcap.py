@@ -167,6 +167,6 @@ def _channel(topic: str, name: str, column: _Column, first: int, several: bool, 
     if axis is not None:
         label = name.removeprefix(f"{axis}.")
         axis = f"{topic}/{axis}" if several else axis
-    times = (np.array(column.times, dtype=np.int64) - first) * 1e-9
+    times = np.asarray((np.array(column.times, dtype=np.int64) - first) * 1e-9, dtype=np.float64)
     time = Channel(f"{label} time", "s", times, path, axis=axis)
     return Channel(label, column.unit, np.array(column.values), path, time=time, axis=axis)

@@ -68,6 +68,6 @@ def _channel(channel: Any, values: np.ndarray, axis: str | None, first: Any, pat
         start = properties.get("wf_start_time")
         late = float((start - first) / np.timedelta64(1, "ns")) * 1e-9 if start is not None else 0.0
         begin = late + float(properties.get("wf_start_offset", 0.0))
-        times = begin + float(increment) * np.arange(values.size)
+        times = np.asarray(begin + float(increment) * np.arange(values.size), dtype=np.float64)
         time = Channel(f"{channel.name} time", "s", times, path, axis=axis)
     return Channel(plain.name, plain.unit, plain.values, path, time=time, axis=axis, moments=plain.moments)
