@@ -200,7 +200,9 @@ def _atom(name: str, text: str, wanted: tuple[str, ...]) -> tuple[float, tuple[t
         raise UnitError(f"found '{text}', peak to peak", "allowed: A (peak) or Arms (effective)")
     if name == "grad":
         raise UnitError(f"found '{text}', which may mean degrees or gon", "allowed: 'deg' or 'gon'")
-    found = ATOMS.get(name) or (ATOMS.get(name.lower()) if name.isupper() or name.istitle() else None)
+    found = ATOMS.get(name) or (
+        ATOMS.get(name.lower()) if len(name) > 1 and (name.isupper() or name.istitle()) else None
+    )
     return found if found is not None else (1.0, ((name, 1),))
 
 

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from bench.unit_text import UnitError, scale_of
+from bench.usual_units import USUAL_UNITS
 
 TURN, RPM, DEG = 2 * math.pi, math.pi / 30, math.pi / 180
 OUNCE, POUND, GRAVITY = 0.028349523125, 0.45359237, 9.80665  # NIST SP 811, appendix B
@@ -312,6 +313,18 @@ def test_a_unit_text_is_read_or_asked_about(wanted, text, factor):
         assert refused.value.allowed.startswith("allowed: ")
     else:
         assert scale_of(text, wanted).factor == pytest.approx(factor, rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", USUAL_UNITS)
+def test_a_unit_that_pint_reads_keeps_its_meaning(unit):
+    usual = USUAL_UNITS[unit]
+    same = [si for si, row in USUAL_UNITS.items() if row.factor == 1.0 and row.dimensionality == usual.dimensionality]
+    fitting = [
+        si for si in same if ("rad" in si) == bool({"radian", "degree", "turn", "rpm"} & set(usual.base_units.split()))
+    ]
+    for si in fitting:
+        assert scale_of(unit, (si,)).factor == pytest.approx(usual.factor, rel=1e-15)
+    assert fitting
 
 
 @pytest.mark.parametrize("text", ["1/s", "Hz", "s-1"])
