@@ -1,7 +1,9 @@
 """Command line, and `python -m bench`."""
 
 import os
+import signal
 import sys
+from types import FrameType
 
 # Many small least-squares problems: BLAS threads only wait for one another (a diagnosis took 9.7 s with one thread, 14
 # to 26 s with two on two cores). Read when numpy is first imported, so it stands before everything else.
@@ -10,14 +12,29 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from bench import __version__
 
 
+class Stopped(BaseException):
+    """A signal to stop; no KeyboardInterrupt, which the command line's library turns into an exit without a word."""
+
+
+def _stop(number: int, _frame: FrameType | None) -> None:
+    raise Stopped(128 + number)  # the status a shell gives it
+
+
 def main() -> None:
     """Entry point of `bench`."""
     if sys.argv[1:] == ["--version"]:
         print(__version__)  # 0.03 s of CPU; 0.2 s with the command line's library
         return
-    from bench.cli import main as run
+    try:
+        for number in (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if os.name == "posix" else [])):
+            if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup leaves it
+                signal.signal(number, _stop)
+        from bench.cli import main as run
 
-    run()
+        run()
+    except Stopped as stop:
+        os.write(2, b"bench: interrupted\n")
+        os._exit(stop.args[0])  # what is half imported cannot be taken down in order
 
 
 if __name__ == "__main__":

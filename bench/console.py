@@ -5,22 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from bench.files import write_text
+from bench.names import plain
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+TracesArgument = Annotated[
+    list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
+]
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
 AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 
 
 def write_json(path: Path, text: str) -> None:
-    """Write JSON to a file, or to standard output where `path` is -.
+    """Write JSON to a file in a folder that is there, or to standard output where `path` is -.
 
     Raises:
         InputError: a place that cannot be written to.
@@ -28,7 +32,7 @@ def write_json(path: Path, text: str) -> None:
     if path == Path("-"):
         typer.echo(text)
     else:
-        write_text(path, text + "\n")
+        write_text(path, text + "\n", make_folder=False)
 
 
 @contextmanager
@@ -47,20 +51,27 @@ def told_in_json(path: Path | None, schema: str) -> Iterator[None]:
 
 
 def console() -> Console:
-    """Console no narrower than the bench's tables, so that a log shows them whole."""
+    """Console no narrower than the bench's tables, so that a log shows them whole; names in them are no markup."""
     from rich.console import Console  # 0.04 s, which --version and --help need not pay
+    from rich.text import Text
 
-    found = Console(highlight=False)
-    return found if found.is_terminal else Console(highlight=False, width=110)
+    class PlainConsole(Console):
+        """Shows strings as they are, in titles and cells alike."""
+
+        def render_str(self, text: str, *args: Any, **named: Any) -> Text:  # noqa: ANN401
+            return super().render_str(plain(text), *args, **named)
+
+    found = PlainConsole(highlight=False, markup=False, emoji=False)
+    return found if found.is_terminal else PlainConsole(highlight=False, markup=False, emoji=False, width=110)
 
 
 def tell_warnings(warnings: Iterable[str]) -> None:
     """A line on standard error for each warning."""
     for warning in warnings:
-        typer.echo(f"warning: {warning}", err=True)
+        typer.echo(plain(f"warning: {warning}"), err=True)
 
 
 def tell_files(files: Iterable[Path]) -> None:
     """A line for each file written."""
     for path in files:
-        typer.echo(f"wrote {path}")
+        typer.echo(plain(f"wrote {path}"))

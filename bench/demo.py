@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bench.assets import asset
+from bench.files import held
 from bench.identify.estimate import Estimate
 from bench.identify.regression import identify
 from bench.plant.simulate import simulate
@@ -40,6 +41,11 @@ def demo(out: Path, progress: Callable[[float], None]) -> Demo:
     Raises:
         InputError: the folder cannot be written to.
     """
+    with held(out):
+        return _demo(out, progress)
+
+
+def _demo(out: Path, progress: Callable[[float], None]) -> Demo:
     rig = load_rig(asset("data", "rigs", "sh30701p.toml"))
     simulated = simulate(rig, progress=lambda share: progress(0.6 * share))
     trace = out / "trace.csv.gz"
@@ -47,7 +53,7 @@ def demo(out: Path, progress: Callable[[float], None]) -> Demo:
     truth = write_truth(trace, simulated.truth)
     progress(0.8)
     estimate = identify(read(trace), rig)
-    figures = write_identification(out, trace, rig, estimate)
+    figures = write_identification(out, [trace], rig, estimate)
     progress(1.0)
     axis = simulated.truth.parameters
     known = {

@@ -1,44 +1,188 @@
-"""Output files appear whole or not at all."""
+"""Files at the edges of the bench: inputs are read whatever is wrong with them, outputs appear whole or not at all."""
 
 from __future__ import annotations
 
 import os
-import tempfile
-from collections.abc import Iterator
+import secrets
+import stat
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 
+from bench.bounds import require_size
 from bench.errors import InputError
+
+#: Device and number of each file that the command under way reads.
+_INPUTS: ContextVar[frozenset[tuple[int, int]]] = ContextVar("inputs", default=frozenset())
+#: The same of each folder that it writes to alone.
+_HELD: ContextVar[frozenset[tuple[int, int]]] = ContextVar("held", default=frozenset())
+
+
+def read_bytes(path: str | Path, kind: str) -> bytes:
+    """Content of a regular file.
+
+    Args:
+        path: of it.
+        kind: what it should be, for messages, e.g. `a trace`.
+
+    Raises:
+        InputError: not there, not a regular file, not readable, or beyond the bound on size.
+    """
+    path, give = Path(path), f"give the path of {kind}"
+    try:
+        state = path.stat()
+        if stat.S_ISDIR(state.st_mode):
+            raise InputError(path, "found a folder", give)
+        if not stat.S_ISREG(state.st_mode):  # a pipe may never end, a device has no end
+            raise InputError(path, "found a pipe or a device", f"{give}, a regular file")
+        require_size(path, state.st_size)
+        return path.read_bytes()
+    except FileNotFoundError as error:
+        raise InputError(path, "no such file", give) from error
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        raise InputError(path, f"cannot be read ({reason(error)})", give) from error
+
+
+def read_text(path: str | Path, kind: str) -> str:
+    """Content of a regular file that is UTF-8 text, its line ends as they are; raises as `read_bytes`."""
+    content = read_bytes(path, kind)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        found = f"found byte 0x{content[error.start]:02x}, which is not UTF-8"
+        raise InputError(f"{path}: line {line}", found, f"allowed: {kind}, in UTF-8") from error
+
+
+def reason(error: Exception) -> str:
+    """What the system says of a failure, without the path it repeats."""
+    return (isinstance(error, OSError) and error.strerror) or str(error) or type(error).__name__
 
 
 @contextmanager
-def whole(path: str | Path) -> Iterator[Path]:
-    """A temporary path beside `path` that takes its name once the block has ended well, and is gone otherwise.
+def keeping(inputs: Iterable[Path]) -> Iterator[None]:
+    """Within the block no output replaces one of these files, whatever path or link leads to it."""
+    token = _INPUTS.set(frozenset(filter(None, map(_identity, inputs))))
+    try:
+        yield
+    finally:
+        _INPUTS.reset(token)
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """Device and number of a file; None where there is none, which whoever reads it will say."""
+    try:
+        state = path.stat()
+    except (OSError, ValueError):
+        return None
+    return state.st_dev, state.st_ino
+
+
+def require_writable(path: str | Path) -> Path:
+    """The file that an output goes to, links followed.
 
     Raises:
-        InputError: the folder cannot be written to.
+        InputError: it is an input, a folder, a pipe or a device, or a loop of links leads to it.
     """
     path = Path(path)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix="".join(path.suffixes))
+        target = path.resolve()
+        state = target.stat() if os.path.lexists(target) else None
+    except (OSError, RuntimeError, ValueError) as error:  # RuntimeError: a loop, before Python 3.13
+        raise InputError(path, f"cannot be written ({reason(error)})", "name a file that can be written") from error
+    if state is None:
+        return target
+    if (state.st_dev, state.st_ino) in _INPUTS.get():
+        raise InputError(path, "is an input of this command, which an output may not replace", "name another file")
+    if stat.S_ISDIR(state.st_mode):
+        raise InputError(path, "found a folder", "name a file")
+    if not stat.S_ISREG(state.st_mode):
+        raise InputError(path, "found a pipe or a device", "name a regular file, or - where standard output is allowed")
+    return target
+
+
+@contextmanager
+def whole(path: str | Path, make_folder: bool = True) -> Iterator[Path]:
+    """A temporary path beside `path` that takes its name once the block has ended well, and is gone otherwise.
+
+    The file is on the disk before it takes the name. Links are followed; permissions are those of the file that is
+    replaced, else what the umask leaves.
+
+    Args:
+        path: of the output.
+        make_folder: whether its folder is made where there is none.
+
+    Raises:
+        InputError: the place cannot be written to, or is an input.
+    """
+    target = require_writable(path)
+    temporary = target.with_name(f".{target.stem[:32]}-{secrets.token_hex(6)}{target.suffix[-16:]}")
+    try:
+        if make_folder:
+            target.parent.mkdir(parents=True, exist_ok=True)
+        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))  # less the umask
+        if target.exists():
+            temporary.chmod(stat.S_IMODE(target.stat().st_mode))
+        yield temporary
+        _flush(temporary)
+        temporary.replace(target)
+        _flush(target.parent)
     except OSError as error:
         raise InputError(
-            path, f"cannot be written ({error.strerror})", "name a folder that can be written to"
+            path, f"cannot be written ({reason(error)})", "name a file in a folder that can be written to"
         ) from error
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        yield temporary
-        temporary.chmod(0o644)
-        temporary.replace(path)
-    except OSError as error:
-        raise InputError(path, f"cannot be written ({error.strerror})", "name a file that can be written") from error
     finally:
+        _remove(temporary)
+
+
+def _remove(temporary: Path) -> None:
+    try:
         temporary.unlink(missing_ok=True)
+    except OSError:
+        if temporary.exists():  # a name that cannot be made cannot be removed either
+            raise
 
 
-def write_text(path: str | Path, text: str) -> None:
-    """Write a text file, UTF-8, whole or not at all."""
-    with whole(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+def _flush(path: Path) -> None:
+    """Have the system write a file, or the names in a folder, to the disk; folders only where it allows that."""
+    if path.is_dir() and os.name != "posix":
+        return
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+@contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Make a folder and write to it alone: another run of the bench that does the same waits until this one is done.
+
+    Raises:
+        InputError: it cannot be made.
+    """
+    import fcntl
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handle = os.open(folder, os.O_RDONLY)
+    except (OSError, ValueError) as error:
+        found = f"cannot be written to ({reason(error)})"
+        raise InputError(folder, found, "name a folder that can be written to") from error
+    state = os.fstat(handle)
+    identity, before = (state.st_dev, state.st_ino), _HELD.get()
+    token = _HELD.set(before | {identity})
+    try:
+        if identity not in before:
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        _HELD.reset(token)
+        os.close(handle)
+
+
+def write_text(path: str | Path, text: str, make_folder: bool = True) -> None:
+    """Write a text file, UTF-8, whole or not at all; what no text may hold (half a surrogate) is written as \\udc80."""
+    with whole(path, make_folder) as temporary:
+        temporary.write_bytes(text.encode("utf-8", errors="backslashreplace"))

@@ -7,10 +7,13 @@ from tokenize import TokenError
 
 import pint
 
+from bench.unit_grammar import require_unit
+
 #: What pint raises on texts that are no unit.
 _NO_UNIT = (
     pint.errors.PintError,
     AttributeError,
+    LookupError,
     TypeError,
     ValueError,
     AssertionError,
@@ -32,6 +35,7 @@ _ORDER = ("[mass]", "[length]", "[time]", "[current]", "[temperature]", "[substa
 
 @cache
 def _unit(unit: str) -> pint.Unit:
+    require_unit(unit)
     return _registry().Unit(unit)
 
 

@@ -10,12 +10,16 @@ from functools import cache
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.names import short
+from bench.unit_grammar import LONGEST
 from bench.unit_text import EFFECTIVE, UnitError, scale_of
 from bench.usual_units import USUAL_UNITS
 
-_NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _VALUE = re.compile(rf"([+-]?{_NUMBER})\s*(.*)")
 _TOLERANCE = re.compile(rf"([+-]?{_NUMBER})\s*(?:\+/-|±)\s*({_NUMBER})\s*(.*)")
+#: Characters of a value: as many digits as anyone writes, and a unit.
+_LONGEST = 64 + LONGEST
 
 
 @dataclass(frozen=True)
@@ -101,9 +105,9 @@ def parse(text: object, unit: str, where: object) -> float:
         InputError: no finite number with a unit, or of another dimension; names `where`.
     """
     allowed = f'allowed: a number with a unit of the dimension of {unit}, e.g. "1.5 {unit}"'
-    match = _VALUE.fullmatch(text.strip()) if isinstance(text, str) else None
+    match = _VALUE.fullmatch(text.strip()) if isinstance(text, str) and len(text) <= _LONGEST else None
     if match is None:
-        raise InputError(where, f"found {text!r}", allowed)
+        raise InputError(where, f"found {short(repr(text))}", allowed)
     number, given = match.groups()
     if EFFECTIVE.search(given):
         told = 'say current = "effective" in the same table and write A'
@@ -124,7 +128,7 @@ def parse_with_tolerance(text: object, unit: str, where: object) -> tuple[float,
     Raises:
         InputError: as `parse`.
     """
-    match = _TOLERANCE.fullmatch(text.strip()) if isinstance(text, str) else None
+    match = _TOLERANCE.fullmatch(text.strip()) if isinstance(text, str) and len(text) <= _LONGEST else None
     if match is None:
         return parse(text, unit, where), 0.0
     number, tolerance, given = match.groups()

@@ -14,18 +14,17 @@ SOURCES = sorted((ROOT / "bench").rglob("*.py"))
 
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
+    {"errors", "names", "bounds", "files", "structured", "assets"},
     {
-        "errors",
         "units",
-        "unit_names",
-        "unit_text",
         "usual_units",
         "unit_registry",
+        "unit_grammar",
+        "unit_names",
+        "unit_text",
         "axis_kind",
         "arrays",
         "statistics",
-        "assets",
-        "files",
     },
     {"trace"},
     {"rig"},

@@ -211,14 +211,19 @@ def test_a_rig_with_an_unknown_key_names_it_and_its_neighbour(bench, trace, tmp_
 
 
 @pytest.mark.parametrize(
-    ("velocity", "words"),
+    ("velocity", "words", "told"),
     [
-        (lambda t: 50.0 + 0.0 * t, ["moment of inertia", "record instead"]),
-        (lambda t: 100.0 + 50.0 * np.sin(9.0 * t), ["coulomb friction torque", "offset", "both directions"]),
+        (lambda t: 50.0 + 0.0 * t, ["moment of inertia", "record instead"], None),
+        (
+            lambda t: 100.0 + 50.0 * np.sin(9.0 * t),
+            ["coulomb friction torque", "offset", "both directions"],
+            {"moment_of_inertia", "viscous_friction_coefficient"},
+        ),
     ],
     ids=["constant speed", "one direction"],
 )
-def test_what_the_data_cannot_answer_is_status_one_with_what_to_record(bench, tmp_path, velocity, words):
+def test_what_the_data_cannot_answer_is_status_one_with_what_to_record(bench, tmp_path, velocity, words, told):
+    """What the data do answer is in the JSON all the same."""
     time = np.arange(4000) * 1e-3
     rng = np.random.default_rng(0)
     speed = velocity(time)
@@ -229,7 +234,12 @@ def test_what_the_data_cannot_answer_is_status_one_with_what_to_record(bench, tm
     assert (status, out, err.count("\n")) == (1, "", 1)
     for word in words:
         assert word in err
-    assert not (tmp_path / "found.json").exists()
+    path = tmp_path / "found.json"
+    assert path.exists() == (told is not None)
+    if told is not None:
+        found = json.loads(path.read_text(encoding="utf-8"))["parameters"]
+        assert told <= set(found)
+        assert "coulomb_friction_torque" not in found
 
 
 def test_two_samples_are_too_few_and_say_so(bench, tmp_path):

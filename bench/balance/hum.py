@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,13 +23,13 @@ RATE = 8.0 * BAND
 
 def with_hum(fitted: Fit) -> Fit:
     """The fit with the lines of the mains that its residual shows taken into the hypothesis."""
-    width, duration = fitted.rows.conditioning.filter.width, fitted.scope.duration
+    width, duration, times = fitted.rows.conditioning.filter.width, fitted.scope.duration, _by_recording(fitted)
     found = list(fitted.hypothesis.hum)
     for line in LINES:
         known = any(abs(line - other) < 1.0 for other in found)
         if known or np.exp(-((2.0 * np.pi * line * width) ** 2)) < PASSED:
             continue
-        offsets, power = _around(fitted.time, fitted.residual, line)
+        offsets, power = _around(times, line)
         step = 0.5 / duration
         near, clear = np.abs(offsets) <= max(STRAYS, step), np.abs(offsets) > 4.0 * step
         if np.count_nonzero(clear) < 16:
@@ -41,17 +42,26 @@ def with_hum(fitted: Fit) -> Fit:
     return fit(fitted.rows, replace(fitted.hypothesis, hum=tuple(found)))
 
 
-def _around(time: Array, residual: Array, line: float) -> tuple[Array, Array]:
+def _by_recording(fitted: Fit) -> list[tuple[Array, Array]]:
+    """Times - s - and residuals (m,) of the rows of each recording that has some."""
+    edges = np.searchsorted(fitted.time, [*fitted.rows.starts[1:], np.inf])
+    times, residuals = np.split(fitted.time, edges)[:-1], np.split(fitted.residual, edges)[:-1]
+    return [(time, residual) for time, residual in zip(times, residuals, strict=True) if time.size]
+
+
+def _around(recordings: Sequence[tuple[Array, Array]], line: float) -> tuple[Array, Array]:
     """Offsets from a line within BAND - Hz - and the periodogram there, of rows at uneven times (m,) - s.
 
     The line is turned to zero frequency, where few sums over steps of time are left to transform: a cost that grows
     with the recording's length, not with its square.
     """
-    turned = residual * np.exp(-2j * np.pi * line * time)
-    place = np.floor((time - time[0]) * RATE).astype(np.intp)
-    count = int(place[-1]) + 1
-    sums = np.bincount(place, turned.real, count) + 1j * np.bincount(place, turned.imag, count)
-    power = np.abs(np.fft.fft(sums, 2 * count)) ** 2
+    count = max(int((time[-1] - time[0]) * RATE) + 1 for time, _ in recordings)
+    power = np.zeros(2 * count)
+    for time, residual in recordings:
+        turned = residual * np.exp(-2j * np.pi * line * time)
+        place = np.floor((time - time[0]) * RATE).astype(np.intp)
+        sums = np.bincount(place, turned.real, count) + 1j * np.bincount(place, turned.imag, count)
+        power += np.abs(np.fft.fft(sums, 2 * count)) ** 2
     offsets = np.fft.fftfreq(2 * count, 1.0 / RATE)
     order = np.flatnonzero(np.abs(offsets) <= BAND)
     return np.asarray(offsets[order], dtype=np.float64), np.asarray(power[order], dtype=np.float64)

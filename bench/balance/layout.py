@@ -93,8 +93,8 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
         owners.append(DIGIT)
     if hypothesis.hum:
         made = ("hum", hypothesis.hum, resting)
-        parts.append(rows.memory.get(made, lambda: seen.table(lambda s: _hum(s, hypothesis.hum), resting)))
-        owners += [HUM] * 2 * len(hypothesis.hum)
+        parts.append(rows.memory.get(made, lambda: seen.table(lambda s: _hum(s, hypothesis.hum, rows.starts), resting)))
+        owners += [HUM] * 2 * len(hypothesis.hum) * len(rows.starts)
     for index in range(len(hypothesis.terms)):
         table = term_columns(rows, seen, hypothesis, index)
         parts.append(table)
@@ -133,15 +133,17 @@ def filtered(seen: Rows, term: Term, loads: tuple[Load, ...], lag: float) -> Arr
         return seen.table(lambda s: term.effect.columns_of(s, [term.shape], loads), lag)
 
     def kept(signals: Signals) -> Sequence[Column]:
-        made_of = ("raw", term.key, seen.motion, float(signals.time[0]))
+        made_of = ("raw", term.key, seen.motion, signals.began, float(signals.time[0]))
         return seen.memory.columns(made_of, lambda: term.effect.columns_of(signals, [term.shape]))
 
     return seen.table(kept, lag)
 
 
-def _hum(signals: Signals, lines: tuple[float, ...]) -> list[Column]:
+def _hum(signals: Signals, lines: tuple[float, ...], starts: tuple[float, ...]) -> list[Column]:
+    """Sine and cosine of every line in every recording: no two of them start at the same phase of the mains."""
     angles = [2.0 * np.pi * line * signals.time for line in lines]
-    return [[(wave(angle), 0)] for angle in angles for wave in (np.sin, np.cos)]
+    waves = [wave(angle) for angle in angles for wave in (np.sin, np.cos)]
+    return [[(values if start == signals.began else np.zeros_like(values), 0)] for start in starts for values in waves]
 
 
 def _made_of(rows: Rows, hypothesis: Hypothesis) -> tuple[object, ...]:

@@ -140,7 +140,8 @@ class Rows:
     def selected(self, kept: Callable[[Array], NDArray[np.bool_]]) -> Rows:
         """Those of the rows that are kept, by their times (r,) - s."""
         stretches = tuple(
-            replace(part, used=part.used & kept(self._picked(part, part.signals.time))) for part in self.stretches
+            replace(part, used=part.used & kept(self._picked(part, _since_first(part.signals))))
+            for part in self.stretches
         )
         chosen = np.concatenate([new.used[old.used] for new, old in zip(stretches, self.stretches, strict=True)])
         return replace(self, stretches=stretches, effort=self.effort[chosen], memory=Memory())
@@ -152,8 +153,13 @@ class Rows:
 
     @cached_property
     def time(self) -> Array:
-        """Of the used rows, since the recording's start - s - (m,)."""
-        return self.values(lambda s: s.time)
+        """Of the used rows, since the start of the recording, or of the first of several - s - (m,)."""
+        return self.values(_since_first)
+
+    @property
+    def starts(self) -> tuple[float, ...]:
+        """Of the recordings that were joined, since the start of the first - s."""
+        return tuple(dict.fromkeys(part.signals.began for part in self.stretches))
 
     def samples(self) -> NDArray[np.int64]:
         """Index into the recording of every used row (m,)."""
@@ -195,6 +201,11 @@ def _table(
     return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
 
 
+def _since_first(signals: Signals) -> Array:
+    """Time since the start of the first of the recordings - s."""
+    return signals.time + signals.began if signals.began else signals.time
+
+
 def _stretch(
     trace: Trace, effort: Array, part: slice, conditioning: Conditioning, peak_effort: float, begins: float
 ) -> Stretch:
@@ -212,7 +223,8 @@ def _stretch(
         lost = (wide.margin - smooth.margin) // smooth.stride
         used[lost : lost + direction.size] = np.abs(direction) > 1.0 - 1e-3
     signals = Signals(
-        time=trace.time[part] - begins,
+        time=trace.time[part] - (trace.start_of(part) if trace.joined else begins),
+        began=trace.start_of(part) - begins if trace.joined else 0.0,
         position=position,
         velocity=velocity,
         sign=sign,
@@ -233,6 +245,8 @@ def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: C
     used = [part.used for part in stretches]
     speed = np.concatenate([s.velocity[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
     direction = np.concatenate([s.sign[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
+    ends = {s.began: float(s.time[-1]) for s in signals}
+    starts = {s.began: float(s.time[0]) for s in reversed(signals)}
     drift = 0.0
     if "position" not in trace:  # of the mean of integrated white noise, sigma*sqrt(T_s*T/3)
         drift = conditioning.source_noise * float(np.sqrt(trace.sample_period * (trace.time[-1] - trace.time[0]) / 3.0))
@@ -241,7 +255,7 @@ def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: C
         source=conditioning.source,
         signals=frozenset(trace.signals),
         one_way=bool(0.5 * (1.0 - abs(float(np.mean(direction)))) < ONE_WAY),
-        duration=float(signals[-1].time[-1] - signals[0].time[0]),
+        duration=max(ends[begun] - starts[begun] for begun in starts),
         sample_period=trace.sample_period,
         latched=rig.drive.control_period if rig.drive is not None else trace.sample_period,
         drift=drift,

@@ -37,8 +37,11 @@ class Balance:
 
     @classmethod
     def of(cls, fitted: Fit) -> Balance:
-        """Balance of a fit."""
-        return cls(fitted.hypothesis, fitted.theta, fitted.rows.conditioning.filter.width, fitted.rows.origin)
+        """Balance of a fit; without hum where it is of several recordings, as each had its own phase of it."""
+        width, origin = fitted.rows.conditioning.filter.width, fitted.rows.origin
+        if len(fitted.rows.starts) == 1:
+            return cls(fitted.hypothesis, fitted.theta, width, origin)
+        return cls(replace(fitted.hypothesis, hum=()), fitted.theta[fitted.owners != HUM], width, origin)
 
     def repeating(self, events: bool) -> Balance:
         """The same with its events in every recording, if they happen in every one."""

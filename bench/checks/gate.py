@@ -10,6 +10,7 @@ from bench.checks import effort, losses, signals, timing, velocity, wraps
 from bench.checks.check import STATUSES, Check
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.rig.rig import Rig
+from bench.trace.possible import require_possible
 from bench.trace.trace import Trace
 
 Looks = tuple[Callable[[Trace, Rig | None], tuple[Trace, Check]], ...]
@@ -64,8 +65,9 @@ def gate(trace: Trace, rig: Rig | None = None, looks: Looks = CHECKS) -> Gated:
         looks: the checks to run.
 
     Raises:
-        InputError: rig and recording do not fit together.
+        InputError: rig and recording do not fit together, or a value is one that no axis has.
     """
+    require_possible(trace)
     found = []
     for look in looks:
         trace, one = look(trace, rig)

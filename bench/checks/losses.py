@@ -79,16 +79,17 @@ def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
     if len(trace) < SHORTEST or not {"position", "velocity"} & set(trace.signals):
         return trace, absent(NAME, "too short a recording to tell, or without motion", ALLOWED)
     right, lost, stale = trace, 0, 0
+    most = (MOST if "velocity" in trace else MOST_BLIND) * len(trace)
     for _ in range(PASSES):
         damage = damage_of(right)
-        if not damage.lost and not damage.stale:
-            break
         lost, stale = lost + damage.lost, stale + damage.stale
+        if lost + stale > most or (not damage.lost and not damage.stale):
+            break
         right = repaired(right, damage)
     if not lost and not stale:
         return trace, Check(NAME, "pass", "none found", ALLOWED)
     found = f"{counted(lost, 'sample')} lost, {stale} repeated of {len(trace)}, though the time runs on evenly"
-    if lost + stale > (MOST if "velocity" in trace else MOST_BLIND) * len(trace):
+    if lost + stale > most:
         return trace, Check(NAME, "fail", found, ALLOWED, ADVICE)
     return right, Check(NAME, "warn", f"{found}; put right", ALLOWED, ADVICE)
 
@@ -132,7 +133,7 @@ def _median(values: Array) -> Array:
 def _whole(jump: Array, step: Array, limit: float, least: float) -> NDArray[np.int64]:
     """How many steps of the motion a jump is, 0 where it is none."""
     sure = (np.abs(jump) > limit) & (np.abs(step) > least)
-    ratio = np.divide(jump, step, out=np.zeros_like(jump), where=sure)
+    ratio = np.divide(jump, step, out=np.zeros_like(jump), where=sure).clip(-jump.size, jump.size)
     whole = np.rint(ratio)
     near = np.abs(ratio - whole) < WHOLE * np.maximum(np.sqrt(np.abs(whole)), 1.0)
     return np.where(near & (whole >= -1.0), whole, 0.0).astype(np.int64)

@@ -6,13 +6,18 @@ that `bench --help` needs nothing and `bench identify` a tenth; `bench --version
 
 from __future__ import annotations
 
+import io
+import os
 import sys
+import traceback
+from pathlib import Path
 from typing import Annotated
 
 import typer
 from typer.exceptions import TyperException
 
 from bench import __version__
+from bench.cli.common import guarded
 from bench.cli.demo import demo
 from bench.cli.diagnose import diagnose
 from bench.cli.effects import effects
@@ -25,6 +30,7 @@ from bench.cli.replay import replay
 from bench.cli.rigs import rigs
 from bench.cli.simulate import simulate
 from bench.errors import BenchError
+from bench.names import plain, short
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
 
@@ -42,24 +48,54 @@ def bench(
 
 
 for command in (demo, simulate, effects, inspect, identify, diagnose, replay, friction, lab, limits, rigs):
-    app.command()(command)
+    app.command()(guarded(command))
+
+
+#: Characters of a line that says what is wrong; a path may have 4096.
+LONGEST = 6000
 
 
 def main() -> None:
     """Entry point of `bench`: errors become one line on standard error and an exit status."""
+    _encode_everything()
     try:
         status = app(standalone_mode=False)
+        sys.stdout.flush()
     except BenchError as error:
         sys.exit(_failed(str(error), error.exit_status))
     except TyperException as error:
         sys.exit(_failed(error.format_message(), 2))
     except (KeyboardInterrupt, typer.Abort):
         sys.exit(_failed("interrupted", 130))
+    except BrokenPipeError:  # whoever reads what is printed has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # which Python flushes once more at its end
+        sys.exit(141)
+    except Exception as fault:
+        sys.exit(_failed(_fault(fault), 70))
     sys.exit(status if isinstance(status, int) else 0)
 
 
+def _encode_everything() -> None:
+    """Have characters that standard output cannot encode written out, as standard error does."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
+
+
+def _fault(fault: Exception) -> str:
+    """What to say of an exception that nobody foresaw: it is never mistaken for bad input."""
+    if isinstance(fault, MemoryError):
+        return "out of memory; give less at a time, or a machine with more"
+    last = traceback.extract_tb(fault.__traceback__)[-1]
+    place = f"{Path(last.filename).name}:{last.lineno}"
+    what = f"{type(fault).__name__}: {short(str(fault))}" if str(fault) else type(fault).__name__
+    again = "" if "--debug" in sys.argv else "; run it again with --debug, and"
+    return f"a fault of the bench itself, not of your input ({what}, at {place}){again} report it as SECURITY.md says"
+
+
 def _failed(message: str, status: int) -> int:
-    line = " ".join(message.replace("Value error, ", "").split())
+    if "--debug" in sys.argv and sys.exc_info()[0] is not None:
+        traceback.print_exc()
+    line = plain(" ".join(message.replace("Value error, ", "").split()))
     if line:
-        typer.echo(f"bench: {line}", err=True)
+        typer.echo(f"bench: {short(line, LONGEST)}", err=True)
     return status

@@ -11,6 +11,7 @@ from bench.console import (
     AxisOption,
     JsonOption,
     RigOption,
+    TracesArgument,
     console,
     tell_files,
     tell_warnings,
@@ -20,9 +21,11 @@ from bench.console import (
 
 
 def diagnose(
-    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    traces: TracesArgument,
     rig: RigOption,
-    holdout: Annotated[Path | None, typer.Option("--holdout", help="Another recording of the axis.")] = None,
+    holdout: Annotated[
+        Path | None, typer.Option("--holdout", help="Another recording of the axis, not fitted.")
+    ] = None,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
@@ -34,18 +37,22 @@ def diagnose(
     from bench.effects.present import named
     from bench.report.diagnosis import SCHEMA, diagnosis_json, diagnosis_table, write_diagnosis
     from bench.report.progress import progress
+    from bench.report.provenance import provenance
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
     axis = load_rig(rig).on_axis(axis_name)
     excluded = frozenset(named(name, "--without").name for name in without or [])
     other = read(holdout, axis.trace) if holdout else None
-    with told_in_json(json, SCHEMA), progress(f"diagnosing {trace.name}") as done:
-        found = run_diagnosis(read(trace, axis.trace), axis, other, excluded, done)
+    names = ", ".join(trace.name for trace in traces)
+    with told_in_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
+        recordings = [read(trace, axis.trace) for trace in traces]
+        found = run_diagnosis(recordings, axis, other, excluded, done)
+    basis = provenance(rig, traces, {"without": sorted(excluded)}, holdout)
+    files = write_diagnosis(out, found, f"{axis.name}: {names}", basis) if out is not None else []
     if json is not None:
-        write_json(json, diagnosis_json(found))
-    files = write_diagnosis(out, found, f"{axis.name}: {trace.name}") if out is not None else []
+        write_json(json, diagnosis_json(found, basis))
     if json != Path("-"):
-        console().print(diagnosis_table(found, f"{axis.name}: {trace.name}"))
+        console().print(diagnosis_table(found, f"{axis.name}: {names}"))
         tell_files(files)
     tell_warnings([*found.warnings, *spoken(found.checks)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,6 +14,7 @@ from bench.console import (
     AxisOption,
     JsonOption,
     RigOption,
+    TracesArgument,
     console,
     tell_files,
     tell_warnings,
@@ -35,7 +37,7 @@ class Estimator(StrEnum):
 
 
 def identify(
-    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    traces: TracesArgument,
     rig: RigOption,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for figures and JSON.")] = None,
@@ -49,47 +51,61 @@ def identify(
     ] = None,
     axis_name: AxisOption = None,
 ) -> None:
-    """Identify inertia, viscous and Coulomb friction of a recording, with 95 % intervals."""
+    """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.checks.gate import spoken
     from bench.identify.estimate import RefusedEstimateError
-    from bench.report.estimate import SCHEMA, estimate_json, estimate_table, refinement_line
+    from bench.report.estimate import SCHEMA, estimate_json, estimate_table, recordings_table, refinement_line
+    from bench.report.provenance import provenance
     from bench.rig.rig import load_rig
 
     axis = load_rig(rig).on_axis(axis_name)
     axis = axis.model_copy(update={"offset": axis.offset or offset})
-    if estimator is Estimator.LAB and (refine or offset or cutoff):
-        raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
+    _require_consistent(traces, estimator, refine, bool(offset or cutoff))
+    options = {"estimator": estimator.value, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
+    basis = partial(provenance, rig, traces, options)
     try:
         with told_in_json(json, SCHEMA):
-            estimate, refinement = _estimate(trace, axis, estimator, refine, cutoff)
+            estimate, refinement = _estimate(traces, axis, estimator, refine, cutoff)
     except RefusedEstimateError as refusal:
         if json is not None:
-            write_json(json, estimate_json(refusal.estimate, refused=str(refusal)))
+            write_json(json, estimate_json(refusal.estimate, None, str(refusal), basis()))
         tell_warnings(refusal.estimate.warnings)
         raise
-    if json is not None:
-        write_json(json, estimate_json(estimate, refinement))
     files = []
     if out is not None:
         from bench.report.identification import write_identification  # matplotlib: 0.35 s
 
-        files = write_identification(out, trace, axis, estimate, refinement)
+        files = write_identification(out, traces, axis, estimate, refinement, basis())
+    if json is not None:
+        write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):
-        console().print(estimate_table(estimate, f"{axis.name}: {trace.name}"))
+        console().print(estimate_table(estimate, f"{axis.name}: {', '.join(trace.name for trace in traces)}"))
+        if estimate.recordings:
+            console().print(recordings_table(estimate))
         if refinement is not None:
             typer.echo(refinement_line(refinement, axis.axis_kind))
         tell_files(files)
     tell_warnings([*estimate.warnings, *spoken(estimate.checks)])
 
 
+def _require_consistent(traces: list[Path], estimator: Estimator, refine: bool, tuned: bool) -> None:
+    """InputError where options contradict each other, or the number of recordings."""
+    lab = estimator is Estimator.LAB
+    if lab and (refine or tuned):
+        raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
+    if len(traces) > 1 and (refine or lab):
+        found = f"found with {len(traces)} recordings"
+        raise InputError("--refine" if refine else "--estimator lab", found, "allowed: with one recording")
+
+
 def _estimate(
-    trace: Path, rig: Rig, estimator: Estimator, refine: bool, cutoff: float | None
+    traces: list[Path], rig: Rig, estimator: Estimator, refine: bool, cutoff: float | None
 ) -> tuple[Estimate, Refinement | None]:
     """Estimate by the method asked for, and what polishing did to it."""
     from bench.checks.gate import passed
     from bench.trace.read import read
 
-    how = rig.trace
+    how, trace = rig.trace, traces[0]
     if estimator is Estimator.LAB:
         from bench.identify.lab import identify_as_in_the_lab
 
@@ -99,9 +115,9 @@ def _estimate(
     from bench.report.progress import progress
     from bench.trace.stream import stream
 
-    with progress(f"identifying {trace.name}") as done:
+    with progress(f"identifying {', '.join(each.name for each in traces)}") as done:
         if not refine:
-            return regress(stream(trace, how), rig, cutoff), None
+            return regress([stream(each, how) for each in traces], rig, cutoff), None
         from bench.identify.refine import refine as polish  # MuJoCo: 0.1 s
 
         recording = passed(read(trace, how), rig).trace

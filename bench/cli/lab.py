@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from bench.console import console, tell_files
+from bench.names import plain
 
 
 def lab(
@@ -60,7 +61,7 @@ def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
     graded, bad, files = grade_class(submissions, truth, out)
     console().print(grades_table(graded))
     for error in bad:
-        typer.echo(f"not graded: {error}", err=True)
+        typer.echo(plain(f"not graded: {error}"), err=True)
     tell_files(files[:2])
     if bad:
         raise typer.Exit(1)

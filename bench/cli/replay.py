@@ -9,6 +9,7 @@ import typer
 
 from bench.console import AxisOption, RigOption, tell_files, tell_warnings
 from bench.files import write_text
+from bench.names import plain
 
 
 def replay(
@@ -26,6 +27,6 @@ def replay(
     axis = load_rig(rig).on_axis(axis_name)
     replayed = run_replay(model, read(trace, axis.trace), axis)
     write_text(out, replayed.csv())
-    typer.echo(replayed.says)
+    typer.echo(plain(replayed.says))
     tell_files([out])
     tell_warnings(replayed.warnings)

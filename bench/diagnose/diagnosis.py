@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from bench.axis_kind import INERTIA
 from bench.balance.fit import Fit
 from bench.balance.quantities import uncertain
-from bench.checks.gate import passed
+from bench.checks.gate import joined, passed
 from bench.diagnose.add.add import add
-from bench.diagnose.gap.decidable import require_positive
 from bench.diagnose.gap.gap import gap
 from bench.diagnose.name.name import name
 from bench.diagnose.name.policy import Policy
@@ -18,7 +17,8 @@ from bench.diagnose.recordings import Recordings
 from bench.diagnose.show.show import Diagnosis, show
 from bench.diagnose.show.suspicions import suspicions
 from bench.diagnose.where.where import where
-from bench.identify.determined import require_significant
+from bench.identify.determined import require_masses, require_significant
+from bench.identify.load_inertia import load_inertia
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -28,7 +28,7 @@ POLICY = Policy()
 
 
 def diagnose(
-    trace: Trace,
+    trace: Trace | Sequence[Trace],
     rig: Rig,
     holdout: Trace | None = None,
     excluded: frozenset[str] = frozenset(),
@@ -38,7 +38,7 @@ def diagnose(
     """Find what is missing, name it, add it, and show the gap shrink.
 
     Args:
-        trace: the recording.
+        trace: the recording, or a list of several of one axis, which are joined (`bench.trace.join`).
         rig: of the axis.
         holdout: another recording of it, not used to fit.
         excluded: effects that are not tried.
@@ -49,9 +49,9 @@ def diagnose(
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
         InputError: rig and recording do not fit together, or a check of a recording fails.
     """
-    gated = passed(trace, rig)
+    gated = [passed(each, rig) for each in ([trace] if isinstance(trace, Trace) else trace)]
     unseen = passed(holdout, rig).trace if holdout is not None else None
-    recordings = Recordings.of(gated.trace, rig, unseen)
+    recordings = Recordings.of([each.trace for each in gated], rig, unseen)
     bare = gap(recordings.rows)
     located = where(bare, rig.axis_kind, recordings.unit)
     suspects = name(recordings, bare, excluded, policy)
@@ -59,17 +59,17 @@ def diagnose(
     progress(0.6)
     added = add(recordings, suspects)
     progress(0.9)
-    return replace(show(recordings, bare, located, suspects, added), checks=gated.checks)
+    return replace(show(recordings, bare, located, suspects, added), checks=joined([each.checks for each in gated]))
 
 
 def require_weight(recordings: Recordings, fitted: Fit) -> None:
     """Refuse effects that leave no inertia which the recording tells, before a model is made of them.
 
     Raises:
-        UndeterminedError: its interval holds zero.
-        InputError: it is negative.
+        UndeterminedError: its interval holds zero, or it or the load's is negative.
     """
     kind = recordings.rig.axis_kind
-    inertia = uncertain(fitted).base(recordings.base_units)[kind.parameter(INERTIA)]
-    require_significant(inertia, kind, suspicions(recordings.trace, recordings.rig, {}))
-    require_positive(inertia, recordings.trace.origin)
+    found = uncertain(fitted).base(recordings.base_units)
+    told = suspicions(recordings.trace, recordings.rig, {})
+    require_significant(found[kind.parameter(INERTIA)], kind, told)
+    require_masses(found | load_inertia(found, recordings.rig), kind, told)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
@@ -11,6 +11,7 @@ from bench.diagnose.gap.decidable import require_another, require_decidable, req
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect
 from bench.rig.rig import Rig
+from bench.trace.join import join
 from bench.trace.trace import Trace
 
 
@@ -20,7 +21,7 @@ class Recordings:
 
     Attributes:
         rig: of the axis.
-        trace: the recording.
+        trace: the recording, or several as one.
         holdout: another one, not fitted; None without one.
         rows, other: both laid out.
         detected: effects that the recording's signals show, of which the torque balance holds none.
@@ -34,17 +35,20 @@ class Recordings:
     detected: Mapping[Effect, Detected]
 
     @classmethod
-    def of(cls, trace: Trace, rig: Rig, holdout: Trace | None) -> Recordings:
-        """Lay out both recordings; a fault that the signals show by themselves is undone before.
+    def of(cls, trace: Trace | Sequence[Trace], rig: Rig, holdout: Trace | None) -> Recordings:
+        """Lay out the recordings and the holdout; a fault that the signals show by themselves is undone before.
 
         Raises:
             UndeterminedError: the recording is too short, too slow or too quiet to decide.
             InputError: rig and recording do not fit together, or the holdout is the recording itself.
         """
-        require_samples(trace)
+        traces = [trace] if isinstance(trace, Trace) else trace
+        for each in (*traces, *([] if holdout is None else [holdout])):
+            require_samples(each)
+        trace = join(traces)
         if holdout is not None:
-            require_samples(holdout)
-            require_another(trace, holdout)
+            for each in traces:
+                require_another(each, holdout)
         rows = Rows.of(trace, rig)
         require_decidable(trace, rig, rows)
         width = rows.conditioning.filter.width
@@ -53,8 +57,8 @@ class Recordings:
         seen, unseen = trace, holdout
         for effect, those in detected.items():
             if effect.faulty_signal == rows.conditioning.source:
-                seen = effect.corrected(seen, those.values)
-                unseen = effect.corrected(unseen, those.values) if unseen is not None else None
+                seen = _mended(seen, rig, effect, those)
+                unseen = None if unseen is None else _mended(unseen, rig, effect, those)
         if seen is not trace:
             rows = Rows.of(seen, rig)
             require_decidable(seen, rig, rows)
@@ -74,3 +78,10 @@ class Recordings:
         """Names of J, K_w and K_0 on this kind of axis, with their units."""
         kind = self.rig.axis_kind
         return {kind.parameter(term): kind.parameter_unit(term, self.unit) for term in (INERTIA, VISCOUS, COULOMB)}
+
+
+def _mended(trace: Trace, rig: Rig, effect: Effect, found: Detected) -> Trace:
+    """A recording with a fault of its sensor undone; without the faulty signal where that stays wrong all the same."""
+    if found.mends or rig.asks_for_speed(trace):
+        return effect.corrected(trace, found.values)
+    return trace.without(effect.faulty_signal)

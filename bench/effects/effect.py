@@ -27,8 +27,7 @@ from bench.units import Quantity
 if TYPE_CHECKING:
     from bench.effects.kinds import Axis, Number
 
-#: Share of what stands above the noise floor that an effect must explain to be taken up; one alone explains 0.90 at
-#: least (`python -m tests.blind.margins`), one of several less.
+#: Share of what stands above noise that an effect must explain; one alone explains 0.90 (`tests.blind.margins`).
 SHARE = 0.25
 #: The same for a pitch that repeats so many half cycles over a linear axis' travel that no smooth error copies it.
 PITCH_SHARE, MANY = 0.1, 20.0
@@ -50,13 +49,14 @@ class Detected:
     """An effect read from signals that the torque balance does not hold.
 
     Attributes:
-        values, errors: of its quantities, and their half widths at 95 % - SI.
-        evidence: figures that speak for it, by what they are.
+        values, errors, evidence: of its quantities, their half widths at 95 % - SI -, and figures that speak for it.
+        mends: whether undoing it leaves no more in the faulty signal than noise does.
     """
 
     values: Mapping[str, float]
     errors: Mapping[str, float]
     evidence: Mapping[str, float] = field(default_factory=dict)
+    mends: bool = True
 
 
 class FittedTerm(Protocol):

@@ -60,16 +60,18 @@ class Moment:
     """State of axes at the middle of a step.
 
     Attributes:
-        time: s - one for all, or (k,).
+        time: since the recording's start - s - one for all, or (k,).
         position: rad (m) - (k,).
         velocity: rad/s (m/s) - (k,).
         effort: of the motor - N*m (N) - (k,).
+        began: the recording, since the start of the first of several that are joined - s - one for all, or (k,).
     """
 
     time: Number
     position: Array
     velocity: Array
     effort: Array
+    began: Number = 0.0
 
 
 class Mechanism(Effect):

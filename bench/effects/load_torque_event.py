@@ -2,7 +2,7 @@
 
     M = M_e for t_1 <= t < t_2, else 0
 
-M_e - N*m (N); t - time since the recording's start - s.
+M_e - N*m (N); t - time since the recording's start (that of the first, of several that are joined) - s.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from bench.units import Quantity
 
 #: Points in time between which events are sought.
 EDGES = 240
-#: Longest events together, as share of the recording.
+#: Longest events together, as share of the recording (of the longest, of several).
 LONGEST = 0.6
 #: Share of what stands above the noise floor that an event must explain.
 NEEDED = 0.5
@@ -47,7 +47,7 @@ class LoadTorqueEvent(Mechanism):
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """One within the stretch; its edges shared between the samples around them."""
-        start, end = ((signals.time - edge) / signals.sample_period + 0.5 for edge in shape)
+        start, end = ((signals.began + signals.time - edge) / signals.sample_period + 0.5 for edge in shape)
         return [[(np.clip(start, 0.0, 1.0) - np.clip(end, 0.0, 1.0), 0)]]
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
@@ -64,6 +64,9 @@ class LoadTorqueEvent(Mechanism):
         spanned = np.concatenate([np.zeros((1, basis.shape[1])), np.cumsum(basis, axis=0)])[edges]
         first, last = np.triu_indices(edges.size, 1)
         kept = (edges[last] - edges[first]) < LONGEST * time.size
+        if time[-1] - time[0] > fitted.scope.duration:  # through all of one of several recordings: that is how they are
+            instants = time[np.minimum(edges, time.size - 1)]
+            kept &= instants[last] - instants[first] <= LONGEST * fitted.scope.duration
         first, last = first[kept], last[kept]
         count = edges[last] - edges[first]
         power = count - np.sum((spanned[last] - spanned[first]) ** 2, axis=1)
@@ -92,7 +95,8 @@ class LoadTorqueEvent(Mechanism):
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
         """While it acts."""
-        acts = np.asarray((at.time >= values["start"]) & (at.time < values["end"]), dtype=np.float64)
+        time = at.began + at.time
+        acts = np.asarray((time >= values["start"]) & (time < values["end"]), dtype=np.float64)
         return values["torque"] * acts
 
 

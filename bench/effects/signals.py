@@ -27,6 +27,7 @@ class Signals:
         sample_period: s.
         source: signal that speed and acceleration are taken from, `velocity` or `position`.
         load: torque of the load as named effects make it - N*m (N).
+        began: the recording, since the start of the first of several that are joined - s.
     """
 
     time: Array
@@ -40,6 +41,7 @@ class Signals:
     sample_period: float
     source: str = "velocity"
     load: Array | float = 0.0
+    began: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,8 @@ class Scope:
         source: signal that speed and acceleration are taken from, `velocity` or `position`.
         signals: names of all that is recorded.
         one_way: whether the axis moves in one direction only.
-        duration, sample_period: s.
+        duration: of the recording, the longest of several that are joined - s.
+        sample_period: s.
         latched: within what time torque and speed were taken: one tick of a drive, else one sample - s.
         drift: standard deviation of a position that was integrated from noisy speed, 0 of a recorded one - rad (m).
         width: of the filter, its standard deviation - s.

@@ -2,7 +2,8 @@
 
     M = kT*I*(1 - d*(I/I_peak)**2)
 
-d - drop at peak current, 0 to 1; I_peak - peak current - A.
+d - drop at peak current; I_peak - peak current - A. Torque rises with current up to the peak,
+dM/dI = kT*(1 - 3*d*(I/I_peak)**2) > 0, so d is 1/3 at most.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ class TorqueConstantSaturation(Electronics):
 
     name = "torque_constant_saturation"
     summary = "torque per ampere falls at high current"
-    quantities = (Quantity("drop_at_peak", "d", "dimensionless", lower=0.0, upper=1.0, null=0.0),)
+    quantities = (Quantity("drop_at_peak", "d", "dimensionless", lower=0.0, upper=1.0 / 3.0, null=0.0),)
     copies_torque = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

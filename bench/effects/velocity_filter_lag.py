@@ -31,6 +31,8 @@ from bench.units import Quantity
 LEAST_SHARE = 0.6
 #: Disagreement of speed and position above what their noise makes, and the share of it that a lag must explain.
 DISAGREE, EXPLAINED = 1.5, 0.7
+#: Share of the disagreement that a lag undone may leave and the speed is still of use.
+MENDED = 0.1
 
 
 class VelocityFilterLag(Sensing):
@@ -91,7 +93,8 @@ class VelocityFilterLag(Sensing):
         error = float(np.sqrt(np.mean(rest**2) / max(power, 1e-300) * 4.0))
         tick = rig.drive.control_period if rig.drive is not None else 0.0
         evidence = {"speed_against_position_before": before, "speed_against_position_after": after}
-        return Detected({"time_constant": lag}, {"time_constant": NORMAL95 * error + 0.5 * tick}, evidence)
+        errors = {"time_constant": NORMAL95 * error + 0.5 * tick}
+        return Detected({"time_constant": lag}, errors, evidence, mends=after < max(DISAGREE, MENDED * before))
 
     def corrected(self, trace: Trace, values: Mapping[str, float]) -> Trace:
         """With the speed that the reported one lags behind, omega = v + T*dv/dt."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -127,6 +127,23 @@ def require_significant(inertia: Parameter, kind: AxisKind, told: Sequence[str] 
         raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])
 
 
+def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, told: Sequence[str] = ()) -> None:
+    """UndeterminedError where the inertia, or the load's, is negative as far as its interval reaches.
+
+    Args:
+        parameters: as found.
+        kind: of the axis.
+        told: what else is suspicious about the recording, and may be why.
+    """
+    for name in (kind.inertia, "load_moment_of_inertia"):
+        found = parameters.get(name)
+        if found is not None and found.ci95[1] < 0.0:
+            low, high = found.ci95
+            reason = f"it comes out negative, {found.value:.3g} {found.unit} ({low:.3g} to {high:.3g})"
+            advice = TURNED if name == kind.inertia else SMALLER
+            raise UndeterminedError(name.replace("_", " "), "; ".join([reason, *told]), advice)
+
+
 def require_sound(estimate: Estimate, kind: AxisKind, told: Sequence[str] = ()) -> None:
     """UndeterminedError where numbers were found that identify nothing.
 
@@ -138,14 +155,7 @@ def require_sound(estimate: Estimate, kind: AxisKind, told: Sequence[str] = ()) 
         kind: of the axis.
         told: what else is suspicious about the recording, and may be why.
     """
-    for name in (kind.inertia, "load_moment_of_inertia"):
-        found = estimate.parameters.get(name)
-        if found is not None and found.ci95[1] < 0.0:
-            reason = (
-                f"it comes out negative, {found.value:.3g} {found.unit} ({found.ci95[0]:.3g} to {found.ci95[1]:.3g})"
-            )
-            reason = "; ".join([reason, *told])
-            raise UndeterminedError(name.replace("_", " "), reason, TURNED if name == kind.inertia else SMALLER)
+    require_masses(estimate.parameters, kind, told)
     require_significant(estimate[kind.inertia], kind, told)
     if estimate.explained < LEAST_EXPLAINED:
         share = f"the model explains {max(estimate.explained, 0.0):.0%} of the {kind.effort}'s variance"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from bench.balance.parameter import Parameter
 from bench.checks.check import Check
@@ -29,6 +29,34 @@ class Residual:
 
 
 @dataclass(frozen=True)
+class Between:
+    """How recordings of one axis differ in a quantity.
+
+    Attributes:
+        std_dev: standard deviation of what each recording tells alone - the quantity's unit.
+        predictive95: where what one recording more tells alone is to be expected, at 95 % - the quantity's unit.
+    """
+
+    std_dev: float
+    predictive95: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Alone:
+    """What one of several recordings tells by itself.
+
+    Attributes:
+        origin: of the recording.
+        parameters: that it determines alone, by the names of the contract.
+        reason: why not all of them; empty where it determines all.
+    """
+
+    origin: str
+    parameters: Mapping[str, Parameter]
+    reason: str = ""
+
+
+@dataclass(frozen=True)
 class Estimate:
     """Result of identification; nothing downstream edits it.
 
@@ -42,6 +70,8 @@ class Estimate:
         warnings: what a user should know before relying on it.
         explained: share of the effort's variance that the model explains; nan where the estimator does not tell.
         checks: what the gate found before the fit.
+        recordings: each alone, where several were fitted together.
+        between: how they differ, by the names of the quantities that at least two of them tell alone.
     """
 
     estimator: str
@@ -54,6 +84,8 @@ class Estimate:
     warnings: tuple[str, ...] = ()
     explained: float = math.nan
     checks: tuple[Check, ...] = ()
+    recordings: tuple[Alone, ...] = ()
+    between: Mapping[str, Between] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Parameter:
         return self.parameters[name]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -58,12 +58,14 @@ class Gathered:
     checks: tuple[Check, ...] = ()
 
 
-def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = None) -> Estimate:
-    """Inertia, viscous and Coulomb friction (and offset, if the rig asks for it) of a recording.
+def identify(
+    trace: Trace | Iterable[Trace] | Sequence[Trace | Iterable[Trace]], rig: Rig, cutoff: float | None = None
+) -> Estimate:
+    """Inertia, viscous and Coulomb friction (and offset, if the rig asks for it) of a recording, or of several.
 
     Args:
-        trace: the recording, or its consecutive parts for one that does not fit into memory; the first part decides
-            how all are filtered, and whether the mains hum in them.
+        trace: the recording; an iterator over its consecutive parts, for one that does not fit into memory; or a list
+            (tuple) of several recordings of one axis, which are fitted together (`bench.identify.several`).
         rig: what is known about the axis.
         cutoff: half-power frequency of the filter instead of the one chosen from the data - Hz.
 
@@ -72,7 +74,11 @@ def identify(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None = No
         UndeterminedError: it determines none.
         InputError: a signal is missing, rig and trace do not fit together, or a check of the recording fails.
     """
-    return solve(gather(trace, rig, cutoff), rig)
+    if isinstance(trace, Sequence) and len(trace) != 1:
+        from bench.identify.several import identify_together  # which imports this module
+
+        return identify_together(trace, rig, cutoff)
+    return solve(gather(trace[0] if isinstance(trace, Sequence) else trace, rig, cutoff), rig)
 
 
 def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Gathered:
@@ -133,6 +139,9 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
     parameters |= load_inertia(parameters, rig)
     chosen = equations.select(found.columns)
     power, squares = max(chosen.residual_power(found.theta), 0.0), float(chosen.power.sum())
+    if squares == 0.0:
+        quantity = kind.parameter(INERTIA).replace("_", " ")
+        raise UndeterminedError(quantity, "the effort is zero throughout", "the motor's current or torque too")
     mean = float(equations.moment[:, -1].sum()) / equations.count
     smooth = gathered.rows.conditioning.filter
     estimate = Estimate(

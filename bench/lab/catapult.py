@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ from bench.assets import asset
 from bench.errors import SimulationError
 from bench.files import write_text
 from bench.plant.states import DIVERGED
+from bench.structured import json_text
 
 FLIGHTS, POINTS = 10, 20
 #: Angles of the arm from the forward horizontal when it is let go, and when the ball is - rad.
@@ -115,5 +115,5 @@ def record_flights(folder: Path, random: np.random.Generator) -> list[Path]:
         "sensor_scatter": {"value": SENSOR_SCATTER, "unit": "m"},
     }
     truth = folder / "truth.json"
-    write_text(truth, json.dumps(content, indent=2) + "\n")
+    write_text(truth, json_text(content) + "\n")
     return [*paths, truth]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 from bench.errors import InputError
+from bench.structured import read_toml
 
 FILE = "group.toml"
 #: Rows of a sheet that is filled in by hand.
@@ -36,10 +36,7 @@ class Cover:
         path = folder / FILE if folder is not None else None
         if path is None or not path.exists():
             return cls()
-        try:
-            content = tomllib.loads(path.read_text(encoding="utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise InputError(path, f"not TOML ({error})", f"allowed: {EXAMPLE}") from error
+        content = read_toml(path, f"a cover sheet, {EXAMPLE},")
         students = content.get("student", [])
         unknown = sorted(set(content) - {"group", "student"})
         if unknown or not isinstance(students, list) or not all(_is_student(entry) for entry in students):

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from io import BytesIO
 
 import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.trace.readers.mat import load
 from bench.unit_text import in_pints_words
 from bench.units import convert, dimensionality
 
@@ -23,7 +23,7 @@ _LAYOUTS: tuple[tuple[Callable[[str], Cells], str], ...] = (
     (lambda line: line.split(","), "."),
     (lambda line: re.split(r",?\s+", line.strip()), ","),
 )
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|nan", re.IGNORECASE)
+_NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|nan", re.IGNORECASE)
 #: Name of a column, with the flight's number where several stand side by side, and its unit.
 _LABEL = re.compile(r"\W*([^\W\d_]+)[ _]*(\d*)\s*(?:(?:[\[(/]|\bin\b)\s*([^\])]*?)[\])]?)?\W*")
 #: Between the names of columns that blanks separate; a unit belongs to the name before it.
@@ -74,12 +74,7 @@ def flights_of_mat(content: bytes, where: str) -> FoundFlights:
     Raises:
         InputError: a damaged file, or none of these in it.
     """
-    from scipy.io import loadmat
-
-    try:
-        variables = loadmat(BytesIO(content), simplify_cells=True)
-    except Exception as error:  # scipy raises nearly any exception on a damaged file
-        raise InputError(where, f"is no MAT file that can be read ({error})", "save it with '-v7'") from error
+    variables = load(content, where)
     arrays = {name: value for name, value in variables.items() if not name.startswith("__")}
     pairs = _pairs({name.lower(): np.asarray(value) for name, value in arrays.items()})
     points = [_complete(np.stack([y, z], axis=1)) for y, z in pairs]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import zipfile
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from bench.arrays import Array
+from bench.bounds import read_bounded
 from bench.errors import InputError
+from bench.files import read_bytes
 from bench.lab.flight_table import flights_of_mat, flights_of_text
 
 TEXTS = (".csv", ".txt", ".dat", ".tsv")
@@ -83,18 +86,20 @@ def _files(path: Path) -> Iterator[tuple[str, bytes]]:
     if path.is_dir():
         for file in sorted(path.rglob("*")):
             if file.suffix.lower() in ENDINGS and not file.name.startswith("."):
-                yield str(file), file.read_bytes()
+                yield str(file), read_bytes(file, "a table of points")
     elif path.suffix.lower() == ".zip":
         try:
             with zipfile.ZipFile(path) as archive:
                 for name in sorted(archive.namelist()):
                     hidden = name.startswith("__MACOSX") or Path(name).name.startswith(".")
                     if Path(name).suffix.lower() in ENDINGS and not hidden:
-                        yield f"{path}: {name}", archive.read(name)
-        except (zipfile.BadZipFile, RuntimeError, EOFError, OSError, NotImplementedError) as error:
+                        where = f"{path}: {name}"
+                        with archive.open(name) as packed:
+                            yield where, read_bounded(packed, where, archive.getinfo(name).compress_size)
+        except (zipfile.BadZipFile, zlib.error, RuntimeError, EOFError, OSError, NotImplementedError) as error:
             raise InputError(path, f"is no zip that can be read ({error})", "allowed: a complete zip") from error
     else:
-        yield str(path), path.read_bytes()
+        yield str(path), read_bytes(path, "a table of points")
 
 
 def _require_metres(points: list[Array], where: str) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,10 +11,12 @@ from typing import Any, Literal
 import numpy as np
 
 from bench.errors import InputError
+from bench.files import read_text
 from bench.lab.answers import ASKED, Asked
 from bench.lab.mistakes import MISTAKES, Mistake
 from bench.lab.students import SCHEMA, seal
 from bench.lab.submission import Answer, Submission
+from bench.structured import parse_json
 from bench.units import convert, dimensionality, same_dimension
 
 #: An answer is a mistake's figure within the tolerance of a right one; E, which has none, within this share of it.
@@ -76,11 +77,9 @@ def read_truth_of_class(path: Path) -> Mapping[str, Any]:
     """
     advice = "give the file that bench lab --record FOLDER --students N wrote beside FOLDER"
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise InputError(path, "no such file", advice) from error
-    except (OSError, ValueError) as error:
-        raise InputError(path, f"is no truth of a class ({error})", advice) from error
+        content = parse_json(read_text(path, "a truth of a class"), path)
+    except InputError as error:
+        raise InputError(path, error.found, advice) from error
     if not isinstance(content, dict) or content.get("schema") != SCHEMA:
         raise InputError(path, "is no truth of a class", advice)
     if content.pop("seal", None) != seal(content):

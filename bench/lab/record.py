@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -23,6 +22,7 @@ from bench.plant.truth import SCHEMA, truth_path, write_truth
 from bench.rig.circuit import COLD, Circuit
 from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig
+from bench.structured import json_text
 from bench.trace.write_machine_expert import machine_expert_trace
 from bench.units import convert
 
@@ -86,7 +86,7 @@ def _record_fastest(path: Path, rig: Rig, random: np.random.Generator) -> list[P
     }
     values = {name: {"value": value, "unit": unit} for name, (value, unit) in parameters.items()}
     content = {"schema": SCHEMA, "rig": rig.name, "kind": "rotary", "profile": "fastest run-up", "parameters": values}
-    write_text(truth_path(path), json.dumps(content, indent=2) + "\n")
+    write_text(truth_path(path), json_text(content) + "\n")
     return [path, truth_path(path)]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,11 +9,13 @@ from pathlib import Path
 
 from bench.assets import asset
 from bench.errors import InputError
+from bench.files import read_text
 from bench.lab.rig import lab_rig
 from bench.lab.run import Run, run_of
 from bench.lab.sources import Sources, embedded
 from bench.plant.truth import truth_path
 from bench.rig.rig import Rig, load_rig
+from bench.structured import parse_json
 from bench.trace.assemble import assemble
 from bench.trace.channel import Recording
 from bench.trace.choose import choose
@@ -111,8 +112,8 @@ def read_truth(path: Path) -> Mapping[str, float]:
     """
     if not path.exists():
         return {}
+    content = parse_json(read_text(path, "a truth"), path)
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
         return {name: float(item["value"]) for name, item in content["parameters"].items()}
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(path, f"is no truth of a simulated trace ({error})", "remove it, or record again") from error

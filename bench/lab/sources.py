@@ -10,6 +10,7 @@ from typing import Any
 
 from bench.assets import asset
 from bench.rig.catalogue import motor_sources
+from bench.structured import read_toml
 
 RIG_FILE, DATASHEET, ASSUMED, COURSE, EMBEDDED = "rig file", "datasheet", "assumed", "course", "embedded rig"
 
@@ -34,7 +35,7 @@ class Sources:
     @classmethod
     def of(cls, path: Path | None) -> Sources:
         """Of a rig file that was read before, or of the embedded rig alone."""
-        given = {} if path is None else tomllib.loads(path.read_text(encoding="utf-8"))
+        given = {} if path is None else read_toml(path, "a rig file")
         motor = given.get("motor", embedded()["motor"])
         return cls(given, motor.get("model"))
 

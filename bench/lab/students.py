@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from bench.errors import BenchError, InputError
+from bench.errors import InputError
 from bench.files import write_text
-from bench.lab.answers import ASKED, Material, Way, answers
+from bench.lab.answers import ASKED, Material, answers
 from bench.lab.mistakes import MISTAKES
 from bench.lab.record import record
 from bench.lab.recordings import Recordings
@@ -93,7 +93,7 @@ def _record_student(folder: Path, name: str, random: np.random.Generator) -> dic
     return {
         "truth": _truth(table, truths),
         "expected": answers(material),
-        "mistakes": {mistake.name: [_attempted(material, way) for way in mistake.ways] for mistake in MISTAKES},
+        "mistakes": {mistake.name: [answers(material, way) for way in mistake.ways] for mistake in MISTAKES},
     }
 
 
@@ -165,11 +165,3 @@ def _truth(table: dict[str, Any], truths: dict[str, Any]) -> dict[str, float]:
         "M_max": rig.motor.peak_torque or 0.0,
         "corner": corner * 30.0 / np.pi,
     }
-
-
-def _attempted(material: Material, way: Way) -> dict[str, float]:
-    """Figures of a mistake; none where it lets nothing be computed."""
-    try:
-        return answers(material, way)
-    except BenchError:
-        return {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 from bench.errors import InputError
 from bench.lab.answers import ASKED
+from bench.structured import parse_json
 from bench.unit_text import in_pints_words
 from bench.units import nearest
 
@@ -111,7 +111,7 @@ def _csv_rows(text: str, path: Path) -> list[tuple[str, str, str, str]]:
 
 def _json_rows(text: str, path: Path) -> list[tuple[str, str, str, str]]:
     try:
-        content = json.loads(text)
+        content = parse_json(text, path)
         answers: dict[str, Any] = content["answers"]
         rows = [(f"{path}: student", "student", str(content["student"]), "")]
         for name, entry in answers.items():

@@ -13,7 +13,6 @@ moment_of_inertia = "0.0022 kg*m**2"
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -28,6 +27,7 @@ from bench.errors import InputError
 from bench.files import write_text
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import AxisParameters, parameter_quantities
+from bench.structured import read_toml
 from bench.units import nearest
 
 SCHEMA = "bench.model/1"
@@ -130,12 +130,7 @@ def load_model(path: str | Path) -> StoredModel:
 
 def read_table(path: str | Path) -> dict[str, Any]:
     """The tables of a `model.toml`; InputError where it cannot be read or is no TOML."""
-    try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(path, f"cannot be read ({error.strerror})", "give the path of a model.toml") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(path, f"not TOML ({error})", "allowed: the model.toml that the bench wrote") from error
+    return read_toml(path, "a model.toml that the bench wrote")
 
 
 def _values(table: object, units: Mapping[str, str], where: str) -> dict[str, float]:

@@ -39,8 +39,8 @@ class Rows(Generic[Kind]):
         """What these axes see of a moment."""
         if isinstance(self.index, slice):
             return at
-        time = at.time[self.index] if isinstance(at.time, np.ndarray) else at.time
-        return Moment(time, at.position[self.index], at.velocity[self.index], at.effort[self.index])
+        time, began = (each[self.index] if isinstance(each, np.ndarray) else each for each in (at.time, at.began))
+        return Moment(time, at.position[self.index], at.velocity[self.index], at.effort[self.index], began)
 
 
 def gather(models: Sequence[AxisModel], kind: type[Kind], ticked: bool = False) -> list[Rows[Kind]]:

@@ -7,7 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bench.errors import InputError
 from bench.plant.references import References
+
+#: Ticks of a motion: 20 minutes of a drive that ticks every 250 us; all signals of one take 0.5 GB.
+MOST_TICKS = 5e6
 
 
 def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: float) -> References:
@@ -24,6 +28,9 @@ def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: 
 
     Returns:
         References at ticks from zero to the first at or after the end.
+
+    Raises:
+        InputError: it takes more than `MOST_TICKS`.
     """
     length = np.asarray(durations, dtype=np.float64)
     end = np.asarray(accelerations, dtype=np.float64)[length > 0.0]
@@ -36,7 +43,10 @@ def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: 
     position = np.append(0.0, np.cumsum(moved)[:-1])
     knots = np.append(0.0, np.cumsum(length)[:-1])
 
-    time = period * np.arange(int(np.ceil(knots[-1] / period - 1e-9)) + 1, dtype=np.float64)
+    ticks = knots[-1] / period
+    if not ticks < MOST_TICKS:
+        raise InputError("the motion", f"takes {ticks:.3g} periods of the drive", f"allowed: below {MOST_TICKS:g}")
+    time = period * np.arange(int(np.ceil(ticks - 1e-9)) + 1, dtype=np.float64)
     piece = np.searchsorted(knots, time, side="right") - 1
     t, a0, d, scale = time - knots[piece], start[piece], rise[piece], length[piece] / np.pi
     phase = t / scale

@@ -8,12 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.effects.present import Present
+from bench.errors import InputError
 from bench.plant.limits import MotionLimits
 from bench.plant.plant import Plant
 from bench.plant.profile_names import DEFAULT
 from bench.plant.profiles import plan
 from bench.plant.references import References
 from bench.plant.run import run
+from bench.plant.s_curve import MOST_TICKS
 from bench.plant.sensing import reported_states
 from bench.plant.sensors import Sensors
 from bench.plant.states import States
@@ -65,6 +67,10 @@ def simulate(
     plant, sensors = Plant.from_rig(rig, effects), Sensors.from_rig(rig)
     if references is None:
         references = plan(profile, MotionLimits.from_rig(rig, plant.parameters, plant.cascade.control_period))
+    steps = float(references.time[-1]) / plant.timestep
+    if steps > MOST_TICKS:
+        allowed = f"allowed: up to {MOST_TICKS:g} for this motion"
+        raise InputError(f"{rig.source}: simulation.timestep", f"takes {steps:.3g} steps", allowed)
     states = run([plant], [references], progress)
     origin = f"simulation of {rig.name}, {profile}, seed {seed}"
     trace = sensors.record(reported_states(plant.model, states), references, np.random.default_rng(seed), origin)

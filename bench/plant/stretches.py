@@ -72,7 +72,12 @@ class Stretch:
     @property
     def since(self) -> float:
         """Its start from the start of the recording - s."""
-        return float(self.held.trace.time[self.part.start] - self.held.trace.time[0])
+        return float(self.held.trace.time[self.part.start]) - self.held.trace.start_of(self.part)
+
+    @property
+    def began(self) -> float:
+        """Start of its recording from that of the first, of several that are joined - s."""
+        return self.held.trace.start_of(self.part) - float(self.held.trace.time[0])
 
 
 def all_stretches(held: Sequence[Held], bandwidth: float) -> list[Stretch]:

@@ -54,24 +54,27 @@ class TickedEffects:
         self._applied = batch.bind("qfrc_applied")[:, dof]
         self._before = velocity.copy()
 
-    def act(self, time: float | Array, position: Array, velocity: Array, demand: Array) -> tuple[Array, Array]:
+    def act(
+        self, time: float | Array, position: Array, velocity: Array, demand: Array, began: float | Array = 0.0
+    ) -> tuple[Array, Array]:
         """Set up the batch for the next step; returns the effort that is reported and the motor's torque, (axes,) each.
 
         Args:
-            time: at the start of the step - s - one for all axes, or (axes,).
+            time: at the start of the step, since the recording's start - s - one for all axes, or (axes,).
             position: MuJoCo's, half a step on - rad (m) - (axes,).
             velocity: at the start of the step - rad/s (m/s) - (axes,).
             demand: effort that the drive asks for - N*m (N) - (axes,).
+            began: the recording, as `Moment` has it - s - one for all axes, or (axes,).
         """
         middle = 1.5 * velocity - 0.5 * self._before
         self._before = velocity.copy()
         reported, torque = self._driven(time + 0.5 * self._step, middle, demand)
-        at = Moment(time + 0.5 * self._step, position, middle, torque)
+        at = Moment(time + 0.5 * self._step, position, middle, torque, began)
         if self._factors:
             torque = torque.copy()
             for rows in self._factors:
                 torque[rows.index] *= rows.effect.torque_factor(rows.values, rows.axis, rows.moment(at))
-            at = Moment(at.time, position, middle, torque)
+            at = Moment(at.time, position, middle, torque, began)
         self._applied[:] = -self._friction.offset(at)
         for rows in self._resisting:
             self._applied[rows.index] -= rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))

@@ -105,7 +105,7 @@ def _run_ticked(simulated: Sequence[Array], stretches: Sequence[Stretch]) -> lis
     starts = np.array([each.start for each in inputs])
     velocity[:] = starts[:, 1]
     position[:] = starts[:, 0] + step / 2.0 * velocity
-    since = np.array([stretch.since for stretch in stretches])
+    since, began = (np.array([getattr(one, name) for one in stretches]) for name in ("since", "began"))
     mechanisms = [stretch.held.model.with_effects(stretch.held.model.of_kind(Mechanism)) for stretch in stretches]
     acting = TickedEffects(batch, mechanisms, velocity)
     reported = [Reported(stretch, simulated[stretch.row][stretch.part]) for stretch in stretches]
@@ -117,7 +117,7 @@ def _run_ticked(simulated: Sequence[Array], stretches: Sequence[Stretch]) -> lis
         for k, control in enumerate(controls):
             record[:, k] = position - step / 2.0 * velocity, velocity
             driven[:] = control
-            driven[:, 2] = acting.act(since + (start + k) * step, position, velocity, control[:, 2])[1]
+            driven[:, 2] = acting.act(since + (start + k) * step, position, velocity, control[:, 2], began)[1]
             batch.step()
         sound &= np.isfinite(record).all(axis=(0, 1))
         for i, each in enumerate(reported):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from bench.effects.present import Present
 from bench.files import write_text
 from bench.plant.model import AxisParameters, parameter_quantities
 from bench.plant.sensors import Sensors
+from bench.structured import json_text
 
 SCHEMA = "bench.truth/1"
 
@@ -60,7 +60,7 @@ class Truth:
             "sensors": _with_units(sensors),
             "effects": [{"name": p.name, "parameters": _with_units(_parameters(p, kind))} for p in self.effects],
         }
-        return json.dumps(content, indent=2) + "\n"
+        return json_text(content) + "\n"
 
 
 def _parameters(present: Present, kind: AxisKind) -> dict[str, tuple[float, str]]:

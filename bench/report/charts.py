@@ -7,6 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from bench.lab.result import Chart, Curve, Panel
+from bench.names import plain
+from bench.report.figures import title_figure
 
 #: Size of a figure - inch: width, and height by the number of panels.
 WIDTH, HEIGHTS = 8.0, (3.3, 4.6, 5.4, 6.4)
@@ -35,7 +37,7 @@ def chart_figure(chart: Chart) -> Figure:
 
 def draw_chart(figure: Figure | SubFigure, chart: Chart) -> None:
     """Draw a chart: its panels one above the other, those with the first one's x label on its x axis."""
-    figure.suptitle(chart.title, x=0.02, ha="left", weight="bold", size="medium")
+    title_figure(figure, chart.title, x=0.02, size="medium")
     axes: list[Axes] = []
     for k, panel in enumerate(chart.panels):
         shared = axes[0] if axes and panel.x_label == chart.panels[0].x_label else None
@@ -62,7 +64,9 @@ def _draw(axes: Axes, panel: Panel, label_x: bool, label_size: str) -> None:
     if _legend_rows(panel):
         # above the axes, where it covers no data
         above = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.1}
-        axes.legend(fontsize="x-small", frameon=False, ncols=LEGEND_COLUMNS, **above)
+        legend = axes.legend(fontsize="x-small", frameon=False, ncols=LEGEND_COLUMNS, **above)
+        for text in legend.get_texts():
+            text.set_parse_math(False)
 
 
 def _legend_rows(panel: Panel) -> int:
@@ -70,7 +74,7 @@ def _legend_rows(panel: Panel) -> int:
 
 
 def _draw_curve(axes: Axes, curve: Curve, colour: object) -> None:
-    label = curve.label or None
+    label = plain(curve.label) or None
     if curve.style == "dots":
         axes.plot(curve.x, curve.y, ".", ms=2.5 if curve.x.size > FEW else 5.0, color=colour, label=label)
     elif curve.style == "bold dots":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from typing import Any
 
@@ -11,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from bench.checks.check import Check
+from bench.structured import json_text
 
 
 def checks_json(checks: Sequence[Check]) -> list[dict[str, Any]]:
@@ -29,7 +29,7 @@ def checks_json(checks: Sequence[Check]) -> list[dict[str, Any]]:
 
 def refusal_json(schema: str, checks: Sequence[Check], reason: str) -> str:
     """What was found of a recording that cannot answer."""
-    return json.dumps({"schema": schema, "refused": reason, "checks": checks_json(checks)}, indent=2)
+    return json_text({"schema": schema, "refused": reason, "checks": checks_json(checks)})
 
 
 def checks_table(checks: Sequence[Check]) -> Table:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,22 +13,29 @@ from rich import box
 from rich.table import Table
 
 from bench.axis_kind import KINDS
+from bench.diagnose.add.same_axis import SameAxis
 from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where.where import Where
-from bench.files import write_text
+from bench.files import held, write_text
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report.checks import checks_json
-from bench.report.estimate import parameters_json
-from bench.report.figures import MEASURED, MODELLED, save
+from bench.report.estimate import between_json, parameters_json, recordings_json
+from bench.report.figures import MEASURED, MODELLED, save, title_figure
+from bench.structured import json_text
 
 SCHEMA = "bench.diagnose/1"
 #: Share of the gap above which the region that holds most of it is shaded.
 SHADED = 0.1
 
 
-def diagnosis_json(diagnosis: Diagnosis) -> str:
-    """The diagnosis as the contract's JSON."""
+def diagnosis_json(diagnosis: Diagnosis, provenance: Mapping[str, Any] | None = None) -> str:
+    """The diagnosis as the contract's JSON.
+
+    Args:
+        diagnosis: what was found.
+        provenance: of the files it came from (`bench.report.provenance`); null where it came from none.
+    """
     content = {
         "schema": SCHEMA,
         "verdict": diagnosis.verdict,
@@ -49,16 +56,20 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
             "where": [_where(account) for account in diagnosis.unexplained_where],
         },
         "parameters": parameters_json(diagnosis.parameters),
+        "recordings": recordings_json(diagnosis.recordings, provenance),
+        "between": between_json(diagnosis.between) if diagnosis.recordings else None,
         "gap": {"torque": _gap(diagnosis.torque), "velocity": _velocity_gap(diagnosis)},
         "steps": [_step(step) for step in diagnosis.steps[1:]],
         "rejected": [{"name": found.name, "reason": found.reason} for found in diagnosis.rejected],
+        "holdout": _same_axis(diagnosis.holdout),
         "next_experiment": _experiment(diagnosis),
         "stopped": diagnosis.stopped,
+        "provenance": provenance,
         "model": {"mjcf": "model.xml" if diagnosis.model is not None else None, "toml": "model.toml"},
         "checks": checks_json(diagnosis.checks),
         "warnings": diagnosis.warnings,
     }
-    return json.dumps(content, indent=2)
+    return json_text(content)
 
 
 def _where(account: Where) -> dict[str, Any]:
@@ -92,6 +103,24 @@ def _velocity_gap(diagnosis: Diagnosis) -> dict[str, Any]:
     refined = diagnosis.refined
     content["refined"] = None if refined is None else {"before": refined[0], "after": refined[1]}
     return content
+
+
+def _same_axis(compared: SameAxis) -> dict[str, Any]:
+    """Whether the holdout is of the same axis; what each of the two recordings tells of what differs."""
+    return {
+        "same_axis": compared.same,
+        "differs": [
+            {
+                "quantity": each.quantity,
+                "unit": each.recording.unit,
+                "recording": each.recording.value,
+                "holdout": each.holdout.value,
+                "recording_ci95": list(each.recording.ci95),
+                "holdout_ci95": list(each.holdout.ci95),
+            }
+            for each in compared.differs
+        ],
+    }
 
 
 def _experiment(diagnosis: Diagnosis) -> dict[str, Any] | None:
@@ -128,6 +157,11 @@ def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
             if pair is not None:
                 closed = f"{pair[0]:.4g} -> {pair[1]:.4g} {gap.unit}, noise floor {gap.noise_floor:.3g}"
                 caption.append(f"{name} gap, {recording}: {closed}")
+    caption += [
+        f"the holdout differs: {each.quantity.replace('_', ' ')} {each.recording.value:.4g} -> "
+        f"{each.holdout.value:.4g} {each.recording.unit}"
+        for each in diagnosis.holdout.differs
+    ]
     caption.append(f"velocity gap: models held to the recording at {diagnosis.bandwidth:.3g} rad/s")
     if diagnosis.closed_loop is not None:
         before, after = diagnosis.closed_loop
@@ -174,7 +208,7 @@ def _at_fault(diagnosis: Diagnosis) -> list[str]:
 def where_figure(diagnosis: Diagnosis, title: str) -> Figure:
     """The gap against each coordinate, before any effect was added and, where something remains, after."""
     figure = Figure(figsize=(12.0, 6.5), layout="constrained")
-    figure.suptitle(title, x=0.01, ha="left", weight="bold")
+    title_figure(figure, title)
     after = {account.coordinate: account for account in diagnosis.unexplained_where}
     for axis, account in zip(figure.subplots(2, 4).ravel(), diagnosis.where, strict=False):
         order = np.argsort(account.centres)
@@ -197,7 +231,7 @@ def where_figure(diagnosis: Diagnosis, title: str) -> Figure:
 def gaps_figure(diagnosis: Diagnosis, title: str) -> Figure:
     """Torque and velocity gap of the bare axis and after each addition, on both recordings, against the noise floor."""
     figure = Figure(figsize=(12.0, 4.5), layout="constrained")
-    figure.suptitle(title, x=0.01, ha="left", weight="bold")
+    title_figure(figure, title)
     labels = [step.effect.replace("_", " ") or "J, friction" for step in diagnosis.steps]
     labels = [label if k == 0 else f"+ {label}" for k, label in enumerate(labels)]
     for axis, name, gap in zip(
@@ -221,16 +255,19 @@ def gaps_figure(diagnosis: Diagnosis, title: str) -> Figure:
     return figure
 
 
-def write_diagnosis(out: Path, diagnosis: Diagnosis, title: str) -> list[Path]:
+def write_diagnosis(
+    out: Path, diagnosis: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None
+) -> list[Path]:
     """Write `diagnosis.json`, two figures, `model.toml` and, where MuJoCo has all of it, `model.xml`; returns paths."""
     written = [out / "diagnosis.json", out / "where.png", out / "gaps.png", out / "model.toml"]
-    write_text(written[0], diagnosis_json(diagnosis) + "\n")
-    save(where_figure(diagnosis, title), written[1])
-    save(gaps_figure(diagnosis, title), written[2])
-    write_text(written[3], _model_toml(diagnosis))
-    if diagnosis.model is not None:
-        written.append(out / "model.xml")
-        write_text(written[-1], model_xml(diagnosis.model.model))
+    with held(out):
+        write_text(written[0], diagnosis_json(diagnosis, provenance) + "\n")
+        save(where_figure(diagnosis, title), written[1])
+        save(gaps_figure(diagnosis, title), written[2])
+        write_text(written[3], _model_toml(diagnosis))
+        if diagnosis.model is not None:
+            written.append(out / "model.xml")
+            write_text(written[-1], model_xml(diagnosis.model.model))
     return written
 
 

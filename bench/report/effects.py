@@ -38,7 +38,7 @@ def effects_table() -> Table:
     table = Table("effect", "what it is", "quantities", "simulated", box=box.SIMPLE_HEAD)
     for name, effect in sorted(catalogue().items()):
         quantities = ", ".join(f"{q.name} [{_unit(q)}]" for q in effect.quantities)
-        table.add_row(name, effect.summary, quantities.replace("[", r"\["), _where(effect))
+        table.add_row(name, effect.summary, quantities, _where(effect))
     return table
 
 

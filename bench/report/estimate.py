@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich import box
@@ -13,8 +13,9 @@ from rich.table import Table
 
 from bench.axis_kind import AxisKind
 from bench.balance.parameter import Parameter
-from bench.identify.estimate import Estimate
+from bench.identify.estimate import Alone, Between, Estimate
 from bench.report.checks import checks_json
+from bench.structured import json_text
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
     from bench.identify.refine import Refinement
@@ -40,23 +41,32 @@ def parameters_json(parameters: Mapping[str, Parameter]) -> dict[str, Any]:
     }
 
 
-def estimate_json(estimate: Estimate, refinement: Refinement | None = None, refused: str | None = None) -> str:
+def estimate_json(
+    estimate: Estimate,
+    refinement: Refinement | None = None,
+    refused: str | None = None,
+    provenance: Mapping[str, Any] | None = None,
+) -> str:
     """The estimate as the contract's JSON.
 
     Args:
         estimate: what was identified.
         refinement: what polishing did, where it was asked for.
         refused: why the recording cannot answer, where it cannot.
+        provenance: of the files it came from (`bench.report.provenance`); null where it came from none.
     """
     residual = estimate.residual
     polish = {} if refinement is None else {"refinement": dataclasses.asdict(refinement)}
-    return json.dumps(
+    return json_text(
         {
             "schema": SCHEMA,
             "estimator": estimate.estimator,
             "parameters": parameters_json(estimate.parameters),
             "explained": _number(estimate.explained),
             "refused": refused,
+            "recordings": recordings_json(estimate.recordings, provenance),
+            "between": between_json(estimate.between) if estimate.recordings else None,
+            "provenance": provenance,
             "residual": {
                 "rms": residual.rms,
                 "noise_floor": _number(residual.noise_floor),
@@ -68,9 +78,48 @@ def estimate_json(estimate: Estimate, refinement: Refinement | None = None, refu
             "checks": checks_json(estimate.checks),
             "warnings": list(estimate.warnings),
             **polish,
-        },
-        indent=2,
+        }
     )
+
+
+def recordings_json(recordings: Sequence[Alone], provenance: Mapping[str, Any] | None) -> list[dict[str, Any]]:
+    """Each of several recordings alone; `reason`: why it leaves some of the parameters open, null where none."""
+    digests = {each["file"]: each["sha256"] for each in provenance["traces"]} if provenance else {}
+    return [
+        {
+            "file": alone.origin,
+            "sha256": digests.get(alone.origin),
+            "parameters": parameters_json(alone.parameters),
+            "reason": alone.reason or None,
+        }
+        for alone in recordings
+    ]
+
+
+def between_json(between: Mapping[str, Between]) -> dict[str, Any]:
+    """Spread of each quantity over the recordings, and where the next one is to be expected."""
+    return {
+        name: {"std_dev": spread.std_dev, "predictive95": list(spread.predictive95)} for name, spread in between.items()
+    }
+
+
+def recordings_table(estimate: Estimate) -> Table:
+    """What each of several recordings tells alone, and what the next one would."""
+    table = Table(title="each recording alone", title_justify="left", box=box.SIMPLE_HEAD)
+    names = [name for name in estimate.parameters if name in estimate.between]
+    table.add_column("recording")
+    for name in names:
+        table.add_column(f"{name.replace('_', ' ')}\n{estimate[name].unit}", justify="right")
+    for alone in estimate.recordings:
+        told = [alone.parameters.get(name) for name in names]
+        values = [
+            "-" if found is None else f"{found.value:.4g} ± {0.5 * (found.ci95[1] - found.ci95[0]):.2g}"
+            for found in told
+        ]
+        table.add_row(Path(alone.origin).name, *values)
+    following = [estimate.between[name].predictive95 for name in names]
+    table.add_row("the next one (95 %)", *(f"{low:.4g} to {high:.4g}" for low, high in following))
+    return table
 
 
 def refinement_line(refinement: Refinement, kind: AxisKind) -> str:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
@@ -14,6 +18,7 @@ from bench.errors import InputError
 from bench.files import whole
 from bench.identify.estimate import Estimate
 from bench.identify.modelled import modelled_effort
+from bench.names import plain
 from bench.trace.motion import Motion
 
 #: More points than this do not show in a figure; the extremes of each stretch stand for it.
@@ -23,8 +28,22 @@ MEASURED, MODELLED, REST = "#4c5c6e", "#d9560b", "#3b7a57"
 
 def save(figure: Figure, path: str | Path) -> None:
     """Write a figure whole or not at all; the ending decides the format."""
-    with whole(path) as temporary:
+    with whole(path) as temporary, quiet_about_glyphs():
         figure.savefig(temporary, dpi=120)
+
+
+@contextmanager
+def quiet_about_glyphs() -> Iterator[None]:
+    """No warning for each character that the font lacks: a box stands for it in the figure."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"Glyph \d+ ", UserWarning)
+        warnings.filterwarnings("ignore", r"Matplotlib currently does not support \w+ natively", UserWarning)
+        yield
+
+
+def title_figure(figure: Figure | SubFigure, title: str, **style: Any) -> None:  # noqa: ANN401
+    """Title at the upper left, in which names are text: no formulas, and no characters that an SVG may not hold."""
+    figure.suptitle(plain(title), **{"x": 0.01, "ha": "left", "weight": "bold", "parse_math": False, **style})
 
 
 def save_as_named(figure: Figure, path: Path) -> None:
@@ -64,7 +83,7 @@ def identification_figure(motion: Motion, estimate: Estimate, kind: AxisKind, ti
     modelled = modelled_effort(motion, estimate, kind)
     residual = motion.effort - modelled
     figure = Figure(figsize=(11.0, 8.5), layout="constrained")
-    figure.suptitle(title, x=0.01, ha="left", weight="bold")
+    title_figure(figure, title)
     grid = figure.add_gridspec(4, 2, width_ratios=(3.0, 1.0), height_ratios=(1.0, 1.0, 1.4, 1.0))
     axes = [figure.add_subplot(grid[0, 0])]
     axes += [figure.add_subplot(grid[row, 0], sharex=axes[0]) for row in (1, 2, 3)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,8 @@ from bench.axis_kind import COULOMB, OFFSET, VISCOUS
 from bench.effects.catalogue import catalogue
 from bench.friction_map.map import CHANCE, FrictionMap
 from bench.report.checks import checks_json
-from bench.report.figures import MEASURED, MODELLED, REST, save_as_named
+from bench.report.figures import MEASURED, MODELLED, REST, save_as_named, title_figure
+from bench.structured import json_text
 
 SCHEMA = "bench.friction/1"
 #: Speeds at which a curve is drawn, in each direction.
@@ -37,7 +37,7 @@ def friction_json(found: FrictionMap) -> str:
         "velocity": {"unit": found.kind.speed_unit, "values": found.velocity.tolist()},
         "effort": {"unit": found.effort_unit, "values": found.effort.tolist()},
     }
-    return json.dumps(content, indent=2)
+    return json_text(content)
 
 
 def friction_table(found: FrictionMap, title: str) -> Table:
@@ -80,7 +80,7 @@ def draw_friction(found: FrictionMap, title: str, path: Path) -> None:
     """
     effort = {"N*m": "torque", "N": "force", "A": "current", "V": "voltage"}.get(found.effort_unit, "effort")
     figure = Figure(figsize=(9.0, 7.0), layout="constrained")
-    figure.suptitle(title, x=0.01, ha="left", weight="bold")
+    title_figure(figure, title)
     over, rest = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
     over.plot(found.velocity, found.effort, "o", ms=4.5, color=MEASURED, label="recordings")
     curves = [(found.plain, "no effect", REST, "s")]

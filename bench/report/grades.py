@@ -16,6 +16,7 @@ from bench.errors import InputError
 from bench.files import write_text
 from bench.lab.grade import Graded, Mark, grade, read_truth_of_class, unit_advice
 from bench.lab.submission import find_submissions, read_submission
+from bench.names import cell
 
 TITLE = "Industrial Drives, Part 2: grades"
 
@@ -89,7 +90,7 @@ def _csv(graded: Sequence[Graded]) -> str:
                 mark.verdict,
                 mistake,
             ]
-            writer.writerow(row)
+            writer.writerow([cell(str(value)) for value in row])
     return buffer.getvalue()
 
 

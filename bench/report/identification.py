@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from bench.axis_kind import MISALIGNMENT
 from bench.checks.gate import gate
-from bench.files import write_text
+from bench.files import held, write_text
 from bench.identify.estimate import Estimate
 from bench.report.estimate import estimate_json
 from bench.report.figures import identification_figure, save
@@ -20,25 +23,44 @@ if TYPE_CHECKING:  # MuJoCo: 0.1 s
 
 
 def write_identification(
-    out: Path, trace: Path, rig: Rig, estimate: Estimate, refinement: Refinement | None = None
+    out: Path,
+    traces: Sequence[Path],
+    rig: Rig,
+    estimate: Estimate,
+    refinement: Refinement | None = None,
+    provenance: Mapping[str, Any] | None = None,
 ) -> list[Path]:
-    """Write `identification.png` and `identify.json` into a folder.
+    """Write `identification.png` (`identification-2.png`, ... of further recordings) and `identify.json` into a folder.
 
     Args:
         out: folder, made if it is not there.
-        trace: file the estimate came from; the figure shows its first part where it is very long.
+        traces: files the estimate came from; a figure shows the first part of one that is very long.
         rig: of the axis.
         estimate: what was identified.
         refinement: what polishing did, where it was asked for.
+        provenance: of the estimate.
 
     Returns:
         Paths written.
     """
-    first = gate(next(stream(trace, rig.trace)), rig).trace
-    effort, _ = rig.net_effort(first)
-    cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
-    moved = motion(first, effort, condition(first, effort, cutoff))
-    figure, text = out / "identification.png", out / "identify.json"
-    save(identification_figure(moved, estimate, rig.axis_kind, f"{rig.name}: {trace.name}"), figure)
-    write_text(text, estimate_json(estimate, refinement) + "\n")
-    return [figure, text]
+    figures, text = [], out / "identify.json"
+    with held(out):
+        for number, trace in enumerate(traces, 1):
+            first = gate(next(stream(trace, rig.trace)), rig).trace
+            effort, _ = rig.net_effort(first)
+            cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
+            moved = motion(first, effort, condition(first, effort, cutoff))
+            figures.append(out / ("identification.png" if number == 1 else f"identification-{number}.png"))
+            title = f"{rig.name}: {trace.name}"
+            save(identification_figure(moved, _along(estimate, number - 1, rig), rig.axis_kind, title), figures[-1])
+        write_text(text, estimate_json(estimate, refinement, None, provenance) + "\n")
+    return [*figures, text]
+
+
+def _along(estimate: Estimate, index: int, rig: Rig) -> Estimate:
+    """The estimate along one of its recordings, which has a shift of torque against speed of its own."""
+    shift = rig.axis_kind.parameter(MISALIGNMENT)
+    if not estimate.recordings or shift not in estimate.recordings[index].parameters:
+        return estimate
+    own = estimate.recordings[index].parameters[shift]
+    return replace(estimate, parameters={**estimate.parameters, shift: own})

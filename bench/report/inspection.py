@@ -7,6 +7,7 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
+from bench.names import plain
 from bench.trace.inspect import ColumnSummary, Inspection
 
 _MOST_HOLES = 5
@@ -16,18 +17,18 @@ def table(inspection: Inspection) -> Group:
     """The inspection for a person."""
     facts = Table(box=None, show_header=False, pad_edge=False)
     for name, value in _facts(inspection):
-        facts.add_row(name, Text(value))
+        facts.add_row(name, Text(plain(value)))
     parts: list[Table | Text] = [facts]
     if inspection.signals:
         parts.append(_signals(inspection))
     rest = [column for column in inspection.columns if not column.read]
     if rest:
         parts.append(_columns(rest))
-    parts += [Text(f"note: {note}") for note in inspection.notes]
+    parts += [Text(plain(f"note: {note}")) for note in inspection.notes]
     if inspection.asks is not None:
-        parts.append(Text(f"not read as a trace yet: {inspection.asks}"))
+        parts.append(Text(plain(f"not read as a trace yet: {inspection.asks}")))
     if inspection.suggestions and inspection.asks is not None:
-        parts.append(Text("\n".join(["likely, for the rig:", "[trace.columns]", *inspection.suggestions])))
+        parts.append(Text(plain("\n".join(["likely, for the rig:", "[trace.columns]", *inspection.suggestions]))))
     return Group(*parts)
 
 
@@ -41,7 +42,7 @@ def _signals(inspection: Inspection) -> Table:
     for signal in inspection.signals:
         numbers = (signal.minimum, signal.maximum, signal.rms, signal.resolution)
         texts = ("constant" if number is None else f"{number:.5g}" for number in numbers)
-        signals.add_row(signal.name, Text(signal.column), signal.unit, *texts)
+        signals.add_row(signal.name, Text(plain(signal.column)), signal.unit, *texts)
     return signals
 
 
@@ -58,7 +59,7 @@ def _columns(columns: list[ColumnSummary]) -> Table:
         texts = ("" if number is None else f"{number:.5g}" for number in numbers)
         likely = f"{column.signal}: {', '.join(column.why)}" if column.signal else ", ".join(column.why)
         name = column.name if column.axis is None else f"{column.name} ({column.axis})"
-        told.add_row(Text(name), Text(column.unit or ""), *texts, Text(likely))
+        told.add_row(Text(plain(name)), Text(plain(column.unit or "")), *texts, Text(plain(likely)))
     return told
 
 

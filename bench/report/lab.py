@@ -10,10 +10,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from matplotlib import rc_context
 
-from bench.files import whole, write_text
+from bench.files import held, whole, write_text
 from bench.lab.cover import Cover
 from bench.lab.result import Chart, NotDone, Task
 from bench.report.charts import chart_figure
+from bench.report.figures import quiet_about_glyphs
 from bench.report.lab_json import lab_json
 from bench.report.pdf import write_pages
 from bench.report.section import section
@@ -46,11 +47,12 @@ def write_lab_report(
     """
     data, html, pdf = out / "lab.json", out / "lab.html", out / "lab.pdf"
     cover = cover or Cover()
-    write_text(data, lab_json(results, axis))
-    write_text(html, lab_html(results, about, cover))
-    progress(0.5)
-    with whole(pdf) as temporary:
-        write_pages(temporary, TITLE, cover, about, [(section(result), _charts(result)) for result in results])
+    with held(out), quiet_about_glyphs():
+        write_text(data, lab_json(results, axis))
+        write_text(html, lab_html(results, about, cover))
+        progress(0.5)
+        with whole(pdf) as temporary:
+            write_pages(temporary, TITLE, cover, about, [(section(result), _charts(result)) for result in results])
     progress(1.0)
     return [data, html, pdf]
 

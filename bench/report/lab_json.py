@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 
 from bench import __version__
 from bench.lab.result import NotDone, Number, Task
+from bench.structured import json_text
 
 SCHEMA = "bench.lab/1"
 
@@ -20,7 +20,7 @@ def lab_json(results: Sequence[Task | NotDone], axis: str) -> str:
         axis: its name.
     """
     content = {"schema": SCHEMA, "version": __version__, "axis": axis, "tasks": [_task(result) for result in results]}
-    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+    return json_text(content, ascii_only=False) + "\n"
 
 
 def _task(result: Task | NotDone) -> dict[str, object]:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from bench.lab.cover import Cover
 from bench.lab.result import Chart
+from bench.names import plain
 from bench.report.charts import chart_height, draw_chart
 from bench.report.section import Row, Section
 
@@ -138,7 +139,7 @@ def _write(part: SubFigure, lines: Sequence[Line]) -> None:
         part.text(
             0.01,
             1.0 - (k + 0.25) / len(lines),
-            line.text,
+            plain(line.text),
             va="top",
             size=7.6 if line.table else 11.0 if line.bold else 9.0,
             weight="bold" if line.bold else "normal",

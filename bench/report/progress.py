@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from bench.names import plain
+
 
 @contextmanager
 def progress(what: str) -> Iterator[Callable[[float], None]]:
@@ -20,7 +22,7 @@ def progress(what: str) -> Iterator[Callable[[float], None]]:
         Function to be called with the share done, 0 to 1.
     """
     console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task(what, total=1.0)
+        task = bar.add_task(plain(what), total=1.0)
         yield lambda share: bar.update(task, completed=share)

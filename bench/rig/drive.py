@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from bench.rig.values import Feedforward, IntegralGain, Rate, Table, Time, Viscous
+import math
+
+from pydantic import model_validator
+
+from bench.rig.values import Feedforward, IntegralGain, Period, Rate, Table, Viscous
 
 
 class Drive(Table):
@@ -24,4 +28,14 @@ class Drive(Table):
     velocity_gain: Viscous
     integral_gain: IntegralGain = 0.0
     inertia_feedforward: Feedforward = 0.0
-    control_period: Time = 250e-6
+    control_period: Period = 250e-6
+
+    @model_validator(mode="after")
+    def _samples_fast_enough(self) -> Drive:
+        """Half a period T of delay takes (K_v*K_p + K_i)*T/2 off the velocity gain K_v, and must leave some of it."""
+        stiffness = self.velocity_gain * self.position_gain + self.integral_gain
+        most = 2.0 * self.velocity_gain / stiffness if stiffness > 0.0 else math.inf
+        if self.control_period > most:
+            found = f"found {self.control_period:g} s"
+            raise ValueError(f"control_period must be below {most:.3g} s with these gains, {found}")
+        return self

@@ -118,23 +118,31 @@ class Motor(Table):
         return self.rotor_inertia or self.moving_mass or 0.0
 
     @property
-    def disagreement(self) -> str | None:
-        """That torque constant and back-EMF constant are not those of one motor; None where they may be.
+    def of_back_emf(self) -> float | None:
+        """The torque constant that the back-EMF constant asks for - N*m/A (N/A) -, where the two disagree; else None.
 
         A motor gives as power what it takes as electricity, kT*w*I = Ke*w*I; 3/2 and sqrt(3) times that where Ke is of
-        one phase or between lines, in effective values.
+        one phase or between lines, in effective values. Of these the nearest counts.
         """
         constant, back_emf = self.torque_per_ampere, self.back_emf_constant
         if constant is None or back_emf is None:
             return None
         stated = tolerance_of(self.torque_constant or self.force_constant) / constant.constant
         stated = math.hypot(stated, tolerance_of(back_emf) / back_emf) or USUAL_TOLERANCE
-        ratio = constant.constant / back_emf
-        if any(abs(ratio / convention - 1.0) <= stated for convention in CONVENTIONS):
+        nearest = min(
+            (share * back_emf for share in CONVENTIONS), key=lambda asked: abs(constant.constant / asked - 1.0)
+        )
+        return None if abs(constant.constant / nearest - 1.0) <= stated else nearest
+
+    @property
+    def disagreement(self) -> str | None:
+        """That torque constant and back-EMF constant are not those of one motor; None where they may be."""
+        if self.of_back_emf is None or self.torque_per_ampere is None:
             return None
         return (
-            f"torque constant ({constant.constant:.4g}) and back-EMF constant ({back_emf:.4g}) disagree: their ratio, "
-            f"{ratio:.3g}, is not 1, 3/2 or sqrt(3) within {stated:.0%}; what is identified errs as the first does"
+            f"torque constant ({self.torque_per_ampere.constant:.4g}) and back-EMF constant "
+            f"({self.back_emf_constant:.4g}) disagree: by the second the first would be {self.of_back_emf:.4g}; "
+            "intervals reach as far"
         )
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -12,13 +11,16 @@ from pydantic import Field, ValidationError, model_validator
 from bench.arrays import Array
 from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
+from bench.names import short
 from bench.rig.catalogue import catalogue_motor
 from bench.rig.drive import Drive
 from bench.rig.load import Load
 from bench.rig.motor import Motor
 from bench.rig.peak_curve import PeakCurve
 from bench.rig.simulation import Simulation
-from bench.rig.values import Period, Table, Time, tolerance_of
+from bench.rig.values import Table, Time, Wrap, tolerance_of
+from bench.structured import read_toml
+from bench.trace.possible import require_possible
 from bench.trace.trace import Trace
 from bench.units import nearest
 
@@ -36,7 +38,7 @@ class TraceNotes(Table):
 
     columns: dict[str, str] = Field(default_factory=dict)
     sample_period: Time | None = None
-    position_period: Period | None = None
+    position_period: Wrap | None = None
     axis: str | None = None
 
 
@@ -98,8 +100,10 @@ class Rig(Table):
         circuit U = R*I + Ke*w). Where the rig knows no constant, the effort stays in A, V or share of rated torque.
 
         Raises:
-            InputError: the trace holds none of the signals, or motor and trace disagree on the kind of axis.
+            InputError: the trace holds none of the signals, one of a magnitude that no axis has, or motor and trace
+                disagree on the kind of axis.
         """
+        require_possible(trace)
         if trace.axis_kind != self.axis_kind and ("velocity" in trace or "position" in trace):
             found = f"found a {trace.axis_kind.name} axis"
             raise InputError(trace.origin, found, f"allowed: a {self.kind} one, as {self.source} says")
@@ -132,6 +136,12 @@ class Rig(Table):
         gravity = self.load.gravity_torque(trace["position"])
         return (effort, unit) if gravity is None else (effort - gravity, unit)
 
+    def asks_for_speed(self, trace: Trace) -> bool:
+        """Whether the effort in a trace is made of a voltage less what the speed induces, kT*(U - Ke*w)/R."""
+        if {self.axis_kind.effort, "current"} & set(trace.signals):
+            return False
+        return self.motor.force_per_volt is None and self.motor.torque_per_volt is None
+
     def _effort_of_voltage(self, trace: Trace) -> tuple[Array, str]:
         gain = self.motor.force_per_volt or self.motor.torque_per_volt
         if gain is not None:
@@ -144,7 +154,13 @@ class Rig(Table):
         return trace["voltage"], "V"
 
     def within_tolerance(self) -> Iterator[Rig]:
-        """This rig with one value at the end of its tolerance, for each value of motor and load that has one."""
+        """This rig with one value at the end of its tolerance, for each value of motor and load that has one.
+
+        A torque constant that disagrees with the back-EMF constant may as well be the one that this asks for.
+        """
+        if self.motor.of_back_emf is not None:
+            constant = "force_constant" if self.motor.force_constant is not None else "torque_constant"
+            yield self.model_copy(update={"motor": self.motor.model_copy(update={constant: self.motor.of_back_emf})})
         tables = {"motor": self.motor} | ({} if self.load is None else {"load": self.load})
         for name, table in tables.items():
             for field in type(table).model_fields:
@@ -170,14 +186,7 @@ def load_rig(path: str | Path, defaults: Mapping[str, Any] | None = None) -> Rig
         InputError: no such file, no TOML, an unknown or missing key, a value of the wrong dimension or out of bounds.
     """
     path = Path(path)
-    try:
-        table = {**(defaults or {}), **tomllib.loads(path.read_text(encoding="utf-8"))}
-    except FileNotFoundError as error:
-        raise InputError(path, "no such file", "give the path of a rig file (TOML)") from error
-    except IsADirectoryError as error:
-        raise InputError(path, "found a folder", "give the path of a rig file (TOML)") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(path, f"not TOML ({error})", "allowed: a rig file in UTF-8 TOML") from error
+    table = {**(defaults or {}), **read_toml(path, "a rig file")}
     motor = table.get("motor")
     if isinstance(motor, dict) and "model" in motor:
         table["motor"] = {**catalogue_motor(motor["model"], f"{path}: motor.model"), **motor}
@@ -201,9 +210,9 @@ def _input_error(path: Path, error: ValidationError) -> InputError:
     if detail["type"] == "missing":
         return InputError(where, "missing", "this key is required")
     message = detail["msg"].removeprefix("Value error, ")
-    return InputError(
-        where, f"found {detail['input']!r}" if keys else "inconsistent", f"allowed: {message[0].lower()}{message[1:]}"
-    )
+    tables = isinstance(detail["input"], dict) or not keys
+    found = "inconsistent" if tables else f"found {short(repr(detail['input']))}"
+    return InputError(where, found, f"allowed: {message[0].lower()}{message[1:]}")
 
 
 def _known_keys(keys: list[str]) -> list[str]:

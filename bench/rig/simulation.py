@@ -10,9 +10,9 @@ from bench.rig.values import (
     Effort,
     Inertia,
     Mass,
+    Period,
     Resolution,
     Table,
-    Time,
     VelocityNoise,
     Viscous,
 )
@@ -44,5 +44,5 @@ class Simulation(Table):
     encoder_resolution: Resolution = 0.0
     velocity_noise: VelocityNoise = 0.0
     current_noise: CurrentNoise = 0.0
-    sample_period: Time = 1e-3
-    timestep: Time | None = None
+    sample_period: Period = 1e-3
+    timestep: Period | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Self
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     ConfigDict,
     Field,
@@ -81,6 +82,16 @@ def si(unit: str, translated: bool = False) -> WrapValidator:
     return WrapValidator(read)
 
 
+#: Periods that a servo axis can have - s; one in the wrong unit is beyond them, and would take hours to simulate.
+SHORTEST, LONGEST = 5e-6, 10.0
+
+
+def _possible(period: float) -> float:
+    if not 0.999 * SHORTEST <= period <= LONGEST:
+        raise ValueError(f"{SHORTEST * 1e6:g} us to {LONGEST:g} s")
+    return period
+
+
 _positive, _not_negative = Field(gt=0.0), Field(ge=0.0)
 
 Inertia = Annotated[float, _positive, si("kg*m**2")]
@@ -88,8 +99,10 @@ Mass = Annotated[float, _positive, si("kg")]
 Length = Annotated[float, _positive, si("m")]
 Density = Annotated[float, _positive, si("kg/m**3")]
 Time = Annotated[float, _positive, si("s")]
+#: Of a loop, a recording or a simulation: drives' loops take 16 us to some ms, recorders up to seconds.
+Period = Annotated[float, AfterValidator(_possible), si("s")]
 Angle = Annotated[float, si("rad")]
-Period = Annotated[float, _positive, si("rad", translated=True)]
+Wrap = Annotated[float, _positive, si("rad", translated=True)]
 Rate = Annotated[float, _not_negative, si("1/s")]
 Current = Annotated[float, _positive, si("A")]
 Voltage = Annotated[float, _positive, si("V")]

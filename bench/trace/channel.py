@@ -11,8 +11,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.errors import InputError
 
-_ELEMENT = re.compile(r"\S\[\d+\]\s*$")
-_NAME_UNIT = re.compile(r"(.*?)(?:\s*\[([^\[\]]*)\])?\s*", re.DOTALL)
+_ELEMENT = re.compile(r"\S\[\d+\]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,11 +96,11 @@ def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:
 
 def split_label(label: str) -> tuple[str, str | None]:
     """Name and unit of a column head `name [unit]`; no unit gives None. `name[0]` is a name, of an element."""
-    match = _NAME_UNIT.fullmatch(label.strip())
-    assert match is not None  # the pattern takes any text
-    if _ELEMENT.search(label):
-        return label.strip(), None
-    return match[1].strip(), (match[2] or "").strip() or None
+    label = label.strip()
+    start = label.rfind("[")
+    if start < 0 or not label.endswith("]") or "]" in label[start:-1] or _ELEMENT.fullmatch(label[start - 1 :]):
+        return label, None
+    return label[:start].strip(), label[start + 1 : -1].strip() or None
 
 
 def float_values(texts: Iterable[str], place: Callable[[int], str]) -> Array:

@@ -12,6 +12,7 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.errors import InputError
+from bench.structured import json_text
 from bench.trace.assemble import assemble
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import Chosen, axes_of, choose, of_axis
@@ -252,5 +253,4 @@ def _rate(channel: Channel) -> float | None:
 
 def to_json(inspection: Inspection, more: Mapping[str, object] = MappingProxyType({})) -> str:
     """The inspection as JSON, its fields under their names, and what others have to say of the recording."""
-    told = {"schema": SCHEMA, **asdict(inspection), "suggestions": inspection.suggestions, **more}
-    return json.dumps(told, indent=2)
+    return json_text({"schema": SCHEMA, **asdict(inspection), "suggestions": inspection.suggestions, **more})

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import codecs
 import gzip
+import io
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
+from bench.bounds import read_bounded
 from bench.errors import InputError
+from bench.files import read_bytes
+from bench.names import readable
 
 _GZIP = b"\x1f\x8b"
 #: Byte order marks, and how XML without one begins in UTF-16 (XML 1.0, appendix F).
@@ -77,25 +81,20 @@ def open_source(path: str | Path) -> Source:
         InputError: not there, not a file, not readable, empty, or a damaged gzip.
     """
     path = Path(path)
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError as error:
-        raise InputError(path, "no such file", "give the path of a trace") from error
-    except IsADirectoryError as error:
-        raise InputError(path, "found a folder", "give the path of a trace") from error
-    except (OSError, ValueError) as error:
-        raise InputError(path, f"cannot be read ({error})", "give the path of a trace") from error
+    content = read_bytes(path, "a trace")
     name = path.name.lower()
     if content.startswith(_GZIP):
         content = _decompress(content, path)
-    if not content.strip():
+    content = _as_utf8(content, path)
+    if not content or content.isspace():
         raise InputError(path, "the file is empty", "allowed: a trace with a header and samples")
-    return Source(str(path), _as_utf8(content, path), Path(name.removesuffix(".gz")).suffix)
+    return Source(readable(path), content, Path(name.removesuffix(".gz")).suffix)
 
 
 def _decompress(content: bytes, path: Path) -> bytes:
     try:
-        return gzip.decompress(content)
+        with gzip.GzipFile(fileobj=io.BytesIO(content)) as packed:
+            return read_bounded(packed, path, len(content))
     except (EOFError, OSError, zlib.error) as error:
         raise InputError(path, f"the gzip is truncated or damaged ({error})", "allowed: a complete gzip") from error
 

@@ -11,13 +11,15 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from bench.arrays import Array
+from bench.bounds import require_ratio
 from bench.errors import InputError
+from bench.names import readable
 from bench.trace.channel import Recording
 from bench.trace.choose import choose
 from bench.trace.how import HowToRead, how_to_read
 from bench.trace.in_si import InSI, in_si
 from bench.trace.read import read
-from bench.trace.readers.parquet import DAMAGE, FORMAT, MAGIC, channel_of, damaged, is_moment
+from bench.trace.readers.parquet import DAMAGE, FORMAT, MAGIC, WIDTH, channel_of, damaged, is_moment
 from bench.trace.time_base import regular
 from bench.trace.trace import Trace
 from bench.trace.unwrap import Unwrapping
@@ -50,15 +52,20 @@ def stream(
     Raises:
         InputError: as `read` does, while iterating.
     """
-    try:
-        with Path(path).open("rb") as file:
-            is_parquet = file.read(len(MAGIC)) == MAGIC
-    except (OSError, ValueError):
-        is_parquet = False  # `read` says what is wrong with it
     how = how_to_read(columns)
-    if is_parquet and how.sample_period is None and not _counts_from_first_moment(str(path)):
+    if _is_parquet(Path(path)) and how.sample_period is None and not _counts_from_first_moment(str(path)):
         return _parquet(str(path), how, signals, chunk)
     return _cut(read(path, columns), signals, chunk)
+
+
+def _is_parquet(path: Path) -> bool:
+    try:
+        if not path.is_file() or readable(path) != str(path):  # a pipe waits for its writer; Arrow opens UTF-8 names
+            return False
+        with path.open("rb") as file:
+            return file.read(len(MAGIC)) == MAGIC
+    except (OSError, ValueError):
+        return False  # `read` says what is wrong with it
 
 
 def _counts_from_first_moment(path: str) -> bool:
@@ -103,10 +110,13 @@ def _parquet(path: str, how: HowToRead, signals: Collection[str] | None, chunk: 
     try:
         with pq.ParquetFile(path, memory_map=True) as file:
             fields = list(file.schema_arrow)
-            empty = Recording(tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), FORMAT, path)
+            empty = Recording(
+                tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), FORMAT, readable(path)
+            )
             chosen, notes = choose(empty, how)
             chosen = {name: it for name, it in chosen.items() if signals is None or name == "time" or name in signals}
             field_of = {name: fields[empty.channels.index(choice.channel)] for name, choice in chosen.items()}
+            require_ratio(path, file.metadata.num_rows * len(field_of) * WIDTH, Path(path).stat().st_size)
             start, last = 0, None
             wrapping: dict[str, Unwrapping] = {}
             for batch in _batches(file, [field.name for field in field_of.values()], chunk):

@@ -64,6 +64,7 @@ class Trace:
         metadata: what the source said about itself.
         time_base: what was found about the sample times, where a reader found something.
         notes: what a reader did, assumed or left out that the user should know.
+        joined: time at which each recording starts - s - and its origin, where several make it (`bench.trace.join`).
         wraps: of the position, which were undone.
         continues: whether it follows the trace before it, of the same recording, without a hole.
 
@@ -79,6 +80,7 @@ class Trace:
     metadata: Mapping[str, str] = field(default_factory=dict)
     time_base: TimeBase | None = None
     notes: tuple[str, ...] = ()
+    joined: tuple[tuple[float, str], ...] = ()
     continues: bool = False
     wraps: Wraps | None = None
 
@@ -163,11 +165,22 @@ class Trace:
         edges = [0, *breaks.tolist(), self.time.size]
         return tuple(slice(start, stop) for start, stop in pairwise(edges))
 
+    def start_of(self, part: slice) -> float:
+        """Time at which the recording starts that a stretch is of - s."""
+        starts = [start for start, _ in self.joined if start <= self.time[part.start]]
+        return starts[-1] if starts else float(self.time[0])
+
     @property
     def axis_kind(self) -> AxisKind:
         """Linear where position or velocity stands in metres, else rotary."""
         lengths = (LINEAR.length_unit, LINEAR.speed_unit)
         return LINEAR if any(self.units.get(name) in lengths for name in ("position", "velocity")) else ROTARY
+
+    def without(self, name: str) -> Trace:
+        """The same without one of its signals."""
+        signals, units = dict(self.signals), dict(self.units)
+        del signals[name], units[name]
+        return replace(self, signals=signals, units=units)
 
     def with_signals(self, signals: Mapping[str, Array], units: Mapping[str, str]) -> Trace:
         """The same recording with signals added or replaced."""

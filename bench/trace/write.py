@@ -87,7 +87,8 @@ def _header(table: pa.Table) -> bytes:
 
 
 def _parquet(table: pa.Table, path: Path) -> None:
-    pq.write_table(table, path)
+    with path.open("wb") as file:  # Arrow itself opens no name that is not UTF-8
+        pq.write_table(table, file)
 
 
 def _machine_expert(table: pa.Table, path: Path) -> None:

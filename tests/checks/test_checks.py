@@ -43,7 +43,7 @@ def test_without_a_rig_the_gate_asks_the_signals_alone(sound):
 # velocity_is_derivative_of_position
 
 
-@pytest.mark.parametrize("factor", [0.16, 0.5, 0.6, 6.0, -1.0, 0.88, 1.12, 180.0 / np.pi])
+@pytest.mark.parametrize("factor", [0.16, 0.5, 0.6, 6.0, -1.0, 0.88, 1.12, 180.0 / np.pi, 1e-20, 1e20])
 def test_a_speed_of_another_scale_fails(sound, rig, factor):
     _, found = velocity.check(changed(sound, velocity=factor * sound["velocity"]), rig)
     assert found.status == "fail"

@@ -10,6 +10,7 @@ from bench.diagnose.diagnosis import diagnose
 from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.show.verdict import OBJECTIONS, Drives, Elsewhere, MovesWorse, Undetermined, verdict
 from bench.effects.catalogue import catalogue
+from bench.errors import UndeterminedError
 from tests.diagnose.constructed import COULOMB, RIG, moved, recorded
 
 NONE = frozenset(catalogue())
@@ -117,3 +118,11 @@ def test_each_objection_turns_the_verdict(monkeypatch):
         monkeypatch.setattr(type(other), "against", lambda self, shown: "")
     assert verdict(shown(SPRING)) == ("explained", [])
     assert verdict(shown()) == ("nothing_missing", [])
+
+
+def test_an_inertia_below_the_rotor_s_is_refused():
+    """A current in the wrong unit: what moves is a thousandth of the rotor alone."""
+    trace = recorded(MOTION)
+    weak = trace.with_signals({"current": 1e-3 * trace["current"]}, {"current": "A"})
+    with pytest.raises(UndeterminedError, match="load moment of inertia"):
+        diagnose(weak, RIG, excluded=NONE)

@@ -1,8 +1,11 @@
 """A filtered velocity lags a ramp by its time constant."""
 
 import numpy as np
+import pytest
 
 from bench.effects.velocity_filter_lag import EFFECT
+from bench.trace.trace import Trace
+from tests.diagnose.constructed import RIG
 from tests.effects.axes import PERIOD
 
 VALUES = {"time_constant": 2e-3}
@@ -19,3 +22,29 @@ def test_undone_where_velocity_is_smooth():
     velocity = 50.0 * np.sin(2.0 * np.pi * 5.0 * time)
     back = EFFECT.unfiltered(VALUES, EFFECT.filtered(VALUES, velocity, PERIOD), PERIOD)
     np.testing.assert_allclose(back[100:-1], velocity[100:-1], atol=0.01)
+
+
+@pytest.mark.parametrize("first_order", [True, False])
+def test_a_lag_of_another_form_is_told_and_not_mended(first_order):
+    """Speed of two sines behind a first-order filter, and behind a mean over 8 ms, which is no such filter at 40 Hz.
+
+    Sine by sine: a filter H(i*w) multiplies amplitude and shifts phase. At 250 rad/s the mean over T, sinc(w*T/2) with
+    a delay of T/2, differs from 1/(1 + i*w*T/2) by a tenth.
+    """
+    time, mean, lag = 1e-3 * np.arange(8000), 8e-3, 4e-3
+    position, reported = np.zeros_like(time), np.zeros_like(time)
+    for speed, omega in ((30.0, 9.0), (12.0, 250.0)):
+        half = 0.5 * omega * mean
+        gain = 1.0 / (1.0 + 1j * omega * lag) if first_order else np.sin(half) / half * np.exp(-1j * half)
+        position += speed / omega * np.sin(omega * time)
+        reported += speed * np.real(gain * np.exp(1j * omega * time))
+    rng = np.random.default_rng(0)
+    signals = {
+        "position": position + 1e-5 * rng.normal(size=time.size),
+        "velocity": reported + 0.02 * rng.normal(size=time.size),
+    }
+    trace = Trace(time, signals, {"position": "rad", "velocity": "rad/s"}, "two sines")
+    found = EFFECT.detect(trace, RIG, 1.5e-3)
+    assert found is not None
+    assert found.mends == first_order
+    assert set(trace.without("velocity").signals) == {"position"}

@@ -77,9 +77,10 @@ class Student:
         rows = rows - set_back
         keep = np.abs(omega[rows]) >= fast
         matrix = np.stack([alpha, omega[rows], np.sign(omega[rows])], axis=1)[keep]
-        theta, error = np.linalg.lstsq(matrix, moment[rows][keep], rcond=None)[:2]
-        found |= {"J": 1e4 * theta[0], "K_fric_w": theta[1], "K_fric_0": theta[2], "E": error[0]}
-        found["J_load"] = found["J"] - self.rotor
+        if np.count_nonzero(keep) > 3:  # else no sample is fast enough in the wrong unit, and the task is left blank
+            theta, error = np.linalg.lstsq(matrix, moment[rows][keep], rcond=None)[:2]
+            found |= {"J": 1e4 * theta[0], "K_fric_w": theta[1], "K_fric_0": theta[2], "E": error[0]}
+            found["J_load"] = found["J"] - self.rotor
         degrees, milliamperes = self.runs["MaxAcc"]
         moment = self.torque(milliamperes, **torque)
         found["M_max"] = moment.max()

@@ -12,6 +12,9 @@ from bench.assets import asset
 from bench.cli import main
 from bench.lab import course as course_module
 from bench.lab.flights import read_flights
+from bench.lab.recordings import Recordings
+from bench.lab.rig import lab_rig
+from bench.lab.sources import Sources
 from bench.report import lab as report
 from bench.trace.read import read
 
@@ -275,3 +278,28 @@ def test_flights_of_several_kinds_are_one_and_the_same(tmp_path):
     (tmp_path / "bad.mat").write_bytes((tmp_path / "block.mat").read_bytes()[:200])
     with pytest.raises(Exception, match=r"bad\.mat"):
         read_flights(tmp_path / "bad.mat")
+
+
+def test_a_rig_without_simulation_loses_no_section(tmp_path):
+    """What is simulated runs on the embedded example then; a rig that can be simulated is its own."""
+    for path in asset("data", "traces").glob("*.trace"):
+        shutil.copy(path, tmp_path)
+    a_full_rig(tmp_path)
+    assert Recordings.in_folder(tmp_path).example == lab_rig()
+    assert Recordings.in_folder(tmp_path).rig.motor.rotor_inertia == pytest.approx(0.3e-4)
+    text = asset("data", "rigs", "lab.toml").read_text(encoding="utf-8").replace("22.5 kg*cm**2", "30 kg*cm**2")
+    (tmp_path / "rig.toml").write_text(text)
+    assert Recordings.in_folder(tmp_path).example.simulation.moment_of_inertia == pytest.approx(30e-4)
+
+
+def test_every_value_tells_its_source(tmp_path):
+    embedded = Sources.of(None)
+    assert embedded("motor", "peak_torque") == "datasheet"
+    assert embedded("motor", "rotor_inertia") == "assumed"
+    assert embedded("motor", "cold_resistance_share") == "course"
+    assert embedded("load", "outer_diameter") == "embedded rig"
+    (tmp_path / "rig.toml").write_text('[motor]\nmodel = "SH30701P"\nrotor_inertia = "0.3 kg*cm**2"\n')
+    own = Sources.of(tmp_path / "rig.toml")
+    assert own("motor", "rotor_inertia") == "rig file"
+    assert own("motor", "peak_torque") == "datasheet"
+    assert own("load", "outer_diameter") == "embedded rig"

@@ -96,3 +96,13 @@ def test_datasheet_values_and_the_rotor_s_inertia_count_too():
 def test_constants_of_two_motors_are_told(constant, back_emf, told):
     found = identify(recording(np.random.default_rng(2)), rig(torque_constant=constant, back_emf_constant=back_emf))
     assert any("back-EMF constant" in warning for warning in found.warnings) == told
+
+
+def test_intervals_reach_as_far_as_constants_disagree():
+    """By Ke the torque constant would be 0.64 instead of 0.8: every coefficient a fifth less."""
+    trace = recording(np.random.default_rng(3))
+    found = identify(trace, rig(torque_constant="0.8 N*m/A", back_emf_constant="0.64 V*s/rad"))
+    sure = identify(trace, rig(torque_constant="0.8 N*m/A"))
+    for name in ("moment_of_inertia", *FRICTION):
+        half, own = (each[name].ci95[1] - each[name].value for each in (found, sure))
+        assert half == pytest.approx(np.hypot(own, 0.2 * found[name].value), rel=1e-3)

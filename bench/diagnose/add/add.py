@@ -20,7 +20,7 @@ from bench.diagnose.add.extension import Extension, Stage
 from bench.diagnose.add.held_out import HOLDOUT, RECORDING, HeldOut
 from bench.diagnose.add.model import BANDWIDTH, holding_bandwidth
 from bench.diagnose.add.refine import NULL, Numbers, Refined, refined, refined_model
-from bench.diagnose.add.same_axis import foreign
+from bench.diagnose.add.same_axis import SameAxis, same_axis
 from bench.diagnose.add.tracking import Recorded, VelocityGaps
 from bench.diagnose.found import Rejected
 from bench.diagnose.name.name import Suspects, named
@@ -41,6 +41,7 @@ class Added:
         rejected: effects not kept, with the reason.
         refined: the model kept, its quantities refined by simulation where that helps.
         repeats: whether the recording's events happen in the holdout too.
+        compared: whether the holdout is of this axis.
         warnings: that the holdout is of another axis, or that MuJoCo cannot have the model.
         closed_loop: velocity gap under the drive of the rig without and with what shows only there - rad/s (m/s); None
             where nothing does.
@@ -53,6 +54,7 @@ class Added:
     rejected: tuple[Rejected, ...]
     refined: Refined
     repeats: bool
+    compared: SameAxis
     warnings: tuple[str, ...]
     closed_loop: tuple[float, float] | None
 
@@ -60,9 +62,9 @@ class Added:
 def add(recordings: Recordings, suspects: Suspects) -> Added:
     """Try every effect and keep those that held-out motion bears out; refine the model of those."""
     found = suspects.searched.last
-    warnings = foreign(found, recordings.other)
+    compared = same_axis(found, recordings.other, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.other)
-    held_out = HeldOut.of(recordings, not warnings, repeats)
+    held_out = HeldOut.of(recordings, compared.same is not False, repeats)
     recorded = [Recorded.of(RECORDING, recordings.trace, recordings.rig)]
     if recordings.holdout is not None:
         recorded.append(Recorded.of(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
@@ -79,8 +81,9 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         extension = extension.less(against[0])
     kept = refined(recordings, extension.whole, suspects, held_out, trial.gaps)
     problem = [f"not added to the MuJoCo model: {extension.whole.problem}"] if extension.whole.problem else []
-    notes = (*warnings, *problem)
-    return Added(extension, held_out, trial.gaps, tuple(recorded), tuple(rejected), kept, repeats, notes, closed_loop)
+    notes = (*compared.warnings, *problem)
+    gone = tuple(rejected)
+    return Added(extension, held_out, trial.gaps, tuple(recorded), gone, kept, repeats, compared, notes, closed_loop)
 
 
 def everywhere(balance: Balance, other: Rows | None) -> bool:

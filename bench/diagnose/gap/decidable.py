@@ -10,7 +10,6 @@ from bench.arrays import rms
 from bench.axis_kind import COULOMB, OFFSET, AxisKind
 from bench.balance.fit import Fit, fit
 from bench.balance.last_digit import plain
-from bench.balance.parameter import Parameter
 from bench.balance.rows import Rows, clear_motion
 from bench.diagnose.name.rules import Rules, row_correlation
 from bench.errors import InputError, UndeterminedError
@@ -158,13 +157,3 @@ def _require_acceleration(base: Fit, kind: AxisKind) -> None:
         f"acceleration is {moved:.3g} {unit} RMS, {noise:.3g} {unit} of it noise of {conditioning.source}",
         f"accelerations above {noise / math.sqrt(NOISY):.3g} {unit} RMS, or a finer {conditioning.source}",
     )
-
-
-def require_positive(inertia: Parameter, origin: str) -> None:
-    """InputError where the inertia is negative: torque and speed are counted in opposite directions."""
-    if inertia.ci95[1] <= 0.0:
-        raise InputError(
-            origin,
-            f"found an inertia of {inertia.value:.3g} {inertia.unit}: torque and motion have opposite signs",
-            "allowed: both counted the same way (a leading - in the rig's [trace.columns] turns one)",
-        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bench.balance.fit import Fit
@@ -9,15 +10,18 @@ from bench.balance.parameter import Parameter
 from bench.balance.stored import Balance
 from bench.checks.check import Check
 from bench.diagnose.add.add import Added
+from bench.diagnose.add.same_axis import SameAxis
 from bench.diagnose.found import Gap, NamedEffect, Rejected, Shrunk
 from bench.diagnose.gap.decidable import impacts, left_open
 from bench.diagnose.name.name import Suspects
 from bench.diagnose.recordings import Recordings
+from bench.diagnose.show.apart import apart
 from bench.diagnose.show.gaps import shrinking, torque_gap, velocity_gap
 from bench.diagnose.show.next_experiment import NextExperiment, propose
 from bench.diagnose.show.suspicions import suspicions
 from bench.diagnose.show.verdict import Shown, verdict
 from bench.diagnose.where.where import Where, where
+from bench.identify.estimate import Alone, Between
 from bench.plant.model_file import StoredModel
 
 
@@ -34,10 +38,12 @@ class Diagnosis:
         closed_loop: velocity gap under the rig's drive without and with what shows only there - rad/s (m/s).
         refined: velocity gap of held-out motion before and after values were refined by simulation; None if not kept.
         steps: the bare axis, then the model after each addition.
+        holdout: whether it is of the same axis, and in what it differs.
         next_experiment: that tells apart what this recording does not.
         rejected: names that held-out motion spoke against.
         stopped: what ended the search before it was done; None if nothing did.
         model, balance: with all effects; no model where MuJoCo cannot have them.
+        recordings, between: J, K_w and K_0 of each of several recordings alone, and their spread; () and {} of one.
         warnings: what a user should know.
         checks: what the gate found before the fit.
     """
@@ -56,10 +62,13 @@ class Diagnosis:
     refined: tuple[float, float] | None
     steps: list[Shrunk]
     rejected: tuple[Rejected, ...]
+    holdout: SameAxis
     next_experiment: NextExperiment | None
     stopped: str | None
     model: StoredModel | None
     balance: Balance
+    recordings: tuple[Alone, ...] = ()
+    between: Mapping[str, Between] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
     checks: tuple[Check, ...] = ()
 
@@ -76,7 +85,7 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
     """
     rig, unit, kind = recordings.rig, recordings.unit, recordings.rig.axis_kind
     whole, kept, searched = added.extension.whole.fitted, added.refined, suspects.searched
-    steps = shrinking(recordings, added)
+    steps, several = shrinking(recordings, added), apart(recordings, whole, kept.parameters)
     torque, velocity = torque_gap(steps, whole, unit), velocity_gap(recordings, steps)
     comes_to, because = verdict(Shown(recordings, suspects, added, torque, velocity))
     return Diagnosis(
@@ -86,7 +95,9 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
         where=located,
         unexplained_share=whole.excess / max(bare.squares, 1e-300),
         unexplained_where=where(whole, kind, unit)[:3] if because else [],
-        parameters=kept.parameters,
+        parameters=several.parameters,
+        recordings=several.recordings,
+        between=several.between,
         torque=torque,
         velocity=velocity,
         bandwidth=added.gaps.bandwidth,
@@ -94,6 +105,7 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
         refined=kept.gap,
         steps=steps,
         rejected=added.rejected,
+        holdout=added.compared,
         next_experiment=propose(recordings, suspects, added),
         stopped=searched.stopped,
         model=kept.model,
@@ -102,6 +114,7 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
             *suspicions(recordings.trace, rig, kept.parameters),
             *left_open(recordings.rows, kind),
             *impacts(whole, unit),
+            *several.warnings,
             *added.warnings,
         ],
     )

@@ -6,12 +6,11 @@ voltage is load/885 * input_volts (Robotis XL330 manual, present PWM; github.com
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.structured import parse_json
 from bench.trace.channel import Channel, Recording
 from bench.trace.source import Source
 
@@ -35,14 +34,7 @@ def read(source: Source) -> Recording:
     Raises:
         InputError: not JSON, no entries, or an entry without one of the keys or with text in a number.
     """
-    try:
-        content = json.loads(source.text())
-    except json.JSONDecodeError as error:
-        raise InputError(
-            f"{source.path}: line {error.lineno}",
-            f"the JSON is truncated or damaged ({error.msg})",
-            "allowed: whole JSON",
-        ) from error
+    content = parse_json(source.text(), source.path)
     entries = content.get("entries") if isinstance(content, dict) else None
     if not isinstance(entries, list) or not entries:
         raise InputError(f"{source.path}: entries", "found none", "allowed: a list of samples")

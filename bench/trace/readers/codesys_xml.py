@@ -8,14 +8,13 @@ in the trace's comment, as `units: velocity [deg/s], current [mA]`.
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from bench.errors import InputError
-from bench.trace.channel import Channel, Recording, float_values, with_shared_times
+from bench.trace.channel import Channel, Recording, float_values, split_label, with_shared_times
 from bench.trace.readers.lab_units import LAB_UNITS
 from bench.trace.readers.xml import parse, root_name
 from bench.trace.source import Source
@@ -24,7 +23,6 @@ FORMAT = "CODESYS / Machine Expert trace"
 ENDINGS = (".trace", ".xml")
 
 UNITS_COMMENT = "units: "
-_LABEL = re.compile(r"([^\s,]+) \[([^\]]*)\]")
 
 
 def recognises(source: Source) -> bool:
@@ -42,7 +40,8 @@ def read(source: Source) -> Recording:
     settings = {single.get("Name", ""): (single.text or "").strip() for single in root.iter("Single")}
     time_unit = "us" if settings.get("MicroSeconds", "").lower() == "true" else "ms"
     comment = settings.get("Comment", "")
-    units = dict(_LABEL.findall(comment)) if comment.startswith(UNITS_COMMENT) else {}
+    labels = comment.removeprefix(UNITS_COMMENT).split(", ") if comment.startswith(UNITS_COMMENT) else []
+    units = {name: unit for name, unit in map(split_label, labels) if unit is not None}
     variables = [_channel(variable, time_unit, source.path) for variable in root.iter("TraceVariable")]
     recorded = [replace(channel, unit=units.get(channel.name)) for channel in variables if channel.values.size]
     if not recorded:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording
 from bench.trace.readers.arrays import channels_of, is_samples
@@ -42,8 +43,13 @@ def read(source: Source) -> Recording:
     metadata: dict[str, str] = {}
     try:
         with h5py.File(BytesIO(source.content), "r") as file:
-            for name, dataset in _datasets(file, h5py, ""):
+            found = list(_datasets(file, h5py, ""))
+            size = sum(dataset.nbytes for _, dataset in found if dataset.shape is not None)
+            require_expansion(source.path, size, len(source.content))
+            for name, dataset in found:
                 channels.extend(_channels(name, dataset, metadata, source.path))
+    except InputError:
+        raise
     except Exception as error:  # h5py raises many kinds on a damaged file
         raise damaged(source.path, FORMAT, error) from error
     if not channels:

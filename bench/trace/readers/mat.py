@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from io import BytesIO
+from typing import Any
 
 import numpy as np
 
@@ -30,17 +31,7 @@ def read(source: Source) -> Recording:
     Raises:
         InputError: truncated, damaged, or without a numeric vector.
     """
-    from scipy.io import loadmat  # 0.05 s, for one format of ten
-
-    try:
-        if source.content.startswith(_MAGIC):
-            check_structure(source.content)
-        content = loadmat(BytesIO(source.content), simplify_cells=True)
-    except Exception as error:  # scipy raises nearly any exception on a damaged file
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise InputError(
-            source.path, f"the MAT file is truncated or damaged ({reason})", "allowed: a complete MAT file"
-        ) from error
+    content = load(source.content, source.path)
     channels, metadata = [], {}
     for name, value in _variables(content):
         if is_samples(value):
@@ -50,6 +41,26 @@ def read(source: Source) -> Recording:
     if not channels:
         raise InputError(source.path, "holds no numeric vector", "allowed: vectors of samples, one of them the time")
     return Recording(tuple(channels), FORMAT, source.path, metadata)
+
+
+def load(content: bytes, where: str) -> dict[str, Any]:
+    """Variables of a MAT file, structs as dictionaries.
+
+    Raises:
+        InputError: truncated, damaged, or of more than a file may expand to; names `where`.
+    """
+    from scipy.io import loadmat  # 0.05 s, for one format of ten
+
+    try:
+        if content.startswith(_MAGIC):
+            check_structure(content, where)
+        return loadmat(BytesIO(content), simplify_cells=True)
+    except InputError:
+        raise
+    except Exception as error:  # scipy raises nearly any exception on a damaged file
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        found = f"the MAT file is truncated or damaged ({reason})"
+        raise InputError(where, found, "allowed: a complete MAT file") from error
 
 
 def _variables(content: dict, prefix: str = "") -> Iterator[tuple[str, object]]:

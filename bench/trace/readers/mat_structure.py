@@ -10,32 +10,56 @@ import struct
 import zlib
 from collections.abc import Iterator
 
+from bench.bounds import bounds, shown, too_much
+
 _HEADER = 128
 _MATRIX, _COMPRESSED = 14, 15
 _NUMBERS = frozenset((1, 2, 3, 4, 5, 6, 7, 9, 12, 13))
 _TYPES = _NUMBERS | {_MATRIX, _COMPRESSED, 16, 17, 18}
 _SPARSE, _CHARACTERS = 5, 4
 _COMPLEX = 0x0800
+#: Structs and cells in one another.
+_DEEPEST = 32
 #: Elements of a matrix of class: flags, dimensions, name, and its data; numeric classes are 6 to 15.
 _PARTS = {_CHARACTERS: 4, _SPARSE: 6, **dict.fromkeys(range(6, 16), 4)}
 
 
-def check_structure(content: bytes) -> None:
+def check_structure(content: bytes, where: str) -> None:
     """Walk through all elements.
 
     Raises:
-        ValueError: a type that is none, a length beyond the file, or parts missing from a matrix.
+        ValueError: a type that is none, a length beyond the file, parts missing from a matrix, or cells in cells in ...
+        InputError: it expands to more than it may; names `where`.
     """
     if content[126:128] not in (b"IM", b"MI"):
         raise ValueError("no byte order in the header")
-    _check(content, "<" if content[126:128] == b"IM" else ">", _HEADER)
-
-
-def _check(data: bytes, order: str, start: int) -> None:
-    for kind, begin, end in _elements(data, order, start, len(data)):
+    expanded = 0
+    order = "<" if content[126:128] == b"IM" else ">"
+    for kind, begin, end in _elements(content, order, _HEADER, len(content)):
         if kind == _COMPRESSED:
-            _check(zlib.decompress(data[begin:end]), order, 0)
+            data = _inflated(content[begin:end], bounds().most(len(content)) - expanded)
+            if data is None:
+                raise too_much(where, len(content), f"more than {shown(bounds().most(len(content)))}")
+            expanded += len(data)
+            _check(data, order)
         elif kind == _MATRIX:
+            _check_matrix(content, order, begin, end)
+
+
+def _inflated(data: bytes, most: int) -> bytes | None:
+    """What a compressed element holds; None where that is more than `most` bytes."""
+    stream = zlib.decompressobj()
+    found = stream.decompress(data, most + 1)
+    if not stream.eof and len(found) <= most:
+        raise ValueError("a compressed element is cut off")
+    return found if len(found) <= most else None
+
+
+def _check(data: bytes, order: str) -> None:
+    for kind, begin, end in _elements(data, order, 0, len(data)):
+        if kind == _COMPRESSED:
+            raise ValueError("a compressed element in a compressed element")
+        if kind == _MATRIX:
             _check_matrix(data, order, begin, end)
 
 
@@ -55,7 +79,9 @@ def _elements(data: bytes, order: str, start: int, stop: int) -> Iterator[tuple[
         start = begin + size + padding
 
 
-def _check_matrix(data: bytes, order: str, begin: int, end: int) -> None:
+def _check_matrix(data: bytes, order: str, begin: int, end: int, depth: int = 0) -> None:
+    if depth > _DEEPEST:
+        raise ValueError(f"more than {_DEEPEST} matrices in one another")
     parts = list(_elements(data, order, begin, end))
     if not parts:
         return  # an empty cell
@@ -71,4 +97,4 @@ def _check_matrix(data: bytes, order: str, begin: int, end: int) -> None:
         raise ValueError(f"a matrix of {len(parts)} parts")
     for kind, first, last in parts:
         if kind == _MATRIX:
-            _check_matrix(data, order, first, last)
+            _check_matrix(data, order, first, last, depth + 1)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import zipfile
 from io import BytesIO
 
 import numpy as np
 
+from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording
 from bench.trace.readers.arrays import channels_of, is_samples
@@ -31,6 +33,7 @@ def read(source: Source) -> Recording:
     """
     channels: list[Channel] = []
     metadata: dict[str, str] = {}
+    _require_bounds(source)
     try:
         loaded = np.load(BytesIO(source.content), allow_pickle=False)
         arrays = (
@@ -48,6 +51,18 @@ def read(source: Source) -> Recording:
     if "" in arrays and arrays[""].dtype.names is None:
         channels = [Channel(f"column {n}", c.unit, c.values, c.origin) for n, c in enumerate(channels, 1)]
     return Recording(tuple(channels), FORMAT, source.path, metadata)
+
+
+def _require_bounds(source: Source) -> None:
+    """InputError where a zip's arrays would expand to more than they may."""
+    if not source.content.startswith(_ZIP):
+        return
+    try:
+        with zipfile.ZipFile(BytesIO(source.content)) as archive:
+            size = sum(member.file_size for member in archive.infolist())
+    except (zipfile.BadZipFile, OSError, ValueError) as error:
+        raise damaged(source.path, FORMAT, error) from error
+    require_expansion(source.path, size, len(source.content))
 
 
 def _array(loaded: np.lib.npyio.NpzFile, name: str) -> np.ndarray:

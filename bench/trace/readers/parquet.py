@@ -9,6 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from bench.arrays import Array
+from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.moments import seconds
@@ -20,6 +21,8 @@ ENDINGS = (".parquet", ".pq")
 MAGIC = b"PAR1"
 #: What Arrow raises on a damaged file.
 DAMAGE = (pa.ArrowException, OSError, UnicodeDecodeError)
+#: Bytes of a value once it is read.
+WIDTH = 8
 
 
 def recognises(source: Source) -> bool:
@@ -34,13 +37,21 @@ def read(source: Source) -> Recording:
         InputError: truncated, damaged, or without rows.
     """
     try:
-        table = pq.read_table(pa.BufferReader(source.content))
-        fields = list(zip(table.schema, table.columns, strict=True))
+        with pq.ParquetFile(pa.BufferReader(source.content)) as file:
+            fields = list(file.schema_arrow)
+            wanted = [number for number, field in enumerate(fields) if is_numeric(field.type)]
+            rows = file.metadata.num_rows
+            require_expansion(source.path, rows * len(wanted) * WIDTH, len(source.content))
+            table = file.read(None if len(wanted) == len(fields) else [fields[number].name for number in wanted])
     except DAMAGE as error:
         raise damaged(source.path, error) from error
-    if not table.num_rows:
+    if not rows:
         raise InputError(source.path, "found columns and no rows", "allowed: at least two samples")
-    channels = tuple(channel_of(field, column, source.path) for field, column in fields)
+    columns = iter(table.columns)
+    channels = tuple(
+        channel_of(field, next(columns) if is_numeric(field.type) else pa.nulls(0, field.type), source.path)
+        for field in fields
+    )
     return Recording(channels, FORMAT, source.path)
 
 
@@ -68,6 +79,12 @@ def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, s
     if values is None:
         return replace(channel, defect=InputError(channel.place(), f"found {kind}", "allowed: numbers"))
     return replace(channel, values=values, moments=pa.types.is_timestamp(kind))
+
+
+def is_numeric(kind: pa.DataType) -> bool:
+    """Whether a column holds numbers or moments; of others, texts and lists, nothing is read."""
+    number = pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_decimal(kind)
+    return number or pa.types.is_boolean(kind) or is_moment(kind)
 
 
 def is_moment(kind: pa.DataType) -> bool:

@@ -22,6 +22,8 @@ from bench.trace.source import Source, decode, utf8
 FORMAT = "CSV table"
 ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", ".lvm")
 
+#: Columns of a table; a recorder has some hundred channels at most.
+MOST_COLUMNS = 10_000
 _COMMENT = re.compile(rb"^[ \t]*(?:#|//)")
 #: Its functions are made when it is loaded, so that checkers of types know none.
 pc: Any = pyarrow.compute
@@ -56,6 +58,8 @@ def read(source: Source) -> Recording:
     layout = _layout(source)
     if layout is None:
         raise _no_table(source)
+    if len(layout.labels) > MOST_COLUMNS:
+        raise InputError(source.path, f"found {len(layout.labels)} columns", f"allowed: {MOST_COLUMNS}")
     content = utf8(source.content)
     start = _offset(content, layout.start)
     body = Body(content[start:], layout.start + 1)
@@ -63,7 +67,7 @@ def read(source: Source) -> Recording:
         body = replace(body, content=_between_tabs(body.content))
     table, body = _columns(body, layout, source.path)
     rows = _filled_rows(table)
-    blank = re.search(rb"\n[ \t\r]*\n\s*\S", body.content) is not None
+    blank = re.search(rb"\n[ \t\r]*\n", body.content.rstrip()) is not None
     line = None if blank or (rows is not None and not rows[: int(rows.sum())].all()) else body.line
     table = table if rows is None else table.filter(pa.array(rows))
     channels = tuple(_channels(table, layout, line, source.path))

@@ -14,8 +14,20 @@ _ROOT = re.compile(r"<([A-Za-z_][\w:.-]*)")
 def root_name(source: Source) -> str:
     """Name of the root element without its namespace; empty if the content is no XML."""
     head = source.head.lstrip()
-    match = _ROOT.search(re.sub(r"<!--.*?-->", "", head, flags=re.DOTALL)) if head.startswith("<") else None
+    match = _ROOT.search(_without_comments(head)) if head.startswith("<") else None
     return match[1].rsplit(":", 1)[-1] if match else ""
+
+
+def _without_comments(text: str) -> str:
+    """The text up to the first comment that is not closed."""
+    kept, place = [], 0
+    while (start := text.find("<!--", place)) >= 0:
+        kept.append(text[place:start])
+        end = text.find("-->", start + 4)
+        if end < 0:
+            return "".join(kept)
+        place = end + 3
+    return "".join([*kept, text[place:]])
 
 
 def parse(source: Source) -> ElementTree.Element:

@@ -1,0 +1,131 @@
+"""How large the content of a file may be: of itself, and of what comes out of it where it is compressed.
+
+A gzip holds up to a thousand times its size, a Parquet file of one repeated value or a zip far more; a few megabytes
+would fill the memory of any machine. Whatever expands asks here before, or while, it does.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from typing import Protocol
+
+from bench.errors import InputError
+
+_SIZE = re.compile(r"(\d{1,15}(?:\.\d{1,6})?)\s*(|k|M|G|T)i?B?", re.IGNORECASE)
+_POWERS = {"": 0, "k": 1, "m": 2, "g": 3, "t": 4}
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What the content of one file may grow to.
+
+    Attributes:
+        size: bytes.
+        ratio: content over file, where the content is above `small`; recordings of sensors compress 2 to 30 times.
+        small: bytes that any file may expand to.
+    """
+
+    size: float = 2.0 * 1024**3
+    ratio: float = 100.0
+    small: float = 64.0 * 1024**2
+
+    def most(self, stored: int) -> int:
+        """Bytes that a file of `stored` bytes may expand to."""
+        return int(min(self.size, max(self.ratio * stored, self.small)))
+
+
+_PRESET = Bounds()
+_BOUNDS: ContextVar[Bounds] = ContextVar("bounds", default=_PRESET)
+#: Bytes that are taken at a time out of what expands.
+_PIECE = 1 << 22
+#: How a user raises them.
+RAISE = "--max-size raises the bound where the file is to be trusted"
+
+
+@contextmanager
+def bounded(size: str | None) -> Iterator[None]:
+    """Within the block files may have and expand to `size`, e.g. `8 GB`, at any ratio; None changes nothing.
+
+    Raises:
+        InputError: no size.
+    """
+    if size is None:
+        yield
+        return
+    match = _SIZE.fullmatch(size.strip())
+    if match is None:
+        raise InputError("--max-size", f"found {size!r}", "allowed: a number of bytes, e.g. 8GB")
+    token = _BOUNDS.set(Bounds(float(match[1]) * 1024 ** _POWERS[match[2].lower()], float("inf")))
+    try:
+        yield
+    finally:
+        _BOUNDS.reset(token)
+
+
+def bounds() -> Bounds:
+    """Those in force."""
+    return _BOUNDS.get()
+
+
+def require_size(where: object, size: float) -> None:
+    """InputError naming `where` if a content of `size` bytes is too large."""
+    if size > bounds().size:
+        raise InputError(where, f"found {shown(size)}", f"allowed: at most {shown(bounds().size)}; {RAISE}")
+
+
+def require_expansion(where: object, size: float, stored: int) -> None:
+    """InputError naming `where` if a file of `stored` bytes may not expand to `size`."""
+    if size > bounds().most(stored):
+        raise too_much(where, stored, f"{shown(size)}")
+
+
+def require_ratio(where: object, size: float, stored: int) -> None:
+    """The same of what is read a piece at a time, and may be as long as it likes."""
+    if size > max(bounds().ratio * stored, bounds().small):
+        raise InputError(
+            where,
+            f"expands to {shown(size)} out of {shown(stored)}",
+            f"allowed: {bounds().ratio:g} times its size; {RAISE}",
+        )
+
+
+class Readable(Protocol):
+    """What a file, a gzip or a member of a zip has."""
+
+    def read(self, size: int, /) -> bytes:
+        """At most `size` bytes, none at the end."""
+        ...
+
+
+def read_bounded(expanding: Readable, where: object, stored: int) -> bytes:
+    """All that comes out of what expands `stored` bytes, a piece at a time.
+
+    Raises:
+        InputError: more comes out than may; names `where`.
+    """
+    most, pieces, size = bounds().most(stored), [], 0
+    while piece := expanding.read(_PIECE):
+        size += len(piece)
+        if size > most:
+            raise too_much(where, stored, f"more than {shown(most)}")
+        pieces.append(piece)
+    return b"".join(pieces)
+
+
+def too_much(where: object, stored: int, found: str) -> InputError:
+    """What to say of a file of `stored` bytes that holds more than it may."""
+    allowed = f"allowed: at most {shown(bounds().most(stored))} out of {shown(stored)}; {RAISE}"
+    return InputError(where, f"expands to {found}", allowed)
+
+
+def shown(size: float) -> str:
+    """`1.5 GB`."""
+    for unit in ("bytes", "kB", "MB"):
+        if size < 1024:
+            return f"{size:.3g} {unit}"
+        size /= 1024
+    return f"{size:.3g} GB"

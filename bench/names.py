@@ -1,0 +1,34 @@
+"""Names from outside are text: whatever characters they hold, a terminal, a log or a page shows them and obeys none."""
+
+from __future__ import annotations
+
+import re
+
+#: Control characters (a terminal obeys them), those that turn the direction of text, and halves of surrogates (no
+#: encoding has them; Python reads file names that are not UTF-8 so). Line ends and tabs are not among them.
+_OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+_NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?([eE][+-]?\d+)?")
+
+
+def plain(text: str) -> str:
+    r"""The text with such characters written out, e.g. `\x1b`."""
+    return _OBEYED.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
+
+
+def cell(text: str) -> str:
+    """The text as a cell of a CSV that no spreadsheet takes for a formula: an apostrophe stands before one."""
+    formula = text[:1] in ("=", "+", "-", "@", "\t", "\r") and _NUMBER.fullmatch(text) is None
+    return f"'{text}" if formula else text
+
+
+def readable(path: object) -> str:
+    r"""A path as text that any encoding has: bytes of a file name that are not UTF-8 written out, e.g. `\xff`."""
+    return str(path).encode("utf-8", errors="surrogateescape").decode("utf-8", errors="backslashreplace")
+
+
+def short(text: str, most: int = 200) -> str:
+    """The text in at most `most` characters: beginning and end where it is longer."""
+    if len(text) <= most:
+        return text
+    half = (most - 5) // 2
+    return f"{text[:half]} ... {text[-half:]}"

@@ -1,0 +1,47 @@
+"""What a result rests on, so that anybody can tell whether two came from the same: version, files, options."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from bench import __version__
+from bench.errors import InputError
+
+
+def provenance(
+    rig: Path, traces: Sequence[Path], options: Mapping[str, Any], holdout: Path | None = None
+) -> dict[str, Any]:
+    """The contract's `provenance`.
+
+    Args:
+        rig: file of the axis.
+        traces: files of the recordings, in the order given.
+        options: of the command that change its result.
+        holdout: file of the recording that was not fitted.
+
+    Raises:
+        InputError: a file cannot be read.
+    """
+    found = {
+        "version": __version__,
+        "rig_sha256": sha256(rig),
+        "traces": [{"file": str(trace), "sha256": sha256(trace)} for trace in traces],
+        "options": dict(options),
+    }
+    return found if holdout is None else found | {"holdout": {"file": str(holdout), "sha256": sha256(holdout)}}
+
+
+def sha256(path: Path) -> str:
+    """Of a file as it lies there, in hexadecimal digits.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise InputError(path, f"cannot be read ({error.strerror})", "give the path of a file") from error

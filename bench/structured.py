@@ -1,0 +1,74 @@
+"""TOML and JSON from files, whatever is wrong with them; JSON that any reader takes."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from bench.errors import InputError, UndeterminedError
+from bench.files import read_text
+
+
+def read_toml(path: str | Path, kind: str) -> dict[str, Any]:
+    """Tables of a TOML file.
+
+    Args:
+        path: of it.
+        kind: what it should be, for messages, e.g. `a rig file`.
+
+    Raises:
+        InputError: it cannot be read, is no TOML, is nested too deep or holds a number of too many digits.
+    """
+    text = read_text(path, kind)
+    try:
+        return tomllib.loads(text)
+    except RecursionError as error:
+        raise InputError(path, "its tables are nested too deep", f"allowed: {kind} (TOML)") from error
+    except ValueError as error:  # also of an integer of more digits than Python reads
+        raise InputError(path, f"not TOML ({error})", f"allowed: {kind} in UTF-8 TOML") from error
+
+
+def parse_json(text: str, where: object) -> Any:  # noqa: ANN401
+    """Content of a JSON text.
+
+    Raises:
+        InputError: not JSON, nested too deep, or a number of too many digits; names `where`, and the line.
+    """
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as error:
+        found = f"the JSON is truncated or damaged ({error.msg})"
+        raise InputError(f"{where}: line {error.lineno}", found, "allowed: whole JSON") from error
+    except RecursionError as error:
+        raise InputError(where, "the JSON is nested too deep", "allowed: a few levels") from error
+    except ValueError as error:
+        raise InputError(where, f"the JSON holds a number that is none ({error})", "allowed: whole JSON") from error
+
+
+def json_text(content: Mapping[str, Any], ascii_only: bool = True) -> str:
+    """A result as JSON, which has no nan and no infinity: what is not known is null in it.
+
+    Raises:
+        UndeterminedError: a number of it is not finite.
+    """
+    try:
+        return json.dumps(content, indent=2, allow_nan=False, ensure_ascii=ascii_only)
+    except ValueError as error:
+        place, value = _not_finite(content) or ("the result", math.nan)
+        record = "the motion again; numbers this large or this small are not those of a servo axis"
+        raise UndeterminedError(place, f"it came out as {value}", record) from error
+
+
+def _not_finite(content: object, place: str = "") -> tuple[str, float] | None:
+    """Place and value of the first number that is not finite."""
+    if isinstance(content, float):
+        return None if math.isfinite(content) else (place, content)
+    if isinstance(content, Mapping):
+        parts = [(f"{place}.{key}" if place else str(key), part) for key, part in content.items()]
+    else:
+        parts = [(f"{place}[{k}]", part) for k, part in enumerate(content)] if isinstance(content, list | tuple) else []
+    return next((found for where, part in parts if (found := _not_finite(part, where))), None)

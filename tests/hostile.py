@@ -1,0 +1,45 @@
+"""The command line against hostile input: a run with its limits, and what every run owes."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nrotor_inertia = "2 kg*cm**2"\n'
+#: A run ends within this, on a machine that does much else - s; what hangs does not end at all.
+DEADLINE = 120.0
+
+
+def columns(samples=3000):
+    """Time - s, velocity - rad/s, current - A of a plain axis in a motion in closed form."""
+    rng = np.random.default_rng(0)
+    time = 1e-3 * np.arange(samples)
+    velocity = 50.0 * np.sin(8.0 * time) + 20.0 * np.sin(31.0 * time)
+    acceleration = 400.0 * np.cos(8.0 * time) + 620.0 * np.cos(31.0 * time)
+    torque = 1.5e-3 * acceleration + 8e-4 * velocity + 0.06 * np.sign(velocity) + 5e-3 * rng.normal(size=samples)
+    return time, velocity + 0.03 * rng.normal(size=samples), torque / 0.8
+
+
+def csv_of(time, velocity, current, head="time [s],velocity [rad/s],current [A]"):
+    rows = zip(time.tolist(), velocity.tolist(), current.tolist(), strict=True)
+    return "\n".join([head, *(f"{t!r},{w!r},{i!r}" for t, w, i in rows)]) + "\n"
+
+
+def run(*arguments, cwd, deadline=DEADLINE, **environment):
+    """`bench` as a process of its own; its standard error is text whatever bytes it holds."""
+    env = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
+    return subprocess.run(
+        [sys.executable, "-m", "bench", *map(str, arguments)],
+        cwd=cwd, env=env, capture_output=True, text=True, errors="replace", timeout=deadline, check=False,
+    )  # fmt: skip
+
+
+def assert_one_line(done, *words, status=2):
+    """It refused, in one line that has these words."""
+    assert (done.returncode, done.stderr.count("\n")) == (status, 1), done.stderr
+    assert done.stderr.startswith("bench: ")
+    for word in words:
+        assert word in done.stderr

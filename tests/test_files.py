@@ -1,0 +1,185 @@
+"""Outputs are whole, never an input, and go where they were sent; inputs are read whatever is wrong with them."""
+
+import os
+import stat
+import subprocess
+import sys
+
+import pytest
+
+from bench.assets import asset
+from bench.cli import app
+from bench.cli.common import REPLACED, WRITTEN
+from bench.errors import InputError
+from bench.files import held, keeping, read_bytes, whole, write_text
+from tests.hostile import RIG, assert_one_line, columns, csv_of, run
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "rig.toml").write_text(RIG)
+    (tmp_path / "run.csv").write_text(csv_of(*columns()))
+    (tmp_path / "simulated.toml").write_bytes(asset("data", "rigs", "sh30701p.toml").read_bytes())
+    (tmp_path / "model.toml").write_text('schema = "bench.model/1"\nkind = "rotary"\n')
+    (tmp_path / "link.csv").symlink_to("run.csv")
+    (tmp_path / "hard.csv").hardlink_to(tmp_path / "run.csv")
+    (tmp_path / "inside").mkdir()
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "replay model.toml run.csv --rig rig.toml --out run.csv",
+        "replay model.toml run.csv --rig rig.toml --out model.toml",
+        "replay model.toml run.csv --rig rig.toml --out inside/../rig.toml",
+        "identify run.csv --rig rig.toml --json run.csv",
+        "identify run.csv --rig rig.toml --json link.csv",
+        "identify run.csv --rig rig.toml --json hard.csv",
+        "identify link.csv --rig rig.toml --json run.csv",
+        "identify run.csv --rig rig.toml --json rig.toml",
+        "diagnose run.csv --rig rig.toml --json rig.toml",
+        "diagnose run.csv --rig rig.toml --holdout hard.csv --json run.csv",
+        "inspect run.csv --json run.csv",
+        "friction run.csv --rig rig.toml --json run.csv",
+        "simulate simulated.toml --out simulated.toml",
+    ],
+)
+def test_an_output_is_never_an_input(folder, line):
+    before = {path: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    done = run(*line.split(), cwd=folder)
+    assert_one_line(done, line.split()[-1], "an input of this command")
+    assert {path: path.read_bytes() for path in folder.iterdir() if path.is_file()} == before
+
+
+def test_a_file_beside_an_output_is_no_input_either(folder):
+    """The truth of `x.csv` is `x.csv.truth.json`: a rig of that name is seen when it would be replaced."""
+    rig = (folder / "simulated.toml").rename(folder / "x.csv.truth.json")
+    before = rig.read_bytes()
+    assert_one_line(run("simulate", rig.name, "--out", "x.csv", cwd=folder), "x.csv.truth.json", "an input")
+    assert rig.read_bytes() == before
+
+
+def test_every_path_of_every_command_is_known_as_read_or_written():
+    """An output of an unknown name would be taken for an input, and refused."""
+    read = {"trace", "traces", "rig", "holdout", "model", "data", "manifest", "recordings", "submissions", "truth"}
+    for command in app.registered_commands:
+        assert command.callback is not None
+        for name, hint in command.callback.__annotations__.items():
+            if "Path" in str(hint):
+                assert name in read | WRITTEN | REPLACED, f"bench {command.callback.__name__}: {name}"
+
+
+def test_json_goes_to_a_folder_that_is_there_or_that_out_makes(folder):
+    refused = run("identify", "run.csv", "--rig", "rig.toml", "--json", "new/found.json", cwd=folder)
+    assert_one_line(refused, "new/found.json", "no folder 'new'")
+    assert not (folder / "new").exists()
+    line = ("identify", "run.csv", "--rig", "rig.toml", "--json", "new/found.json", "--out", "new")
+    assert run(*line, cwd=folder).returncode == 0
+    assert {path.name for path in (folder / "new").iterdir()} == {"found.json", "identify.json", "identification.png"}
+
+
+def test_links_are_followed_and_loops_refused(tmp_path):
+    (tmp_path / "real.json").write_text("old")
+    (tmp_path / "link.json").symlink_to("real.json")
+    (tmp_path / "new.json").symlink_to("made.json")
+    (tmp_path / "loop.json").symlink_to("loop.json")
+    write_text(tmp_path / "link.json", "new")
+    write_text(tmp_path / "new.json", "new")
+    assert (tmp_path / "link.json").is_symlink() and (tmp_path / "real.json").read_text() == "new"
+    assert (tmp_path / "new.json").is_symlink() and (tmp_path / "made.json").read_text() == "new"
+    for place in ("loop.json", ".", "a\0b", "x" * 300, "real.json/x"):
+        with pytest.raises(InputError, match=r"cannot be written|found a folder"):
+            write_text(f"{tmp_path}/{place}", "x")
+    with pytest.raises(InputError, match="a pipe or a device"):
+        write_text("/dev/null", "x")
+    there = {"link.json", "loop.json", "made.json", "new.json", "real.json"}
+    assert {path.name for path in tmp_path.iterdir()} == there
+
+
+@pytest.mark.parametrize("mask", [0o022, 0o077, 0o002])
+def test_the_umask_is_respected_and_permissions_are_kept(tmp_path, mask):
+    before = os.umask(mask)
+    try:
+        write_text(tmp_path / "new", "x")
+        (tmp_path / "shared").touch()
+        (tmp_path / "shared").chmod(0o640)
+        write_text(tmp_path / "shared", "x")
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / "new").stat().st_mode) == 0o666 & ~mask
+    assert stat.S_IMODE((tmp_path / "shared").stat().st_mode) == 0o640
+
+
+def test_a_file_is_on_the_disk_before_it_takes_its_name(tmp_path, monkeypatch):
+    done, path = [], tmp_path / "x"
+    flush, replace = os.fsync, type(path).replace
+    monkeypatch.setattr(os, "fsync", lambda handle: (done.append("flush"), flush(handle))[1])
+    monkeypatch.setattr(type(path), "replace", lambda self, to: (done.append("name"), replace(self, to))[1])
+    write_text(path, "x")
+    assert done == ["flush", "name", "flush"]
+
+
+def test_a_failure_leaves_what_was_there_and_nothing_else(tmp_path):
+    write_text(tmp_path / "x", "old")
+    for failure in (ValueError, KeyboardInterrupt):
+        with pytest.raises(failure), whole(tmp_path / "x") as temporary:
+            temporary.write_text("half")
+            raise failure
+    with pytest.raises(InputError, match="No space left on device"), whole(tmp_path / "x") as temporary:
+        temporary.write_text("half")
+        with open("/dev/full", "w") as full:  # noqa: PTH123
+            full.write("x" * 100)
+    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("x", "old")]
+
+
+def test_inputs_are_kept_only_while_their_command_runs(tmp_path):
+    path = tmp_path / "x"
+    path.write_text("in")
+    with keeping([path, tmp_path / "none", tmp_path]), pytest.raises(InputError, match="an input"):
+        write_text(path, "out")
+    write_text(path, "out")
+    assert path.read_text() == "out"
+
+
+def test_places_that_cannot_be_read(tmp_path):
+    (tmp_path / "loop").symlink_to("loop")
+    os.mkfifo(tmp_path / "pipe")
+    for place, words in {
+        "none": "no such file",
+        ".": "found a folder",
+        "loop": "cannot be read .*[Ll]evels of symbolic links",
+        "pipe": "a pipe or a device",
+        "x" * 300: "cannot be read .*[Nn]ame too long",
+        "a\0b": "cannot be read .*null",
+    }.items():
+        with pytest.raises(InputError, match=words):
+            read_bytes(f"{tmp_path}/{place}", "a trace")
+    with pytest.raises(InputError, match="a pipe or a device"):
+        read_bytes("/dev/zero", "a trace")
+    with pytest.raises(InputError, match=r"cannot be read .*Input/output error"):
+        read_bytes("/proc/self/mem", "a trace")
+
+
+WRITER = """
+import sys, time
+from pathlib import Path
+from bench.files import held, write_text
+with held(Path("out")), held(Path("out")):
+    for name in "abc":
+        write_text(f"out/{name}", sys.argv[1])
+        time.sleep(0.2)
+"""
+
+
+def test_of_two_writers_to_one_folder_one_wins_whole(tmp_path):
+    started = [subprocess.Popen([sys.executable, "-c", WRITER, who], cwd=tmp_path) for who in ("1", "2")]
+    assert [process.wait(60) for process in started] == [0, 0]
+    assert len({path.read_text() for path in (tmp_path / "out").iterdir()}) == 1
+
+
+def test_a_folder_that_cannot_be_made(tmp_path):
+    (tmp_path / "file").touch()
+    for place in ("file", "file/x", "a\0b"):
+        with pytest.raises(InputError, match="cannot be written to"), held(tmp_path / place):
+            pass
