@@ -19,6 +19,7 @@ TracesArgument = Annotated[
     list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
 ]
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
+AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 
 

@@ -29,6 +29,10 @@ def _registry() -> pint.UnitRegistry:
     return registry
 
 
+#: In this order dimensions are written; pint's own depends on how the unit is put together.
+_ORDER = ("[mass]", "[length]", "[time]", "[current]", "[temperature]", "[substance]", "[luminosity]")
+
+
 @cache
 def _unit(unit: str) -> pint.Unit:
     require_unit(unit)
@@ -38,9 +42,16 @@ def _unit(unit: str) -> pint.Unit:
 def dimensionality(unit: str) -> str:
     """Dimension of a unit, e.g. `[length] / [time]`; ValueError if `unit` is no unit."""
     try:
-        return str(_unit(unit).dimensionality)
+        dimensions = dict(_unit(unit).dimensionality)
     except _NO_UNIT as error:
         raise ValueError(f"'{unit}' is not a unit") from error
+    known = sorted(dimensions, key=lambda name: (_ORDER.index(name) if name in _ORDER else len(_ORDER), name))
+    powers = [(name, float(str(dimensions[name]))) for name in known]
+    above = " * ".join(f"{name} ** {power:g}" if power != 1.0 else name for name, power in powers if power > 0.0)
+    below = "".join(
+        f" / {name} ** {-power:g}" if power != -1.0 else f" / {name}" for name, power in powers if power < 0.0
+    )
+    return (above or "1") + below if powers else "dimensionless"
 
 
 def base_units(unit: str) -> frozenset[str]:

@@ -12,6 +12,7 @@ from bench.arrays import Array
 from bench.errors import InputError
 from bench.names import short
 from bench.unit_grammar import LONGEST
+from bench.unit_text import EFFECTIVE, UnitError, scale_of
 from bench.usual_units import USUAL_UNITS
 
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
@@ -78,7 +79,7 @@ def same_dimension(unit: str, other: str) -> bool:
 
 
 @cache
-def _affine(unit: str, to: str) -> tuple[float, float]:
+def affine(unit: str, to: str) -> tuple[float, float]:
     """Factor and offset that turn a number in `unit` into a number in `to`."""
     if unit in USUAL_UNITS and to in USUAL_UNITS:
         given, wanted = USUAL_UNITS[unit], USUAL_UNITS[to]
@@ -91,7 +92,7 @@ def _affine(unit: str, to: str) -> tuple[float, float]:
 
 def convert(values: Array, unit: str, to: str) -> Array:
     """Values of any shape from `unit` to `to` (same dimension); the same array when nothing changes."""
-    factor, offset = _affine(unit, to)
+    factor, offset = affine(unit, to)
     if offset == 0.0:
         return values if factor == 1.0 else values * factor
     return values * factor + offset
@@ -108,11 +109,14 @@ def parse(text: object, unit: str, where: object) -> float:
     if match is None:
         raise InputError(where, f"found {short(repr(text))}", allowed)
     number, given = match.groups()
+    if EFFECTIVE.search(given):
+        told = 'say current = "effective" in the same table and write A'
+        raise InputError(where, f"found {text!r}, an effective current", f"allowed: A; {told}")
     try:
-        matches = same_dimension(given, unit)
-    except ValueError as error:
-        raise InputError(where, f"found {text!r}", allowed) from error
-    value = float(number) * _affine(given, unit)[0] + _affine(given, unit)[1] if matches else math.inf
+        scale = scale_of(given, (unit,))
+    except UnitError as error:
+        raise InputError(where, f"found {text!r}", error.allowed if "may mean" in error.found else allowed) from error
+    value = float(number) * scale.factor + scale.offset
     if not math.isfinite(value):
         raise InputError(where, f"found {text!r}", allowed)
     return value

@@ -15,7 +15,17 @@ SOURCES = sorted((ROOT / "bench").rglob("*.py"))
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
     {"errors", "names", "bounds", "files", "structured", "assets"},
-    {"units", "usual_units", "unit_registry", "unit_grammar", "axis_kind", "arrays", "statistics"},
+    {
+        "units",
+        "usual_units",
+        "unit_registry",
+        "unit_grammar",
+        "unit_names",
+        "unit_text",
+        "axis_kind",
+        "arrays",
+        "statistics",
+    },
     {"trace"},
     {"rig"},
     {"checks"},

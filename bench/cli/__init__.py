@@ -27,6 +27,7 @@ from bench.cli.inspect import inspect
 from bench.cli.lab import lab
 from bench.cli.limits import limits
 from bench.cli.replay import replay
+from bench.cli.rigs import rigs
 from bench.cli.simulate import simulate
 from bench.errors import BenchError
 from bench.names import plain, short
@@ -46,7 +47,7 @@ def bench(
         typer.echo(context.get_help())
 
 
-for command in (demo, simulate, effects, inspect, identify, diagnose, replay, friction, lab, limits):
+for command in (demo, simulate, effects, inspect, identify, diagnose, replay, friction, lab, limits, rigs):
     app.command()(guarded(command))
 
 

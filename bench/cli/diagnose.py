@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from bench.console import (
+    AxisOption,
     JsonOption,
     RigOption,
     TracesArgument,
@@ -28,6 +29,7 @@ def diagnose(
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
+    axis_name: AxisOption = None,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
     from bench.checks.gate import spoken
@@ -39,12 +41,12 @@ def diagnose(
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
-    axis = load_rig(rig)
+    axis = load_rig(rig).on_axis(axis_name)
     excluded = frozenset(named(name, "--without").name for name in without or [])
-    other = read(holdout, axis.trace.columns) if holdout else None
+    other = read(holdout, axis.trace) if holdout else None
     names = ", ".join(trace.name for trace in traces)
     with told_in_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
-        recordings = [read(trace, axis.trace.columns) for trace in traces]
+        recordings = [read(trace, axis.trace) for trace in traces]
         found = run_diagnosis(recordings, axis, other, excluded, done)
     basis = provenance(rig, traces, {"without": sorted(excluded)}, holdout)
     files = write_diagnosis(out, found, f"{axis.name}: {names}", basis) if out is not None else []

@@ -7,7 +7,16 @@ from typing import Annotated
 
 import typer
 
-from bench.console import JsonOption, RigOption, console, tell_files, tell_warnings, told_in_json, write_json
+from bench.console import (
+    AxisOption,
+    JsonOption,
+    RigOption,
+    console,
+    tell_files,
+    tell_warnings,
+    told_in_json,
+    write_json,
+)
 
 
 def friction(
@@ -15,6 +24,7 @@ def friction(
     rig: RigOption,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Figure to write: .png, .pdf or .svg.")] = None,
+    axis_name: AxisOption = None,
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
     from bench.checks.gate import spoken
@@ -23,9 +33,9 @@ def friction(
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
-    axis = load_rig(rig)
+    axis = load_rig(rig).on_axis(axis_name)
     with told_in_json(json, SCHEMA):
-        found = friction_map([read(trace, axis.trace.columns) for trace in traces], axis)
+        found = friction_map([read(trace, axis.trace) for trace in traces], axis)
     if out is not None:
         draw_friction(found, axis.name, out)
     if json is not None:

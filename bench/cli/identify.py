@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench.console import (
+    AxisOption,
     JsonOption,
     RigOption,
     TracesArgument,
@@ -48,6 +49,7 @@ def identify(
     cutoff: Annotated[
         float | None, typer.Option("--cutoff", help="Filter's half-power frequency in Hz.", min=1e-6)
     ] = None,
+    axis_name: AxisOption = None,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.checks.gate import spoken
@@ -56,7 +58,7 @@ def identify(
     from bench.report.provenance import provenance
     from bench.rig.rig import load_rig
 
-    axis = load_rig(rig)
+    axis = load_rig(rig).on_axis(axis_name)
     axis = axis.model_copy(update={"offset": axis.offset or offset})
     _require_consistent(traces, estimator, refine, bool(offset or cutoff))
     options = {"estimator": estimator.value, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
@@ -103,11 +105,11 @@ def _estimate(
     from bench.checks.gate import passed
     from bench.trace.read import read
 
-    columns, trace = rig.trace.columns, traces[0]
+    how, trace = rig.trace, traces[0]
     if estimator is Estimator.LAB:
         from bench.identify.lab import identify_as_in_the_lab
 
-        gated = passed(read(trace, columns), rig)
+        gated = passed(read(trace, how), rig)
         return replace(identify_as_in_the_lab(gated.trace, rig), checks=gated.checks), None
     from bench.identify.regression import identify as regress
     from bench.report.progress import progress
@@ -115,8 +117,8 @@ def _estimate(
 
     with progress(f"identifying {', '.join(each.name for each in traces)}") as done:
         if not refine:
-            return regress([stream(each, columns) for each in traces], rig, cutoff), None
+            return regress([stream(each, how) for each in traces], rig, cutoff), None
         from bench.identify.refine import refine as polish  # MuJoCo: 0.1 s
 
-        recording = passed(read(trace, columns), rig).trace
+        recording = passed(read(trace, how), rig).trace
         return polish(recording, rig, regress(recording, rig, cutoff), done)

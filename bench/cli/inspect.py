@@ -7,28 +7,47 @@ from typing import Annotated
 
 import typer
 
-from bench.console import JsonOption, console, write_json
+from bench.console import AxisOption, JsonOption, console, tell_files, write_json
 
 
 def inspect(
     trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
-    rig: Annotated[Path | None, typer.Option("--rig", help="Rig file whose [trace.columns] names the signals.")] = None,
+    rig: Annotated[Path | None, typer.Option("--rig", help="Rig file whose [trace] says how to read it.")] = None,
     json: JsonOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Picture of every signal: .png, .pdf or .svg.")] = None,
+    draft: Annotated[Path | None, typer.Option("--draft", help="Rig file to write, as far as the file tells.")] = None,
+    motor: Annotated[str | None, typer.Option("--motor", help="For --draft: a motor of the catalogue.")] = None,
+    axis_name: AxisOption = None,
 ) -> None:
-    """Say what a recording holds: rate, jitter, holes, signals with their range and resolution, and every check."""
+    """Say what a recording holds: every column, what it is likely to be, rate, holes, signals with their range."""
     from bench.checks.gate import gate
     from bench.report.checks import checks_json, checks_table
+    from bench.report.inspection import table
     from bench.rig.rig import load_rig
-    from bench.trace.inspect import inspect as look
-    from bench.trace.inspect import table, to_json
-    from bench.trace.read import read
+    from bench.trace.assemble import assemble
+    from bench.trace.how import How
+    from bench.trace.inspect import inspect_recording, to_json
+    from bench.trace.read import read_recording
 
-    axis = load_rig(rig) if rig else None
-    columns = axis.trace.columns if axis else None
-    found = look(trace, columns)
-    checks = gate(read(trace, columns), axis).checks
+    axis = load_rig(rig).on_axis(axis_name) if rig else None
+    how = axis.trace if axis is not None else How(axis=axis_name)
+    recording = read_recording(trace)
+    found = inspect_recording(recording, how)
+    checks = () if found.asks is not None else gate(assemble(recording, how), axis).checks
+    files = [path for path in (out, draft) if path is not None]
+    if draft is not None:
+        from bench.files import write_text
+        from bench.rig.draft import draft as drafted
+
+        write_text(draft, drafted(found, motor, axis_name))
+    if out is not None:
+        from bench.report.signals import draw_signals  # matplotlib: 0.35 s
+
+        draw_signals(recording, how, out)
     if json is not None:
         write_json(json, to_json(found, {"checks": checks_json(checks)}))
-    else:
+    if json != Path("-"):
         console().print(table(found))
-        console().print(checks_table(checks))
+        if checks:
+            console().print(checks_table(checks))
+        tell_files(files)

@@ -26,9 +26,11 @@ def simulate(
     from bench.plant.truth import write_truth
     from bench.report.progress import progress
     from bench.rig.rig import load_rig
+    from bench.rig.suffices import require
     from bench.trace.write import write
 
     axis = load_rig(rig)
+    require(axis, "simulate")
     with progress(f"simulating {axis.name}") as done:
         present = [parse_effect(text, axis.axis_kind) for text in effect or ()]
         simulated = run_simulation(axis, profile, seed, progress=done, effects=present)

@@ -10,8 +10,8 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
-from bench.trace.known_names import unit_of
 from bench.trace.readers.mat import load
+from bench.unit_text import in_pints_words
 from bench.units import convert, dimensionality
 
 Cells = list[str]
@@ -189,7 +189,7 @@ def _by_flight_number(columns: Sequence[Column], table: Array, points: list[Arra
 def _metres(column: Column, values: Array, where: str) -> Array:
     if column.unit is None:
         return values
-    unit = unit_of(column.unit) or column.unit
+    unit = in_pints_words(column.unit)
     try:
         known = dimensionality(unit) == "[length]"
     except ValueError:

@@ -16,8 +16,10 @@ from bench.lab.sources import Sources, embedded
 from bench.plant.truth import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.structured import parse_json
-from bench.trace.assemble import assemble, choose
+from bench.trace.assemble import assemble
 from bench.trace.channel import Recording
+from bench.trace.choose import choose
+from bench.trace.how import how_to_read
 from bench.trace.read import read_recording
 from bench.trace.readers import READERS
 from bench.units import nearest
@@ -99,7 +101,7 @@ class Recordings:
         path = self.path(name)
         recording = read_recording(path)
         _require_signals(recording, path, self.rig.trace.columns)
-        return run_of(assemble(recording, self.rig.trace.columns), self.rig, read_truth(truth_path(path)))
+        return run_of(assemble(recording, self.rig.trace), self.rig, read_truth(truth_path(path)))
 
 
 def read_truth(path: Path) -> Mapping[str, float]:
@@ -127,7 +129,7 @@ def _letters(path: Path) -> str:
 
 
 def _require_signals(recording: Recording, path: Path, columns: Mapping[str, str]) -> None:
-    chosen, _ = choose(recording, columns)
+    chosen, _ = choose(recording, how_to_read(columns))
     missing = [name for name in NEEDED if name not in chosen]
     if not missing:
         return

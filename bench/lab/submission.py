@@ -10,7 +10,7 @@ from typing import Any
 from bench.errors import InputError
 from bench.lab.answers import ASKED
 from bench.structured import parse_json
-from bench.trace.known_names import unit_of
+from bench.unit_text import in_pints_words
 from bench.units import nearest
 
 ENDINGS = (".csv", ".json")
@@ -134,4 +134,4 @@ def _unit(text: str) -> str:
     plain = text.strip().strip("[]")
     if plain in ("1", "-", "dimensionless"):
         return "dimensionless"
-    return (unit_of(plain) or "").translate(_SIGNS)
+    return in_pints_words(plain).translate(_SIGNS)

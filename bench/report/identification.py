@@ -46,7 +46,7 @@ def write_identification(
     figures, text = [], out / "identify.json"
     with held(out):
         for number, trace in enumerate(traces, 1):
-            first = gate(next(stream(trace, rig.trace.columns)), rig).trace
+            first = gate(next(stream(trace, rig.trace)), rig).trace
             effort, _ = rig.net_effort(first)
             cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
             moved = motion(first, effort, condition(first, effort, cutoff))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -27,6 +27,7 @@ from bench.rig.values import (
     TorquePerAmpere,
     TorquePerVolt,
     Voltage,
+    times,
     tolerance_of,
 )
 
@@ -42,6 +43,7 @@ class Motor(Table):
 
     Attributes:
         model: name it carries in the motor catalogue.
+        current: which current the motor's values are told for, `peak` or `effective`; kept are those for the peak.
         rotor_inertia: of the rotor alone - kg*m**2; on a linear axis `moving_mass` - kg.
         torque_constant: constant torque per ampere - N*m/A; or the four datasheet values, from which kT(Iq) follows;
             on a linear axis `force_constant` - N/A.
@@ -57,6 +59,7 @@ class Motor(Table):
     """
 
     model: str | None = None
+    current: Literal["peak", "effective"] = "peak"
     rotor_inertia: Inertia | None = None
     moving_mass: Mass | None = None
     torque_constant: TorquePerAmpere | None = None
@@ -96,6 +99,18 @@ class Motor(Table):
             if 3.0 * (peak / imax - stall / i0) / (imax**2 - i0**2) * imax**2 + stall / i0 <= 0.0:
                 raise ValueError("torque must still rise with current at peak_current")
         return self
+
+    @model_validator(mode="after")
+    def _told_for_the_peak(self) -> Motor:
+        """Values told for effective currents, as values for peaks, which are sqrt(2) times as high."""
+        if self.current == "peak":
+            return self
+        root = math.sqrt(2.0)
+        per_ampere = {name: getattr(self, name) for name in ("torque_constant", "force_constant")}
+        amperes = {name: getattr(self, name) for name in ("continuous_stall_current", "peak_current")}
+        converted = {name: times(value, 1.0 / root) for name, value in per_ampere.items() if value is not None}
+        converted |= {name: times(value, root) for name, value in amperes.items() if value is not None}
+        return self.model_copy(update={**converted, "current": "peak"})
 
     @property
     def inertia(self) -> float:

@@ -18,7 +18,7 @@ from bench.rig.load import Load
 from bench.rig.motor import Motor
 from bench.rig.peak_curve import PeakCurve
 from bench.rig.simulation import Simulation
-from bench.rig.values import Table, tolerance_of
+from bench.rig.values import Table, Time, Wrap, tolerance_of
 from bench.structured import read_toml
 from bench.trace.possible import require_possible
 from bench.trace.trace import Trace
@@ -31,9 +31,15 @@ class TraceNotes(Table):
     Attributes:
         columns: signal name -> column name with unit, e.g. `velocity = "Axis1.ActVel [mm/s]"`; a leading `-` turns
             the sign.
+        sample_period: of recordings without time, or with a sample index - s.
+        position_period: by which the recorded position wraps - rad (m).
+        axis: to be read where a recording holds several.
     """
 
     columns: dict[str, str] = Field(default_factory=dict)
+    sample_period: Time | None = None
+    position_period: Wrap | None = None
+    axis: str | None = None
 
 
 class Rig(Table):
@@ -80,6 +86,11 @@ class Rig(Table):
     def axis_kind(self) -> AxisKind:
         """What its quantities are called, and their units."""
         return axis_kind(self.kind, self.source)
+
+    def on_axis(self, name: str | None) -> Rig:
+        """The same rig, reading the axis of this name from recordings that hold several; None: as the rig says."""
+        trace = self.trace if name is None else self.trace.model_copy(update={"axis": name})
+        return self.model_copy(update={"trace": trace})
 
     def effort(self, trace: Trace) -> tuple[Array, str]:
         """What drives the axis in a trace, and its unit: motor torque - N*m (force - N) wherever the rig tells how.

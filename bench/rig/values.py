@@ -52,6 +52,12 @@ def tolerance_of(value: float | None) -> float:
     return value.tolerance if isinstance(value, Toleranced) else 0.0
 
 
+def times(value: float, factor: float) -> float:
+    """A value of a rig by a factor, its tolerance with it."""
+    tolerance = tolerance_of(value)
+    return Toleranced(value * factor, tolerance * factor) if tolerance else value * factor
+
+
 def si(unit: str, translated: bool = False) -> WrapValidator:
     """Validator that turns `"22.4 kg*cm**2"`, or `"22.4 +/- 0.5 kg*cm**2"`, into a number in an SI unit.
 
@@ -96,6 +102,7 @@ Time = Annotated[float, _positive, si("s")]
 #: Of a loop, a recording or a simulation: drives' loops take 16 us to some ms, recorders up to seconds.
 Period = Annotated[float, AfterValidator(_possible), si("s")]
 Angle = Annotated[float, si("rad")]
+Wrap = Annotated[float, _positive, si("rad", translated=True)]
 Rate = Annotated[float, _not_negative, si("1/s")]
 Current = Annotated[float, _positive, si("A")]
 Voltage = Annotated[float, _positive, si("V")]

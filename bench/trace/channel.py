@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -9,6 +10,8 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
+
+_ELEMENT = re.compile(r"\S\[\d+\]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +29,8 @@ class Channel:
         start: number of the first value among the file's samples.
         defect: why the values cannot be read; raised only where a trace needs them.
         open_unit: why the file leaves the unit open though it names one.
+        axis: of a file that tells several apart.
+        moments: whether the values are moments of a calendar or a clock, as times from the first of them.
     """
 
     name: str
@@ -37,6 +42,8 @@ class Channel:
     start: int = 0
     defect: InputError | None = None
     open_unit: str | None = None
+    axis: str | None = None
+    moments: bool = False
 
     @property
     def label(self) -> str:
@@ -88,10 +95,10 @@ def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:
 
 
 def split_label(label: str) -> tuple[str, str | None]:
-    """Name and unit of a column head `name [unit]`; no unit gives None."""
+    """Name and unit of a column head `name [unit]`; no unit gives None. `name[0]` is a name, of an element."""
     label = label.strip()
     start = label.rfind("[")
-    if start < 0 or not label.endswith("]") or "]" in label[start:-1]:
+    if start < 0 or not label.endswith("]") or "]" in label[start:-1] or _ELEMENT.fullmatch(label[start - 1 :]):
         return label, None
     return label[:start].strip(), label[start + 1 : -1].strip() or None
 

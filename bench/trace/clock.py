@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.errors import InputError
@@ -47,10 +48,17 @@ class Clock:
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
-    """Values of a signal - SI - (n,) with the clock they were sampled by."""
+    """Values of a signal with the clock they were sampled by.
+
+    Attributes:
+        clock: its sample times.
+        values: SI - (n,).
+        unknown: where the file holds none, and neighbours stand in - (n,); None: nowhere.
+    """
 
     clock: Clock
     values: Array
+    unknown: NDArray[np.bool_] | None = None
 
 
 def without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Clock, Mapping[str, Array], int]:
@@ -78,7 +86,7 @@ def without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Clock
         raise InputError(
             clock.place(int(np.argmax(other))),
             f"{int(other.sum())} of {time.size} samples stand at a time already taken, with other values",
-            "allowed: at most 1 %; record with finer time stamps",
+            "allowed: at most 1 %; record with finer time stamps, or give sample_period in the rig's [trace]",
         )
     keep = ~again
     kept = {name: array[keep] for name, array in values.items()}

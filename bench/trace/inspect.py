@@ -1,26 +1,29 @@
-"""What a recording holds, told before anyone identifies from it: rate, jitter, holes, and each signal's range."""
+"""What a recording holds, told before anyone identifies from it: every column and, where plain, the signals."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
-from rich import box
-from rich.console import Group
-from rich.table import Table
-from rich.text import Text
 
 from bench.arrays import Array, rms
-from bench.names import plain
+from bench.errors import InputError
 from bench.structured import json_text
-from bench.trace.assemble import assemble, choose, in_si
+from bench.trace.assemble import assemble
+from bench.trace.channel import Channel, Recording
+from bench.trace.choose import Chosen, axes_of, choose, of_axis
+from bench.trace.how import HowToRead, how_to_read
+from bench.trace.in_si import in_si
+from bench.trace.known_names import scale_in
+from bench.trace.likely import Likely, likely_signals
 from bench.trace.read import read_recording
+from bench.trace.trace import Trace
 
 SCHEMA = "bench.inspect/1"
-_MOST_HOLES = 5
 
 
 @dataclass(frozen=True)
@@ -44,11 +47,44 @@ class SignalSummary:
 
 
 @dataclass(frozen=True)
+class ColumnSummary:
+    """One column of the file as it stands there.
+
+    Attributes:
+        name, unit: as in the file.
+        axis: of a file that tells several apart.
+        count: of its numbers.
+        minimum, maximum, resolution: of its numbers, in the file's unit; None where it holds none, or never changes.
+        rate: of its samples, where it has times of its own - Hz.
+        signal: that it is read as, or is likely to be; None where nothing speaks for one.
+        read: whether it is read as that.
+        why: what speaks for it.
+        suggestion: line for the rig's `[trace.columns]`, where it is not read.
+    """
+
+    name: str
+    unit: str | None
+    axis: str | None
+    count: int
+    minimum: float | None
+    maximum: float | None
+    resolution: float | None
+    rate: float | None
+    signal: str | None
+    read: bool
+    why: tuple[str, ...]
+    suggestion: str | None
+
+
+@dataclass(frozen=True)
 class Inspection:
-    """What a recording holds.
+    """What a recording holds. Of one whose signals are not plain, only columns and `asks` are told.
 
     Attributes:
         origin, format: the file and what it is.
+        columns: of the file, in its order.
+        axes: that the file tells apart.
+        asks: what keeps the file from being read as it is, and what to write; None where nothing does.
         samples: on the regular time base.
         segments: stretches between holes.
         start, duration: of the recording - s.
@@ -66,32 +102,67 @@ class Inspection:
 
     origin: str
     format: str
-    samples: int
-    segments: int
-    start: float
-    duration: float
-    rate: float
-    jitter: float
-    holes: tuple[tuple[float, float], ...]
-    duplicates: int
-    interpolated: int
-    resampled: bool
-    signals: tuple[SignalSummary, ...]
-    dropped: tuple[str, ...]
-    metadata: Mapping[str, str]
-    notes: tuple[str, ...]
+    columns: tuple[ColumnSummary, ...]
+    axes: tuple[str, ...]
+    asks: str | None
+    samples: int | None = None
+    segments: int | None = None
+    start: float | None = None
+    duration: float | None = None
+    rate: float | None = None
+    jitter: float | None = None
+    holes: tuple[tuple[float, float], ...] = ()
+    duplicates: int = 0
+    interpolated: int = 0
+    resampled: bool = False
+    signals: tuple[SignalSummary, ...] = ()
+    dropped: tuple[str, ...] = ()
+    metadata: Mapping[str, str] | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def suggestions(self) -> tuple[str, ...]:
+        """Lines for the rig's `[trace.columns]`."""
+        return tuple(column.suggestion for column in self.columns if column.suggestion is not None)
 
 
-def inspect(path: str | Path, columns: Mapping[str, str] | None = None) -> Inspection:
+def inspect(path: str | Path, columns: Mapping[str, str] | HowToRead | None = None) -> Inspection:
     """Look into a recording.
 
+    Args:
+        path: file of any format.
+        columns: as for `bench.trace.read.read`.
+
     Raises:
-        InputError: as `bench.trace.read.read` does.
+        InputError: no table or container that the bench knows; a column that the rig names is not there, or has no
+            unit. A file that needs a rig to be read is no error here.
     """
-    recording = read_recording(path)
-    chosen, _ = choose(recording, columns or {})
-    trace = assemble(recording, columns)
-    recorded, _ = in_si(chosen, recording)
+    return inspect_recording(read_recording(path), how_to_read(columns))
+
+
+def inspect_recording(recording: Recording, how: HowToRead) -> Inspection:
+    """See `inspect`."""
+    try:
+        chosen, _ = choose(recording, how)
+        trace = assemble(recording, how)
+    except InputError as asked:
+        if how.columns:
+            raise
+        told = _columns(recording, {}, how)
+        return Inspection(
+            recording.origin,
+            recording.format,
+            told,
+            axes_of(recording.channels),
+            str(asked),
+            metadata=dict(recording.metadata),
+            notes=recording.notes,
+        )
+    return _of_trace(recording, chosen, trace, how)
+
+
+def _of_trace(recording: Recording, chosen: Mapping[str, Chosen], trace: Trace, how: HowToRead) -> Inspection:
+    recorded = in_si(chosen, recording, how).signals
     base = trace.time_base
     assert base is not None  # a trace that was read has one
     used = {id(choice.channel) for choice in chosen.values()}
@@ -102,6 +173,9 @@ def inspect(path: str | Path, columns: Mapping[str, str] | None = None) -> Inspe
     return Inspection(
         origin=trace.origin,
         format=recording.format,
+        columns=_columns(recording, chosen, how),
+        axes=axes_of(recording.channels),
+        asks=None,
         samples=len(trace),
         segments=len(trace.segments),
         start=float(trace.time[0]),
@@ -120,51 +194,63 @@ def inspect(path: str | Path, columns: Mapping[str, str] | None = None) -> Inspe
 
 
 def _summary(name: str, unit: str, column: str, values: Array, recorded: Array) -> SignalSummary:
-    steps = np.abs(np.diff(recorded))
-    steps = steps[steps > 0.0]
     largest = float(np.abs(values).max())
     effective = largest * rms(values / largest) if largest > 0.0 else 0.0
-    resolution = float(steps.min()) if steps.size else None
-    return SignalSummary(name, unit, column, float(values.min()), float(values.max()), effective, resolution)
+    return SignalSummary(name, unit, column, float(values.min()), float(values.max()), effective, _resolution(recorded))
+
+
+def _resolution(values: Array) -> float | None:
+    steps = np.abs(np.diff(values))
+    steps = steps[steps > 0.0]
+    return float(steps.min()) if steps.size else None
+
+
+def _columns(recording: Recording, chosen: Mapping[str, Chosen], how: HowToRead) -> tuple[ColumnSummary, ...]:
+    """Every column of the axis in numbers, with what it is read as or likely to be."""
+    channels = of_axis(recording, how.axis)
+    read = {id(choice.channel): signal for signal, choice in chosen.items()}
+    guesses = likely_signals(channels)
+    return tuple(
+        _column(channel, read.get(id(channel)), guesses.get(place), set(chosen))
+        for place, channel in enumerate(channels)
+    )
+
+
+def _column(channel: Channel, read: str | None, guess: Likely | None, known: set[str]) -> ColumnSummary:
+    numbers = channel.values[np.isfinite(channel.values)]
+    signal, why, suggestion = read, (), None
+    if read is None and guess is not None and guess.signal not in known:
+        signal, why, suggestion = guess.signal, guess.why, suggested(channel, guess)
+    return ColumnSummary(
+        name=channel.name,
+        unit=channel.unit,
+        axis=channel.axis,
+        count=int(numbers.size),
+        minimum=float(numbers.min()) if numbers.size else None,
+        maximum=float(numbers.max()) if numbers.size else None,
+        resolution=_resolution(numbers),
+        rate=_rate(channel),
+        signal=signal,
+        read=read is not None,
+        why=why if channel.defect is None else (str(channel.defect.found),),
+        suggestion=suggestion,
+    )
+
+
+def suggested(channel: Channel, guess: Likely) -> str:
+    """Line for `[trace.columns]`; `?` stands where only the user knows the unit."""
+    unit = "" if channel.moments else f" [{guess.unit or '?'}]"
+    return f"{guess.signal} = {json.dumps(channel.name + unit, ensure_ascii=False)}"
+
+
+def _rate(channel: Channel) -> float | None:
+    if channel.time is None or channel.time.values.size < 2:
+        return None
+    step = float(np.median(np.diff(channel.time.values)))
+    seconds = step * scale_in("time", channel.time.unit or "s", channel.time.place()).factor
+    return 1.0 / seconds if seconds > 0.0 else None
 
 
 def to_json(inspection: Inspection, more: Mapping[str, object] = MappingProxyType({})) -> str:
     """The inspection as JSON, its fields under their names, and what others have to say of the recording."""
-    return json_text({"schema": SCHEMA, **asdict(inspection), **more})
-
-
-def table(inspection: Inspection) -> Group:
-    """The inspection for a person."""
-    facts = Table(box=None, show_header=False, pad_edge=False)
-    for name, value in _facts(inspection):
-        facts.add_row(name, Text(plain(value)))
-    signals = Table(box=box.SIMPLE_HEAD)
-    signals.add_column("signal")
-    signals.add_column("column")
-    signals.add_column("unit")
-    for heading in ("min", "max", "rms", "resolution"):
-        signals.add_column(heading, justify="right")
-    for signal in inspection.signals:
-        numbers = (signal.minimum, signal.maximum, signal.rms, signal.resolution)
-        texts = ("constant" if number is None else f"{number:.5g}" for number in numbers)
-        signals.add_row(signal.name, Text(plain(signal.column)), signal.unit, *texts)
-    return Group(facts, signals, *(Text(plain(f"note: {note}")) for note in inspection.notes))
-
-
-def _facts(inspection: Inspection) -> list[tuple[str, str]]:
-    facts = [
-        ("file", inspection.origin),
-        ("format", inspection.format),
-        ("samples", f"{inspection.samples} in {inspection.segments} segment{'s' * (inspection.segments != 1)}"),
-        ("time", f"{inspection.start:g} s to {inspection.start + inspection.duration:g} s"),
-        ("rate", f"{inspection.rate:.6g} Hz"),
-        ("jitter", f"{inspection.jitter:.2%} of a sample period" + (", resampled" * inspection.resampled)),
-        ("interpolated", str(inspection.interpolated)),
-        ("duplicates", str(inspection.duplicates)),
-    ]
-    holes = [f"{duration:.3g} s at {start:g} s" for start, duration in inspection.holes]
-    more = len(holes) - _MOST_HOLES
-    facts.append(("holes", ", ".join(holes[:_MOST_HOLES]) + (f" and {more} more" if more > 0 else "") or "none"))
-    if inspection.dropped:
-        facts.append(("columns not used", ", ".join(inspection.dropped)))
-    return facts
+    return json_text({"schema": SCHEMA, **asdict(inspection), "suggestions": inspection.suggestions, **more})

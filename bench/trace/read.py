@@ -7,17 +7,19 @@ from pathlib import Path
 
 from bench.trace.assemble import assemble
 from bench.trace.channel import Recording
+from bench.trace.how import HowToRead
 from bench.trace.readers import reader_of
 from bench.trace.source import open_source
 from bench.trace.trace import Trace
 
 
-def read(path: str | Path, columns: Mapping[str, str] | None = None) -> Trace:
+def read(path: str | Path, columns: Mapping[str, str] | HowToRead | None = None) -> Trace:
     """Trace of a file: signals in SI units on one regular time base.
 
     Args:
         path: file of any format in `bench.trace.readers`, told by its content first and its ending second.
-        columns: signal -> column name with unit, as in a rig's `[trace.columns]`; see `assemble`.
+        columns: signal -> column name with unit, as in a rig's `[trace.columns]`, see `assemble`; or all that
+            a rig's `[trace]` tells, as `rig.trace`.
 
     Raises:
         InputError: anything about the file that keeps it from being a trace; names file, line or column.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from bench.axis_kind import KINDS, AxisKind
-from bench.units import dimensionality
 
 #: SI unit of each known signal, one for each of KINDS.
 SI_UNITS: dict[str, tuple[str, str]] = {
@@ -27,17 +26,3 @@ RELATIVE_TORQUE = "dimensionless"
 def unit_on(kind: AxisKind, name: str) -> str:
     """SI unit of signal `name` on an axis of a kind."""
     return SI_UNITS[name][KINDS.index(kind)]
-
-
-def si_unit(name: str, unit: str) -> str | None:
-    """SI unit in which signal `name`, recorded in `unit`, is kept; None if the dimension is wrong for it.
-
-    Raises:
-        ValueError: `unit` is not a unit.
-    """
-    dimension = dimensionality(unit)
-    candidates = (*SI_UNITS[name], *((RELATIVE_TORQUE,) if name.startswith("torque") else ()))
-    for candidate in candidates:
-        if dimensionality(candidate) == dimension:
-            return candidate
-    return None

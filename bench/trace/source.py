@@ -48,25 +48,30 @@ class Source:
         return self.content[:_HEAD].decode("utf-8", errors="replace")
 
     def text(self) -> str:
-        """The whole content as text.
-
-        Raises:
-            InputError: neither UTF-8 nor Unicode with a byte order mark.
-        """
-        return decode(self.content, self.path)
+        """The whole content as text."""
+        return decode(self.content)
 
 
-def decode(content: bytes, path: str) -> str:
-    """UTF-8 bytes as text; InputError naming file and line of the first byte that is not UTF-8."""
+def decode(content: bytes) -> str:
+    """Bytes as text: UTF-8, or what Windows writes in western Europe, a superset of Latin-1."""
     try:
         return content.decode("utf-8")
+    except UnicodeDecodeError:
+        return content.decode("cp1252", errors="replace")
+
+
+def utf8(content: bytes) -> bytes:
+    """Text as UTF-8; the same bytes where it is UTF-8, but for a character that is cut off at the end."""
+    if b"\n" not in content:
+        content = content.replace(b"\r", b"\n")  # as old recorders on a Mac end lines
+    if content.isascii():
+        return content  # a long file is not decoded for nothing
+    try:
+        content.decode("utf-8")
     except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        raise InputError(
-            f"{path}: line {line}",
-            f"found byte 0x{content[error.start]:02x}, which is not UTF-8",
-            "allowed: UTF-8, or UTF-16 with a byte order mark; save the file as UTF-8",
-        ) from error
+        if error.start < len(content) - 3:
+            return decode(content).encode()
+    return content
 
 
 def open_source(path: str | Path) -> Source:

@@ -14,12 +14,15 @@ from bench.arrays import Array
 from bench.bounds import require_ratio
 from bench.errors import InputError
 from bench.names import readable
-from bench.trace.assemble import Chosen, choose, in_si
 from bench.trace.channel import Recording
+from bench.trace.choose import choose
+from bench.trace.how import HowToRead, how_to_read
+from bench.trace.in_si import InSI, in_si
 from bench.trace.read import read
 from bench.trace.readers.parquet import DAMAGE, FORMAT, MAGIC, WIDTH, channel_of, damaged, is_moment
 from bench.trace.time_base import regular
 from bench.trace.trace import Trace
+from bench.trace.unwrap import Unwrapping
 
 #: Samples a chunk: small enough for the processor's cache, large enough to forget Python's share of the work.
 CHUNK = 1 << 17
@@ -30,7 +33,7 @@ JOINT = 0.01
 
 def stream(
     path: str | Path,
-    columns: Mapping[str, str] | None = None,
+    columns: Mapping[str, str] | HowToRead | None = None,
     signals: Collection[str] | None = None,
     chunk: int = CHUNK,
 ) -> Iterator[Trace]:
@@ -42,15 +45,16 @@ def stream(
 
     Args:
         path: file of any format.
-        columns: signal -> column name with unit, as for `read`.
+        columns: signal -> column name with unit, or all that a rig's `[trace]` tells, as for `read`.
         signals: the ones wanted, those of them that the file holds; None: all.
         chunk: samples, at least 2.
 
     Raises:
         InputError: as `read` does, while iterating.
     """
-    if _is_parquet(Path(path)) and not _counts_from_first_moment(str(path)):
-        return _parquet(str(path), columns or {}, signals, chunk)
+    how = how_to_read(columns)
+    if _is_parquet(Path(path)) and how.sample_period is None and not _counts_from_first_moment(str(path)):
+        return _parquet(str(path), how, signals, chunk)
     return _cut(read(path, columns), signals, chunk)
 
 
@@ -101,7 +105,7 @@ def _cut(trace: Trace, signals: Collection[str] | None, chunk: int) -> Iterator[
         start = stop
 
 
-def _parquet(path: str, columns: Mapping[str, str], signals: Collection[str] | None, chunk: int) -> Iterator[Trace]:
+def _parquet(path: str, how: HowToRead, signals: Collection[str] | None, chunk: int) -> Iterator[Trace]:
     _keep_freed_memory()
     try:
         with pq.ParquetFile(path, memory_map=True) as file:
@@ -109,30 +113,31 @@ def _parquet(path: str, columns: Mapping[str, str], signals: Collection[str] | N
             empty = Recording(
                 tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), FORMAT, readable(path)
             )
-            chosen, notes = choose(empty, columns)
+            chosen, notes = choose(empty, how)
             chosen = {name: it for name, it in chosen.items() if signals is None or name == "time" or name in signals}
             field_of = {name: fields[empty.channels.index(choice.channel)] for name, choice in chosen.items()}
             require_ratio(path, file.metadata.num_rows * len(field_of) * WIDTH, Path(path).stat().st_size)
             start, last = 0, None
+            wrapping: dict[str, Unwrapping] = {}
             for batch in _batches(file, [field.name for field in field_of.values()], chunk):
                 pieces = {
                     name: replace(choice, channel=channel_of(field_of[name], batch[field_of[name].name], path, start))
                     for name, choice in chosen.items()
                 }
-                last = _trace(pieces, empty, notes, last)
+                found = in_si(pieces, empty, how, wrapping)
+                last = _trace(found, empty, (*notes, *found.notes), last)
                 yield last
                 start += batch.num_rows
     except DAMAGE as error:
         raise damaged(path, error) from error
 
 
-def _trace(pieces: Mapping[str, Chosen], recording: Recording, notes: tuple[str, ...], last: Trace | None) -> Trace:
-    sampled, units = in_si(pieces, recording)
-    base = regular(sampled)
+def _trace(found: InSI, recording: Recording, notes: tuple[str, ...], last: Trace | None) -> Trace:
+    base = regular(found.signals)
     return Trace(
         time=base.time,
         signals=base.signals,
-        units=units,
+        units=found.units,
         origin=recording.origin,
         metadata={"format": FORMAT},
         time_base=base.time_base,

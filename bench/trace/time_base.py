@@ -15,7 +15,7 @@ The rules, in order:
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,7 @@ from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.clock import Clock, Sampled, without_duplicates
 from bench.trace.sample_base import LONGEST_STEP, STEADY, Base, find_base
-from bench.trace.trace import TimeBase
+from bench.trace.trace import HOLE, TimeBase
 from bench.trace.wraps import Wraps, without_wraps
 
 #: Signals whose clock makes the time base, best first.
@@ -68,12 +68,37 @@ def regular(signals: Mapping[str, Sampled]) -> Regular:
             placed[name], known = _on_foreign_base(time, base, clock, other, array)
             valid &= known
         notes.append(_foreign_note(list(others), leader, base, find_base(other, 0)))
+    found = base.found
+    empty = _empty(signals)
+    if empty.size:
+        reach = (1.0 if base.resampled else 0.5) * found.sample_period
+        full = _distance(time, empty) >= reach
+        time, placed, valid = time[full], {name: array[full] for name, array in placed.items()}, valid[full]
+        found = replace(found, holes=_holes(time, found.sample_period))
     if not valid.all():
         notes.append(f"{counted(int((~valid).sum()), 'sample')} left out where not every signal is known")
         time, placed = time[valid], {name: array[valid] for name, array in placed.items()}
     if time.size < 2:
         raise InputError(clock.place(None), f"found {time.size} samples common to all signals", "allowed: at least two")
-    return Regular(time, {name: placed[name] for name in signals}, base.found, tuple(notes), wraps)
+    return Regular(time, {name: placed[name] for name in signals}, found, tuple(notes), wraps)
+
+
+def _empty(signals: Mapping[str, Sampled]) -> Array:
+    """Times at which a signal has no value - s."""
+    times = [signal.clock.time[signal.unknown] for signal in signals.values() if signal.unknown is not None]
+    return np.unique(np.concatenate(times)) if times else np.empty(0)
+
+
+def _distance(time: Array, others: Array) -> Array:
+    """From each time to the nearest of others, which increase - s."""
+    bounded = np.concatenate([[-np.inf], others, [np.inf]])
+    after = np.searchsorted(others, time) + 1
+    return np.minimum(time - bounded[after - 1], bounded[after] - time)
+
+
+def _holes(time: Array, period: float) -> tuple[tuple[float, float], ...]:
+    step = np.diff(time)
+    return tuple((float(time[at]), float(step[at])) for at in np.flatnonzero(step > HOLE * period))
 
 
 def _on_own_base(base: Base, time: Array, values: Array) -> Array:

@@ -10,13 +10,14 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from pyarrow import csv
 
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.files import whole
-from bench.trace.known_names import checked_si_unit, unit_of
+from bench.trace.known_names import scale_in
 from bench.trace.readers.lab_units import LAB_UNITS
 from bench.trace.trace import Trace
 from bench.trace.write_machine_expert import machine_expert_trace
-from bench.units import convert, same_dimension
+from bench.units import same_dimension
 
 
 def write(trace: Trace, path: str | Path, units: Mapping[str, str] | None = None) -> None:
@@ -42,11 +43,16 @@ def write(trace: Trace, path: str | Path, units: Mapping[str, str] | None = None
     if trace.axis_kind.turns:
         labels |= {name: unit for name, unit in defaults.items() if same_dimension(unit, labels[name])}
     labels |= _checked(units or {}, labels, path)
-    columns = {f"time [{labels['time']}]": convert(trace.time, "s", labels["time"])}
+    columns = {f"time [{labels['time']}]": _in_unit("time", trace.time, labels["time"])}
     for name, values in trace.signals.items():
-        columns[f"{name} [{labels[name]}]"] = convert(values, trace.units[name], labels[name])
+        columns[f"{name} [{labels[name]}]"] = _in_unit(name, values, labels[name])
     with whole(path) as temporary:
         WRITERS[ending](pa.table(columns), temporary)
+
+
+def _in_unit(name: str, values: Array, unit: str) -> Array:
+    scale = scale_in(name, unit, name)
+    return values if scale.factor == 1.0 and not scale.offset else (values - scale.offset) / scale.factor
 
 
 def _checked(units: Mapping[str, str], labels: Mapping[str, str], path: Path) -> dict[str, str]:
@@ -56,11 +62,10 @@ def _checked(units: Mapping[str, str], labels: Mapping[str, str], path: Path) ->
             raise InputError(
                 f"{path}: unit of {name}", "the trace holds no such signal", f"allowed: {', '.join(labels)}"
             )
-        plain = unit_of(unit) or ""
-        checked_si_unit(name, plain, f"{path}: unit of {name}")
-        if not same_dimension(plain, labels[name]):
+        scale = scale_in(name, unit, f"{path}: unit of {name}")
+        if scale.unit != labels[name]:
             raise InputError(f"{path}: unit of {name}", f"found '{unit}'", f"allowed: a unit of {labels[name]}")
-        checked[name] = plain
+        checked[name] = unit
     return checked
 
 

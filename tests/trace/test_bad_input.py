@@ -50,17 +50,19 @@ TEXT = {
     "twice the same column": ("time [ms],velocity [V],velocity [V]\n0,1,1\n1,2,2\n", r"several columns"),
     "header only": (HEAD, r"found a header and no samples; allowed: at least two samples"),
     "header without newline": (HEAD.strip(), r"found a header and no samples"),
-    "no header": ("0,1,2\n1,2,3\n", r"line 1: found numbers, no header"),
+    "no header": ("0,1,2\n1,2,3\n", r"position or velocity: not in the file; found: column 1, column 2, column 3"),
     "one column": ("velocity [deg/s]\n1\n2\n", r"line 1: found one column"),
     "one sample": (HEAD + ROWS[0], r"found 1 samples; allowed: at least two"),
     "text in a number": (
         _rows(l8="6,6O,6\n"),
         r"run.csv: line 8, column 'velocity \[deg/s\]': found '6O'; allowed: a number",
     ),
-    "nan": (_rows(l8="6,nan,6\n"), r"line 8, column 'velocity \[deg/s\]': found nan; allowed: a finite number"),
     "infinite": (_rows(l8="6,6,-inf\n"), r"line 8, column 'current \[mA\]': found -inf"),
-    "nan in time": (_rows(l8="NaN,6,6\n"), r"line 8, column 'time \[ms\]': found nan"),
-    "empty cell": (_rows(l8="6,,6\n"), r"line 8, column 'velocity \[deg/s\]': found an empty cell"),
+    "hardly a number": (HEAD + "".join(f"{k},nan,{k}\n" for k in range(60)), r"'velocity \[deg/s\]': found 0 numbers"),
+    "hardly a time": (
+        HEAD + "".join(f"{k if k % 3 else ''},1,{k}\n" for k in range(60)),
+        r"line 2, .*found 20 of 60 times empty",
+    ),
     "short line": (_rows(l8="6,6\n"), r"line 8: found 2 cells; allowed: 3, as the header has"),
     "long line": (_rows(l8="6,6,6,6\n"), r"line 8: found 4 cells"),
     "time backwards": (
@@ -90,8 +92,10 @@ def test_bad_tables(tmp_path, case):
 BYTES = {
     "empty": (b"", r"the file is empty"),
     "blank": (b"\n  \n", r"the file is empty"),
-    "latin-1 in the header": (GOOD.replace("current", "tempér").encode("latin-1"), r"byte 0xe9, which is not UTF-8"),
-    "latin-1 in the data": (_rows(l8="6,6µ,6\n").encode("latin-1"), r"run.csv: line \d+: found byte 0xb5"),
+    "latin-1 in the data": (
+        _rows(l8="6,6µ,6\n").encode("latin-1"),
+        r"run.csv: line 8, .*found '6µ'; allowed: a number",
+    ),
     "utf-16 without mark": (GOOD.encode("utf-16-le"), r"not a trace in any format"),
     "half a utf-16 character": (GOOD.encode("utf-16")[:-1], r"UTF-16-LE text is truncated"),
     "truncated gz": (gzip.compress(GOOD.encode())[:-40], r"gzip is truncated or damaged"),
@@ -128,10 +132,10 @@ def test_places_that_are_no_file(tmp_path):
 
 def test_blank_lines_do_not_shift_the_lines_of_messages(tmp_path):
     path = tmp_path / "run.csv"
-    path.write_text("\n\n" + _rows(l8="6,nan,6\n") + "\n\n")
+    path.write_text("\n\n" + _rows(l8="6,-inf,6\n") + "\n\n")
     with pytest.raises(InputError, match="line 10, column"):
         read(path)
-    path.write_text(_rows(l5="\n", l8="6,nan,6\n"))
+    path.write_text(_rows(l5="\n", l8="6,-inf,6\n"))
     with pytest.raises(InputError, match="sample 5, column"):  # a blank line among the samples: lines are unsure
         read(path)
 
@@ -179,18 +183,18 @@ def test_parquet_without_rows_and_with_gaps(tmp_path):
     )
     with pytest.raises(InputError, match="found columns and no rows"):
         read(path)
-    pq.write_table(pa.table({"time [s]": [0.0, 1.0, 2.0], "velocity [rad/s]": [1.0, None, 2.0]}), path)
-    with pytest.raises(InputError, match=r"sample 1, column 'velocity \[rad/s\]': found an empty cell"):
+    pq.write_table(pa.table({"time [s]": [0.0, 1.0, 2.0, 3.0], "velocity [rad/s]": [1.0, None, None, None]}), path)
+    with pytest.raises(InputError, match=r"column 'velocity \[rad/s\]': found 1 numbers; allowed: at least two"):
         read(path)
     pq.write_table(pa.table({"time [s]": [0.0, 1.0, 2.0], "velocity [rad/s]": ["a", "b", "c"]}), path)
     with pytest.raises(InputError, match=r"column 'velocity \[rad/s\]': found string; allowed: numbers"):
         read(path)
 
 
-def test_mat_of_version_7_3_is_told(tmp_path):
+def test_damaged_mat_of_version_7_3_is_told(tmp_path):
     path = tmp_path / "run.mat"
     path.write_bytes(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512) + b"\x89HDF\r\n\x1a\n" + bytes(600))
-    with pytest.raises(InputError, match=r"version 7.3 .HDF5.; allowed: version 7 or older"):
+    with pytest.raises(InputError, match=r"the HDF5 file is truncated or damaged"):
         read(path)
 
 

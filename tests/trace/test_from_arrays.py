@@ -111,8 +111,8 @@ def test_the_trace_has_samples_of_its_own():
         ({"velocity": ["fast"] * 2000}, UNITS, {}, ["velocity", "string"]),
         ({"velocity": [1 + 1j] * 2000}, UNITS, {}, ["velocity", "number"]),
         ({"velocity": [[1.0], [1.0, 2.0]]}, UNITS, {}, ["velocity", "number"]),
-        ({"velocity": [*velocity(REGULAR[1:]), np.nan]}, UNITS, {}, ["velocity", "sample 1999", "nan"]),
-        ({"velocity": [None, *velocity(REGULAR[1:])]}, UNITS, {}, ["velocity", "sample 0", "empty"]),
+        ({"velocity": [*velocity(REGULAR[1:]), np.inf]}, UNITS, {}, ["velocity", "sample 1999", "inf"]),
+        ({"velocity": [None] * 2000}, UNITS, {}, ["velocity", "null"]),
         ({"time": REGULAR[::-1]}, UNITS, {}, ["time", "backwards"]),
         ({}, UNITS, {"sample_period": 1e-3}, ["time", "sample_period"]),
         ({}, UNITS, {"columns": {"torque": "Axis1.Torque [N*m]"}, "origin": "run 7"}, ["run 7", "Axis1.Torque"]),
@@ -135,6 +135,15 @@ def test_a_sample_period_is_a_positive_time(period):
 def test_neither_time_nor_sample_period_is_asked_for():
     with pytest.raises(InputError, match="arrays: time: found no column of it and no sample_period"):
         Trace.from_arrays({"velocity [rad/s]": REGULAR})
+
+
+@pytest.mark.parametrize("nothing", [None, np.nan])
+def test_a_few_values_that_are_none_are_holes(nothing):
+    speed = velocity(REGULAR).tolist()
+    speed[700] = nothing
+    trace = Trace.from_arrays({**columns(), "velocity": speed}, UNITS)
+    assert len(trace) == 1999 and len(trace.segments) == 2
+    assert any("1 cell is empty or no number, the first at arrays: sample 700" in note for note in trace.notes)
 
 
 def test_what_has_no_columns_is_refused():

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from bench.trace.inspect import inspect, table, to_json
+from bench.report.inspection import table
+from bench.trace.inspect import inspect, to_json
 from tests.trace.recordings import csv_text
 
 TIME = np.delete(np.arange(400) * 1e-3, np.arange(100, 140))

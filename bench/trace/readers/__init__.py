@@ -11,10 +11,15 @@ from bench.trace.readers import (
     codesys_text,
     codesys_xml,
     epos,
+    hdf5,
     mat,
+    mcap,
+    mdf,
+    npz,
     parquet,
     sinumerik,
     table,
+    tdms,
     twincat,
 )
 from bench.trace.source import Source
@@ -22,6 +27,11 @@ from bench.trace.source import Source
 READERS: tuple[ModuleType, ...] = (
     parquet,
     mat,
+    hdf5,
+    npz,
+    tdms,
+    mcap,
+    mdf,
     codesys_xml,
     sinumerik,
     codesys_csv,

@@ -46,7 +46,7 @@ def read(source: Source) -> Recording:
         if len(cells) != 3 or not number:
             raise InputError(f"{source.path}: line {line}", f"found {text.strip()!r}", "allowed: '; time; value'")
         lines.setdefault(number, line)
-        samples.setdefault(number, []).append((cells[1], cells[2]))
+        samples.setdefault(number, []).append((cells[1].replace(",", "."), cells[2].replace(",", ".")))
     channels = [_channel(keys, key, samples[key], lines[key], source.path) for key in samples]
     if not channels:
         raise InputError(source.path, "found no variable with data", "allowed: an export with recorded data")

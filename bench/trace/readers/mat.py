@@ -1,4 +1,4 @@
-"""Reader of MATLAB files up to version 7: every numeric vector a channel, scalars as metadata. They carry no units."""
+"""Reader of MATLAB files up to version 7 (7.3 is HDF5): vectors are channels, scalars metadata. They carry no units."""
 
 from __future__ import annotations
 
@@ -9,32 +9,33 @@ from typing import Any
 import numpy as np
 
 from bench.errors import InputError
-from bench.trace.channel import Channel, Recording
+from bench.trace.channel import Recording
+from bench.trace.readers.arrays import channels_of, is_samples
 from bench.trace.readers.mat_structure import check_structure
 from bench.trace.source import Source
 
 FORMAT = "MAT"
 ENDINGS = (".mat",)
 
-_MAGIC = b"MATLAB "
+_MAGIC, _HDF5 = b"MATLAB ", b"MATLAB 7.3"
 
 
 def recognises(source: Source) -> bool:
-    """Whether the file begins as MAT files of version 5 and later do."""
-    return source.content.startswith(_MAGIC)
+    """Whether the file begins as MAT files of version 5 to 7 do."""
+    return source.content.startswith(_MAGIC) and not source.content.startswith(_HDF5)
 
 
 def read(source: Source) -> Recording:
-    """Recording of a MAT file; fields of a struct are named `struct.field`, columns of a matrix `name(:,1)`.
+    """Recording of a MAT file; fields of a struct are named `struct.field`, signals of a matrix as `channels_of` says.
 
     Raises:
-        InputError: version 7.3 (HDF5), truncated, damaged, or without a numeric vector.
+        InputError: truncated, damaged, or without a numeric vector.
     """
     content = load(source.content, source.path)
     channels, metadata = [], {}
     for name, value in _variables(content):
-        if isinstance(value, np.ndarray) and value.dtype.kind in "fiub" and value.size > 1 and value.ndim <= 2:
-            channels.extend(_channels(name, value, source.path))
+        if is_samples(value):
+            channels.extend(channels_of(name, np.asarray(value), source.path))
         elif np.isscalar(value) or (isinstance(value, np.ndarray) and value.size == 1):
             metadata[name] = str(value)
     if not channels:
@@ -46,12 +47,10 @@ def load(content: bytes, where: str) -> dict[str, Any]:
     """Variables of a MAT file, structs as dictionaries.
 
     Raises:
-        InputError: version 7.3 (HDF5), truncated, damaged, or of more than a file may expand to; names `where`.
+        InputError: truncated, damaged, or of more than a file may expand to; names `where`.
     """
     from scipy.io import loadmat  # 0.05 s, for one format of ten
 
-    if content.startswith((b"MATLAB 7.3", b"\x89HDF")):
-        raise InputError(where, "found MAT version 7.3 (HDF5)", "allowed: version 7 or older; save with '-v7'")
     try:
         if content.startswith(_MAGIC):
             check_structure(content, where)
@@ -70,10 +69,3 @@ def _variables(content: dict, prefix: str = "") -> Iterator[tuple[str, object]]:
             yield from _variables(value, f"{prefix}{name}.")
         elif not name.startswith("__"):
             yield prefix + name, value
-
-
-def _channels(name: str, value: np.ndarray, path: str) -> Iterator[Channel]:
-    columns = value.reshape(-1, 1) if 1 in value.shape or value.ndim == 1 else value
-    for number, column in enumerate(columns.T, 1):
-        label = name if columns.shape[1] == 1 else f"{name}(:,{number})"
-        yield Channel(label, None, np.ascontiguousarray(column, dtype=np.float64), path)

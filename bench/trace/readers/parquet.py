@@ -12,6 +12,7 @@ from bench.arrays import Array
 from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.readers.moments import seconds
 from bench.trace.source import Source
 
 FORMAT = "Parquet"
@@ -69,15 +70,15 @@ def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, s
     if is_moment(kind):
         unit = kind.unit
     channel = Channel(name, unit, np.empty(0), path, start=start)
-    if column.null_count:
-        sample = column.is_null().to_numpy(zero_copy_only=False).argmax()
-        return replace(
-            channel, defect=InputError(channel.place(int(sample)), "found an empty cell", "allowed: a number")
-        )
+    if (pa.types.is_string(kind) or pa.types.is_large_string(kind)) and len(column):
+        texts = pa.chunked_array([column]) if isinstance(column, pa.Array) else column
+        moments = seconds(texts.cast(pa.string()).fill_null(""))
+        if moments is not None:
+            return replace(channel, unit="s", values=moments, moments=True)
     values = _numbers(column)
     if values is None:
         return replace(channel, defect=InputError(channel.place(), f"found {kind}", "allowed: numbers"))
-    return replace(channel, values=values)
+    return replace(channel, values=values, moments=pa.types.is_timestamp(kind))
 
 
 def is_numeric(kind: pa.DataType) -> bool:
@@ -92,11 +93,16 @@ def is_moment(kind: pa.DataType) -> bool:
 
 
 def _numbers(column: pa.ChunkedArray | pa.Array) -> Array | None:
-    """Values as float64, without a copy where they are float64 in one piece; None for what is not a number."""
+    """Values as float64, nan for none, without a copy where they are float64 in one piece; None where no numbers."""
     kind = column.type
     if is_moment(kind):
-        ticks = column.cast(pa.int64()).to_numpy()
-        return (ticks - ticks[:1]).astype(np.float64)  # from the first sample: an epoch would cost the last digits
+        ticks = column.cast(pa.int64())
+        known = ticks.drop_null()
+        first = known[0].as_py() if len(known) else 0
+        passed = (ticks.fill_null(first).to_numpy() - first).astype(np.float64)  # an epoch would cost the last digits
+        return (
+            np.where(column.is_null().to_numpy(zero_copy_only=False), np.nan, passed) if column.null_count else passed
+        )
     if pa.types.is_boolean(kind) or pa.types.is_decimal(kind):
         column = column.cast(pa.float64())
     elif not (pa.types.is_integer(kind) or pa.types.is_floating(kind)):

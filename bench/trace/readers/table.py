@@ -1,139 +1,238 @@
-"""Reader of tables in text: one header line `name [unit],...`, then one line of numbers per sample (canonical CSV)."""
+"""Reader of tables in text, however they are laid out: one line of numbers per sample, and mostly names above them."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute
 
+from bench.arrays import Array
 from bench.errors import InputError
-from bench.trace.channel import Channel, Recording, float_values, split_label
+from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.columns import parse_columns
-from bench.trace.source import Source, decode
+from bench.trace.readers.moments import seconds
+from bench.trace.readers.table_layout import BLANKS, EMPTY, HEAD, Layout, cells_of, find_layout, is_number
+from bench.trace.source import Source, decode, utf8
 
 FORMAT = "CSV table"
-ENDINGS = (".csv", ".txt", ".tsv")
+ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", ".lvm")
 
 #: Columns of a table; a recorder has some hundred channels at most.
 MOST_COLUMNS = 10_000
-_SEPARATORS = (",", ";", "\t")
-_NUMBER = re.compile(r"\s*[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?\s*")
-_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+\s*")
+_COMMENT = re.compile(rb"^[ \t]*(?:#|//)")
+#: Its functions are made when it is loaded, so that checkers of types know none.
+pc: Any = pyarrow.compute
+
+#: Epochs in ns with more digits than a float holds, and seconds to the ns.
+_EXACT = pa.decimal128(30, 9)
+_GROUPS = re.compile(r"[+-]?\d{1,3}(?:[.,' ’\u00a0\u202f]\d{3})+")
 
 
 @dataclass(frozen=True)
-class Layout:
-    """How a table is written.
+class Body:
+    """Lines of samples as UTF-8, and the number of the first one in the file; None where lines were left out."""
 
-    Attributes:
-        labels: of the columns.
-        separator, decimal: characters between columns and in numbers.
-        start: offset of the first line of numbers - bytes.
-        line: its number in the file.
-    """
-
-    labels: tuple[str, ...]
-    separator: str
-    decimal: str
-    start: int
-    line: int
+    content: bytes
+    line: int | None
+    notes: tuple[str, ...] = ()
 
 
 def recognises(source: Source) -> bool:
-    """Whether the first line names several columns, one of them a time or with a unit, and text follows."""
-    first = next((line for line in source.head.splitlines() if line.strip()), "")
-    if "\0" in source.head or "\ufffd" in first:
+    """Whether lines of numbers follow one another in a text."""
+    if "\0" in source.head or source.head.lstrip().startswith(("{", "[{", "<")):
         return False
-    cells = re.split("[,;\t]", first)
-    named = [cell for cell in cells if cell.strip() and not _NUMBER.fullmatch(cell)]
-    return len(cells) > 1 and len(named) >= len(cells) - 1 and first.lstrip()[:1] not in "{[<"
+    return _layout(source) is not None
 
 
 def read(source: Source) -> Recording:
     """Recording of a table.
 
     Raises:
-        InputError: no header, no samples, a line with too few or too many cells, or not UTF-8.
+        InputError: no samples, or a line with too few or too many cells.
     """
     layout = _layout(source)
-    body = source.content[layout.start :]
-    table = numbers(body, layout, source.path)
-    has_blank_lines = re.search(rb"\n[ \t\r]*\n", body.rstrip()) is not None
-    channels = tuple(
-        _channel(label, column, layout, source, None if has_blank_lines else layout.line)
-        for label, column in zip(layout.labels, table.columns, strict=True)
-    )
-    return Recording(channels, FORMAT, source.path)
+    if layout is None:
+        raise _no_table(source)
+    if len(layout.labels) > MOST_COLUMNS:
+        raise InputError(source.path, f"found {len(layout.labels)} columns", f"allowed: {MOST_COLUMNS}")
+    content = utf8(source.content)
+    start = _offset(content, layout.start)
+    body = Body(content[start:], layout.start + 1)
+    if layout.separator == BLANKS:
+        body = replace(body, content=_between_tabs(body.content))
+    table, body = _columns(body, layout, source.path)
+    rows = _filled_rows(table)
+    blank = re.search(rb"\n[ \t\r]*\n", body.content.rstrip()) is not None
+    line = None if blank or (rows is not None and not rows[: int(rows.sum())].all()) else body.line
+    table = table if rows is None else table.filter(pa.array(rows))
+    channels = tuple(_channels(table, layout, line, source.path))
+    return Recording(channels, FORMAT, source.path, notes=body.notes)
 
 
-def _layout(source: Source) -> Layout:
-    start, line = 0, 1
-    while True:
-        end = source.content.find(b"\n", start)
-        end = len(source.content) if end < 0 else end
-        if source.content[start:end].strip():
-            break
-        start, line = end + 1, line + 1
-    header = decode(source.content[start:end], source.path).strip("\r\n")
-    separator = max(_SEPARATORS, key=header.count)
-    labels = tuple(label.strip().strip('"').strip() for label in header.split(separator))
-    if len(labels) == 1:
-        raise InputError(
-            f"{source.path}: line {line}", "found one column", "allowed: a first line 'time [unit],name [unit],...'"
+def _layout(source: Source) -> Layout | None:
+    head = utf8(source.content[:HEAD]).decode("utf-8", errors="replace")
+    lines = head.split("\n")
+    return find_layout([line.rstrip("\r") for line in (lines if len(source.content) <= HEAD else lines[:-1])])
+
+
+def _no_table(source: Source) -> InputError:
+    lines = [line for line in source.head.splitlines() if line.strip()]
+    if len(lines) > 1 and all(is_number(line.strip()) for line in lines[1:10]):
+        return InputError(
+            f"{source.path}: line 1", "found one column", "allowed: at least two, one of them velocity or position"
         )
-    if len(labels) > MOST_COLUMNS:
-        raise InputError(source.path, f"found {len(labels)} columns", f"allowed: {MOST_COLUMNS}")
-    if all(_NUMBER.fullmatch(label) for label in labels):
-        raise InputError(
-            f"{source.path}: line {line}", "found numbers, no header", "allowed: a first line 'name [unit],...'"
-        )
-    if not source.content[end:].strip():
-        raise InputError(source.path, "found a header and no samples", "allowed: at least two samples")
-    first = next(iter(source.content[end : end + 4096].decode(errors="replace").lstrip().splitlines()), "")
-    comma = separator != "," and any(_DECIMAL_COMMA.fullmatch(cell) for cell in first.split(separator))
-    labels = tuple(label or f"column {number}" for number, label in enumerate(labels, 1))
-    return Layout(labels, separator, "," if comma else ".", end + 1, line + 1)
+    return InputError(source.path, "found a header and no samples", "allowed: at least two samples")
 
 
-def numbers(body: bytes, layout: Layout, path: str) -> pa.Table:
-    """Columns as float64; all as text where a cell is not a plain number.
+def _offset(content: bytes, line: int) -> int:
+    start = 0
+    for _ in range(line):
+        start = content.find(b"\n", start) + 1
+    return start
+
+
+def _between_tabs(body: bytes) -> bytes:
+    """Columns between runs of blanks as columns between tabs."""
+    return re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+\r?$", b"", body))
+
+
+def _separator(layout: Layout) -> str:
+    return "\t" if layout.separator == BLANKS else layout.separator
+
+
+def _columns(body: Body, layout: Layout, path: str) -> tuple[pa.Table, Body]:
+    """Columns as their kinds say; all as text where a cell is not as its kind."""
+    types = {"number": pa.float64(), "exact": _EXACT, "text": pa.string()}
+    separator, count = _separator(layout), len(layout.labels)
+    try:
+        kinds = [types[kind] for kind in layout.kinds]
+        return parse_columns(body.content, kinds, separator, layout.decimal, EMPTY), body
+    except pa.ArrowInvalid:
+        body = _cleaned(body, separator, count, path)
+    try:
+        return parse_columns(body.content, [pa.string()] * count, separator, layout.decimal), body
+    except pa.ArrowInvalid as error:
+        first = body.line or 1
+        lines = enumerate(body.content.splitlines(), first)
+        quoted = next((number for number, line in lines if line.count(b'"') % 2), first)
+        raise InputError(f"{path}: line {quoted}", "found a quote that is not closed", "allowed: numbers") from error
+
+
+def _cleaned(body: Body, separator: str, width: int, path: str) -> Body:
+    """Lines of samples without comments and blank lines among them, and without what a recorder writes below.
 
     Raises:
         InputError: a line with too few or too many cells.
     """
-    count = len(layout.labels)
-    try:
-        return parse_columns(body, [pa.float64()] * count, layout.separator, layout.decimal)
-    except pa.ArrowInvalid:
-        _check_widths(body, layout, path)
-    decode(body, path)
-    try:
-        return parse_columns(body, [pa.string()] * count, layout.separator, layout.decimal)
-    except pa.ArrowInvalid as error:
-        quoted = next((n for n, line in enumerate(body.splitlines(), layout.line) if line.count(b'"') % 2), layout.line)
-        raise InputError(f"{path}: line {quoted}", "found a quote that is not closed", "allowed: numbers") from error
+    first = body.line or 1
+    numbered = [(number, line) for number, line in enumerate(body.content.splitlines(), first)]
+    kept = [(number, line) for number, line in numbered if line.strip(b' \t\r"') and not _COMMENT.match(line)]
+    comments = sum(1 for _, line in numbered if _COMMENT.match(line))
+    while kept and not _holds_number(kept[-1][1], separator):
+        kept.pop()
+    below = sum(
+        1 for number, line in numbered if kept and number > kept[-1][0] and line.strip() and not _COMMENT.match(line)
+    )
+    for number, line in kept:
+        found = line.count(separator.encode()) + 1
+        if found != width:
+            cells = cells_of(decode(line), separator) if b'"' in line else [""] * found
+            if len(cells) != width:
+                raise InputError(
+                    f"{path}: line {number}",
+                    f"found {len(cells)} cell{'s' * (len(cells) > 1)}",
+                    f"allowed: {width}, as the header has",
+                )
+    told = {"comment": comments, "line below the samples": below}
+    notes = tuple(
+        f"{count} {what}{'s' * (count > 1 and what == 'comment')} left out" for what, count in told.items() if count
+    )
+    whole = not kept or kept[-1][0] - kept[0][0] == len(kept) - 1
+    return Body(b"\n".join(line for _, line in kept) + b"\n", kept[0][0] if whole and kept else None, notes)
 
 
-def _check_widths(body: bytes, layout: Layout, path: str) -> None:
-    for number, line in enumerate(body.splitlines(), layout.line):
-        found = line.count(layout.separator.encode()) + 1
-        if line.strip() and found != len(layout.labels):
-            raise InputError(
-                f"{path}: line {number}",
-                f"found {found} cell{'s' * (found > 1)}",
-                f"allowed: {len(layout.labels)}, as the header has",
+def _holds_number(line: bytes, separator: str) -> bool:
+    return any(is_number(cell) for cell in cells_of(line.decode("utf-8", errors="replace"), separator))
+
+
+def _filled_rows(table: pa.Table) -> np.ndarray | None:
+    """Which rows hold anything; None: all."""
+    filled = np.zeros(table.num_rows, dtype=bool)
+    for column in table.columns:
+        if pa.types.is_string(column.type):
+            blank = pc.equal(pc.utf8_trim_whitespace(column), "").to_numpy()
+            filled |= ~blank.astype(bool)
+        elif not column.null_count:
+            return None
+        else:
+            filled |= ~column.is_null().to_numpy()
+        if filled.all():
+            return None
+    return filled
+
+
+def _channels(table: pa.Table, layout: Layout, line: int | None, path: str) -> Iterator[Channel]:
+    for number, (label, column) in enumerate(zip(layout.labels, table.columns, strict=True), 1):
+        name, unit = split_label(label)
+        channel = Channel(name or f"column {number}", unit, np.empty(0), path, line=line)
+        if pa.types.is_string(column.type):
+            channel = _of_text(channel, column, layout.decimal)
+        elif pa.types.is_decimal(column.type):
+            channel = replace(channel, values=_from_first(column))
+        else:
+            channel = replace(
+                channel, values=column.fill_null(np.nan).to_numpy() if column.null_count else column.to_numpy()
             )
+        unnamed = label == f"column {number}" and channel.defect is None and not np.isfinite(channel.values).any()
+        if not unnamed or layout.labels == tuple(f"column {n}" for n in range(1, len(layout.labels) + 1)):
+            yield channel
 
 
-def _channel(label: str, column: pa.ChunkedArray, layout: Layout, source: Source, line: int | None) -> Channel:
-    name, unit = split_label(label)
-    if column.type == pa.float64():
-        return Channel(name, unit, column.to_numpy(), source.path, line=line)
-    channel = Channel(name, unit, np.empty(0), source.path, line=line)
-    texts = [text.replace(layout.decimal, ".") for text in column.to_pylist()]
+def _from_first(column: pa.ChunkedArray) -> Array:
+    """Numbers of many digits as what they exceed the first one by, exactly."""
+    first = column.drop_null()[0] if column.null_count < len(column) else None
+    if first is None:
+        return np.full(len(column), np.nan)
+    return pc.cast(pc.subtract(column, first), pa.float64()).fill_null(np.nan).to_numpy()
+
+
+def _of_text(channel: Channel, column: pa.ChunkedArray, decimal: str) -> Channel:
+    """A channel of cells that are not all plain numbers: moments, truths, or numbers written at length."""
+    moments = seconds(column)
+    if moments is not None:
+        return replace(channel, unit="s", values=moments, moments=True)
+    texts = pc.utf8_trim_whitespace(column)
+    filled = pc.if_else(pc.is_in(texts, pa.array(EMPTY)), "nan", texts)
+    lower = pc.utf8_lower(filled)
+    filled = pc.if_else(pc.equal(lower, "true"), "1", pc.if_else(pc.equal(lower, "false"), "0", filled))
+    plain = _without_groups(filled, decimal)
     try:
-        return replace(channel, values=float_values(texts, channel.place))
-    except InputError as defect:
-        return replace(channel, defect=defect)
+        return replace(channel, values=pc.cast(plain, pa.float64()).to_numpy())
+    except pa.ArrowInvalid:
+        sample = next(n for n, text in enumerate(plain.to_pylist()) if not _is_float(text))
+        found = f"found {texts[sample].as_py()!r}"
+        return replace(channel, defect=InputError(channel.place(sample), found, "allowed: a number"))
+
+
+def _without_groups(texts: pa.ChunkedArray, decimal: str) -> pa.ChunkedArray:
+    """Numbers without marks between thousands, and with a decimal point."""
+    group = r"\." if decimal == "," else ","
+    grouped = pc.match_substring_regex(
+        texts, rf"^[+-]?\d{{1,3}}(?:[{group}'’ \x{{00a0}}\x{{202f}}]\d{{3}})+(?:{re.escape(decimal)}\d*)?$"
+    )
+    bare = pc.replace_substring_regex(texts, rf"[{group}'’ \x{{00a0}}\x{{202f}}]", "")
+    plain = pc.if_else(grouped, bare, texts)
+    return pc.replace_substring(plain, ",", ".") if decimal == "," else plain
+
+
+def _is_float(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -67,7 +67,7 @@ def _split(source: Source, separator: str) -> tuple[list[list[str]], bytes, int]
     while start < len(source.content):
         end = source.content.find(b"\n", start)
         end = len(source.content) if end < 0 else end
-        cells = [cell.strip() for cell in decode(source.content[start:end], source.path).split(separator)]
+        cells = [cell.strip() for cell in decode(source.content[start:end]).split(separator)]
         # the first time column may have ended or not begun: its cells are empty, yet the row holds numbers
         if any(_NUMBER.match(cell) for cell in cells) and (not cells[0] or _NUMBER.match(cells[0])):
             return header, source.content[start:], line
@@ -106,7 +106,7 @@ def _table(body: bytes, names: list[str], separator: str, line: int, source: Sou
 
 def _first_fault(rows: list[bytes], width: int, separator: str, decimal: str, line: int, source: Source) -> InputError:
     for number, row in enumerate(rows, line):
-        cells = decode(row, f"{source.path}: line {number}").split(separator)
+        cells = decode(row).split(separator)
         if len(cells) > width:
             return InputError(f"{source.path}: line {number}", f"found {len(cells)} cells", f"allowed: at most {width}")
         for column, cell in enumerate(cells, 1):

@@ -1,0 +1,77 @@
+"""A rig file drafted from a recording: it works as far as the file tells, and asks for what only the user knows."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from bench.rig.catalogue import catalogue_motor
+from bench.trace.inspect import Inspection
+
+_EFFORTS = ("torque", "force", "current", "voltage")
+
+
+def draft(inspection: Inspection, motor: str | None = None, axis: str | None = None) -> str:
+    """Text of a rig file.
+
+    Args:
+        inspection: of the recording.
+        motor: name in the motor catalogue.
+        axis: picked of several.
+
+    Raises:
+        InputError: the catalogue has no such motor.
+    """
+    if motor is not None:
+        catalogue_motor(motor, "--motor")
+    linear = any(signal.unit in ("m", "m/s", "N") for signal in inspection.signals)
+    lines = [
+        f"# Drafted from {Path(inspection.origin).name} ({inspection.format}). Check it; ? is what only you know.",
+        f"name = {json.dumps(Path(inspection.origin).name.split('.')[0])}",
+        f'kind = "{"linear" if linear else "rotary"}"{"" if linear else "                      # or linear"}',
+        "",
+        "[motor]",
+        *_motor(inspection, motor, linear),
+        "",
+        *_trace(inspection, axis),
+    ]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]:
+    if motor is not None:
+        return [f"model = {json.dumps(motor)}"]
+    efforts = {column.signal for column in inspection.columns}
+    units = {
+        (column.unit or "") + (column.suggestion or "") for column in inspection.columns if column.signal == "torque"
+    }
+    constant, unit = ("force_constant", "N/A") if linear else ("torque_constant", "N*m/A")
+    lines = [
+        f'# {"moving_mass" if linear else "rotor_inertia"} = "? {"kg" if linear else "kg*cm**2"}"'
+        "     # of the motor alone, datasheet: tells the load apart",
+    ]
+    if "current" in efforts:
+        lines.append(f'# {constant} = "? {unit}"     # datasheet; without it results stand in A instead of {unit[:-2]}')
+        lines.append('# current = "effective"     # where the datasheet tells its values for Arms')
+    if any("%" in text or "permille" in text for text in units):
+        lines.append('# rated_torque = "? N*m"     # what 100 % of the recorded torque means, datasheet')
+    if not efforts & set(_EFFORTS):
+        lines.append("# no torque, force or current was found in the file: identification needs one of them")
+    return lines
+
+
+def _trace(inspection: Inspection, axis: str | None) -> list[str]:
+    """`[trace]` and its columns: those that are plain, and as comments those whose unit only the user knows."""
+    settings = [f"axis = {json.dumps(axis)}"] if axis is not None else []
+    found = {column.signal for column in inspection.columns} | ({"time"} if inspection.rate is not None else set())
+    timed = "time" in found or any(column.rate is not None for column in inspection.columns)
+    if not timed:
+        settings.append('# sample_period = "? ms"     # the file holds no time: how often was it sampled?')
+    lines = ["[trace]", *settings, ""] if settings else []
+    columns = []
+    for column in inspection.columns:
+        if column.suggestion is not None:
+            why = f"     # {', '.join(column.why)}" if column.why else ""
+            open_unit = "[?]" in column.suggestion
+            columns.append(("# " if open_unit else "") + column.suggestion + why + ("; its unit?" if open_unit else ""))
+    return [*lines, "[trace.columns]", *columns] if columns else lines

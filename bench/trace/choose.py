@@ -1,0 +1,230 @@
+"""Which channel of a recording is which signal, by the rig's columns first and by well-known names second."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from bench.errors import InputError
+from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.how import HowToRead
+from bench.trace.known_names import is_index, plain_name, scale_in, signal_of, unit_of
+from bench.trace.signals import SI_UNITS
+from bench.unit_text import Scale
+from bench.units import nearest
+
+#: Signals of which one that can be read is enough: the others are then left out where they cannot.
+ENOUGH = (("velocity", "position"), ("torque", "force", "current"))
+_INDEX = Scale("samples", 1.0)
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The channel that holds a signal.
+
+    Attributes:
+        channel: as the reader returned it.
+        scale: how its numbers become SI; in `samples` where they only count them.
+        sign: +1 or -1, by which values are multiplied.
+    """
+
+    channel: Channel
+    scale: Scale
+    sign: float = 1.0
+
+
+def choose(recording: Recording, how: HowToRead) -> tuple[dict[str, Chosen], tuple[str, ...]]:
+    """Channel of every signal, `time` among them where the recording is a table, and what had to be assumed.
+
+    Raises:
+        InputError: a column that the rig names is missing, ambiguous, or has no unit or a wrong one; or none of those
+            that a trace needs can be read.
+    """
+    for signal in how.columns:
+        if signal not in SI_UNITS and signal != "time":
+            allowed = f"allowed: time, {', '.join(SI_UNITS)}"
+            raise InputError(f"columns: {signal}", f"not a signal{nearest(signal, [*SI_UNITS])}", allowed)
+    recording = replace(recording, channels=of_axis(recording, how.axis))
+    chosen: dict[str, Chosen] = {}
+    faults: dict[str, InputError] = {}
+    notes: list[str] = []
+    for signal in ("time", *SI_UNITS):
+        try:
+            found = _signal(recording, signal, how.columns, notes)
+        except InputError as fault:
+            if signal in how.columns and not (signal == "time" and how.sample_period):
+                raise
+            faults[signal] = fault
+            continue
+        if found is not None:
+            chosen[signal] = found
+    _require(recording, chosen, faults, how)
+    if "time" not in chosen and how.sample_period is not None:
+        index = _index(recording, how.columns)
+        chosen |= {"time": Chosen(index, _INDEX)} if index is not None else {}
+    left = (f"{signal} left out: {fault.where} {fault.found}" for signal, fault in faults.items() if signal != "time")
+    return chosen, (*notes, *left)
+
+
+def of_axis(recording: Recording, axis: str | None) -> tuple[Channel, ...]:
+    """Channels of one axis, and those that belong to none; all where no axis is asked for.
+
+    Raises:
+        InputError: the recording has no such axis.
+    """
+    if axis is None:
+        return recording.channels
+    axes = axes_of(recording.channels)
+    if axis in axes:
+        return tuple(channel for channel in recording.channels if channel.axis in (axis, None))
+    parts = [channel for channel in recording.channels if axis.lower() in channel.name.lower().split(".")]
+    if parts:
+        return (*parts, *(channel for channel in recording.channels if channel not in parts and _serves_all(channel)))
+    found = f"no axis '{axis}'{nearest(axis, list(axes))}"
+    raise InputError(recording.origin, found, f"found: {', '.join(axes) or 'one axis without a name'}")
+
+
+def _serves_all(channel: Channel) -> bool:
+    return signal_of(channel.name) == "time" or is_index(channel.name) or "." not in channel.name
+
+
+def axes_of(channels: Iterable[Channel]) -> tuple[str, ...]:
+    """Names of the axes that a recording tells apart, in its order."""
+    return tuple(dict.fromkeys(channel.axis for channel in channels if channel.axis is not None))
+
+
+def _require(recording: Recording, chosen: Mapping[str, Chosen], faults: dict[str, InputError], how: HowToRead) -> None:
+    """Raise the first fault that leaves a trace without what it needs."""
+    timed = "time" in chosen or any(choice.channel.time is not None for choice in chosen.values())
+    if not timed and how.sample_period is None:
+        if "time" in faults:
+            raise faults["time"]
+        if chosen:
+            told = 'give its sample_period = "1 ms" in the rig\'s [trace], or its column: time = "column [unit]"'
+            raise missing(recording, "column 'time'", told)
+    for group in ENOUGH:
+        if not any(signal in chosen for signal in group):
+            for signal in group:
+                if signal in faults:
+                    raise faults[signal]
+
+
+def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes: list[str]) -> Chosen | None:
+    """The channel of a signal; None where the recording has none."""
+    told = columns.get(signal)
+    channel, unit, sign = None, None, 1.0
+    if told is not None:
+        sign = -1.0 if told.strip().startswith("-") else 1.0
+        name, unit = split_label(told.strip().removeprefix("-"))
+        channel = _named(recording, signal, name)
+    named = channel is not None
+    if channel is None:
+        channel, sign, unit = _known(recording, signal), 1.0, None
+        if channel is None and told is not None:
+            raise missing(recording, f"column '{told.strip().lstrip('-')}'")
+        if channel is None:
+            return None
+        if told is not None:
+            notes.append(f"{signal} read from '{channel.label}', as the file has no '{told}'")
+    if channel.defect is not None:
+        raise channel.defect
+    scale = _scale(recording, signal, channel, unit, notes)
+    if named and unit is not None and not channel.moments:
+        own = _own_scale(signal, channel)
+        if own is not None and own != scale:
+            notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
+    return Chosen(channel, scale, sign)
+
+
+def _scale(recording: Recording, signal: str, channel: Channel, told: str | None, notes: list[str]) -> Scale:
+    if channel.moments:
+        return scale_in(signal, channel.unit or "s", channel.place())
+    unit = unit_of(told or channel.unit)
+    usual = recording.usual_units.get(signal)
+    if unit is None and usual is not None:
+        unit = usual
+        notes.append(f"{signal} taken as {usual}, as the file tells no unit")
+    if unit is None:
+        raise InputError(
+            channel.place(),
+            channel.open_unit or "has no unit",
+            f'allowed: a unit in the file, or {signal} = "{channel.name} [unit]" in the rig\'s [trace.columns]',
+        )
+    try:
+        return scale_in(signal, unit, channel.place())
+    except InputError as error:
+        line = f'; {signal} = "{channel.name} [unit]" in the rig\'s [trace.columns] says which'
+        raise InputError(error.where, error.found, error.allowed + line) from error
+
+
+def _own_scale(signal: str, channel: Channel) -> Scale | None:
+    unit = unit_of(channel.unit)
+    try:
+        return None if unit is None else scale_in(signal, unit, "")
+    except InputError:
+        return Scale(unit or "", 0.0)  # what the file says is no unit of it: the rig's is another
+
+
+def _named(recording: Recording, signal: str, name: str) -> Channel | None:
+    """Channel that a rig's column text names; None when no such name is in the file."""
+    for key in (str, str.lower, _without_marks, plain_name):
+        matches = [channel for channel in recording.channels if key(channel.name) == key(name)]
+        if matches:
+            return _one(recording, signal, matches)
+    return None
+
+
+def _without_marks(name: str) -> str:
+    """A name without what comments, topics and paths put around it; parts of a path between dots."""
+    return name.strip("#%/ ").removesuffix(".data").replace("/", ".").lower()
+
+
+def _known(recording: Recording, signal: str) -> Channel | None:
+    for matches in (
+        [channel for channel in recording.channels if channel.name == signal],
+        [channel for channel in recording.channels if signal_of(channel.name) == signal],
+    ):
+        if matches:
+            return _one(recording, signal, matches)
+    return None
+
+
+def _one(recording: Recording, signal: str, matches: list[Channel]) -> Channel:
+    if len(matches) == 1:
+        return matches[0]
+    axes = axes_of(matches)
+    if len(axes) > 1:
+        found = f"found {len(axes)} axes ({', '.join(axes)})"
+        raise InputError(
+            f"{recording.origin}: {signal}", found, f"pick one: --axis {axes[0]}, or axis in the rig's [trace]"
+        )
+    names = ", ".join(f"'{channel.label}'" for channel in matches)
+    raise InputError(
+        f"{recording.origin}: {signal}",
+        f"found several columns for it ({names})",
+        "name one in the rig's [trace.columns]",
+    )
+
+
+def _index(recording: Recording, columns: Mapping[str, str]) -> Channel | None:
+    """The column that counts samples: the time that tells no unit, or one of such a name."""
+    told = columns.get("time")
+    named = _named(recording, "time", split_label(told)[0]) if told is not None else None
+    if named is not None and named.defect is None:
+        return named
+    for channel in recording.channels:
+        counts = signal_of(channel.name) == "time" or is_index(channel.name)
+        if counts and channel.time is None and channel.defect is None and not channel.moments:
+            return channel
+    return None
+
+
+def missing(recording: Recording, what: str, then: str | None = None) -> InputError:
+    """What to say about a column that is not in the file."""
+    labels = [channel.label for channel in recording.channels]
+    shown = ", ".join(labels[:12]) + (f" and {len(labels) - 12} more" if len(labels) > 12 else "")
+    return InputError(
+        f"{recording.origin}: {what}",
+        "not in the file",
+        f"found: {shown or 'no column'}" + (f"; {then}" if then else ""),
+    )

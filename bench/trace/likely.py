@@ -1,0 +1,227 @@
+"""What a column is likely to be: told by its name, its unit and its values, each reason said.
+
+A suggestion, never a reading: it goes into the rig's `[trace.columns]` by the user's hand.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.trace.channel import Channel, split_label
+from bench.trace.known_names import is_index, signal_of, unit_of, wanted_units
+from bench.trace.makers import makers_unit
+from bench.trace.signals import SI_UNITS
+from bench.unit_text import UnitError, is_unit, scale_of
+
+#: Words of names in the languages that drives speak, and letters of the field.
+WORDS: dict[str, str] = {
+    "time": r"time|zeit|temps|tempo|tiempo|timestamp|stamp|ms_today|clock|uhrzeit|t",
+    "velocity": r"vel|velo|velocity|speed|spd|geschw\w*|drehzahl\w*|vitesse|velocidad|velocita|omega|rpm|erpm|"
+    r"dq|qd|qdot|n_?ist|nact|v_?ist|606c|60:?6c|vact|actvel\w*|r63|r0063|vl|w",
+    "position": r"pos|position\w*|angle|winkel|theta|enc|encoder|lage\w*|phi|weg|6064|actpos\w*|pl|q|x",
+    "current": r"cur|curr|current|iq|i_q|isq|strom\w*|courant|corriente|amps?|r78|r0078|il|q_axis_current|i",
+    "torque": r"torque|trq|tq|moment|drehmoment\w*|effort\w*|tau|couple|coppia|m_?ist|6077|r80|r0080|force|kraft",
+    "voltage": r"volt\w*|spannung|uq|vq|vbus|udc|tension|u",
+    "temperature": r"temp\w*|motor_temp",
+    "acceleration": r"acc|accel\w*|beschl\w*",
+}
+_NAMED = {signal: re.compile(rf"(?:{words})\d*", re.I) for signal, words in WORDS.items()}
+_REFERENCE = re.compile(
+    r"set|soll\w*|ref|reference|cmd|command\w*|demand|target|goal|input|setpoint|sp|des|desired|consigne|"
+    r"r62|r0062|607a|60ff",
+    re.I,
+)
+_FOREIGN = re.compile(
+    r"d_axis\w*|id|in|battery|supply|mos|frame|seq|state|status|flags?|mode|error|fault|checksum", re.I
+)
+_SPLIT = re.compile(r"[\s._/:()\[\],;|-]+|(?<=[a-z])(?=[A-Z])")
+_ROUND = re.compile(r"(.*?)\s*[({]([^(){}]*)[)}]\s*|(.*?)[,/]\s+(\S+)")
+#: Correlation from which a column is another's derivative, and samples that are looked at.
+DERIVATIVE, ENOUGH = 0.9, 200_000
+#: Units of time without one, and the share by which a position and its velocity may miss each other in it.
+TIMES, AGREEMENT = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}, 0.1
+
+
+@dataclass(frozen=True)
+class Likely:
+    """A signal that a column may be.
+
+    Attributes:
+        signal: as `[trace.columns]` names it.
+        unit: it stands in; None where only the user knows.
+        why: what speaks for it.
+        weight: how much.
+    """
+
+    signal: str
+    unit: str | None
+    why: tuple[str, ...]
+    weight: float
+
+
+def likely_signals(channels: Sequence[Channel]) -> dict[int, Likely]:
+    """What each channel is likely to be, by its place in the file; no two of an axis are the same signal."""
+    numeric = {
+        place: channel for place, channel in enumerate(channels) if channel.defect is None and channel.values.size > 1
+    }
+    times = [place for place, channel in numeric.items() if _rises(channel.values)]
+    derived = _derivatives(numeric, times)
+    found = [
+        (guess, place)
+        for place, channel in numeric.items()
+        for guess in _guesses(channel, derived.get(place), place in times)
+    ]
+    found.sort(key=lambda pair: -pair[0].weight)
+    given: dict[int, Likely] = {}
+    taken: set[tuple[str, str | None]] = set()
+    for guess, place in found:
+        key = (guess.signal, channels[place].axis)
+        if place not in given and key not in taken:
+            given[place] = guess
+            taken.add(key)
+    return _with_time_unit(given, channels)
+
+
+def _with_time_unit(given: dict[int, Likely], channels: Sequence[Channel]) -> dict[int, Likely]:
+    """A time without a unit takes the one in which position and velocity, both with theirs, agree."""
+    of = {guess.signal: (place, guess) for place, guess in given.items()}
+    if not {"time", "position", "velocity"} <= set(of):
+        return given
+    place, time = of["time"]
+    if time.unit is not None or channels[place].moments:
+        return given
+    angle, speed = (_in_si(channels[of[name][0]], of[name][1]) for name in ("position", "velocity"))
+    ticks = channels[place].values[:ENOUGH]
+    if angle is None or speed is None or not angle.size == speed.size == ticks.size:
+        return given
+    step = np.diff(angle)
+    travelled = 0.5 * (speed[1:] + speed[:-1]) * np.diff(ticks)
+    plain = np.abs(step) < 0.2 * np.ptp(angle)
+    power = float(travelled[plain] @ travelled[plain])
+    second = float(travelled[plain] @ step[plain]) / power if power > 0.0 else 0.0
+    for unit, factor in TIMES.items():
+        if abs(second / factor - 1.0) < AGREEMENT:
+            why = (*time.why, f"position and velocity agree in {unit}")
+            return {**given, place: replace(time, unit=unit, why=why)}
+    return given
+
+
+def _in_si(channel: Channel, guess: Likely) -> Array | None:
+    if guess.unit is None:
+        return None
+    try:
+        return channel.values[:ENOUGH] * scale_of(guess.unit, wanted_units(guess.signal)).factor
+    except UnitError:
+        return None
+
+
+def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> list[Likely]:
+    """Signals that a channel may be."""
+    unit = written_unit_of(channel)
+    own = signal_of(channel.name)
+    parts = [part for part in _SPLIT.split(channel.name) if part]
+    compact = channel.name.strip().rsplit(".", 1)[-1]
+    foreign = any(_FOREIGN.fullmatch(part) for part in parts)
+    guesses = []
+    for signal in ("time", *WORDS):
+        why, weight = [], 0.0
+        if signal == "time" and not rises:
+            continue
+        if channel.moments and signal == "time":
+            why, weight = ["holds moments"], 4.0
+        if own == signal:
+            why.append(f"is called '{channel.name}'")
+            weight += 3.0
+        elif _NAMED[signal].fullmatch(compact) or any(_NAMED[signal].fullmatch(part) for part in parts):
+            why.append(f"'{channel.name}' speaks of {signal}")
+            weight += 1.0 if foreign else 2.0
+        fits = _fits(signal, unit)
+        if fits:
+            why.append(f"stands in {unit}")
+            weight += 1.5
+        elif fits is False:
+            continue
+        if derived is not None and derived[0] == signal:
+            why.append(derived[1])
+            weight += 1.5
+        if signal == "time" and why:
+            why.append("rises steadily")
+            weight += 1.0
+        if weight >= 1.5:
+            guesses.append(_guess(signal, channel, unit if fits else None, parts, why, weight))
+    return guesses
+
+
+def _guess(signal: str, channel: Channel, unit: str | None, parts: list[str], why: list[str], weight: float) -> Likely:
+    reference = f"{signal}_reference"
+    if reference in SI_UNITS and any(_REFERENCE.fullmatch(part) for part in parts):
+        why, signal, weight = [*why, "is a set-point by its name"], reference, weight - 0.25
+    if unit is None and not channel.moments:
+        known = makers_unit(channel.name)
+        if known is not None and known.signal == signal:
+            return Likely(signal, known.unit, (*why, known.says), weight + 0.5)
+    return Likely(signal, unit, tuple(why), weight)
+
+
+def written_unit_of(channel: Channel) -> str | None:
+    """Unit of a channel from its head or, in round brackets or behind a comma, its name."""
+    unit = unit_of(channel.unit)
+    if unit is not None or channel.moments:
+        return unit
+    match = _ROUND.fullmatch(split_label(channel.name)[0])
+    inside = (match[2] or match[4] or "").strip() if match else ""
+    return inside if inside and is_unit(inside) else None
+
+
+def _fits(signal: str, unit: str | None) -> bool | None:
+    """Whether a signal may stand in a unit; None where there is none, or only the user knows."""
+    if unit is None:
+        return None
+    try:
+        scale_of(unit, wanted_units(signal))
+    except UnitError as error:
+        return None if "may mean" in error.found or "counts" in error.found else False
+    return True
+
+
+def _rises(values: Array) -> bool:
+    steps = np.diff(values[:ENOUGH])
+    steps = steps[np.isfinite(steps)]
+    return (steps.size > 0 and bool((steps >= 0).all()) and float(np.median(steps)) > 0.0) or bool(
+        steps.size and (steps >= 0).all() and steps.any() and (steps > 0).mean() > 0.5
+    )
+
+
+def _derivatives(numeric: Mapping[int, Channel], times: Sequence[int]) -> dict[int, tuple[str, str]]:
+    """Place -> signal and reason, of pairs of which one is the other's derivative."""
+    found: dict[int, tuple[str, str]] = {}
+    moving = {place: channel for place, channel in numeric.items() if place not in times and not is_index(channel.name)}
+    rates = {place: _rate(channel.values[:ENOUGH]) for place, channel in moving.items()}
+    for place, rate in rates.items():
+        for other, channel in moving.items():
+            if other == place or channel.values.size != numeric[place].values.size or rate is None:
+                continue
+            if abs(_correlation(rate, channel.values[:ENOUGH])) > DERIVATIVE:
+                found[place] = ("position", f"its derivative is '{channel.name}'")
+                found[other] = ("velocity", f"is the derivative of '{numeric[place].name}'")
+    return found
+
+
+def _rate(values: Array) -> Array | None:
+    """Smoothed derivative of a column a sample, leaps of a wrapped one left out."""
+    if values.size < 64 or not np.isfinite(values).all() or not np.ptp(values):
+        return None
+    rate = np.gradient(values)
+    rate[np.abs(rate) > 0.2 * np.ptp(values)] = 0.0
+    return np.convolve(rate, np.ones(9) / 9.0, mode="same")
+
+
+def _correlation(one: Array, other: Array) -> float:
+    smooth = np.convolve(np.nan_to_num(other), np.ones(9) / 9.0, mode="same")
+    spread = float(np.std(one) * np.std(smooth))
+    return float(np.mean((one - one.mean()) * (smooth - smooth.mean()))) / spread if spread > 0.0 else 0.0

@@ -1,0 +1,172 @@
+"""Reader of MCAP (ROS 2 bags, Foxglove), by mcap and mcap-ros2-support: joint states, and plain numbers of any message.
+
+`sensor_msgs/msg/JointState` gives a position, velocity and effort of each joint, in rad, rad/s and N*m (REP 103); a
+joint is an axis. Of other messages in ROS 2's encoding or in JSON every number is a channel, `topic.field`. Times are
+those of `header.stamp`, else those of the log.
+"""
+
+from __future__ import annotations
+
+import json
+from array import array
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+
+from bench.errors import InputError
+from bench.trace.channel import Channel, Recording, with_shared_times
+from bench.trace.readers.extras import damaged, library
+from bench.trace.source import Source
+
+FORMAT = "MCAP"
+ENDINGS = (".mcap",)
+
+_MAGIC = b"\x89MCAP0\r\n"
+_JOINT_STATE = ("sensor_msgs/msg/JointState", "sensor_msgs/JointState")
+_JOINT_UNITS = {"position": "rad", "velocity": "rad/s", "effort": "N*m"}
+#: Numbers of a message, and messages in one another; a scope has fewer, a point cloud more.
+_MOST, _DEEPEST = 256, 8
+
+
+@dataclass
+class _Column:
+    """Numbers of one field of a topic as they come, with their times in ns."""
+
+    unit: str | None = None
+    axis: str | None = None
+    times: array[int] = field(default_factory=lambda: array("q"))
+    values: array[float] = field(default_factory=lambda: array("d"))
+
+
+def recognises(source: Source) -> bool:
+    """Whether the file begins as MCAP does."""
+    return source.content.startswith(_MAGIC)
+
+
+def read(source: Source) -> Recording:
+    """Recording of an MCAP file.
+
+    Raises:
+        InputError: the libraries are not installed; damaged, or without a message of numbers.
+    """
+    columns: dict[tuple[str, str], _Column] = {}
+    unread: dict[str, str] = {}
+    for topic, schema, stamp, message in _messages(source, unread):
+        _gather(columns, topic, schema, stamp, message)
+    notes = tuple(f"{topic} left out: messages in {encoding}" for topic, encoding in unread.items())
+    first = min((column.times[0] for column in columns.values()), default=0)
+    several = len({topic for topic, _ in columns if columns[topic, _].axis is not None}) > 1
+    channels = [
+        _channel(topic, name, column, first, several, source.path)
+        for (topic, name), column in columns.items()
+        if len(column.values) > 1
+    ]
+    if not channels:
+        raise InputError(
+            source.path,
+            f"holds no message of numbers ({'; '.join(notes) or 'no messages'})",
+            "allowed: joint states or numbers, in ROS 2's encoding (cdr) or JSON",
+        )
+    return Recording(with_shared_times(channels), FORMAT, source.path, notes=notes)
+
+
+def _messages(source: Source, unread: dict[str, str]) -> Iterator[tuple[str, str, int, Any]]:
+    """Topic, schema's name, time - ns - and content of each message that can be decoded."""
+    reader = library("mcap.reader", "mcap", "mcap", source.path, FORMAT)
+    ros2 = library("mcap_ros2.decoder", "mcap-ros2-support", "mcap", source.path, FORMAT).DecoderFactory()
+    decoders: dict[int, Callable[[bytes], Any] | None] = {}
+    try:
+        for schema, channel, message in reader.make_reader(BytesIO(source.content)).iter_messages():
+            if channel.id not in decoders:
+                decoders[channel.id] = _decoder(ros2, schema, channel)
+                if decoders[channel.id] is None:
+                    unread[channel.topic] = channel.message_encoding or "an unknown encoding"
+            decode = decoders[channel.id]
+            if decode is not None:
+                yield channel.topic, schema.name if schema is not None else "", message.log_time, decode(message.data)
+    except Exception as error:  # mcap and its decoders raise many kinds on a damaged file
+        raise damaged(source.path, FORMAT, error) from error
+
+
+def _decoder(ros2: Any, schema: Any, channel: Any) -> Callable[[bytes], Any] | None:  # noqa: ANN401
+    if channel.message_encoding == "json":
+        return json.loads
+    return ros2.decoder_for(channel.message_encoding, schema)
+
+
+def _gather(columns: dict[tuple[str, str], _Column], topic: str, schema: str, logged: int, message: Any) -> None:  # noqa: ANN401
+    stamp = _stamp(message, logged)
+    if schema in _JOINT_STATE:
+        for number, joint in enumerate(message.name):
+            for name, unit in _JOINT_UNITS.items():
+                values = getattr(message, name)
+                if len(values) == len(message.name):
+                    _append(columns, (topic, f"{joint}.{name}"), stamp, values[number], unit, joint)
+        return
+    for count, (path, value) in enumerate(_numbers(message, "", 0)):
+        if count == _MOST:
+            break
+        _append(columns, (topic, path), stamp, value)
+
+
+def _append(
+    columns: dict[tuple[str, str], _Column],
+    key: tuple[str, str],
+    stamp: int,
+    value: float,
+    unit: str | None = None,
+    axis: str | None = None,
+) -> None:
+    column = columns.get(key)
+    if column is None:
+        column = columns[key] = _Column(unit, axis)
+    column.times.append(stamp)
+    column.values.append(value)
+
+
+def _stamp(message: Any, logged: int) -> int:  # noqa: ANN401
+    """Time of a message - ns: of its header where that tells one."""
+    header = _part(message, "header")
+    stamp = _part(header, "stamp") if header is not None else None
+    seconds = _part(stamp, "sec") if stamp is not None else None
+    if not isinstance(seconds, int):
+        return logged
+    nanoseconds = _part(stamp, "nanosec") or _part(stamp, "nsec") or 0
+    return (seconds * 10**9 + int(nanoseconds)) or logged
+
+
+def _part(message: Any, name: str) -> Any:  # noqa: ANN401
+    return message.get(name) if isinstance(message, dict) else getattr(message, name, None)
+
+
+def _numbers(message: Any, path: str, depth: int) -> Iterator[tuple[str, float]]:  # noqa: ANN401
+    """Path and value of every number in a message but its header."""
+    if depth > _DEEPEST:
+        return
+    if isinstance(message, bool | int | float):
+        yield path, float(message)
+    elif isinstance(message, dict):
+        for name, value in message.items():
+            yield from _numbers(value, f"{path}.{name}" if path else name, depth + 1)
+    elif isinstance(message, list | tuple | array):
+        for number, value in enumerate(message[:_MOST]):
+            yield from _numbers(value, f"{path}[{number}]", depth + 1)
+    elif not isinstance(message, str | bytes):
+        for name in getattr(message, "__slots__", ()):
+            if name != "header":
+                yield from _numbers(getattr(message, name), f"{path}.{name}" if path else name, depth + 1)
+
+
+def _channel(topic: str, name: str, column: _Column, first: int, several: bool, path: str) -> Channel:
+    """Channel of a column; where several topics tell joint states, the topic stands before the joint."""
+    axis = column.axis
+    label = f"{topic}.{name}"
+    if axis is not None:
+        label = name.removeprefix(f"{axis}.")
+        axis = f"{topic}/{axis}" if several else axis
+    times = np.asarray((np.array(column.times, dtype=np.int64) - first) * 1e-9, dtype=np.float64)
+    time = Channel(f"{label} time", "s", times, path, axis=axis)
+    return Channel(label, column.unit, np.array(column.values), path, time=time, axis=axis)

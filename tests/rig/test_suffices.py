@@ -1,0 +1,70 @@
+import tomllib
+
+import pytest
+
+from bench.assets import asset
+from bench.cli import app
+from bench.errors import InputError
+from bench.rig.draft import draft
+from bench.rig.rig import Rig, load_rig
+from bench.rig.suffices import lacking, require
+from bench.trace.inspect import inspect
+
+BARE = {"name": "axis", "kind": "rotary"}
+
+
+def test_a_bare_rig_is_told_all_that_is_missing_at_once():
+    with pytest.raises(InputError) as refused:
+        require(Rig.of(BARE), "simulate")
+    for word in ("drive", "simulation", "torque_constant", "peak_current", "bench simulate needs all"):
+        assert word in str(refused.value)
+    assert lacking(Rig.of(BARE))["identify"] == ()
+
+
+@pytest.mark.parametrize("name", ["sh30701p", "lab"])
+def test_shipped_rigs_suffice_for_every_command(name):
+    assert not any(lacking(load_rig(asset("data", "rigs", f"{name}.toml"))).values())
+
+
+def test_rigs_are_listed_and_copied(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    app(["rigs"], standalone_mode=False)
+    assert "sh30701p" in capsys.readouterr().out
+    app(["rigs", "sh30701p", "--out", "rig.toml"], standalone_mode=False)
+    assert load_rig("rig.toml").name == "SH30701P with load disk"
+    assert "bench simulate: suffices" in capsys.readouterr().out
+    with pytest.raises(InputError, match="did you mean 'sh30701p'"):
+        app(["rigs", "sh30701"], standalone_mode=False)
+
+
+def test_an_effective_current_and_its_constant_are_converted():
+    told = {"torque_constant": "1.2 N*m/A", "peak_current": "5 A"}
+    peak, effective = (Rig.of({**BARE, "motor": {**told, "current": current}}) for current in ("peak", "effective"))
+    assert peak.motor.torque_constant == pytest.approx(2**0.5 * (effective.motor.torque_constant or 0.0))
+    assert (effective.motor.peak_current or 0.0) == pytest.approx(2**0.5 * 5.0)
+    stall = {"continuous_stall_torque": "2 N*m", "continuous_stall_current": "2 A", "peak_torque": "6 N*m"}
+    both = [Rig.of({**BARE, "motor": {**stall, "peak_current": "7 A", "current": c}}) for c in ("peak", "effective")]
+    constants = [rig.motor.torque_per_ampere for rig in both]
+    assert constants[0] is not None and constants[1] is not None
+    assert constants[1].torque(7.0 * 2**0.5) == pytest.approx(6.0) == constants[0].torque(7.0)
+
+
+def test_an_effective_unit_in_a_rig_is_asked_about(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text('name = "a"\nkind = "rotary"\n[motor]\ntorque_constant = "1 N*m/Arms"\n')
+    with pytest.raises(InputError, match=r'an effective current; allowed: A; say current = "effective"'):
+        load_rig(path)
+
+
+@pytest.mark.parametrize(
+    ("head", "mapped"),
+    [("t [ms],n_ist [1/min],Strom Achse [A]", {"velocity", "current"}), ("Zeit [s],Winkel [°],M [Nm]", {"position"})],
+)
+def test_a_draft_is_a_rig_that_works_as_far_as_the_file_tells(tmp_path, head, mapped):
+    path = tmp_path / "run.csv"
+    path.write_text("\n".join([head, *(f"{k},{k % 50},{k % 7}" for k in range(300))]))
+    text = draft(inspect(path), motor="SH30701P")
+    (tmp_path / "rig.toml").write_text(text)
+    rig = load_rig(tmp_path / "rig.toml")
+    assert mapped - {"time"} <= set(rig.trace.columns)
+    assert tomllib.loads(text)["motor"] == {"model": "SH30701P"}

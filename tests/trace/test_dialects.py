@@ -1,0 +1,284 @@
+"""Tables as recorders lay them out, written here: the numbers written are the numbers read."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from bench.errors import InputError
+from bench.trace.how import How
+from bench.trace.read import read, read_recording
+
+SAMPLES = 600
+TIME = np.arange(SAMPLES) * 1e-3
+SPEED = np.round(1500.0 * np.sin(2 * np.pi * 1.7 * TIME), 3)
+AMPS = np.round(2.0 * np.cos(2 * np.pi * 1.7 * TIME), 5)
+NAMES = "time [ms]", "velocity [rpm]", "current [A]"
+
+
+def lines(separator=",", mark=".", time=None, quoted=False):
+    """A line of samples for each: times, speeds and currents."""
+    times = [f"{1e3 * t:.3f}" for t in TIME] if time is None else time
+    for when, speed, amps in zip(times, SPEED, AMPS, strict=True):
+        cells = [when, f"{speed:.3f}", f"{amps:.5f}"]
+        cells = [
+            cells[0] if time is not None else cells[0].replace(".", mark),
+            *(cell.replace(".", mark) for cell in cells[1:]),
+        ]
+        yield separator.join(f'"{cell}"' if quoted else cell for cell in cells)
+
+
+def written(path, head, rows, encoding="utf-8", newline="\n"):
+    path.write_bytes(newline.join([*head, *rows, ""]).encode(encoding))
+    return path
+
+
+def holds(trace):
+    np.testing.assert_allclose(trace.time - trace.time[0], TIME, atol=2e-9)
+    np.testing.assert_allclose(trace["velocity"], SPEED * np.pi / 30.0, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(trace["current"], AMPS, rtol=1e-12, atol=1e-12)
+
+
+SEPARATORS = [(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), (" ", "."), ("   ", ",")]
+PREAMBLES = {
+    "none": [],
+    "comments": ["# Recorder 3", "# at 1,5 kHz", "#"],
+    "vendor": ["Workbench 2.5", "Drive;S300;3", "Serial, 123, 456, 789", "Sample period: 1 ms", ""],
+    "numbers": ["Version 1.2.3", "12;7", "1 2 3 4 5", ""],
+}
+
+
+@pytest.mark.parametrize(("separator", "mark"), SEPARATORS)
+@pytest.mark.parametrize("preamble", PREAMBLES)
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_every_separator_behind_every_preamble(tmp_path, separator, mark, preamble, newline):
+    head = [*PREAMBLES[preamble], separator.join(NAMES)]
+    holds(read(written(tmp_path / "run.txt", head, lines(separator, mark), newline=newline)))
+
+
+@pytest.mark.parametrize(("separator", "mark"), SEPARATORS)
+@pytest.mark.parametrize("brackets", ["{}", "[{}]", "({})"])
+def test_a_row_of_units_under_the_names(tmp_path, separator, mark, brackets):
+    units = separator.join(brackets.format(unit) for unit in ("ms", "rpm", "A"))
+    head = [separator.join(("Time", "Velocity", "Current")), units]
+    holds(read(written(tmp_path / "run.csv", head, lines(separator, mark))))
+
+
+@pytest.mark.parametrize("marker", ["# ", "#", "% ", "// "])
+def test_a_header_in_a_comment(tmp_path, marker):
+    holds(read(written(tmp_path / "run.csv", [marker + ",".join(NAMES)], lines())))
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "cp1252", "utf-16", "utf-8-sig"])
+def test_encodings(tmp_path, encoding):
+    head = ["Prüfstand für Größen", "time [ms];Drehzahl geglättet [1/min];current [A]"]
+    path = written(tmp_path / "run.csv", head, lines(";", ","), encoding)
+    holds(read(path, {"velocity": "Drehzahl geglättet [1/min]"}))
+
+
+def test_no_header_names_columns_by_their_number(tmp_path):
+    path = written(tmp_path / "run.txt", [], lines("\t"))
+    holds(read(path, {"time": "column 1 [ms]", "velocity": "column 2 [rpm]", "current": "column 3 [A]"}))
+    with pytest.raises(InputError, match="position or velocity: not in the file; found: column 1, column 2, column 3"):
+        read(path)
+
+
+def test_an_index_without_a_name_and_a_separator_at_the_end(tmp_path):
+    rows = [f"{k};{row};" for k, row in enumerate(lines(";"))]
+    holds(read(written(tmp_path / "run.csv", [";" + ";".join(NAMES) + ";"], rows)))
+
+
+def test_quotes_around_decimal_commas_between_commas(tmp_path):
+    head = ['"' + '","'.join(NAMES) + '"']
+    holds(read(written(tmp_path / "run.csv", head, lines(",", ",", quoted=True))))
+
+
+@pytest.mark.parametrize("group", [".", "'", "\u202f", "\u00a0"])
+def test_marks_between_thousands(tmp_path, group):
+    rows = [
+        f"{1e3 * t:.3f};{speed:,.3f};{amps:.5f}".replace(".", "#").replace(",", group).replace("#", ",")
+        for t, speed, amps in zip(TIME, SPEED, AMPS, strict=True)
+    ]
+    holds(read(written(tmp_path / "run.csv", [";".join(NAMES)], rows)))
+
+
+def test_thousands_with_commas_and_decimal_points(tmp_path):
+    rows = [f"{1e3 * t:.3f};{speed:,.3f};{amps:.5f}" for t, speed, amps in zip(TIME, SPEED, AMPS, strict=True)]
+    holds(read(written(tmp_path / "run.csv", [";".join(NAMES)], rows)))
+
+
+def clock(seconds, style):
+    whole, milli = divmod(round(seconds * 1e3), 1000)
+    hours, rest = divmod(whole, 3600)
+    minutes, second = divmod(rest, 60)
+    days, hour = divmod(hours, 24)
+    twelve, half = (hour - 1) % 12 + 1, "AM" if hour < 12 else "PM"
+    return style.format(
+        d=28 + days, h=hour, m=minutes, s=second, f=f"{milli:03d}", mm=60 * hour + minutes, twelve=twelve, half=half
+    )
+
+
+CLOCKS = {
+    "clock": "{h:02d}:{m:02d}:{s:02d}.{f}",
+    "clock with comma": "{h:02d}:{m:02d}:{s:02d},{f}",
+    "clock with colons": "{h:02d}:{m:02d}:{s:02d}:{f}",
+    "twelve hours": "{twelve}:{m:02d}:{s:02d}.{f} {half}",
+    "ISO": "2024-02-{d}T{h:02d}:{m:02d}:{s:02d}.{f}Z",
+    "ISO with zone": "2024-02-{d} {h:02d}:{m:02d}:{s:02d}.{f}000+01:00",
+    "German": "{d}.02.2024 {h:02d}:{m:02d}:{s:02d},{f}",
+    "American": "2/{d}/2024 {twelve}:{m:02d}:{s:02d}.{f} {half}",
+}
+
+
+@pytest.mark.parametrize("style", CLOCKS)
+@pytest.mark.parametrize("start", [45_296.0, 86_399.7])  # at noon, and over midnight
+def test_clocks_and_calendars(tmp_path, style, start):
+    rows = lines(";", time=[clock(start + t, CLOCKS[style]) for t in TIME])
+    path = written(tmp_path / "run.csv", ["stamp;velocity [rpm];current [A]"], rows)
+    holds(read(path, {"time": "stamp"}))
+    holds(read(path, {"time": "stamp [ms]"}))  # moments tell their unit
+
+
+def test_a_clock_of_whole_seconds_asks_for_the_sample_period_and_takes_it(tmp_path):
+    rows = lines(",", time=[clock(45_296.0 + 2.0 * t, "{h:02d}:{m:02d}:{s:02d}") for t in TIME])
+    path = written(tmp_path / "run.csv", ["time,velocity [rpm],current [A]"], rows)
+    with pytest.raises(InputError, match=r"time already taken.*sample_period"):
+        read(path)
+    trace = read(path, How(sample_period=2e-3))
+    np.testing.assert_allclose(trace.time - trace.time[0], 2.0 * TIME, atol=1e-9)
+    with pytest.raises(InputError, match=r"steps by 0\.00.* where the rig's \[trace\] says sample_period = 0\.02 s"):
+        read(path, How(sample_period=20e-3))
+
+
+def test_epochs_keep_digits_that_no_float_holds(tmp_path):
+    for number, style in (("ns", "{:.0f}"), ("s", "{}")):
+        stamps = [1_709_642_096_789_000_000 + 62_500 * k for k in range(SAMPLES)]
+        time = [style.format(t) if number == "ns" else f"{t // 10**9}.{t % 10**9:09d}" for t in stamps]
+        time = [str(t) for t in stamps] if number == "ns" else time
+        path = written(tmp_path / "run.csv", [f"stamp [{number}],velocity [rpm],current [A]"], lines(time=time))
+        trace = read(path, {"time": "stamp"})
+        assert trace.time_base is not None and not trace.time_base.resampled
+        np.testing.assert_allclose(np.diff(trace.time), 62.5e-6, rtol=1e-9)
+
+
+@pytest.mark.parametrize("names", [("Sample", 1), ("index", 10), ("time", 1)])
+def test_a_sample_index_and_a_period(tmp_path, names):
+    name, step = names
+    rows = lines(time=[str(7 + step * k) for k in range(SAMPLES)])
+    path = written(tmp_path / "run.csv", [f"{name},velocity [rpm],current [A]"], rows)
+    with pytest.raises(InputError, match="time"):
+        read(path)
+    holds(read(path, How(sample_period=1e-3)))
+    lost = [row for k, row in enumerate(path.read_text().splitlines()) if k not in range(100, 110)]
+    path.write_text("\n".join(lost))
+    assert len(read(path, How(sample_period=1e-3)).segments) == 2
+
+
+def test_no_time_at_all_and_a_period(tmp_path):
+    rows = [row.split(",", 1)[1] for row in lines()]
+    path = written(tmp_path / "run.csv", ["velocity [rpm],current [A]"], rows)
+    with pytest.raises(InputError, match=r"give its sample_period = .1 ms. in the rig's \[trace\]"):
+        read(path)
+    holds(read(path, How(sample_period=1e-3)))
+
+
+@pytest.mark.parametrize("nothing", ["", "NaN", "nan", "-", "NULL", "#N/A"])
+def test_a_few_cells_without_a_number_are_a_hole_each(tmp_path, nothing):
+    rows = list(lines())
+    for k, cell in ((50, 1), (200, 2), (400, 1)):
+        cells = rows[k].split(",")
+        cells[cell] = nothing
+        rows[k] = ",".join(cells)
+    trace = read(written(tmp_path / "run.csv", [",".join(NAMES)], rows))
+    assert len(trace) == SAMPLES - 3 and len(trace.segments) == 4
+    assert trace.time_base is not None
+    assert [hole[0] for hole in trace.time_base.holes] == pytest.approx([0.049, 0.199, 0.399])
+    known = np.delete(np.arange(SAMPLES), [50, 200, 400])
+    np.testing.assert_allclose(trace["velocity"], SPEED[known] * np.pi / 30.0, atol=1e-12)
+    assert any("line 52, column 'velocity [rpm]': a hole each" in note for note in trace.notes)
+
+
+def test_a_column_of_which_most_cells_are_empty_was_sampled_more_slowly(tmp_path):
+    rows = [f"{row},{k / 10 if k % 10 == 0 else ''}" for k, row in enumerate(lines())]
+    trace = read(written(tmp_path / "run.csv", [",".join((*NAMES, "position [rad]"))], rows))
+    np.testing.assert_allclose(trace["position"], np.arange(trace.time.size) / 10, atol=1e-9)
+    assert any("position stands in 60 of 600 rows" in note for note in trace.notes)
+
+
+def test_what_is_not_needed_stops_nothing_and_is_told(tmp_path):
+    head = [",".join((*NAMES, "position", "voltage [bananas]", "state", "acceleration"))]
+    rows = [f"{row},{k % 7},1,RUN,nan" for k, row in enumerate(lines())]
+    trace = read(written(tmp_path / "run.csv", head, rows))
+    holds(trace)
+    assert set(trace.signals) == {"velocity", "current"}
+    for word in ("position left out", "has no unit", "bananas", "acceleration left out"):
+        assert any(word in note for note in trace.notes), word
+
+
+def test_blank_lines_comments_and_what_stands_below_are_left_out(tmp_path):
+    rows = list(lines())
+    rows[100:100] = ["# trigger", ""]
+    path = written(tmp_path / "run.csv", [",".join(NAMES)], [*rows, "End of data", "   "])
+    trace = read(path)
+    holds(trace)
+    assert any("1 comment left out" in note for note in trace.notes)
+
+
+@pytest.mark.parametrize("fault", ["12,3", "12,3,4,5", "12,abc,4"])
+def test_a_line_that_is_no_sample_is_named(tmp_path, fault):
+    rows = list(lines())
+    rows[300] = fault
+    with pytest.raises(InputError, match="line 302"):
+        read(written(tmp_path / "run.csv", [",".join(NAMES)], rows))
+
+
+def test_two_columns_of_one_name_are_asked_about(tmp_path):
+    rows = [f"{row},1.0" for row in lines()]
+    with pytest.raises(InputError, match="velocity: found several columns"):
+        read(written(tmp_path / "run.csv", [",".join((*NAMES, "velocity [rpm]"))], rows))
+
+
+def wrapping(period, counts, speed=40.0):
+    """A position that goes there and back, wrapped by a period, in counts."""
+    true = speed * np.cumsum(np.sin(2 * np.pi * TIME / TIME[-1])) * 1e-3 * 12.0
+    steps = np.rint(true / period * counts) if counts else true
+    return true, np.mod(steps + 100, counts) if counts else np.mod(true, period)
+
+
+@pytest.mark.parametrize(
+    ("period", "counts", "unit"),
+    [(2 * np.pi, 0, "rad"), (2 * np.pi, 4096, "turn/4096"), (4 * np.pi, 65536, "turn/32768")],
+)
+def test_a_plain_wrap_is_found(tmp_path, period, counts, unit):
+    true, wrapped = wrapping(period, counts)
+    rows = [f"{row},{value!r}" for row, value in zip(lines(), wrapped.tolist(), strict=True)]
+    trace = read(written(tmp_path / "run.csv", [",".join((*NAMES, f"position [{unit}]"))], rows))
+    shift = trace["position"] - true
+    np.testing.assert_allclose(shift, shift[0], atol=2.0 * period / (counts or 1e12))
+    assert any("position wraps" in note for note in trace.notes)
+
+
+def test_a_wrap_that_is_not_plain_is_asked_for_and_taken(tmp_path):
+    true, wrapped = wrapping(5.0, 0)
+    rows = [f"{row},{value!r}" for row, value in zip(lines(), wrapped.tolist(), strict=True)]
+    path = written(tmp_path / "run.csv", [",".join((*NAMES, "position [rad]"))], rows)
+    with pytest.raises(InputError, match=r'leaps .* times by about 5.*position_period = "5'):
+        read(path)
+    trace = read(path, How(position_period=5.0))
+    np.testing.assert_allclose(np.diff(trace["position"]), np.diff(true), atol=1e-9)
+
+
+def test_an_element_of_an_array_is_a_name(tmp_path):
+    rows = [f"{row},{k}" for k, row in enumerate(lines())]
+    path = written(tmp_path / "run.csv", ["t [ms],w[0],i[0],w[1]"], rows)
+    assert [channel.name for channel in read_recording(path).channels] == ["t", "w[0]", "i[0]", "w[1]"]
+    holds(read(path, {"velocity": "w[0] [rpm]", "current": "i[0] [A]"}))
+
+
+def test_axes_by_the_first_part_of_their_names(tmp_path):
+    names = [f"Axis{k}.{name}" for k, name in itertools.product((1, 2), ("ActVel [rpm]", "Iq [A]"))]
+    rows = [f"{row},0.0,0.0" for row in lines()]
+    path = written(tmp_path / "run.csv", [",".join(("time [ms]", *names))], rows)
+    with pytest.raises(InputError, match="several columns"):
+        read(path)
+    holds(read(path, How(axis="Axis1")))
