@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from rich.markup import escape
 from rich.table import Table
 
 from bench.errors import InputError
@@ -129,5 +128,5 @@ def grades_table(graded: Sequence[Graded]) -> Table:
         words = [mistake.name for mistake in one.mistakes]
         if wrong:
             words.append(f"wrong, not known why: {', '.join(wrong)}")
-        table.add_row(one.student, f"{one.right} of {one.judged}", escape("; ".join(words)))
+        table.add_row(one.student, f"{one.right} of {one.judged}", "; ".join(words))
     return table
