@@ -1,8 +1,9 @@
 """A position that wraps made continuous: by the period that the user tells, or by one that is plain.
 
 A wrapped position leaps by nearly its period P from one end of its range to the other; the step that was really made
-is that of its neighbours. So each leap d between neighbouring steps s tells P = |d - s|. P is plain where all leaps
-agree on a whole number of turns or on a power of two counts, of which a counter is made.
+is that of its neighbours. So each leap d between neighbouring steps s tells P = |d - s|. P is exact where all leaps
+agree on a whole number of turns or on a power of two counts, of which a counter is made; where they agree on another
+one, `wraps` takes that as it comes.
 """
 
 from __future__ import annotations
@@ -77,11 +78,11 @@ def unwrapped(
         place: where sample i stands in the file, for messages.
 
     Raises:
-        InputError: it wraps by a period that is not plain, or by more than half of one a sample.
+        InputError: it spans more than its period, or moves by more than half of one a sample.
     """
     if position.size < 4:
         return None
-    period = told if told is not None else _plain_period(position, factor, place)
+    period = told if told is not None else _plain_period(position, factor)
     if period is None:
         return None
     if np.ptp(position) > 1.01 * period:
@@ -105,12 +106,8 @@ def unwrapped(
     return Unwrapped(position - period * np.concatenate([[0.0], np.cumsum(turns)]), period, int(np.abs(turns).sum()))
 
 
-def _plain_period(position: Array, factor: float, place: Callable[[int | None], str]) -> float | None:
-    """The period that leaps of a position agree on; None where it does not leap.
-
-    Raises:
-        InputError: they agree on one that is neither turns nor a power of two counts.
-    """
+def _plain_period(position: Array, factor: float) -> float | None:
+    """The period of turns, or of a power of two counts, that leaps of a position agree on; None where they do not."""
     spread = float(np.ptp(position))
     steps = np.diff(position)
     at = np.flatnonzero(np.abs(steps) > _LEAP * spread)
@@ -135,8 +132,4 @@ def _plain_period(position: Array, factor: float, place: Callable[[int | None], 
     near = [period for period in (*_TURNS, *counts) if abs(period - rough) <= min(doubt, PLAIN * rough)]
     if near:
         return min(near, key=lambda period: abs(period - rough))
-    raise InputError(
-        place(int(at[0]) + 1),
-        f"the position leaps {at.size} times by about {rough:.5g}, as if it wrapped",
-        f'allowed: position_period = "{rough:.5g} rad" (or m, or its exact value) in the rig\'s [trace]',
-    )
+    return None
