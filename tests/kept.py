@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import inspect
 import os
 import pickle
 import tempfile
@@ -11,20 +12,22 @@ from pathlib import Path
 from typing import TypeVar
 
 from bench.files import whole
+from bench.trace.trace import Trace
 
 T = TypeVar("T")
 TESTS = Path(__file__).resolve().parent
 
 
 def kept(make: Callable[[], T], *made_by: str) -> T:
-    """What `make` returned when it was last called with the integrator and its callers as they are now.
+    """What `make` returned when it was last called with the integrator, its callers and traces as they are now.
 
     Args:
         make: simulates; its result is pickled.
         made_by: files that say what is simulated, the caller's `__file__` first.
     """
     digest = hashlib.sha256()
-    for path in (*map(Path, made_by), *sorted((TESTS / "independent").rglob("*.py"))):
+    of_trace = Path(inspect.getfile(Trace))
+    for path in (of_trace, *map(Path, made_by), *sorted((TESTS / "independent").rglob("*.py"))):
         if not path.name.startswith("test_") or str(path) in made_by:
             digest.update(path.read_bytes())
     folder = Path(tempfile.gettempdir()) / f"servobench-tests-{os.getuid()}"

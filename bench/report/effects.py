@@ -20,6 +20,7 @@ HOOKS = {
     "friction_excess": "in every step, level of dry friction",
     "friction_factor": "in every step, level of dry friction",
     "friction_difference": "in every step, level of dry friction",
+    "friction_under_load": "in every step, level of dry friction",
     "resisting_torque": "in every step, resisting torque",
     "torque_factor": "in every step, motor torque",
     "added_inertia": "in every step, inertia",

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property, partial
 from itertools import pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -107,10 +107,11 @@ class Trace:
                 "allowed: increasing times",
             )
 
-    def __reduce__(self) -> tuple[type[Trace], tuple[object, ...]]:
+    def __reduce__(self) -> tuple[partial[Trace], tuple[()]]:
         """Pickled as it was given: other processes take traces, and a read-only view of a dict does not travel."""
-        signals, units, metadata = dict(self.signals), dict(self.units), dict(self.metadata)
-        return Trace, (self.time, signals, units, self.origin, metadata, self.time_base, self.notes, self.continues)
+        given = {one.name: getattr(self, one.name) for one in fields(self)}
+        views = {name: dict(value) for name, value in given.items() if isinstance(value, MappingProxyType)}
+        return partial(Trace, **{**given, **views}), ()
 
     @classmethod
     def from_arrays(
