@@ -113,14 +113,15 @@ def uncertain(fitted: Fit) -> Uncertain:
     scores = np.add.reduceat(jacobian * (weight * fitted.left)[:, None], edges[:-1])
     scores += np.outer(count, noise @ numbers)
     place, known = fitted.theta.size, _known(fitted, slots)
-    seen = np.linalg.norm(jacobian, axis=0) * np.pad(known, (place, 0), constant_values=np.inf) > fitted.floor
+    least = np.divide(fitted.floor, known, out=np.zeros(known.size), where=known > 0.0)
+    seen = np.linalg.norm(jacobian, axis=0) >= np.pad(least, (place, 0))
     told = np.ix_(seen, seen)
     gram = ((jacobian.T * weight) @ jacobian)[told]
     inverse = np.zeros(noise.shape)
     inverse[told] = solved(gram, numbers[seen], count.sum() * noise[told])[1]
     conditioning = rows.conditioning
     covariance, reach = estimated(scores, inverse, conditioning.effort_noise**2 / conditioning.filter.stride)
-    covariance[place:, place:] += np.diag(np.where(np.isfinite(known), known, 0.0) ** 2)
+    covariance[place:, place:] += np.diag(known**2)
     shapes = np.array([fitted.terms[index].shape[k] for index, k in slots])
     for index, term in enumerate(fitted.terms):
         own = [place + slot for slot, (owner, _) in enumerate(slots) if owner == index]
@@ -133,13 +134,12 @@ def uncertain(fitted: Fit) -> Uncertain:
 
 
 def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
-    """Standard errors of the shapes (s,) that no fit is needed for, as of an instant between two rows; else infinity.
+    """Standard errors of the shapes (s,) that no noise shows, as of an instant between two rows.
 
     A shape that within its own changes the torque by less than noise does is known by it alone: no row moves with it.
     """
     errors = [term.effect.shape_errors(term.shape, fitted.scope, fitted.time) for term in fitted.terms]
-    known = np.array([errors[index][k] for index, k in slots])
-    return np.where(known > 0.0, known, np.inf)
+    return np.array([errors[index][k] for index, k in slots])
 
 
 def _free(effect: Effect, rows: Rows) -> list[int]:
