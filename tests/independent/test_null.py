@@ -6,7 +6,11 @@ from tests.independent.axes import PLAIN, run
 from tests.independent.effects import (
     KINDS,
     CoggingTorque,
+    CurrentFilterLag,
+    CurrentGainAsymmetry,
     CurrentLoopLag,
+    CurrentOffsetDrift,
+    DirectionalLoadFriction,
     DirectionDependentFriction,
     EncoderEccentricity,
     FrictionWarmup,
@@ -19,6 +23,7 @@ from tests.independent.effects import (
     RestHardening,
     SlowMemoryFriction,
     StribeckFriction,
+    TorqueConstantDrift,
     TorqueConstantSaturation,
     TorqueOffset,
     TorqueRipple,
@@ -49,6 +54,11 @@ NULL = [
     CurrentLoopLag(1e-12),
     VelocityFilterLag(1e-12),
     EncoderEccentricity(0.0, 1.0),
+    CurrentFilterLag(1e-12),
+    CurrentGainAsymmetry(0.0),
+    CurrentOffsetDrift(0.0),
+    TorqueConstantDrift(0.0),
+    DirectionalLoadFriction(0.0, 2.0),
     SlowMemoryFriction(0.0, 1.0, 1.0),
     PositionNotch(0.0, 1.0, 0.1),
     Vibration(0.0, 20.0, 1.0),
@@ -85,11 +95,13 @@ def test_effects_act_alike_alone_and_among_neighbours_whom_they_leave_alone():
     side_by_side = [effects for effect in strong for effects in ([], [effect])]
     both = run(Plant([PLAIN] * len(side_by_side), side_by_side), _push, 0.03)
     for k, effect in enumerate(strong):
-        alone = run(Plant([PLAIN], [[effect]]), _push, 0.03)
+        plant = Plant([PLAIN], [[effect]])
+        alone = run(plant, _push, 0.03)
         for name in ("position", "velocity", "measured_velocity"):
             assert (both[name][:, 2 * k] == bare[name][:, 0]).all(), effect.name
             # vectorised sine and exponential may round differently
             away = np.abs(both[name][:, 2 * k + 1] - alone[name][:, 0]).max()
             assert away < 1e-9 * (1.0 + np.abs(alone[name]).max()), effect.name
         heard = [np.abs(alone[name] - bare[name]).max() for name in ("velocity", "measured_velocity")]
+        heard.append(np.abs(plant.recorded_current - alone["current"][-1]).max())
         assert max(heard) > 1e-6, effect.name
