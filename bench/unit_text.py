@@ -132,9 +132,11 @@ def _base(names: tuple[tuple[str, int], ...]) -> frozenset[str]:
 
 def _parsed(text: str, wanted: tuple[str, ...]) -> tuple[float, tuple[tuple[str, int], ...]]:
     """Factor and names with exponents of a text, in pint's words."""
-    plain = _normalised(text)
     refusal = UnitError(f"found '{text[:_LONGEST]}', which is not a unit", _allowed(wanted))
-    if not plain or len(text) > _LONGEST:
+    if len(text) > _LONGEST:
+        raise refusal
+    plain = _normalised(text)
+    if not plain:
         raise refusal
     factor, exponents, at = 1.0, {}, 0
     sign, outer, groups = 1, 1, []
@@ -143,6 +145,8 @@ def _parsed(text: str, wanted: tuple[str, ...]) -> tuple[float, tuple[tuple[str,
         match = _TOKEN.match(plain, at)
         if match is None:
             raise refusal
+        if match["operator"] in ("*", "/") and plain[:at].rstrip()[-1:] in ("*", "/"):
+            raise refusal  # a power of what is no number, or of a power
         at = match.end()
         if match["operator"] == "(":
             groups.append(outer)

@@ -423,7 +423,7 @@ def test_a_fault_of_the_bench_is_never_taken_for_bad_input(tmp_path, monkeypatch
     def fails(*_):
         raise TypeError("nobody\nforesaw \x1b[31m this")
 
-    monkeypatch.setattr("bench.trace.inspect.inspect", fails)
+    monkeypatch.setattr("bench.trace.read.read_recording", fails)
     for more in ([], ["--debug"]):
         monkeypatch.setattr(sys, "argv", ["bench", "inspect", "x.csv", *more])
         with pytest.raises(SystemExit) as stop:
@@ -440,7 +440,7 @@ def test_out_of_memory_is_one_line(monkeypatch, capsys):
     def fails(*_):
         raise MemoryError
 
-    monkeypatch.setattr("bench.trace.inspect.inspect", fails)
+    monkeypatch.setattr("bench.trace.read.read_recording", fails)
     monkeypatch.setattr(sys, "argv", ["bench", "inspect", "x.csv"])
     with pytest.raises(SystemExit) as stop:
         main()

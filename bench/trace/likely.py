@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.arrays import Array
-from bench.trace.channel import Channel, split_label
+from bench.trace.channel import Channel
 from bench.trace.known_names import is_index, signal_of, unit_of, wanted_units
 from bench.trace.makers import makers_unit
 from bench.trace.signals import SI_UNITS
@@ -43,6 +43,8 @@ _SPLIT = re.compile(r"[\s._/:()\[\],;|-]+|(?<=[a-z])(?=[A-Z])")
 _ROUND = re.compile(r"(.*?)\s*[({]([^(){}]*)[)}]\s*|(.*?)[,/]\s+(\S+)")
 #: Correlation from which a column is another's derivative, and samples that are looked at.
 DERIVATIVE, ENOUGH = 0.9, 200_000
+#: Characters of a name in which a unit is sought.
+LONGEST_NAME = 200
 #: Units of time without one, and the share by which a position and its velocity may miss each other in it.
 TIMES, AGREEMENT = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}, 0.1
 
@@ -69,8 +71,9 @@ def likely_signals(channels: Sequence[Channel]) -> dict[int, Likely]:
     numeric = {
         place: channel for place, channel in enumerate(channels) if channel.defect is None and channel.values.size > 1
     }
-    times = [place for place, channel in numeric.items() if _rises(channel.values)]
-    derived = _derivatives(numeric, times)
+    with np.errstate(over="ignore", invalid="ignore"):  # of magnitudes that no axis has: nothing speaks for them
+        times = [place for place, channel in numeric.items() if _rises(channel.values)]
+        derived = _derivatives(numeric, times)
     found = [
         (guess, place)
         for place, channel in numeric.items()
@@ -84,7 +87,8 @@ def likely_signals(channels: Sequence[Channel]) -> dict[int, Likely]:
         if place not in given and key not in taken:
             given[place] = guess
             taken.add(key)
-    return _with_time_unit(given, channels)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _with_time_unit(given, channels)
 
 
 def _with_time_unit(given: dict[int, Likely], channels: Sequence[Channel]) -> dict[int, Likely]:
@@ -173,7 +177,7 @@ def written_unit_of(channel: Channel) -> str | None:
     unit = unit_of(channel.unit)
     if unit is not None or channel.moments:
         return unit
-    match = _ROUND.fullmatch(split_label(channel.name)[0])
+    match = _ROUND.fullmatch(channel.name) if len(channel.name) <= LONGEST_NAME else None
     inside = (match[2] or match[4] or "").strip() if match else ""
     return inside if inside and is_unit(inside) else None
 
