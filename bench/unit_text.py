@@ -162,8 +162,9 @@ def _parsed(text: str, wanted: tuple[str, ...]) -> tuple[float, tuple[tuple[str,
             continue
         if match["name"]:
             number, parts = _atom(match["name"], text, wanted)
-            power = outer * sign * int(match["inside"] or match["exponent"] or 1)
-            if abs(power) > _HIGHEST:
+            raised = int(match["inside"] or match["exponent"] or 1)
+            power = outer * sign * raised
+            if abs(power) > _HIGHEST or (len(parts) > 1 and abs(raised) > 1):  # kgcm2: of which is it the square?
                 raise refusal
             for name, exponent in parts:
                 exponents[name] = exponents.get(name, 0) + power * exponent

@@ -4,13 +4,12 @@ import json
 import re
 import subprocess
 import sys
-from io import StringIO
 
 import pytest
-from rich.console import Console
 
 from bench.assets import asset
 from bench.cli import main
+from bench.console import console
 from bench.errors import InputError
 from bench.lab.cover import Cover
 from bench.lab.result import NotDone
@@ -188,6 +187,7 @@ def test_a_legend_covers_no_data(done):
 
 def test_the_advice_keeps_its_brackets_on_the_terminal():
     reason = InputError("a.csv", "holds no velocity", 'write [trace.columns] velocity = "column [unit]"')
-    console = Console(file=StringIO(), width=200)
-    console.print(course_table([NotDone("6", "Inertia", reason)]))
-    assert '[trace.columns] velocity = "column [unit]"' in console.file.getvalue()
+    shown = console()
+    with shown.capture() as kept:
+        shown.print(course_table([NotDone("6", "Inertia", reason)]))
+    assert '[trace.columns]velocity="column[unit]"' in "".join(kept.get().split())
