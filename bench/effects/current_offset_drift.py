@@ -20,6 +20,9 @@ from bench.effects.signals import Base, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
+#: Share of what stands above noise that it must explain.
+NEEDED = 0.8
+
 
 class CurrentOffsetDrift(Sensing):
     """See the module."""
@@ -35,6 +38,10 @@ class CurrentOffsetDrift(Sensing):
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Time."""
         return [[(signals.time, 0)]]
+
+    def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
+        """More than a constant torque gives it: of the squares of one, r*t takes (T**2/2)**2/(T**3/3)/T = 3/4."""
+        return NEEDED
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> dict[str, float]:
         """The strength itself."""

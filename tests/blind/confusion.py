@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from tests.blind.score import Score, twins
-from tests.independent.effects import CATALOGUE, OUTSIDE
+from tests.independent.effects import CATALOGUE, LATER, OUTSIDE
 
 NOTHING, REMAINDER, REFUSED = "nothing", "remainder only", "refused"
 NONE_HIDDEN = "nothing hidden"
@@ -18,7 +18,7 @@ NONE_HIDDEN = "nothing hidden"
 
 def columns() -> list[str]:
     """Names that can be given, then what there is besides."""
-    return [*CATALOGUE, NOTHING, REMAINDER, REFUSED]
+    return [*CATALOGUE, *LATER, NOTHING, REMAINDER, REFUSED]
 
 
 def given(score: Score) -> list[str]:
