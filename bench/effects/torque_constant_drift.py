@@ -16,9 +16,13 @@ from collections.abc import Sequence
 
 from bench.arrays import Array
 from bench.effects.kinds import Axis, Number, Sensing, Values
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Base, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+#: Share of what stands above noise that it must explain: of what changes at once at half time, t takes
+#: (3*T**2/8)**2/(T**3/3)/(T/2) = 27/32 of the squares, and a compensation that is switched on is no drift.
+NEEDED = 0.85
 
 
 class TorqueConstantDrift(Sensing):
@@ -32,6 +36,10 @@ class TorqueConstantDrift(Sensing):
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """The motor's torque times time: what the rig's constant overstates."""
         return [[(-signals.torque * signals.time, 0)]]
+
+    def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
+        """More than a change at once gives it."""
+        return NEEDED
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> dict[str, float]:
         """The strength itself."""
