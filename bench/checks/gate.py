@@ -27,8 +27,9 @@ CHECKS: Looks = (
     signals.resolution,
     effort.check,
 )
-#: Of a recording at one steady speed, which may never change and whose effort follows no motion.
-STEADY = tuple(check for check in CHECKS if check not in (signals.moves, timing.rate, signals.resolution, effort.check))
+#: Not of a recording at one steady speed: it may never change, say the same twice, and its effort follows no motion.
+UNSTEADY = (signals.moves, losses.check, timing.rate, signals.resolution, effort.check)
+STEADY = tuple(check for check in CHECKS if check not in UNSTEADY)
 #: Of a later part of a recording: what can go wrong there, not what holds for all of it.
 PARTS = tuple(check for check in CHECKS if check not in (timing.rate, signals.resolution, effort.check))
 
