@@ -41,7 +41,7 @@ def assemble(recording: Recording, told: Mapping[str, str] | HowToRead | None = 
         metadata=metadata,
         time_base=used.time_base,
         notes=(*recording.notes, *notes, *found.notes, *used.notes),
-        wraps=found.wraps or used.wraps,
+        wraps=found.wraps,
     )
 
 

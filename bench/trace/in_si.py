@@ -16,8 +16,7 @@ from bench.trace.how import HowToRead
 from bench.trace.known_names import scale_in
 from bench.trace.signals import SI_UNITS
 from bench.trace.trace import all_finite
-from bench.trace.unwrap import Unwrapping
-from bench.trace.wraps import Wraps
+from bench.trace.wraps import Unwrapping, Wraps
 
 #: Share of cells that may be empty as lost samples; a column with more of them is sampled by a clock of its own.
 FEW = 0.05
@@ -204,9 +203,10 @@ def _unwrapped(
     sampled = signals[name]
     speed = signals.get(name.replace("position", "velocity"))
     speeds = speed.values if speed is not None and speed.clock is sampled.clock else None
-    found = unwrapping(sampled.values, sampled.clock.time, speeds, abs(choice.scale.factor), choice.channel.place)
-    if found is None:
+    values, wraps = unwrapping(
+        sampled.values, sampled.clock.time, speeds, abs(choice.scale.factor), choice.channel.place
+    )
+    if wraps is None:
         return sampled, None
-    if found.count:
-        notes.append(f"{name} wraps {found.count} times by {found.period:.6g} {choice.scale.unit}; made continuous")
-    return replace(sampled, values=found.values), Wraps(found.period, found.count) if found.count else None
+    notes.append(f"{name} wraps {wraps.count} times by {wraps.period:.6g} {choice.scale.unit}; made continuous")
+    return replace(sampled, values=values), wraps

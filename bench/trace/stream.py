@@ -22,7 +22,7 @@ from bench.trace.read import read
 from bench.trace.readers.parquet import DAMAGE, FORMAT, MAGIC, WIDTH, channel_of, damaged, is_moment
 from bench.trace.time_base import regular
 from bench.trace.trace import Trace
-from bench.trace.unwrap import Unwrapping
+from bench.trace.wraps import Unwrapping
 
 #: Samples a chunk: small enough for the processor's cache, large enough to forget Python's share of the work.
 CHUNK = 1 << 17
@@ -143,7 +143,7 @@ def _trace(found: InSI, recording: Recording, notes: tuple[str, ...], last: Trac
         time_base=base.time_base,
         notes=(*notes, *base.notes),
         continues=_continues(last, base.time, base.time_base.sample_period, recording.origin),
-        wraps=base.wraps,
+        wraps=found.wraps,
     )
 
 

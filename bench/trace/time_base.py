@@ -25,7 +25,6 @@ from bench.errors import InputError
 from bench.trace.clock import Clock, Sampled, without_duplicates
 from bench.trace.sample_base import LONGEST_STEP, STEADY, Base, find_base
 from bench.trace.trace import HOLE, TimeBase
-from bench.trace.wraps import Wraps, without_wraps
 
 #: Signals whose clock makes the time base, best first.
 LEADING = ("velocity", "position", "current", "torque", "force", "voltage")
@@ -41,7 +40,6 @@ class Regular:
     signals: Mapping[str, Array]
     time_base: TimeBase
     notes: tuple[str, ...]
-    wraps: Wraps | None = None
 
 
 def regular(signals: Mapping[str, Sampled]) -> Regular:
@@ -50,7 +48,6 @@ def regular(signals: Mapping[str, Sampled]) -> Regular:
     Raises:
         InputError: fewer than two samples, time running backwards, or more than 1 % of samples at times already taken.
     """
-    signals, wraps = without_wraps(signals)
     leader = next((name for name in LEADING if name in signals), next(iter(signals)))
     clocks = {id(signal.clock): signal.clock for signal in signals.values()}
     of_clock = {key: {n: s.values for n, s in signals.items() if id(s.clock) == key} for key in clocks}
@@ -80,7 +77,7 @@ def regular(signals: Mapping[str, Sampled]) -> Regular:
         time, placed = time[valid], {name: array[valid] for name, array in placed.items()}
     if time.size < 2:
         raise InputError(clock.place(None), f"found {time.size} samples common to all signals", "allowed: at least two")
-    return Regular(time, {name: placed[name] for name in signals}, found, tuple(notes), wraps)
+    return Regular(time, {name: placed[name] for name in signals}, found, tuple(notes))
 
 
 def _empty(signals: Mapping[str, Sampled]) -> Array:

@@ -1,16 +1,21 @@
-"""Positions that wrap: a drive counts to the end of a turn, or of its range, and starts over."""
+"""Positions that wrap: a drive counts to the end of a turn, or of its range, and starts over.
+
+A wrapped position leaps by nearly its period P from one end of its range to the other; the step that was really made
+is that of its neighbours. So each leap d beside steps s tells P = |d - s|, about which all leaps have to agree. Where
+turns, or a power of two counts, of which a counter is made, are as near as noise of a step lets tell, P is that.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.trace.clock import Sampled
+from bench.errors import InputError
 
 #: Samples from which on a jump is told from motion.
 LEAST = 10
@@ -20,8 +25,13 @@ LONGEST_STEP = 2.5
 FAR, ISOLATED = 0.5, 3.0
 #: Jumps of one period differ by what the axis moves meanwhile, which the steps beside them tell, to this share of it.
 ALIKE = 0.02
-#: A period this close to whole revolutions is one - share.
-WHOLE = 1e-3
+#: Standard errors, and share of a period, within which jumps agree with an exact one: 25 rad, by which CAN drives wrap,
+#: is 0.5 % off four turns.
+SURE, EXACT = 4.0, 3e-3
+#: Turns and powers of two counts that drives wrap by.
+TURNS, POWERS = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0), range(8, 33)
+#: Steps beyond this share of the period may be one turn more or less.
+HALF = 0.45
 
 
 @dataclass(frozen=True)
@@ -42,19 +52,30 @@ def jumps(position: Array, time: Array) -> NDArray[np.intp]:
 
     Steps over a hole in time are none of them: the axis may be anywhere after it.
     """
+    none = np.empty(0, dtype=np.intp)
     if position.size < LEAST:
-        return np.empty(0, dtype=np.intp)
-    step, passed = np.abs(np.diff(position)), np.diff(time)
+        return none
+    step = np.abs(np.diff(position))
+    far = step > FAR * float(np.ptp(position))
+    if not far.any():
+        return none
+    passed = np.diff(time)
     near = passed <= LONGEST_STEP * float(np.median(passed))
-    far = near & (step > FAR * float(np.ptp(position)))
+    far &= near
     others = step[near & ~far]
     if not far.any() or not others.any() or step[far].min() < ISOLATED * others.max():
-        return np.empty(0, dtype=np.intp)
+        return none
     return np.flatnonzero(far)
 
 
-def period_of(position: Array, places: NDArray[np.intp]) -> float | None:
-    """Period by which a position (n,) jumps at `places` - rad (m); None where the jumps are not of one period."""
+def period_of(position: Array, places: NDArray[np.intp], count: float = 0.0) -> float | None:
+    """Period by which a position (n,) jumps at `places` - rad (m); None where the jumps are not of one period.
+
+    Args:
+        position: rad (m).
+        places: (m,) steps that are jumps.
+        count: what one count of the file is worth - rad (m); 0 where it is not known.
+    """
     step = np.diff(position)
     usual = step.copy()
     usual[places] = np.nan
@@ -65,9 +86,11 @@ def period_of(position: Array, places: NDArray[np.intp]) -> float | None:
     period = float(np.median(found))
     if np.abs(found - period).max() > ALIKE * period or np.ptp(position) > (1.0 + ALIKE) * period:
         return None
-    turns = max(round(period / (2.0 * math.pi)), 1)
-    whole = turns * 2.0 * math.pi
-    return whole if abs(period / whole - 1.0) < WHOLE else period
+    noise = float(np.nanstd(usual[1:-1] - 0.5 * (usual[:-2] + usual[2:])))
+    doubt = min((SURE * noise + count) / math.sqrt(places.size), EXACT * period)
+    exact = [*(2.0 * math.pi * turns for turns in TURNS), *(count * 2.0**power for power in POWERS)]
+    nearest = min(exact, key=lambda one: abs(one - period))
+    return nearest if abs(nearest - period) <= doubt else period
 
 
 def undone(position: Array, period: float) -> Array:
@@ -75,18 +98,62 @@ def undone(position: Array, period: float) -> Array:
     return np.unwrap(position, period=period)
 
 
-def without_wraps(signals: Mapping[str, Sampled]) -> tuple[dict[str, Sampled], Wraps | None]:
-    """Signals in which the position runs on where it plainly wraps, and its reference with it.
+class Unwrapping:
+    """A position made continuous piece by piece: what was found in one piece holds in those that follow.
 
-    Before samples are brought to a regular time base: interpolated over a jump, they would lie inside it.
+    Args:
+        told: period that the user tells - rad (m); None where it is to be found.
     """
-    if "position" not in signals:
-        return dict(signals), None
-    position = signals["position"].values
-    places = jumps(position, signals["position"].clock.time)
-    period = period_of(position, places) if places.size else None
-    if period is None:
-        return dict(signals), None
-    wrapping = {name: one for name, one in signals.items() if name in ("position", "position_reference")}
-    changed = {name: replace(one, values=undone(one.values, period)) for name, one in wrapping.items()}
-    return {**signals, **changed}, Wraps(period, int(places.size))
+
+    def __init__(self, told: float | None) -> None:
+        self.period, self.turned, self.count, self.last = told, 0.0, 0, np.empty((2, 0))
+
+    def __call__(
+        self, position: Array, time: Array, speed: Array | None, count: float, place: Callable[[int | None], str]
+    ) -> tuple[Array, Wraps | None]:
+        """The piece made continuous (n,), and its wraps so far; None while it has none.
+
+        Args:
+            position: rad (m) - (n,).
+            time: s - (n,).
+            speed: rad/s (m/s) - (n,) at the same times, where it is recorded.
+            count: what one count of the file is worth - rad (m).
+            place: where sample i stands in the file, for messages.
+
+        Raises:
+            InputError: it spans more than its period, or moves by more than half of one a sample.
+        """
+        before = self.last.shape[1]
+        joined = np.concatenate([self.last[0], position]) if before else position
+        times = np.concatenate([self.last[1], time]) if before else time
+        self.last = np.array([position[-1:], time[-1:]])
+        if self.period is None:
+            places = jumps(joined, times)
+            self.period = period_of(joined, places, count) if places.size else None
+        if self.period is None:
+            return position, None
+        turns = _turns(joined, times, None if before else speed, self.period, place)
+        moved = self.turned - self.period * np.concatenate([[0.0], np.cumsum(turns)])
+        self.turned, self.count = float(moved[-1]), self.count + int(np.abs(turns).sum())
+        return position + moved[before:], Wraps(self.period, self.count) if self.count else None
+
+
+def _turns(
+    position: Array, time: Array, speed: Array | None, period: float, place: Callable[[int | None], str]
+) -> Array:
+    """Periods that each step of a position (n,) has too much (n - 1,)."""
+    if np.ptp(position) > 1.01 * period:
+        found = f"spans {np.ptp(position):.6g}, more than its period {period:.6g}"
+        raise InputError(place(None), found, "allowed: a position_period that it wraps by, or none where it does not")
+    steps = np.diff(position)
+    turns = np.rint(steps / period)
+    doubtful = np.abs(steps - turns * period) > HALF * period
+    if not doubtful.any():
+        return turns
+    if speed is None:
+        raise InputError(
+            place(int(np.argmax(doubtful)) + 1),
+            f"the position moves by half of its period {period:.6g} from one sample to the next",
+            "allowed: less, or a recorded velocity; record faster",
+        )
+    return np.rint((steps - 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)) / period)
