@@ -3,7 +3,7 @@
 Of nulls: the most that any candidate would save, over noise power, per number and independent row (`Significant`), and
 residual over noise floor (`Remainder`). Of singles named rightly: the share of what stands above the noise floor that
 the hidden effect explains when it is taken up (`Explains`), and residual over noise floor with it. Of all that is
-explained: the torque gap of the holdout over that of the recording, noise at least (`Elsewhere`).
+explained: the torque gap of the holdout over that of the recording, noise at least (`HoldoutApart`).
 """
 
 from __future__ import annotations

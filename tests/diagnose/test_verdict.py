@@ -8,7 +8,7 @@ import pytest
 from bench.balance.parameter import Parameter
 from bench.diagnose.diagnosis import diagnose
 from bench.diagnose.found import Gap, NamedEffect
-from bench.diagnose.show.verdict import OBJECTIONS, Drives, Elsewhere, MovesWorse, Undetermined, verdict
+from bench.diagnose.show.verdict import OBJECTIONS, HoldoutApart, MovesWorse, NegativeFriction, Undetermined, verdict
 from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
@@ -83,15 +83,15 @@ def test_friction_that_is_not_told_counts_where_its_torque_does():
 
 
 def test_friction_resists():
-    assert "is negative" in Drives().against(shown(friction=(-0.002, 0.001)))
-    assert "is negative" in Drives().against(shown(friction=(-0.02, 0.03)))
-    assert Drives().against(shown(friction=(-0.002, 0.003))) == ""
+    assert "is negative" in NegativeFriction().against(shown(friction=(-0.002, 0.001)))
+    assert "is negative" in NegativeFriction().against(shown(friction=(-0.02, 0.03)))
+    assert NegativeFriction().against(shown(friction=(-0.002, 0.003))) == ""
 
 
 def test_a_holdout_at_three_times_what_is_left_here_stands_apart():
     near, far = (Gap("N*m", 0.01, (0.1, 0.008), (0.1, after)) for after in (0.029, 0.031))
-    assert Elsewhere().against(shown(torque=near)) == ""
-    assert "stands apart" in Elsewhere().against(shown(torque=far))
+    assert HoldoutApart().against(shown(torque=near)) == ""
+    assert "stands apart" in HoldoutApart().against(shown(torque=far))
 
 
 def test_a_holdout_with_half_as_much_friction_again_is_no_proof_that_nothing_is_missing():

@@ -79,12 +79,12 @@ def forward_selection(found: Searched, effects: Sequence[Effect], rules: Rules) 
         if len(names) > rules.most or max(names.values()) > rules.members:
             return Searched(steps, LIMIT)
         chosen = with_hum(backward_elimination(on_its_side(polished(best, rules), rules), rules))
-        if _been_there(chosen, steps, rules):
+        if _repeats_a_step(chosen, steps, rules):
             return Searched(steps)
         steps = (*steps, Step(chosen, tuple(tried)))
 
 
-def _been_there(fitted: Fit, steps: Sequence[Step], rules: Rules) -> bool:
+def _repeats_a_step(fitted: Fit, steps: Sequence[Step], rules: Rules) -> bool:
     """Whether an earlier step had the same effects and left no more: what is taken up and let go in turn never ends."""
     least = rules.significant.threshold(fitted, 1)
     names = Counter(fitted.hypothesis.names)

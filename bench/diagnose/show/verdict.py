@@ -126,7 +126,7 @@ class Undetermined:
 
 
 @dataclass(frozen=True)
-class Drives:
+class NegativeFriction:
     """Friction resists: where it comes out negative by more than noise, something else is in it."""
 
     def against(self, shown: Shown) -> str:
@@ -138,7 +138,7 @@ class Drives:
 
 
 @dataclass(frozen=True)
-class Elsewhere:
+class HoldoutApart:
     """What was found has to hold on the holdout too.
 
     Attributes:
@@ -165,8 +165,8 @@ OBJECTIONS: tuple[Objection, ...] = (
     Unfinished(),
     MovesWorse(),
     Undetermined(),
-    Drives(),
-    Elsewhere(),
+    NegativeFriction(),
+    HoldoutApart(),
 )
 
 
