@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 
 from bench.balance.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.statistics import NORMAL95
 
 
 def load_inertia(parameters: Mapping[str, Parameter], rig: Rig) -> dict[str, Parameter]:
@@ -16,10 +14,10 @@ def load_inertia(parameters: Mapping[str, Parameter], rig: Rig) -> dict[str, Par
     if inertia is None or rig.motor.rotor_inertia is None or inertia.unit != "kg*m**2":
         return {}
     value, square = _beyond(inertia.value, rig), _beyond(1.0, rig) - _beyond(0.0, rig)
-    moved = math.hypot(*(_beyond(inertia.value, other) - value for other in rig.within_tolerance()))
-    error = math.hypot(inertia.std_error * square, moved / NORMAL95)
-    low, high = (math.hypot((bound - inertia.value) * square, moved) for bound in inertia.ci95)
-    return {"load_moment_of_inertia": Parameter(value, inertia.unit, error, (value - low, value + high))}
+    low, high = (value + (bound - inertia.value) * square for bound in inertia.ci95)
+    told = Parameter(value, inertia.unit, inertia.std_error * square, (low, high))
+    moved = (_beyond(inertia.value, other) - value for other in rig.within_tolerance())
+    return {"load_moment_of_inertia": told.widened(*moved)}
 
 
 def _beyond(inertia: float, rig: Rig) -> float:

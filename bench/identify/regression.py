@@ -27,7 +27,6 @@ from bench.identify.parallel import in_parallel
 from bench.identify.solution import NOISE_ALONE, SURE, Left, Solved, equations_of, solved_with_shift
 from bench.identify.tolerance import by_tolerance
 from bench.rig.rig import Rig
-from bench.statistics import NORMAL95
 from bench.trace.trace import Trace
 
 
@@ -174,13 +173,12 @@ def parameters_of(found: Solved, kind: AxisKind, effort_unit: str, more: Array |
         more: how far intervals of 95 % have to reach beside what the covariance says (p,).
     """
     more = np.zeros(found.theta.size) if more is None else more
-    errors = np.hypot(found.errors, more / NORMAL95)
-    reaches = np.hypot(found.reach * found.errors, more)
     parameters = {}
     for term, place in (TERMS | {MISALIGNMENT: layout.MISALIGNMENT} | ({OFFSET: -1} if found.offset else {})).items():
-        value, error, reach = (float(numbers[place]) for numbers in (found.theta, errors, reaches))
-        unit = kind.parameter_unit(term, effort_unit)
-        parameters[kind.parameter(term)] = Parameter(value, unit, error, (value - reach, value + reach))
+        value, error, beside = (float(numbers[place]) for numbers in (found.theta, found.errors, more))
+        interval = (value - found.reach * error, value + found.reach * error)
+        told = Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
+        parameters[kind.parameter(term)] = told.widened(beside)
     return parameters
 
 
