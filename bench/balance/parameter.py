@@ -30,3 +30,9 @@ class Parameter:
         low, high = (math.hypot(bound - self.value, reach) for bound in self.ci95)
         error = math.hypot(self.std_error, reach / NORMAL95)
         return replace(self, std_error=error, ci95=(self.value - low, self.value + high))
+
+    def reaching(self, other: float) -> Parameter:
+        """The same, its interval as far as one around another value that may be the right one instead - unit."""
+        away, (low, high) = other - self.value, self.ci95
+        error = math.hypot(self.std_error, 0.5 * away)
+        return replace(self, std_error=error, ci95=(min(low, low + away), max(high, high + away)))

@@ -120,6 +120,12 @@ class Rows:
             _table(stretches, conditioning.filter, lambda s: [[(s.effort, 0)]], 0.0)[:, 0],
         )
 
+    @property
+    def correlation(self) -> float:
+        """Variance of a sum of filtered noise over that of independent rows: 2*sqrt(pi)*width over their distance."""
+        smooth = self.conditioning.filter
+        return max(1.0, 2.0 * np.sqrt(np.pi) * smooth.width / (smooth.stride * smooth.sample_period))
+
     def with_signals(self, change: Callable[[Signals], Signals], made_by: Hashable = None) -> Rows:
         """The same rows over changed raw signals (a corrected angle, another friction level).
 
