@@ -69,6 +69,13 @@ def test_no_import_goes_back(path):
     assert not back, f"{module_of(path)} imports {back} from further down the way of the data"
 
 
+def test_the_truth_owes_nothing_to_what_it_judges():
+    folder = ROOT / "bench" / "validate" / "independent"
+    found = {name for path in sorted(folder.rglob("*.py")) for name in imports(path)}
+    others = {name for name in found if not name.startswith("bench.validate.independent")}
+    assert others == {"bench.trace.trace"}, "a recording is a Trace; nothing else of the bench has a part in making one"
+
+
 #: Names of the bench's own effects, each a word of its own in a text.
 NAMED = re.compile(rf"(?<![a-z_])({'|'.join(catalogue())})(?![a-z_])")
 #: Modules that are an effect, or lie in the folder of one.

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tests.independent.case import Hidden
-from tests.independent.draw import any_effects, hidden
-from tests.independent.effects import CATALOGUE, OUTSIDE
-from tests.independent.sensors import Noise
+from bench.validate.independent.case import Hidden
+from bench.validate.independent.draw import any_effects, hidden
+from bench.validate.independent.effects import CATALOGUE, OUTSIDE
+from bench.validate.independent.sensors import Noise
 
 #: Severity of an effect by strength; 1 is drastic.
 STRENGTHS = {"weak": (0.15, 0.3), "middle": (0.3, 0.5), "strong": (0.5, 0.8)}

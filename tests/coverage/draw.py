@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 
 from bench.trace.trace import Trace
-from tests.independent import Axis, Motion, random_motion, random_rig, random_sensors, simulate
-from tests.independent.references import Chirp, Multisine, Ramps, run_up_and_down, slow_reversals, staircase
+from bench.validate.independent import Axis, Motion, random_motion, random_rig, random_sensors, simulate
+from bench.validate.independent.references import Chirp, Multisine, Ramps, run_up_and_down, slow_reversals, staircase
+from tests.kept import INTEGRATOR
 
 #: Half of the shortest control period, as the blind set has it - s.
 LONGEST_STEP = 31.25e-6
-TESTS = Path(__file__).resolve().parents[1]
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def recordings(count: int, seed: int, duration: float) -> dict[str, list[Known]]
         duration: of one, about - s.
     """
     digest = hashlib.sha256()
-    for path in (*sorted((TESTS / "independent").rglob("*.py")), Path(__file__)):
+    for path in (*INTEGRATOR, Path(__file__)):
         digest.update(path.read_bytes())
     place = Path(tempfile.gettempdir()) / f"coverage-{digest.hexdigest()[:10]}" / f"{seed}-{count}-{duration:g}s.pickle"
     if not place.exists():

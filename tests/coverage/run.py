@@ -14,11 +14,11 @@ from bench.identify.regression import identify
 from bench.rig.rig import Rig, load_rig
 from bench.trace.read import read
 from bench.trace.trace import Trace
+from bench.validate.independent import write_rig
 from tests.blind.draw import draw
 from tests.blind.record import home
 from tests.coverage.draw import Known
 from tests.coverage.table import QUANTITIES, Found, Outcome
-from tests.independent import write_rig
 
 
 def of_nulls(recordings: Sequence[Known]) -> tuple[int, Found]:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from tests.independent.effects.effect import Effect, about, phase
-from tests.independent.effects.motor import _slowness
+from bench.validate.independent.effects.effect import Effect, about, phase
+from bench.validate.independent.effects.motor import _slowness
+from bench.validate.independent.rig import Axis
+
+if TYPE_CHECKING:
+    pass
 
 
 @dataclass(frozen=True)
@@ -19,10 +23,10 @@ class VelocityFilterLag(Effect):
     time_constant: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(8e-3 * about(severity, rng) * _slowness(axis))
 
-    def filtered(self, before, after, memory, step):
+    def filtered(self, before: np.ndarray, after: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
         # exact for a sensed speed that changes linearly within the step: v lags it by T*(1 - exp(-t/T)) of its slope
         slope = (after - before) / step
         decay = np.exp(-step / self.time_constant)
@@ -39,9 +43,9 @@ class EncoderEccentricity(Effect):
     phase: float = 0.0
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(0.035 * about(severity, rng), phase(rng))
 
-    def measured(self, position, speed):
+    def measured(self, position: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         angle = position + self.phase
         return position + self.amplitude * np.sin(angle), speed * (1.0 + self.amplitude * np.cos(angle))

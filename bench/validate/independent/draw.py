@@ -4,19 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from tests.independent.case import Hidden
-from tests.independent.effects import CATALOGUE, KINDS, OUTSIDE
-from tests.independent.rig import random_rig
-from tests.independent.sensors import random_sensors
+from bench.validate.independent.case import Hidden
+from bench.validate.independent.effects import CATALOGUE, KINDS, OUTSIDE
+from bench.validate.independent.rig import random_rig
+from bench.validate.independent.sensors import random_sensors
 
 GROUPS = {0: "null", 1: "single", 2: "pair", 3: "triple"}
-
-#: Pairs that one axis cannot have, or that the contract itself says no recording of the kind tells apart.
-EXCLUDED = (
-    {"elastic_coupling", "backlash"},
-    {"torque_offset", "direction_dependent_friction"},
-    {"current_loop_lag", "velocity_filter_lag"},
-)
 
 
 def hidden(
@@ -43,5 +36,5 @@ def any_effects(count: int, rng: np.random.Generator, *, linear: bool = False) -
     allowed = [name for name, kind in CATALOGUE.items() if kind.on_linear_axis or not linear]
     while True:
         names = tuple(str(name) for name in rng.choice(allowed, count, replace=False))
-        if not any(pair <= set(names) for pair in EXCLUDED):
+        if not any(KINDS[name].never_beside in names for name in names):
             return names

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.independent.rig import Axis
+from bench.validate.independent.rig import Axis
 
 
 class Ramps:
@@ -20,7 +20,7 @@ class Ramps:
         jerk_time: in which acceleration goes from one value to the next - s.
     """
 
-    def __init__(self, points: Sequence[tuple[float, float]], jerk_time: float):
+    def __init__(self, points: Sequence[tuple[float, float]], jerk_time: float) -> None:
         self._time, self._speed = (np.array(column, dtype=float) for column in zip(*points, strict=True))
         length, rise = np.diff(self._time), np.diff(self._speed)
         gone = self._speed[:-1] * length + rise * length / 2.0
@@ -56,7 +56,7 @@ class Multisine:
 
     distance = 0.0
 
-    def __init__(self, duration: float, speeds: np.ndarray, frequencies: np.ndarray, phases: np.ndarray):
+    def __init__(self, duration: float, speeds: np.ndarray, frequencies: np.ndarray, phases: np.ndarray) -> None:
         self.duration = duration
         self._omega, self._phases = 2.0 * np.pi * frequencies, phases
         self._amplitudes = speeds / self._omega
@@ -80,7 +80,7 @@ class Chirp:
 
     distance = 0.0
 
-    def __init__(self, duration: float, amplitude: float, first: float, last: float):
+    def __init__(self, duration: float, amplitude: float, first: float, last: float) -> None:
         self.duration, self._amplitude, self._first, self._last = duration, amplitude, first, last
 
     def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -92,7 +92,9 @@ class Chirp:
         return _faded(time, self.duration, x, dx, self._amplitude * (slope * np.cos(angle) - omega**2 * np.sin(angle)))
 
 
-def _faded(time, duration, x, dx, ddx):
+def _faded(
+    time: np.ndarray, duration: float, x: np.ndarray, dx: np.ndarray, ddx: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Position, speed, acceleration of x*sin(pi*t/duration)**2."""
     turn = 2.0 * np.pi / duration
     f, df, ddf = 0.5 - 0.5 * np.cos(turn * time), 0.5 * turn * np.sin(turn * time), 0.5 * turn**2 * np.cos(turn * time)

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from tests.independent.effects.effect import Effect, about, phase
+from bench.validate.independent.effects.effect import Effect, about, phase
+from bench.validate.independent.rig import Axis
+
+if TYPE_CHECKING:
+    from bench.validate.independent.plant import Rows
 
 
 @dataclass(frozen=True)
@@ -19,11 +23,11 @@ class StribeckFriction(Effect):
     stribeck_velocity: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         rise = (0.6 + 1.8 * about(severity, rng)) * axis.coulomb
         return cls(axis.coulomb + rise, axis.top_speed * rng.uniform(0.02, 0.05))
 
-    def friction_excess(self, rows):
+    def friction_excess(self, rows: Rows) -> np.ndarray:
         return (self.static_friction - rows.coulomb) * np.exp(-((rows.velocity / self.stribeck_velocity) ** 2))
 
 
@@ -40,16 +44,16 @@ class PreslidingFriction(Effect):
     bristle_damping: float = 0.0
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         deflection = axis.top_speed * 2.5e-4 * about(severity, rng)
         stiffness = axis.coulomb / deflection
         return cls(stiffness, rng.uniform(0.0, 0.1) * np.sqrt(stiffness * axis.inertia))
 
-    def bristle_torque(self, rows, level, memory):
+    def bristle_torque(self, rows: Rows, level: np.ndarray, memory: np.ndarray) -> np.ndarray:
         bending = rows.velocity - self.bristle_stiffness * np.abs(rows.velocity) / level * memory
         return self.bristle_stiffness * memory + self.bristle_damping * bending
 
-    def bend(self, speed, level, memory, step):
+    def bend(self, speed: np.ndarray, level: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
         # exact for constant speed: z tends to g*sgn(w)/sigma_0 at the rate sigma_0*|w|/g
         slid = np.sign(speed) * level / self.bristle_stiffness
         return slid + (memory - slid) * np.exp(-self.bristle_stiffness * np.abs(speed) / level * step)
@@ -67,14 +71,14 @@ class DirectionDependentFriction(Effect):
     viscous_share: float = 0.0
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         difference = rng.choice([-1.0, 1.0]) * min(1.8 * about(severity, rng), 1.6) * axis.coulomb
         return cls(difference, float(rng.choice([0.0, rng.uniform(0.2, 1.0)])))
 
-    def friction_difference(self, rows):
+    def friction_difference(self, rows: Rows) -> np.ndarray | float:
         return self.coulomb_difference
 
-    def resisting_torque(self, rows):
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
         relative = self.viscous_share * self.coulomb_difference / (2.0 * rows.coulomb)
         return relative * rows.viscous * np.abs(rows.velocity)
 
@@ -87,10 +91,10 @@ class QuadraticDrag(Effect):
     quadratic_drag: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(2.0 * about(severity, rng) * axis.torque_scale / axis.top_speed**2)
 
-    def resisting_torque(self, rows):
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
         return self.quadratic_drag * rows.velocity * np.abs(rows.velocity)
 
 
@@ -102,10 +106,10 @@ class LoadDependentFriction(Effect):
     load_friction_coefficient: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(0.25 * about(severity, rng))
 
-    def friction_excess(self, rows):
+    def friction_excess(self, rows: Rows) -> np.ndarray:
         return self.load_friction_coefficient * np.abs(rows.motor_torque)
 
 
@@ -121,10 +125,10 @@ class DirectionalLoadFriction(Effect):
     load_ratio: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(0.25 * about(severity, rng), float(rng.uniform(1.5, 4.0)))
 
-    def friction_excess(self, rows):
+    def friction_excess(self, rows: Rows) -> np.ndarray:
         external = -rows.load_torque
         load_coefficient = self.load_ratio * self.motor_coefficient
         return np.abs(load_coefficient * external - self.motor_coefficient * rows.motor_torque)
@@ -140,10 +144,10 @@ class PositionDependentFriction(Effect):
     phase: float = 0.0
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(min(1.2 * about(severity, rng), 0.95), phase(rng))
 
-    def friction_factor(self, rows):
+    def friction_factor(self, rows: Rows) -> np.ndarray:
         return 1.0 + self.relative_amplitude * np.sin(rows.position + self.phase)
 
 
@@ -157,15 +161,15 @@ class FrictionWarmup(Effect):
     viscous_share: float = 0.0
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         share = float(rng.choice([0.0, 1.0]))
         return cls(1.8 * about(severity, rng), duration * rng.uniform(0.2, 0.5), share)
 
-    def _excess(self, rows):
+    def _excess(self, rows: Rows) -> np.ndarray:
         return self.relative_amplitude * np.exp(-rows.time / self.time_constant)
 
-    def friction_factor(self, rows):
+    def friction_factor(self, rows: Rows) -> np.ndarray:
         return 1.0 + self._excess(rows)
 
-    def resisting_torque(self, rows):
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
         return self.viscous_share * self._excess(rows) * rows.viscous * rows.velocity

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import lfilter
 
-from tests.independent.rig import Axis
+from bench.validate.independent.rig import Axis
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Noise:
 class NoiseStream:
     """Noise of one signal, drawn block by block at a constant period."""
 
-    def __init__(self, noise: Noise, period: float, rng: np.random.Generator):
+    def __init__(self, noise: Noise, period: float, rng: np.random.Generator) -> None:
         # one source each, so that the lengths of blocks do not matter
         self._noise, (self._white, self._drive) = noise, rng.spawn(2)
         self._pole = float(np.exp(-period / noise.correlation_time))
@@ -82,7 +82,7 @@ class Sensors:
     velocity_filter_fed_back: bool = False
     current_age: int = 0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.current_age not in (0, 1):
             raise ValueError("current_age is 0 or 1 control periods")
 

@@ -1,13 +1,13 @@
 """Effects of the independent axis: the contract's catalogue and some physics outside it."""
 
-from tests.independent.effects.current import (
+from bench.validate.independent.effects.current import (
     CurrentFilterLag,
     CurrentGainAsymmetry,
     CurrentOffsetDrift,
     TorqueConstantDrift,
 )
-from tests.independent.effects.effect import Effect, stack
-from tests.independent.effects.friction import (
+from bench.validate.independent.effects.effect import Effect, stack
+from bench.validate.independent.effects.friction import (
     DirectionalLoadFriction,
     DirectionDependentFriction,
     FrictionWarmup,
@@ -17,23 +17,23 @@ from tests.independent.effects.friction import (
     QuadraticDrag,
     StribeckFriction,
 )
-from tests.independent.effects.load import (
+from bench.validate.independent.effects.load import (
     LoadTorqueEvent,
     PositionDependentInertia,
     TorqueOffset,
     TorsionSpring,
     Unbalance,
 )
-from tests.independent.effects.motor import (
+from bench.validate.independent.effects.motor import (
     CoggingTorque,
     CurrentLoopLag,
     TorqueConstantSaturation,
     TorqueRipple,
     VoltageLimit,
 )
-from tests.independent.effects.outside import PositionNotch, RestHardening, SlowMemoryFriction, Vibration
-from tests.independent.effects.sensing import EncoderEccentricity, VelocityFilterLag
-from tests.independent.effects.transmission import Backlash, ElasticCoupling
+from bench.validate.independent.effects.outside import PositionNotch, RestHardening, SlowMemoryFriction, Vibration
+from bench.validate.independent.effects.sensing import EncoderEccentricity, VelocityFilterLag
+from bench.validate.independent.effects.transmission import Backlash, ElasticCoupling
 
 KINDS: dict[str, type[Effect]] = {
     kind.name: kind

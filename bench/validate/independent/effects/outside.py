@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from tests.independent.effects.effect import Effect, about, phase
+from bench.validate.independent.effects.effect import Effect, about, phase
+from bench.validate.independent.rig import Axis
+
+if TYPE_CHECKING:
+    from bench.validate.independent.plant import Rows
 
 
 @dataclass(frozen=True)
@@ -24,13 +28,13 @@ class SlowMemoryFriction(Effect):
     speed: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(4.0 * about(severity, rng), duration * rng.uniform(0.06, 0.15), 0.5 * axis.top_speed)
 
-    def friction_factor(self, rows):
+    def friction_factor(self, rows: Rows) -> np.ndarray:
         return 1.0 + self.relative_amplitude * rows.memory
 
-    def remember(self, rows, memory, step):
+    def remember(self, rows: Rows, memory: np.ndarray, step: float) -> np.ndarray:
         tends = np.abs(rows.velocity) / self.speed
         return tends + (memory - tends) * np.exp(-step / self.time_constant)
 
@@ -47,10 +51,10 @@ class PositionNotch(Effect):
     width: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(2.5 * about(severity, rng) * axis.torque_scale, phase(rng), rng.uniform(0.1, 0.3))
 
-    def resisting_torque(self, rows):
+    def resisting_torque(self, rows: Rows) -> np.ndarray:
         away = np.mod(rows.position - self.angle + np.pi, 2.0 * np.pi) - np.pi
         return self.amplitude * np.exp(-((away / self.width) ** 2))
 
@@ -66,10 +70,10 @@ class Vibration(Effect):
     phase: float = 0.0
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(1.2 * about(severity, rng) * axis.torque_scale, rng.uniform(4.0, 35.0), phase(rng))
 
-    def resisting_torque(self, rows):
+    def resisting_torque(self, rows: Rows) -> np.ndarray:
         return self.amplitude * np.sin(2.0 * np.pi * self.frequency * rows.time + self.phase)
 
 
@@ -87,12 +91,12 @@ class RestHardening(Effect):
     speed: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(3.0 * about(severity, rng), duration * rng.uniform(0.03, 0.08), 0.05 * axis.top_speed)
 
-    def friction_factor(self, rows):
+    def friction_factor(self, rows: Rows) -> np.ndarray:
         return 1.0 + self.relative_amplitude * (1.0 - rows.memory)
 
-    def remember(self, rows, memory, step):
+    def remember(self, rows: Rows, memory: np.ndarray, step: float) -> np.ndarray:
         sliding = (np.abs(rows.velocity) > self.speed).astype(float)
         return sliding + (memory - sliding) * np.exp(-step / self.time_constant)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tests.independent.rig import Axis
+from bench.validate.independent.rig import Axis
 
 
 class Drive:
@@ -15,7 +15,7 @@ class Drive:
     Current is limited to its peak, the integrator held while limited; one command each control period.
     """
 
-    def __init__(self, axes: Sequence[Axis], control_period: float):
+    def __init__(self, axes: Sequence[Axis], control_period: float) -> None:
         def array(name: str) -> np.ndarray:
             return np.array([getattr(axis, name) for axis in axes])
 
@@ -23,8 +23,8 @@ class Drive:
         self._jff, self._kt, self._peak = array("inertia_feedforward"), array("torque_constant"), array("peak_current")
         self._period, self._integral = control_period, np.zeros(len(axes))
 
-    def current(self, reference: Sequence[np.ndarray], position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Current demand - A - from (q_ref, w_ref, alpha_ref) and measurements - (n,) each."""
+    def current(self, reference: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Current demand - A - from q_ref, w_ref, alpha_ref (3, n) and measurements - (n,) each."""
         q, w, alpha = reference
         error = w + self._kp * (q - position) - velocity
         torque = self._kv * error + self._ki * self._integral + self._jff * alpha

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from tests.independent.effects import Effect
-from tests.independent.references import random_motion
-from tests.independent.rig import Axis, write_rig
-from tests.independent.sensors import Sensors
-from tests.independent.simulate import LONGEST_STEP, Recorded, simulate
+from bench.validate.independent.effects import Effect
+from bench.validate.independent.references import random_motion
+from bench.validate.independent.rig import Axis, write_rig
+from bench.validate.independent.sensors import Sensors
+from bench.validate.independent.simulate import LONGEST_STEP, Recorded, simulate
 
 #: Decimals of a column: finer than any sensor here, so that a file does not round what the sensor did not.
 DECIMALS = {"time": 4, "position": 5, "velocity": 4, "current": 3, "position_reference": 5, "velocity_reference": 4}

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from tests.independent.effects.effect import Effect, about, phase
+from bench.validate.independent.effects.effect import Effect, about, phase
+from bench.validate.independent.rig import Axis
+
+if TYPE_CHECKING:
+    from bench.validate.independent.plant import Rows
 
 
 @dataclass(frozen=True)
@@ -15,14 +19,15 @@ class TorqueOffset(Effect):
     """Constant resisting torque - N*m."""
 
     name: ClassVar[str] = "torque_offset"
+    never_beside: ClassVar[str] = "direction_dependent_friction"
     transmitted: ClassVar[bool] = True
     torque: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(rng.choice([-1.0, 1.0]) * 1.8 * about(severity, rng) * axis.torque_scale)
 
-    def resisting_torque(self, rows):
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
         return self.torque
 
 
@@ -37,10 +42,10 @@ class Unbalance(Effect):
     phase: float = 0.0
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(2.0 * about(severity, rng) * axis.torque_scale, phase(rng))
 
-    def resisting_torque(self, rows):
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
         return self.amplitude * np.sin(rows.position + self.phase)
 
 
@@ -53,11 +58,11 @@ class TorsionSpring(Effect):
     stiffness: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         # the motions sweep about half a second at top speed
         return cls(2.0 * about(severity, rng) * axis.torque_scale / (0.5 * axis.top_speed))
 
-    def resisting_torque(self, rows):
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
         return self.stiffness * rows.position
 
 
@@ -72,16 +77,16 @@ class PositionDependentInertia(Effect):
     phase: float = 0.0
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         harmonic = float(rng.integers(1, 4))
         torque = 2.0 * about(severity, rng) * axis.torque_scale
         amplitude = torque / (0.5 * harmonic * axis.inertia * (0.6 * axis.top_speed) ** 2)
         return cls(min(amplitude, 0.15), harmonic, phase(rng))
 
-    def added_inertia(self, rows):
+    def added_inertia(self, rows: Rows) -> np.ndarray:
         return rows.inertia * self.relative_amplitude * np.sin(self.harmonic * rows.position + self.phase)
 
-    def resisting_torque(self, rows):
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
         slope = rows.inertia * self.relative_amplitude * self.harmonic
         slope = slope * np.cos(self.harmonic * rows.position + self.phase)
         return 0.5 * slope * rows.velocity**2
@@ -97,10 +102,10 @@ class LoadTorqueEvent(Effect):
     torque: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         length = rng.uniform(0.04, 0.12) * duration
         start = rng.uniform(0.1, 0.8) * duration
         return cls(start, start + length, rng.choice([-1.0, 1.0]) * 1.6 * about(severity, rng) * axis.torque_scale)
 
-    def resisting_torque(self, rows):
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
         return self.torque * ((rows.time >= self.start) & (rows.time < self.end))

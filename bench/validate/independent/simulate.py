@@ -9,12 +9,12 @@ from math import ceil
 import numpy as np
 
 from bench.trace.trace import Trace
-from tests.independent.drive import Drive
-from tests.independent.effects import Effect
-from tests.independent.plant import Plant
-from tests.independent.references import Motion
-from tests.independent.rig import Axis
-from tests.independent.sensors import NoiseStream, Sensors, rounded
+from bench.validate.independent.drive import Drive
+from bench.validate.independent.effects import Effect
+from bench.validate.independent.plant import Plant
+from bench.validate.independent.references import Motion
+from bench.validate.independent.rig import Axis
+from bench.validate.independent.sensors import NoiseStream, Sensors, rounded
 
 LONGEST_STEP = 20e-6
 SIDE_BY_SIDE = 400
@@ -128,7 +128,7 @@ class _Batch:
                     if substep == 0:
                         row[5] = np.where(self._ages() == 0, plant.recorded_current, row[5])
             if not np.isfinite(block).all():
-                lost = [self.axes[k].name for k in np.flatnonzero(~np.isfinite(block).all(axis=(0, 1)))]
+                lost = [self.axes[int(k)].name for k in np.flatnonzero(~np.isfinite(block).all(axis=(0, 1)))]
                 raise FloatingPointError(f"diverged: {', '.join(lost)}")
             yield first, block
 
@@ -138,7 +138,7 @@ class _Batch:
     def _recorded(self, k: int, signals: np.ndarray) -> Recorded:
         axis, sensor, motion = self.axes[k], self.sensors[k], self.motions[k]
         count = int(motion.duration / sensor.sample_period + 1e-9) + 1
-        time = sensor.sample_period * np.arange(count)
+        time = sensor.sample_period * np.arange(count, dtype=float)
         position, velocity, torque, measured, clean, current, noise = signals[:, :count]
         hiss = NoiseStream(sensor.current, sensor.sample_period, np.random.default_rng([self.seed, self.numbers[k], 1]))
         reference = motion.at(time)

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from tests.independent.effects.effect import Effect, about
+from bench.validate.independent.effects.effect import Effect, about
+from bench.validate.independent.rig import Axis
+
+if TYPE_CHECKING:
+    from bench.validate.independent.plant import Rows
 
 
 @dataclass(frozen=True)
@@ -18,10 +22,10 @@ class CurrentFilterLag(Effect):
     time_constant: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(3e-3 * about(severity, rng))
 
-    def recorded_current(self, current, memory, step):
+    def recorded_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
         return current + (memory - current) * np.exp(-step / self.time_constant)
 
 
@@ -33,10 +37,10 @@ class CurrentGainAsymmetry(Effect):
     gain_difference: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(float(rng.choice([-1.0, 1.0]) * 0.08 * about(severity, rng)))
 
-    def true_current(self, rows, reading):
+    def true_current(self, rows: Rows, reading: np.ndarray) -> np.ndarray:
         return np.where(reading > 0.0, 1.0 + self.gain_difference / 2.0, 1.0 - self.gain_difference / 2.0) * reading
 
 
@@ -48,10 +52,10 @@ class CurrentOffsetDrift(Effect):
     rate: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(float(rng.choice([-1.0, 1.0]) * about(severity, rng) * axis.torque_scale / duration))
 
-    def true_current(self, rows, reading):
+    def true_current(self, rows: Rows, reading: np.ndarray) -> np.ndarray:
         return reading - self.rate * rows.time / rows.torque_constant
 
 
@@ -63,8 +67,8 @@ class TorqueConstantDrift(Effect):
     rate: float
 
     @classmethod
-    def draw(cls, axis, severity, rng, duration):
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         return cls(float(rng.choice([-1.0, 1.0]) * 0.12 * about(severity, rng) / duration))
 
-    def torque_factor(self, rows):
+    def torque_factor(self, rows: Rows) -> np.ndarray | float:
         return 1.0 + self.rate * rows.time

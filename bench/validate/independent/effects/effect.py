@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from tests.independent.rig import Axis
+from bench.validate.independent.rig import Axis
 
 if TYPE_CHECKING:
-    from tests.independent.plant import Rows
+    from bench.validate.independent.plant import Rows
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,8 @@ class Effect:
     on_linear_axis: ClassVar[bool] = True
     #: Whether its resisting torque is one of a load that a gear transmits.
     transmitted: ClassVar[bool] = False
+    #: Name of the effect that no axis has beside it, or that no recording tells from it; one of the two says so.
+    never_beside: ClassVar[str] = ""
 
     @classmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
@@ -40,7 +42,7 @@ class Effect:
         """Parameters as truth.json names them."""
         return {key: float(value) for key, value in asdict(self).items()}
 
-    def resisting_torque(self, rows: Rows) -> np.ndarray:
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
         """Added to M_load on the motor's side - N*m."""
         raise NotImplementedError
 
@@ -52,7 +54,7 @@ class Effect:
         """Multiplies the level of dry friction."""
         raise NotImplementedError
 
-    def friction_difference(self, rows: Rows) -> np.ndarray:
+    def friction_difference(self, rows: Rows) -> np.ndarray | float:
         """Level in positive minus level in negative direction - N*m."""
         raise NotImplementedError
 
@@ -60,7 +62,7 @@ class Effect:
         """Added to the moment of inertia - kg*m**2."""
         raise NotImplementedError
 
-    def torque_factor(self, rows: Rows) -> np.ndarray:
+    def torque_factor(self, rows: Rows) -> np.ndarray | float:
         """Multiplies motor torque."""
         raise NotImplementedError
 

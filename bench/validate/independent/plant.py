@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tests.independent.effects import Effect, stack
-from tests.independent.rig import Axis
-from tests.independent.stick_slip import distance_weight, move, speed_weight
+from bench.validate.independent.effects import Effect, stack
+from bench.validate.independent.rig import Axis
+from bench.validate.independent.stick_slip import distance_weight, move, speed_weight
 
 CONSTANTS = (
     "inertia",
@@ -31,8 +31,9 @@ class Rows:
     index: np.ndarray | slice
     effect: Effect
     memory: np.ndarray = field(init=False)
+    level: np.ndarray = field(init=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         self.memory = np.zeros_like(self.plant.velocity[self.index])
 
     def __getattr__(self, name: str) -> np.ndarray:
@@ -61,10 +62,13 @@ class Plant:
         sensed_velocity: the same before the filter on the speed, if there is one.
     """
 
-    def __init__(self, axes: Sequence[Axis], effects: Sequence[Sequence[Effect]], position=0.0, velocity=0.0):
+    def __init__(
+        self, axes: Sequence[Axis], effects: Sequence[Sequence[Effect]], position: float = 0.0, velocity: float = 0.0
+    ) -> None:
         n = len(axes)
-        for name in CONSTANTS:
-            setattr(self, name, np.array([getattr(axis, name) for axis in axes], dtype=float))
+        constants = [np.array([getattr(axis, name) for axis in axes], dtype=float) for name in CONSTANTS]
+        self.inertia, self.viscous, self.coulomb, self.torque_constant, self.peak_current = constants[:5]
+        self.resistance, self.inductance, self.back_emf_constant = constants[5:]
         self.position, self.velocity = np.full(n, position, dtype=float), np.full(n, velocity, dtype=float)
         self.current, self.motor_torque, self.time, self.midtime = np.zeros(n), np.zeros(n), 0.0, 0.0
         self.recorded_current, self._before = self.current, self.velocity
@@ -160,7 +164,9 @@ class Plant:
             backward[rows.index] *= factor
         return np.maximum(forward, 0.0), np.maximum(backward, 0.0)
 
-    def _bend_half(self, rows, speed, forward, backward, step) -> np.ndarray:
+    def _bend_half(
+        self, rows: Rows, speed: np.ndarray, forward: np.ndarray, backward: np.ndarray, step: float
+    ) -> np.ndarray:
         i = rows.index
         rows.level = np.maximum(np.where(self.velocity[i] > 0.0, forward[i], backward[i]), 1e-12)
         rows.memory = rows.effect.bend(speed[i], rows.level, rows.memory, step / 2.0)
@@ -212,7 +218,9 @@ class Plant:
         for rows in self._with("filtered"):
             rows.memory = self.measured_velocity[rows.index].copy()
 
-    def _sense(self, start, speed, position, after, step) -> None:
+    def _sense(
+        self, start: np.ndarray, speed: np.ndarray, position: np.ndarray, after: np.ndarray, step: float
+    ) -> None:
         before = self.sensed_velocity
         self.measured_position, self.sensed_velocity = self._sensed(position, after)
         self.measured_velocity = self.sensed_velocity
