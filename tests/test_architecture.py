@@ -15,6 +15,7 @@ SOURCES = sorted((ROOT / "bench").rglob("*.py"))
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
     {"errors", "names", "bounds", "files", "structured", "assets"},
+    {"jobs"},
     {
         "units",
         "usual_units",
@@ -35,7 +36,7 @@ LAYERS = (
     {"identify"},
     {"friction_map"},
     {"diagnose"},
-    {"validate"},
+    {"validate", "fleet"},
     {"lab"},
     {"report"},
     {"demo"},
