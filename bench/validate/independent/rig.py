@@ -93,13 +93,17 @@ def random_rig(rng: np.random.Generator, name: str = "axis", *, linear: bool = F
 
 def write_rig(axis: Axis, path: str | Path) -> None:
     """Rig file of what a user would know about the axis; its friction and total inertia are not in it."""
-    path = Path(path)
+    Path(path).write_text(rig_text(axis), encoding="utf-8")
+
+
+def rig_text(axis: Axis) -> str:
+    """The same as text."""
     mass, per_ampere, emf = ("kg", "N/A", "V*s/m") if axis.linear else ("kg*m**2", "N*m/A", "V*s/rad")
     rate, spring = ("N*s/m", "N/m") if axis.linear else ("N*m*s/rad", "N*m/rad")
     inertia_key, constant_key = (
         ("moving_mass", "force_constant") if axis.linear else ("rotor_inertia", "torque_constant")
     )
-    path.write_text(
+    return (
         f'name = "{axis.name}"\n'
         f'kind = "{"linear" if axis.linear else "rotary"}"\n\n'
         "[motor]\n"
@@ -114,6 +118,5 @@ def write_rig(axis: Axis, path: str | Path) -> None:
         f'velocity_gain = "{axis.velocity_gain:.8g} {rate}"\n'
         f'integral_gain = "{axis.integral_gain:.8g} {spring}"\n'
         f'inertia_feedforward = "{axis.inertia_feedforward:.8g} {mass}"\n'
-        f'control_period = "{axis.control_period * 1e6:.8g} us"\n',
-        encoding="utf-8",
+        f'control_period = "{axis.control_period * 1e6:.8g} us"\n'
     )

@@ -29,6 +29,11 @@ class Noise:
     hum_phase: float = 0.0
     resolution: float = 0.0
 
+    @property
+    def kind(self) -> str:
+        """hum, coarse, coloured or white: what it is beside white, if anything."""
+        return "hum" if self.hum else "coarse" if self.resolution else "coloured" if self.coloured else "white"
+
 
 class NoiseStream:
     """Noise of one signal, drawn block by block at a constant period."""

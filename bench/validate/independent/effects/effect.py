@@ -42,6 +42,10 @@ class Effect:
         """Parameters as truth.json names them."""
         return {key: float(value) for key, value in asdict(self).items()}
 
+    def quantities(self, axis: Axis) -> dict[str, float]:
+        """Values of the quantities that the contract's effect of this name has."""
+        return {key: float(value) for key, value in asdict(self).items()}
+
     def resisting_torque(self, rows: Rows) -> np.ndarray | float:
         """Added to M_load on the motor's side - N*m."""
         raise NotImplementedError

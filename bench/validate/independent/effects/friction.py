@@ -75,6 +75,10 @@ class DirectionDependentFriction(Effect):
         difference = rng.choice([-1.0, 1.0]) * min(1.8 * about(severity, rng), 1.6) * axis.coulomb
         return cls(difference, float(rng.choice([0.0, rng.uniform(0.2, 1.0)])))
 
+    def quantities(self, axis: Axis) -> dict[str, float]:
+        relative = self.viscous_share * self.coulomb_difference / axis.coulomb
+        return {"coulomb_difference": self.coulomb_difference, "viscous_difference": relative * axis.viscous}
+
     def friction_difference(self, rows: Rows) -> np.ndarray | float:
         return self.coulomb_difference
 
