@@ -29,6 +29,7 @@ from bench.cli.limits import limits
 from bench.cli.replay import replay
 from bench.cli.rigs import rigs
 from bench.cli.simulate import simulate
+from bench.cli.validate import validate
 from bench.errors import BenchError
 from bench.names import plain, short
 
@@ -47,7 +48,7 @@ def bench(
         typer.echo(context.get_help())
 
 
-for command in (demo, simulate, effects, inspect, identify, diagnose, replay, friction, lab, limits, rigs):
+for command in (demo, simulate, effects, inspect, identify, diagnose, replay, friction, validate, lab, limits, rigs):
     app.command()(guarded(command))
 
 
