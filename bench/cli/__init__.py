@@ -21,6 +21,7 @@ from bench.cli.common import guarded
 from bench.cli.demo import demo
 from bench.cli.diagnose import diagnose
 from bench.cli.effects import effects
+from bench.cli.fleet import fleet
 from bench.cli.friction import friction
 from bench.cli.identify import identify
 from bench.cli.inspect import inspect
@@ -48,7 +49,21 @@ def bench(
         typer.echo(context.get_help())
 
 
-for command in (demo, simulate, effects, inspect, identify, diagnose, replay, friction, validate, lab, limits, rigs):
+for command in (
+    demo,
+    simulate,
+    effects,
+    inspect,
+    identify,
+    diagnose,
+    replay,
+    friction,
+    validate,
+    fleet,
+    lab,
+    limits,
+    rigs,
+):
     app.command()(guarded(command))
 
 
