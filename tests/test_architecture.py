@@ -35,7 +35,7 @@ LAYERS = (
     {"identify"},
     {"friction_map"},
     {"diagnose"},
-    {"validate"},
+    {"check", "validate"},
     {"lab"},
     {"report"},
     {"demo"},
