@@ -36,7 +36,7 @@ LAYERS = (
     {"identify"},
     {"friction_map"},
     {"diagnose"},
-    {"validate", "fleet"},
+    {"check", "validate", "fleet"},
     {"lab"},
     {"report"},
     {"demo"},

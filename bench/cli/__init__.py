@@ -17,6 +17,7 @@ import typer
 from typer.exceptions import TyperException
 
 from bench import __version__
+from bench.cli.check import check
 from bench.cli.common import guarded
 from bench.cli.demo import demo
 from bench.cli.diagnose import diagnose
@@ -58,6 +59,7 @@ for command in (
     diagnose,
     replay,
     friction,
+    check,
     validate,
     fleet,
     lab,
@@ -112,6 +114,8 @@ def _failed(message: str, status: int) -> int:
     if "--debug" in sys.argv and sys.exc_info()[0] is not None:
         traceback.print_exc()
     line = plain(" ".join(message.replace("Value error, ", "").split()))
+    if "GITHUB_ACTIONS" in os.environ:
+        line = line.replace("##[", "## [")  # by which GitHub knows an old command wherever it stands in a line
     if line:
         typer.echo(f"bench: {short(line, LONGEST)}", err=True)
     return status

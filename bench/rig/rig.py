@@ -13,6 +13,7 @@ from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
 from bench.names import short
 from bench.rig.catalogue import catalogue_motor
+from bench.rig.check import Check
 from bench.rig.drive import Drive
 from bench.rig.load import Load
 from bench.rig.motor import Motor
@@ -59,6 +60,7 @@ class Rig(Table):
     drive: Drive | None = None
     trace: TraceNotes = TraceNotes()
     simulation: Simulation | None = None
+    check: Check | None = None
     source: Annotated[str, Field(exclude=True)] = "rig"
 
     @classmethod
@@ -223,6 +225,7 @@ def _known_keys(keys: list[str]) -> list[str]:
         "drive": Drive,
         "trace": TraceNotes,
         "simulation": Simulation,
+        "check": Check,
         "peak_curves": PeakCurve,
     }
     for key in keys:
