@@ -35,6 +35,7 @@ LAYERS = (
     {"identify"},
     {"friction_map"},
     {"diagnose"},
+    {"export"},
     {"validate"},
     {"lab"},
     {"report"},

@@ -21,6 +21,7 @@ from bench.cli.common import guarded
 from bench.cli.demo import demo
 from bench.cli.diagnose import diagnose
 from bench.cli.effects import effects
+from bench.cli.export import export
 from bench.cli.friction import friction
 from bench.cli.identify import identify
 from bench.cli.inspect import inspect
@@ -47,7 +48,7 @@ def bench(
         typer.echo(context.get_help())
 
 
-for command in (demo, simulate, effects, inspect, identify, diagnose, replay, friction, lab, limits, rigs):
+for command in (demo, simulate, effects, inspect, identify, diagnose, replay, export, friction, lab, limits, rigs):
     app.command()(guarded(command))
 
 
