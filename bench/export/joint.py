@@ -184,7 +184,8 @@ def _couple(joint: mujoco.MjsJoint, axis: mujoco.MjSpec, name: str, ratio: float
     for between in axis.body(LOAD).joints:
         added = joint.parent.add_joint(name=f"{name} {between.name}", type=joint.type, axis=joint.axis, pos=joint.pos)
         added.stiffness, added.damping = _scaled(between.stiffness, ratio), _scaled(between.damping, ratio)
-        added.range, added.limited = np.asarray(between.range) / ratio, between.limited
+        angle = np.rad2deg(1.0) if joint.compiler.degree and joint.type == mujoco.mjtJoint.mjJNT_HINGE else 1.0
+        added.range, added.limited = np.asarray(between.range) / ratio * angle, between.limited
         added.solref_limit, added.solimp_limit = between.solref_limit, between.solimp_limit
 
 
