@@ -58,9 +58,10 @@ class Effects:
             InputError: the model has no such joint, or a Runge-Kutta integrator.
         """
         running = self._run(model, data)
-        if running.drive.asked:
-            mujoco.mj_forward(model, data)
-        running.prepare()
+        if self.stored.model.stepped:
+            if running.drive.asked:
+                mujoco.mj_forward(model, data)
+            running.prepare()
         mujoco.mj_step(model, data)
 
     def install(self) -> None:
