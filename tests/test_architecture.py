@@ -36,7 +36,7 @@ LAYERS = (
     {"identify"},
     {"friction_map"},
     {"diagnose"},
-    {"check", "validate", "fleet"},
+    {"check", "validate", "fleet", "export"},
     {"lab"},
     {"report"},
     {"demo"},

@@ -22,6 +22,7 @@ from bench.cli.common import guarded
 from bench.cli.demo import demo
 from bench.cli.diagnose import diagnose
 from bench.cli.effects import effects
+from bench.cli.export import export
 from bench.cli.fleet import fleet
 from bench.cli.friction import friction
 from bench.cli.identify import identify
@@ -62,6 +63,7 @@ for command in (
     check,
     validate,
     fleet,
+    export,
     lab,
     limits,
     rigs,

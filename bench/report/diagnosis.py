@@ -267,7 +267,7 @@ def write_diagnosis(
         write_text(written[3], _model_toml(diagnosis))
         if diagnosis.model is not None:
             written.append(out / "model.xml")
-            write_text(written[-1], model_xml(diagnosis.model.model))
+            write_text(written[-1], model_xml(diagnosis.model))
     return written
 
 
