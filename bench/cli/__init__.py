@@ -27,6 +27,7 @@ from bench.cli.inspect import inspect
 from bench.cli.lab import lab
 from bench.cli.limits import limits
 from bench.cli.replay import replay
+from bench.cli.report import report
 from bench.cli.rigs import rigs
 from bench.cli.simulate import simulate
 from bench.errors import BenchError
@@ -47,7 +48,8 @@ def bench(
         typer.echo(context.get_help())
 
 
-for command in (demo, simulate, effects, inspect, identify, diagnose, replay, friction, lab, limits, rigs):
+COMMANDS = (demo, simulate, effects, inspect, identify, diagnose, replay, friction, report, lab, limits, rigs)
+for command in COMMANDS:
     app.command()(guarded(command))
 
 

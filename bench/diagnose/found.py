@@ -140,11 +140,13 @@ class Considered:
     Attributes:
         effect: what it is.
         taken: whether it is in the model.
-        share: of the squared gap it was tried on that it would take, alone; None where it was not tried.
+        alone: share of the squared gap that it would take where it was tried first; None where it was not tried.
+        beside: share of what is left that it would take beside the others; None where it was not tried.
         reason: for it, or against.
     """
 
     effect: Effect
     taken: bool
-    share: float | None
+    alone: float | None
+    beside: float | None
     reason: str

@@ -34,29 +34,36 @@ def considered(recordings: Recordings, suspects: Suspects, added: Added) -> tupl
     """All effects: those taken in the order in which they were added, then the others, what explains most first."""
     trials = trials_of(suspects.searched)
     named = {one.effect: one for one in added.refined.effects}
-    rejected = {one.name: one.reason for one in added.rejected}
-    let_go = {term.effect for trial in trials for term in trial.beside.terms}
     found = []
     for effect in catalogue().values():
-        alone = next((share for trial in trials if (share := trial.share(effect)) is not None), None)
-        if effect in named:
-            reason = _spoken(named[effect])
-        elif effect.name in rejected:
-            reason = rejected[effect.name]
-        elif effect in let_go:
-            reason = "was taken up, and let go: the others explain it too, or a doubt spoke against it"
-        elif alone is not None:
-            reason = _outdone(effect, trials, suspects)
-        elif not effect.sought(recordings.rows.scope):
-            reason = "such a recording cannot show it"
-        elif not joins(suspects.searched.last, effect):
-            reason = "not beside what was taken: the recording tells but one of them"
-        else:
-            reason = "the recording shows no sign of it, or it was not to be tried"
-        found.append(Considered(effect, effect in named, alone, reason))
+        shares = [share for trial in trials if (share := trial.share(effect)) is not None]
+        told = _spoken(named[effect]) if effect in named else _against(effect, recordings, suspects, added, trials)
+        last = trials[-1].share(effect) if len(trials) > 1 and effect not in named else None
+        found.append(Considered(effect, effect in named, shares[0] if shares else None, last, told))
     order = list(named)
     taken = sorted((one for one in found if one.taken), key=lambda one: order.index(one.effect))
-    return (*taken, *sorted((one for one in found if not one.taken), key=lambda one: -(one.share or 0.0)))
+    return (*taken, *sorted((one for one in found if not one.taken), key=lambda one: -(one.alone or 0.0)))
+
+
+def _against(effect: Effect, recordings: Recordings, suspects: Suspects, added: Added, trials: Sequence[Trial]) -> str:
+    """Why an effect is not in the model."""
+    rejected = {one.name: one.reason for one in added.rejected}
+    if effect.name in suspects.excluded:
+        return "was not to be tried"
+    if effect.name in rejected:
+        return rejected[effect.name]
+    if any(effect is term.effect for trial in trials for term in trial.beside.terms):
+        return "was taken up and let go: the others explain it too, or a doubt spoke against it"
+    if not effect.sought(recordings.rows.scope):
+        return "such a recording cannot show it"
+    left = trials[-1].share(effect) if trials else None
+    if left is not None:
+        last = trials[-1].beside
+        chance = left * last.squares < suspects.policy.significant.threshold(last, 1)
+        return "no more than chance" if chance else "too little, or with values that physics forbids"
+    if not joins(suspects.searched.last, effect):
+        return "the recording tells but one of it and what was taken"
+    return "nothing in the recording points to it"
 
 
 def trials_of(searched: Searched) -> list[Trial]:
@@ -73,20 +80,3 @@ def trials_of(searched: Searched) -> list[Trial]:
 def _spoken(named: NamedEffect) -> str:
     """The figures that speak for an effect."""
     return ", ".join(f"{key.replace('_', ' ')} {value:.3g}" for key, value in named.evidence.items()) or "named"
-
-
-def _outdone(effect: Effect, trials: Sequence[Trial], suspects: Suspects) -> str:
-    """What an effect would explain, beside what was taken in its place, and what is left for it."""
-    said = []
-    first = next(trial for trial in trials if trial.share(effect) is not None)
-    winner = None if first.taken is None else first.share(first.taken)
-    if first.taken is not None and winner is not None:
-        other = first.taken.name.replace("_", " ")
-        said.append(f"alone it explains {first.share(effect):.0%} of the gap, {other} {winner:.0%}")
-    last = trials[-1]
-    left = last.share(effect)
-    if left is not None:
-        chance = left * last.beside.squares < suspects.policy.significant.threshold(last.beside, 1)
-        why = "no more than chance" if chance else "too little, or with values that physics forbids"
-        said.append(f"{left:.1%} {'of what is left' if last.beside.terms else 'of the gap'}, {why}")
-    return "; ".join(said) or "another explains more"
