@@ -264,9 +264,7 @@ def write_diagnosis(
     """Write the page, `diagnosis.json`, two figures, `model.toml` and, where MuJoCo has all of it, `model.xml`."""
     toml, xml = _model_toml(diagnosis), None if diagnosis.model is None else model_xml(diagnosis.model.model)
     json = diagnosis_json(diagnosis, provenance) + "\n"
-    files = [
-        File(name="diagnosis.json", about="all that was found, as numbers", media="application/json", content=json)
-    ]
+    files = [File(name="diagnosis.json", about="all of it as numbers", media="application/json", content=json)]
     if xml is not None:
         about = "what MuJoCo has of it natively; opens alone"
         files.insert(0, File(name="model.xml", about=about, media="application/xml", content=xml))

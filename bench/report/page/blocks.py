@@ -125,44 +125,53 @@ class TimeGraph(Block):
     panels: tuple[Panel, ...]
 
 
-class Over(Block):
-    """What is left over one coordinate: means in bins, (b,) each.
+class Series(Block):
+    """What is drawn into a chart.
 
     Attributes:
-        label, unit: of the coordinate.
-        note: beside it, e.g. the share it accounts for.
-        x: the bins' centres.
-        before, after: means before and after effects were added; `after` is None where none was.
+        name: of it, for the legend.
+        style: dots, rings, a line, or a band between `low` and `high`.
+        colour: by what it stands for: what was measured, a model, what is left, noise, or what comes first.
+        x, y: points (b,); `y` is () of a band.
+        low, high: of a band, or of an interval around each dot (b,); () without.
     """
 
-    label: str
-    unit: str
-    note: str
+    name: str
+    style: Literal["dots", "rings", "line", "band"]
+    colour: Literal["ink", "model", "left", "floor", "first"]
     x: tuple[float, ...]
-    before: tuple[float, ...]
-    after: tuple[float, ...] | None = None
+    y: tuple[float, ...] = ()
+    low: tuple[float, ...] = ()
+    high: tuple[float, ...] = ()
 
 
-class GapGraph(Block):
-    """The gap over several coordinates on one scale, with the noise floor and what the found effects account for.
+class Axes(Block):
+    """One panel of a chart; `note` stands in its corner."""
+
+    x_label: str
+    x_unit: str = ""
+    note: str = ""
+    series: tuple[Series, ...]
+
+
+class Chart(Block):
+    """Panels of points and lines over anything, on one y scale; drawn without a script.
 
     Attributes:
-        title: of the graph.
+        title: of the chart.
         alternative: what it shows, in words.
-        label, unit: of the gap.
-        floor: noise of a single row - unit.
-        explained: what stands between before and after: the names of the effects.
-        panels: one a coordinate.
+        y_label, y_unit: of all panels.
+        symmetric: whether zero is in the middle of the scale.
+        panels: of it.
     """
 
-    kind: Literal["gaps"] = "gaps"
+    kind: Literal["chart"] = "chart"
     title: str
     alternative: str
-    label: str
-    unit: str
-    floor: float
-    explained: str
-    panels: tuple[Over, ...]
+    y_label: str
+    y_unit: str = ""
+    symmetric: bool = False
+    panels: tuple[Axes, ...]
 
 
 class File(Block):
@@ -188,7 +197,7 @@ class Downloads(Block):
     files: tuple[File, ...]
 
 
-AnyBlock = Annotated[Paragraph | Points | Table | TimeGraph | GapGraph | Downloads, Field(discriminator="kind")]
+AnyBlock = Annotated[Paragraph | Points | Table | TimeGraph | Chart | Downloads, Field(discriminator="kind")]
 
 
 class Section(Block):

@@ -25,6 +25,17 @@ def write_page(folder: Path, page: Page) -> list[Path]:
     return [folder / HTML, folder / DATA]
 
 
+def write_html(path: Path, page: Page) -> None:
+    """Write a page alone into a file that a person named.
+
+    Raises:
+        InputError: another ending than .html, or a place that cannot be written to.
+    """
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise InputError(path, f"found the ending '{path.suffix}'", "allowed: .html")
+    write_text(path, html(page))
+
+
 def rebuild(folders: list[Path], script: Path | None = None) -> list[Path]:
     """Make the pages of folders anew from what they are made of.
 

@@ -7,9 +7,13 @@ import re
 
 from bench.balance.parameter import Parameter
 
+#: Keeps a value, its interval and its unit on one line.
+SPACE = "\N{NO-BREAK SPACE}"
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 #: Values outside of these are told with a power of ten.
 SMALL, LARGE = 1e-2, 1e5
+#: Digits behind the point, where an interval is next to nothing.
+MOST_DECIMALS = 9
 #: Shares below it are not told apart.
 LEAST_SHARE = 1e-3
 
@@ -30,7 +34,7 @@ def number(value: float, unit: str = "", digits: int = 4) -> str:
     if "e" in told:
         mantissa, power = told.split("e")
         told = f"{mantissa}·10{str(int(power)).translate(_RAISED)}"
-    return f"{_minus(told)} {unit_text(unit)}".strip()
+    return f"{_minus(told)}{SPACE}{unit_text(unit)}".strip()
 
 
 def interval(found: Parameter, unit: bool = True) -> str:
@@ -38,15 +42,15 @@ def interval(found: Parameter, unit: bool = True) -> str:
     shown = unit_text(found.unit) if unit else ""
     half = 0.5 * (found.ci95[1] - found.ci95[0])
     if not math.isfinite(half) or half <= 0.0:
-        return f"{number(found.value, digits=5)} {shown}".strip()
+        return f"{number(found.value, digits=5)}{SPACE}{shown}".strip()
     size = abs(found.value)
     power = 3 * math.floor(math.log10(size) / 3) if size > 0.0 and not SMALL <= size < LARGE else 0
     scale = 10.0**power
-    decimals = max(0, 1 - math.floor(math.log10(half / scale)))
-    told = f"{_minus(f'{found.value / scale:.{decimals}f}')} ± {half / scale:.{decimals}f}"
+    decimals = min(max(0, 1 - math.floor(math.log10(half / scale))), MOST_DECIMALS)
+    told = f"{_minus(f'{found.value / scale:.{decimals}f}')}{SPACE}±{SPACE}{half / scale:.{decimals}f}"
     if power:
         told = f"({told})·10{str(power).translate(_RAISED)}"
-    return f"{told} {shown}".strip()
+    return f"{told}{SPACE}{shown}".strip()
 
 
 def _minus(told: str) -> str:
@@ -57,8 +61,8 @@ def _minus(told: str) -> str:
 def share(value: float) -> str:
     """A share in per cent."""
     if 0.0 < value < LEAST_SHARE:
-        return f"< {100.0 * LEAST_SHARE:g} %"
-    return f"{100.0 * value:.0f} %" if not 0.0 < value < 0.1 else f"{100.0 * value:.2g} %"
+        return f"< {100.0 * LEAST_SHARE:g}{SPACE}%"
+    return f"{100.0 * value:.0f}{SPACE}%" if not 0.0 < value < 0.1 else f"{100.0 * value:.2g}{SPACE}%"
 
 
 def words(name: str) -> str:

@@ -14,7 +14,7 @@ from markupsafe import Markup
 
 from bench.names import plain
 from bench.report.page.blocks import File, Page, TimeGraph
-from bench.report.page.panels import drawn
+from bench.report.page.chart import drawn
 
 
 def html(page: Page, script: str | None = None) -> str:

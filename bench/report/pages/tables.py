@@ -10,8 +10,13 @@ from bench import __version__
 from bench.balance.parameter import Parameter
 from bench.checks.check import Check
 from bench.identify.estimate import Alone, Between
-from bench.report.page.blocks import Column, Points, Section, Table
+from bench.report.page.blocks import Column, Points, Section, Series, Table
 from bench.report.page.numbers import interval, number, unit_text, words
+
+
+def effort_word(unit: str) -> str:
+    """What an effort in a unit is: torque, force, current or voltage."""
+    return {"N*m": "torque", "N": "force", "A": "current", "V": "voltage"}.get(unit, "effort")
 
 
 def parameters_table(caption: str, parameters: Mapping[str, Parameter]) -> Table:
@@ -41,6 +46,12 @@ def recordings_table(recordings: Sequence[Alone], between: Mapping[str, Between]
     following = [spread.predictive95 for spread in between.values()]
     rows.append(("the next one (95 %)", *(f"{number(low)} to {number(high)}" for low, high in following)))
     return Table(caption="Each recording alone", columns=tuple(columns), rows=tuple(rows))
+
+
+def noise_band(x: Sequence[float], floor: float) -> Series:
+    """Noise of a single row around zero, over the width of a panel."""
+    ends = (min(x, default=0.0), max(x, default=1.0))
+    return Series(name="noise floor", style="band", colour="floor", x=ends, low=(-floor, -floor), high=(floor, floor))
 
 
 def checks_section(checks: Sequence[Check], warnings: Sequence[str]) -> Section:
