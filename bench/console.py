@@ -20,6 +20,7 @@ TracesArgument = Annotated[
 ]
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
 AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
+ReportOption = Annotated[Path | None, typer.Option("--report", help="Page to write: .html, all in one file.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 
 

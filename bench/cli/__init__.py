@@ -30,6 +30,7 @@ from bench.cli.inspect import inspect
 from bench.cli.lab import lab
 from bench.cli.limits import limits
 from bench.cli.replay import replay
+from bench.cli.report import report
 from bench.cli.rigs import rigs
 from bench.cli.simulate import simulate
 from bench.cli.validate import validate
@@ -51,7 +52,7 @@ def bench(
         typer.echo(context.get_help())
 
 
-for command in (
+COMMANDS = (
     demo,
     simulate,
     effects,
@@ -67,7 +68,9 @@ for command in (
     lab,
     limits,
     rigs,
-):
+    report,
+)
+for command in COMMANDS:
     app.command()(guarded(command))
 
 

@@ -10,6 +10,7 @@ import typer
 from bench.console import (
     AxisOption,
     JsonOption,
+    ReportOption,
     RigOption,
     console,
     tell_files,
@@ -25,6 +26,7 @@ def friction(
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Figure to write: .png, .pdf or .svg.")] = None,
     axis_name: AxisOption = None,
+    report: ReportOption = None,
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
     from bench.checks.gate import spoken
@@ -38,9 +40,14 @@ def friction(
         found = friction_map([read(trace, axis.trace) for trace in traces], axis)
     if out is not None:
         draw_friction(found, axis.name, out)
+    if report is not None:
+        from bench.report.page.folder import write_html
+        from bench.report.pages.friction import friction_page
+
+        write_html(report, friction_page(found, axis.name))
     if json is not None:
         write_json(json, friction_json(found))
     if json != Path("-"):
         console().print(friction_table(found, axis.name))
-        tell_files([out] if out is not None else [])
+        tell_files([path for path in (out, report) if path is not None])
     tell_warnings(spoken(found.checks))

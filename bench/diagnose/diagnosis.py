@@ -53,7 +53,7 @@ def diagnose(
     unseen = passed(holdout, rig).trace if holdout is not None else None
     recordings = Recordings.of([each.trace for each in gated], rig, unseen)
     bare = gap(recordings.rows)
-    located = where(bare, rig.axis_kind, recordings.unit)
+    located = where(bare, rig.axis_kind, recordings.unit, recordings.current)
     suspects = name(recordings, bare, excluded, policy)
     require_weight(recordings, suspects.searched.last)
     progress(0.6)

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array
 from bench.balance.parameter import Parameter
 from bench.effects.effect import Effect
 
@@ -80,3 +84,69 @@ class Shrunk:
     effect: str
     torque: tuple[float, ...]
     velocity: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Course:
+    """One recording over time beside the model as it grew: what each of its steps leaves of speed and torque.
+
+    Attributes:
+        name: `recording` or `holdout`.
+        origin: of it.
+        time: s - (n,).
+        velocity: as measured - rad/s (m/s) - (n,).
+        velocity_left: measured less simulated, for each step (n,), nan where the model says nothing; None where there
+            is no model, or it diverged.
+        rows: index into the samples of each row of the torque balance (m,).
+        torque: as measured, filtered - N*m (N) - (m,).
+        torque_left: measured less modelled, for each step (m,).
+    """
+
+    name: str
+    origin: str
+    time: Array
+    velocity: Array
+    velocity_left: tuple[NDArray[np.float32] | None, ...]
+    rows: NDArray[np.int64]
+    torque: Array
+    torque_left: tuple[Array, ...]
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The gap over one coordinate, before anything was added and after.
+
+    Attributes:
+        coordinate: of `bench.diagnose.where`.
+        unit: of it.
+        share: of the first gap's variance that it accounts for.
+        centres: of its bins - unit - (b,).
+        before, after: mean of measured less modelled torque in each bin - N*m (N) - (b,); what lies between the two is
+            what the added effects account for.
+    """
+
+    coordinate: str
+    unit: str
+    share: float
+    centres: Array
+    before: Array
+    after: Array
+
+
+@dataclass(frozen=True)
+class Considered:
+    """An effect of the catalogue, and why it was taken or not.
+
+    Attributes:
+        effect: what it is.
+        taken: whether it is in the model.
+        alone: share of the squared gap that it would take where it was tried first; None where it was not tried.
+        beside: share of what is left that it would take beside the others; None where it was not tried.
+        reason: for it, or against.
+    """
+
+    effect: Effect
+    taken: bool
+    alone: float | None
+    beside: float | None
+    reason: str

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.balance.fit import Fit, fit
 from bench.balance.rows import Rows
@@ -83,6 +84,11 @@ class Recordings:
     def unit(self) -> str:
         """Unit of the effort: N*m, N, or what the rig allows."""
         return self.rig.net_effort(self.trace)[1]
+
+    @property
+    def current(self) -> Array | None:
+        """Current as it was recorded at the rows - A - (m,); None where another effort was."""
+        return self.seen["current"][self.rows.samples()] if "current" in self.seen else None
 
     @property
     def base_units(self) -> dict[str, str]:

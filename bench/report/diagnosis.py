@@ -22,6 +22,9 @@ from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report.checks import checks_json
 from bench.report.estimate import between_json, parameters_json, recordings_json
 from bench.report.figures import MEASURED, MODELLED, save, title_figure
+from bench.report.page.blocks import File
+from bench.report.page.folder import write_page
+from bench.report.pages.diagnosis import diagnosis_page
 from bench.structured import json_text
 
 SCHEMA = "bench.diagnose/1"
@@ -258,17 +261,25 @@ def gaps_figure(diagnosis: Diagnosis, title: str) -> Figure:
 def write_diagnosis(
     out: Path, diagnosis: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None
 ) -> list[Path]:
-    """Write `diagnosis.json`, two figures, `model.toml` and, where MuJoCo has all of it, `model.xml`; returns paths."""
+    """Write the page, `diagnosis.json`, two figures, `model.toml` and, where MuJoCo has all of it, `model.xml`."""
+    toml, xml = _model_toml(diagnosis), None if diagnosis.model is None else model_xml(diagnosis.model)
+    json = diagnosis_json(diagnosis, provenance) + "\n"
+    files = [File(name="diagnosis.json", about="all of it as numbers", media="application/json", content=json)]
+    if xml is not None:
+        about = "what MuJoCo has of it natively; opens alone"
+        files.insert(0, File(name="model.xml", about=about, media="application/xml", content=xml))
+    about = "the model with all that was found, for bench replay"
+    files.insert(0, File(name="model.toml", about=about, media="application/toml", content=toml))
     written = [out / "diagnosis.json", out / "where.png", out / "gaps.png", out / "model.toml"]
     with held(out):
-        write_text(written[0], diagnosis_json(diagnosis, provenance) + "\n")
+        write_text(written[0], json)
         save(where_figure(diagnosis, title), written[1])
         save(gaps_figure(diagnosis, title), written[2])
-        write_text(written[3], _model_toml(diagnosis))
-        if diagnosis.model is not None:
+        write_text(written[3], toml)
+        if xml is not None:
             written.append(out / "model.xml")
-            write_text(written[-1], model_xml(diagnosis.model))
-    return written
+            write_text(written[-1], xml)
+        return [*write_page(out, diagnosis_page(diagnosis, title, files, provenance)), *written]
 
 
 def _model_toml(diagnosis: Diagnosis) -> str:

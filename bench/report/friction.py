@@ -24,11 +24,11 @@ DRAWN = 400
 
 def friction_json(found: FrictionMap) -> str:
     """The map, what holds of it and how sure that is."""
-    effect = None if found.name is None else {"name": found.name, "parameters": _numbers(_values(found))}
+    effect = None if found.name is None else {"name": found.name, "parameters": _numbers(effect_values(found))}
     before, after = found.unexplained
     content = {
         "schema": SCHEMA,
-        "parameters": _numbers(_base(found)),
+        "parameters": _numbers(base_values(found)),
         "effect": effect,
         "best": found.best.name or None,
         "chance": found.probability,
@@ -65,7 +65,7 @@ def friction_table(found: FrictionMap, title: str) -> Table:
         table.add_column(heading, no_wrap=True)
     table.add_column("value", justify="right", no_wrap=True)
     table.add_column("unit", no_wrap=True)
-    for owner, quantities in (("", _base(found)), (found.name or "", _values(found))):
+    for owner, quantities in (("", base_values(found)), (found.name or "", effect_values(found))):
         for name, (value, unit) in quantities.items():
             table.add_row(owner, name.replace("_", " "), f"{value:.5g}", unit)
             owner = ""
@@ -103,7 +103,8 @@ def draw_friction(found: FrictionMap, title: str, path: Path) -> None:
     save_as_named(figure, path)
 
 
-def _base(found: FrictionMap) -> dict[str, tuple[float, str]]:
+def base_values(found: FrictionMap) -> dict[str, tuple[float, str]]:
+    """K_w, K_0 and M_0 by their names, with their units."""
     columns = {VISCOUS: found.base.viscous, COULOMB: found.base.coulomb}
     if found.offset is not None:
         columns[OFFSET] = found.offset
@@ -113,7 +114,8 @@ def _base(found: FrictionMap) -> dict[str, tuple[float, str]]:
     }
 
 
-def _values(found: FrictionMap) -> dict[str, tuple[float, str]]:
+def effect_values(found: FrictionMap) -> dict[str, tuple[float, str]]:
+    """Quantities of the effect that is named, with their units; none where none is."""
     if found.name is None:
         return {}
     quantities = {quantity.name: quantity for quantity in catalogue()[found.name].quantities}

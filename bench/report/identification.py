@@ -13,9 +13,12 @@ from bench.files import held, write_text
 from bench.identify.estimate import Estimate
 from bench.report.estimate import estimate_json
 from bench.report.figures import identification_figure, save
+from bench.report.page.blocks import File
+from bench.report.page.folder import write_page
+from bench.report.pages.identification import identification_page
 from bench.rig.rig import Rig
 from bench.trace.conditioning import condition
-from bench.trace.motion import motion
+from bench.trace.motion import Motion, motion
 from bench.trace.stream import stream
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
@@ -30,11 +33,11 @@ def write_identification(
     refinement: Refinement | None = None,
     provenance: Mapping[str, Any] | None = None,
 ) -> list[Path]:
-    """Write `identification.png` (`identification-2.png`, ... of further recordings) and `identify.json` into a folder.
+    """Write the page, `identification.png` (`identification-2.png`, ... of further recordings) and `identify.json`.
 
     Args:
         out: folder, made if it is not there.
-        traces: files the estimate came from; a figure shows the first part of one that is very long.
+        traces: files the estimate came from; figure and page show the first part of one that is very long.
         rig: of the axis.
         estimate: what was identified.
         refinement: what polishing did, where it was asked for.
@@ -43,18 +46,26 @@ def write_identification(
     Returns:
         Paths written.
     """
-    figures, text = [], out / "identify.json"
+    figures, text, motions = [], out / "identify.json", []
+    json = estimate_json(estimate, refinement, None, provenance) + "\n"
+    names = ", ".join(trace.name for trace in traces)
     with held(out):
         for number, trace in enumerate(traces, 1):
-            first = gate(next(stream(trace, rig.trace)), rig).trace
-            effort, _ = rig.net_effort(first)
-            cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
-            moved = motion(first, effort, condition(first, effort, cutoff))
+            moved, along = _motion(trace, rig, estimate), _along(estimate, number - 1, rig)
+            motions.append((trace.name, moved, along))
             figures.append(out / ("identification.png" if number == 1 else f"identification-{number}.png"))
-            title = f"{rig.name}: {trace.name}"
-            save(identification_figure(moved, _along(estimate, number - 1, rig), rig.axis_kind, title), figures[-1])
-        write_text(text, estimate_json(estimate, refinement, None, provenance) + "\n")
-    return [*figures, text]
+            save(identification_figure(moved, along, rig.axis_kind, f"{rig.name}: {trace.name}"), figures[-1])
+        write_text(text, json)
+        file = File(name=text.name, about="all of it as numbers", media="application/json", content=json)
+        page = identification_page(f"{rig.name}: {names}", rig.axis_kind, estimate, motions, [file], provenance)
+        return [*write_page(out, page), *figures, text]
+
+
+def _motion(trace: Path, rig: Rig, estimate: Estimate) -> Motion:
+    """The first part of a recording through the filter that the estimate was made with."""
+    first = gate(next(stream(trace, rig.trace)), rig).trace
+    effort, _ = rig.net_effort(first)
+    return motion(first, effort, condition(first, effort, estimate.cutoff if estimate.cutoff > 0.0 else None))
 
 
 def _along(estimate: Estimate, index: int, rig: Rig) -> Estimate:

@@ -10,7 +10,7 @@ from bench.diagnose.name.name import Suspects
 from bench.diagnose.name.policy import Policy
 from bench.diagnose.name.search import Searched, Step
 from bench.diagnose.recordings import Recordings
-from bench.diagnose.show.gaps import shrinking
+from bench.diagnose.show.gaps import courses, shrinking
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected
 from bench.rig.rig import load_rig
@@ -51,7 +51,7 @@ def added(recorded, terms, detected=None, with_holdout=True):
 def test_a_true_effect_is_kept_and_both_gaps_shrink(recorded, with_holdout):
     recordings, result = added(recorded, [SPRING], with_holdout=with_holdout)
     assert result.rejected == ()
-    before, after = shrinking(recordings, result)
+    before, after = shrinking(result, courses(recordings, result))
     assert (before.effect, after.effect) == ("", "torsion_spring")
     assert len(after.torque) == len(after.velocity) == (2 if with_holdout else 1)
     assert all(late < 0.3 * early for early, late in zip(before.velocity, after.velocity, strict=True))

@@ -5,7 +5,7 @@ import pytest
 import scipy.signal
 from scipy.interpolate import CubicSpline
 
-from bench.diagnose.where.where import _account
+from bench.diagnose.where.where import Coordinate, _account
 from bench.effects.backlash.dead_zone import load_positions
 from bench.effects.catalogue import catalogue
 from bench.effects.first_order import lagged
@@ -108,6 +108,6 @@ def test_a_coupling_hears_noise_as_its_transfer_function_says():
 def test_a_gap_of_two_directions_belongs_to_direction():
     rng = np.random.default_rng(0)
     sign = np.sign(rng.normal(size=4000))
-    account = _account("direction", sign, 3.0 + 0.5 * sign + 0.1 * rng.normal(size=4000), "dimensionless")
+    account = _account(Coordinate("direction", sign, "dimensionless"), 3.0 + 0.5 * sign + 0.1 * rng.normal(size=4000))
     assert account.centres == pytest.approx([-1.0, 1.0])
     assert account.share == pytest.approx(0.25 / 0.26, abs=0.01)

@@ -17,6 +17,9 @@ from bench.plant.track_effects import Held, track_models
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
+#: What a model leaves along a recording, kept for every addition: half the memory, and a sum of none.
+Left = NDArray[np.float32]
+
 
 @dataclass(frozen=True)
 class Recorded:
@@ -54,6 +57,10 @@ class Recorded:
         """Simulated less measured velocity at the judged samples - rad/s (m/s)."""
         return (simulated - measured_velocity(self.trace))[self.judged]
 
+    def left(self, simulated: Array) -> Left:
+        """Measured less simulated velocity at every sample, as it is kept to be shown - rad/s (m/s) - (n,)."""
+        return (measured_velocity(self.trace) - simulated).astype(np.float32)
+
     @property
     def varies(self) -> float:
         """RMS deviation of measured velocity from its mean: a simulation further off follows nothing - rad/s (m/s)."""
@@ -63,6 +70,11 @@ class Recorded:
         """A model to be held to it by a cascade laid out for an inertia - kg*m**2 (kg)."""
         model = stored.model if self.events else without_events(stored.model)
         return Held(model, self.trace, self.effort, stored.misalignment, inertia)
+
+
+def gap_of(recorded: Recorded, velocity: Array | None) -> float:
+    """RMS of measured less simulated velocity - rad/s (m/s); nan where there is none."""
+    return float("nan") if velocity is None else rms(recorded.difference(velocity))
 
 
 class VelocityGaps:
@@ -76,6 +88,7 @@ class VelocityGaps:
     def __init__(self, bandwidth: float, inertia: float) -> None:
         self.bandwidth, self.inertia = bandwidth, inertia
         self._known: dict[tuple[object, ...], float] = {}
+        self._left: dict[tuple[object, ...], Left] = {}
 
     def simulate(self, pairs: Iterable[tuple[Stage, Recorded]]) -> None:
         """Simulate models along recordings side by side, so far as that is not done."""
@@ -83,9 +96,12 @@ class VelocityGaps:
         new = {key: pair for key, pair in asked.items() if key not in self._known}
         self._known |= dict.fromkeys(new, float("nan"))
         run = {key: pair for key, pair in new.items() if pair[0].model is not None}
-        models = [stage.model for stage, _ in run.values()]
-        found = self.of_models(models, [recorded for _, recorded in run.values()])
-        self._known |= dict(zip(run, found, strict=True))
+        recordings = [recorded for _, recorded in run.values()]
+        velocities = self.velocities([m for m in (stage.model for stage, _ in run.values()) if m], recordings)
+        for key, recorded, velocity in zip(run, recordings, velocities, strict=True):
+            self._known[key] = gap_of(recorded, velocity)
+            if velocity is not None:
+                self._left[key] = recorded.left(velocity)
 
     def of(self, stage: Stage, recorded: Recorded) -> float:
         """RMS of measured less simulated velocity - rad/s (m/s); nan without a model, or where it diverged."""
@@ -96,10 +112,12 @@ class VelocityGaps:
         """Gaps of models along recordings, one each."""
         recordings = list(recordings)
         simulated = self.velocities([m for m in models if m is not None], recordings)
-        return [
-            float("nan") if velocity is None else rms(recorded.difference(velocity))
-            for velocity, recorded in zip(simulated, recordings, strict=True)
-        ]
+        return [gap_of(recorded, velocity) for recorded, velocity in zip(recordings, simulated, strict=True)]
+
+    def left(self, stage: Stage, recorded: Recorded) -> Left | None:
+        """Measured less simulated velocity along a recording; None without a model, or where it diverged."""
+        self.simulate([(stage, recorded)])
+        return self._left.get(self._key(stage, recorded))
 
     def velocities(self, models: Iterable[StoredModel], recordings: Iterable[Recorded]) -> list[Array | None]:
         """Velocities of models along recordings, one each, (n,) - rad/s (m/s); None where one diverged."""

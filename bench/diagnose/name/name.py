@@ -30,12 +30,14 @@ class Suspects:
         detected: what the torque balance does not hold.
         withheld: whether something was found whose name was not to be tried.
         policy: that decided.
+        excluded: names that were not to be tried.
     """
 
     searched: Searched
     detected: Mapping[Effect, Detected]
     withheld: bool
     policy: Policy
+    excluded: frozenset[str] = frozenset()
 
     @property
     def beside(self) -> tuple[Present, ...]:
@@ -56,7 +58,7 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     searched = search(bare, effects, policy)
     searched = doubted(searched, Evidence(bare, recordings.other, excluded, policy), policy.doubts)
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
-    return Suspects(searched, kept, len(kept) < len(recordings.detected), policy)
+    return Suspects(searched, kept, len(kept) < len(recordings.detected), policy, excluded)
 
 
 def named(

@@ -33,10 +33,17 @@ class Step:
 
 @dataclass(frozen=True)
 class Searched:
-    """Steps of a search, the first without an effect, and what ended it before it was done; None if nothing did."""
+    """Steps of a search.
+
+    Attributes:
+        steps: the first without an effect.
+        stopped: what ended it before it was done; None if nothing did.
+        ended: the fit to which nothing more was added, and what was tried beside it; None without a search.
+    """
 
     steps: tuple[Step, ...]
     stopped: str | None = None
+    ended: Step | None = None
 
     @property
     def last(self) -> Fit:
@@ -73,14 +80,14 @@ def forward_selection(found: Searched, effects: Sequence[Effect], rules: Rules) 
         ]
         better = [after for after in finalists if _worthwhile(current, after, rules)]
         if not better:
-            return Searched(steps)
+            return Searched(steps, ended=Step(current, tuple(tried)))
         best = min(better, key=lambda after: after.squares)
         names = Counter(best.hypothesis.names)
         if len(names) > rules.most or max(names.values()) > rules.members:
-            return Searched(steps, LIMIT)
+            return Searched(steps, LIMIT, Step(current, tuple(tried)))
         chosen = with_hum(backward_elimination(on_its_side(polished(best, rules), rules), rules))
         if _repeats_a_step(chosen, steps, rules):
-            return Searched(steps)
+            return Searched(steps, ended=Step(current, tuple(tried)))
         steps = (*steps, Step(chosen, tuple(tried)))
 
 

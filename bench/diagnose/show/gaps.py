@@ -3,29 +3,75 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array, rms
+from bench.axis_kind import AxisKind
 from bench.balance.fit import Fit
 from bench.balance.stored import Balance
 from bench.diagnose.add.add import Added
-from bench.diagnose.found import Gap, Shrunk
+from bench.diagnose.found import Course, Gap, Profile, Shrunk
 from bench.diagnose.recordings import Recordings
+from bench.diagnose.where.where import LEAST, bins_of, coordinates, means_in, where
 from bench.plant.track import measured_velocity
 from bench.trace.noise import white_noise
 
 
-def shrinking(recordings: Recordings, added: Added) -> list[Shrunk]:
-    """Gaps of the bare axis and after each addition, the last one as it was kept."""
+def courses(recordings: Recordings, added: Added) -> tuple[Course, ...]:
+    """The recording, and the holdout where there is one, beside the bare axis and the model after each addition."""
+    laid_out = [rows for rows in (recordings.rows, recordings.other) if rows is not None]
+    balances = [Balance.of(stage.fitted).repeating(added.repeats) for stage in added.extension.stages]
     found = []
-    for stage in added.extension.stages:
-        balance = Balance.of(stage.fitted).repeating(added.repeats)
-        torque = [balance.gap(rows) for rows in (recordings.rows, recordings.other) if rows is not None]
-        velocity = [added.gaps.of(stage, recorded) for recorded in added.recorded]
-        found.append(Shrunk(stage.effect, tuple(torque), tuple(velocity)))
-    if added.refined.gap is not None:
-        velocity = added.gaps.of_models([added.refined.model] * len(added.recorded), added.recorded)
-        found[-1] = replace(found[-1], velocity=tuple(velocity))
-    return found
+    for rows, recorded in zip(laid_out, added.recorded, strict=True):
+        velocity = [added.gaps.left(stage, recorded) for stage in added.extension.stages]
+        if added.refined.gap is not None and added.refined.model is not None:
+            (simulated,) = added.gaps.velocities([added.refined.model], [recorded])
+            velocity[-1] = None if simulated is None else recorded.left(simulated)
+        torque = tuple(balance.left(rows) for balance in balances)
+        measured = measured_velocity(recorded.trace)
+        along = recorded.name, recorded.trace.origin, recorded.trace.time, measured, tuple(velocity)
+        found.append(Course(*along, rows.samples(), rows.effort, torque))
+    return tuple(found)
+
+
+def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
+    """Gaps of the bare axis and after each addition, the last one as it was kept."""
+    return [
+        Shrunk(
+            stage.effect,
+            tuple(rms(course.torque_left[k]) for course in shown),
+            tuple(_rms_told(course.velocity_left[k]) for course in shown),
+        )
+        for k, stage in enumerate(added.extension.stages)
+    ]
+
+
+def _rms_told(left: NDArray[np.float32] | None) -> float:
+    """RMS where a model says something."""
+    return math.nan if left is None else rms(left[np.isfinite(left)].astype(np.float64))
+
+
+def profiles(bare: Fit, whole: Fit, kind: AxisKind, unit: str, current: Array | None) -> tuple[Profile, ...]:
+    """The gap over each coordinate before and after, what accounts for most of the first gap first.
+
+    Args:
+        bare, whole: fits without and with all effects, of the same rows.
+        kind: of the axis.
+        unit: of the effort.
+        current: as reported at the rows - A - (m,); None where another effort is.
+    """
+    shares = {account.coordinate: account.share for account in where(bare, kind, unit, current)}
+    found = []
+    for one in coordinates(bare, kind, unit, current):
+        index = bins_of(one.values)
+        kept = np.bincount(index) >= LEAST
+        centres = means_in(index, one.values if one.called is None else one.called)
+        before, after = means_in(index, bare.left), means_in(index, whole.left)
+        found.append(Profile(one.name, one.unit, shares[one.name], centres[kept], before[kept], after[kept]))
+    return tuple(sorted(found, key=lambda profile: -profile.share))
 
 
 def torque_gap(steps: list[Shrunk], whole: Fit, unit: str) -> Gap:

@@ -11,12 +11,13 @@ from bench.balance.stored import Balance
 from bench.checks.check import Check
 from bench.diagnose.add.add import Added
 from bench.diagnose.add.same_axis import SameAxis
-from bench.diagnose.found import Gap, NamedEffect, Rejected, Shrunk
+from bench.diagnose.found import Considered, Course, Gap, NamedEffect, Profile, Rejected, Shrunk
 from bench.diagnose.gap.decidable import impacts, left_open
 from bench.diagnose.name.name import Suspects
 from bench.diagnose.recordings import Recordings
 from bench.diagnose.show.apart import apart
-from bench.diagnose.show.gaps import shrinking, torque_gap, velocity_gap
+from bench.diagnose.show.considered import considered
+from bench.diagnose.show.gaps import courses, profiles, shrinking, torque_gap, velocity_gap
 from bench.diagnose.show.next_experiment import NextExperiment, propose
 from bench.diagnose.show.suspicions import suspicions
 from bench.diagnose.show.verdict import Shown, verdict
@@ -43,6 +44,9 @@ class Diagnosis:
         rejected: names that held-out motion spoke against.
         stopped: what ended the search before it was done; None if nothing did.
         model, balance: with all effects; no model where MuJoCo cannot have them.
+        courses: the recordings over time beside the model as it grew.
+        profiles: the gap over each coordinate before and after, what accounts for most first.
+        considered: every effect of the catalogue, and why it was taken or not.
         recordings, between: J, K_w and K_0 of each of several recordings alone, and their spread; () and {} of one.
         warnings: what a user should know.
         checks: what the gate found before the fit.
@@ -67,6 +71,9 @@ class Diagnosis:
     stopped: str | None
     model: StoredModel | None
     balance: Balance
+    courses: tuple[Course, ...]
+    profiles: tuple[Profile, ...]
+    considered: tuple[Considered, ...]
     recordings: tuple[Alone, ...] = ()
     between: Mapping[str, Between] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
@@ -85,7 +92,8 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
     """
     rig, unit, kind = recordings.rig, recordings.unit, recordings.rig.axis_kind
     whole, kept, searched = added.extension.whole.fitted, added.refined, suspects.searched
-    steps, several = shrinking(recordings, added), apart(recordings, whole, kept.parameters)
+    shown, several = courses(recordings, added), apart(recordings, whole, kept.parameters)
+    steps, current = shrinking(added, shown), recordings.current
     torque, velocity = torque_gap(steps, whole, unit), velocity_gap(recordings, steps)
     comes_to, because = verdict(Shown(recordings, suspects, added, torque, velocity))
     return Diagnosis(
@@ -94,7 +102,7 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
         effects=kept.effects,
         where=located,
         unexplained_share=whole.excess / max(bare.squares, 1e-300),
-        unexplained_where=where(whole, kind, unit)[:3] if because else [],
+        unexplained_where=where(whole, kind, unit, current)[:3] if because else [],
         parameters=several.parameters,
         recordings=several.recordings,
         between=several.between,
@@ -110,6 +118,9 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
         stopped=searched.stopped,
         model=kept.model,
         balance=Balance.of(whole).repeating(added.repeats),
+        courses=shown,
+        profiles=profiles(bare, whole, kind, unit, current),
+        considered=considered(recordings, suspects, added),
         warnings=[
             *suspicions(recordings.trace, rig, kept.parameters),
             *left_open(recordings.rows, kind),

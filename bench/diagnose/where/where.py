@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.signal
+from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
@@ -35,36 +36,75 @@ class Where:
     means: Array
 
 
-def where(fitted: Fit, kind: AxisKind, effort_unit: str) -> list[Where]:
-    """Shares of every coordinate, largest first."""
-    rows = fitted.rows
-    time, position, sign = rows.time, rows.values(lambda s: s.position), rows.values(lambda s: s.sign)
-    turned = np.concatenate([[0.0], np.where(np.diff(sign) != 0.0, time[1:], 0.0)])
-    turn = np.mod(position, 2.0 * np.pi) if kind.turns else position
-    coordinates = {
-        "position": (turn, kind.length_unit),
-        "velocity": (rows.values(lambda s: s.velocity), kind.speed_unit),
-        "acceleration": (fitted.columns[:, 0], kind.acceleration_unit),
-        "current": (fitted.effort, effort_unit),
-        "time": (time, "s"),
-        "direction": (sign, "dimensionless"),
-        "reversal": (time - np.maximum.accumulate(turned), "s"),
-    }
-    found = [_account(name, values, fitted.residual, unit) for name, (values, unit) in coordinates.items()]
+@dataclass(frozen=True)
+class Coordinate:
+    """A coordinate along the rows of a recording.
+
+    Attributes:
+        name: as `Where` has it.
+        values: by which rows are put into bins (m,).
+        unit: of what a bin is called by.
+        called: by what a bin is called where that is noisier than what it is made of, (m,); None if by its values.
+    """
+
+    name: str
+    values: Array
+    unit: str
+    called: Array | None = None
+
+
+def where(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None) -> list[Where]:
+    """Shares of every coordinate, largest first.
+
+    Args:
+        fitted: whose residual is the gap.
+        kind: of the axis.
+        effort_unit: of the effort.
+        current: as reported at the rows - A - (m,); None where another effort is.
+    """
+    found = [_account(one, fitted.residual) for one in coordinates(fitted, kind, effort_unit, current)]
     found.append(_frequency(fitted))
     return sorted(found, key=lambda account: -account.share)
 
 
-def _account(name: str, values: Array, gap: Array, unit: str) -> Where:
-    """Share of variance between bins of equal count, or of one value each, less what chance puts between them."""
-    gap = gap - gap.mean()
+def coordinates(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None) -> list[Coordinate]:
+    """What the gap may hang on, along the rows; arguments as `where` has them."""
+    rows = fitted.rows
+    time, position, sign = rows.time, rows.values(lambda s: s.position), rows.values(lambda s: s.sign)
+    turned = np.concatenate([[0.0], np.where(np.diff(sign) != 0.0, time[1:], 0.0)])
+    turn = np.mod(position, 2.0 * np.pi) if kind.turns else position
+    return [
+        Coordinate("position", turn, kind.length_unit),
+        Coordinate("velocity", rows.values(lambda s: s.velocity), kind.speed_unit),
+        Coordinate("acceleration", fitted.columns[:, 0], kind.acceleration_unit),
+        Coordinate("current", fitted.effort, effort_unit if current is None else "A", current),
+        Coordinate("time", time, "s"),
+        Coordinate("direction", sign, "dimensionless"),
+        Coordinate("reversal", time - np.maximum.accumulate(turned), "s"),
+    ]
+
+
+def bins_of(values: Array) -> NDArray[np.int64]:
+    """Bin of each row (m,): of equal count, or of one value each where there are few."""
     distinct, index = np.unique(values, return_inverse=True)
     if distinct.size > BINS:
         edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
         index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    return np.asarray(index, dtype=np.int64)
+
+
+def means_in(index: NDArray[np.int64], values: Array) -> Array:
+    """Mean of values (m,) in each bin (b,)."""
     count = np.bincount(index)
-    means = np.bincount(index, gap, minlength=count.size) / np.maximum(count, 1)
-    centres = np.bincount(index, values, minlength=count.size) / np.maximum(count, 1)
+    return np.bincount(index, values, minlength=count.size) / np.maximum(count, 1)
+
+
+def _account(coordinate: Coordinate, gap: Array) -> Where:
+    """Share of variance between bins, less what chance puts between them."""
+    gap = gap - gap.mean()
+    index = bins_of(coordinate.values)
+    count, means = np.bincount(index), means_in(index, gap)
+    centres = means_in(index, coordinate.values if coordinate.called is None else coordinate.called)
     kept = count >= LEAST
     between, total = float(np.sum(count[kept] * means[kept] ** 2)), float(np.sum(gap**2))
     used = int(kept.sum())
@@ -74,7 +114,7 @@ def _account(name: str, values: Array, gap: Array, unit: str) -> Where:
     weight = np.cumsum((count * means**2)[order])
     main = order[: int(np.searchsorted(weight, 0.5 * weight[-1])) + 1]
     region = (float(centres[main].min()), float(centres[main].max()))
-    return Where(name, region, unit, share, centres[kept], means[kept])
+    return Where(coordinate.name, region, coordinate.unit, share, centres[kept], means[kept])
 
 
 def _frequency(fitted: Fit) -> Where:

@@ -1,0 +1,1 @@
+"""Pages: building blocks of a report, and the one file that shows them without any other."""

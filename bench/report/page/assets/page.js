@@ -1,0 +1,202 @@
+"use strict";
+(() => {
+  const NOTHING = -32768, HEIGHT = { first: 170, other: 130 }, LEAST = 8;
+  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+  const numbers = (text) => {
+    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    return new Int16Array(bytes.buffer);
+  };
+  const shown = (value, unit) => (value == null ? "–" : Number(value.toPrecision(4)) + (unit ? " " + unit : ""));
+
+  class TimeGraph {
+    constructor(figure) {
+      this.data = JSON.parse(figure.querySelector("script[type='application/json']").textContent);
+      this.place = figure.querySelector(".graph");
+      this.range = figure.querySelector(".range");
+      this.choice = Math.max(0, this.data.choices.length - 1);
+      this.whole = [-0.5, this.data.count - 0.5]; // in intervals of the grid
+      this.view = [...this.whole];
+      for (const panel of this.data.panels)
+        for (const curve of panel.curves) {
+          const { low, high } = curve.samples;
+          curve.low = numbers(low);
+          curve.high = high === null ? curve.low : numbers(high);
+        }
+      this.single = this.data.panels.every((p) => p.curves.every((c) => c.samples.high === null));
+      this.listen(figure);
+      this.build();
+    }
+
+    listen(figure) {
+      const acts = { left: () => this.pan(-0.2), right: () => this.pan(0.2), in: () => this.zoom(0.5), out: () => this.zoom(2), all: () => this.show(...this.whole) };
+      const keys = { ArrowLeft: "left", ArrowRight: "right", "+": "in", "=": "in", "-": "out", "0": "all", Home: "all" };
+      figure.querySelectorAll("button").forEach((button) => button.addEventListener("click", acts[button.dataset.do]));
+      figure.querySelectorAll("input").forEach((input) =>
+        input.addEventListener("change", () => { this.choice = Number(input.value); this.build(); }));
+      figure.querySelector("form").addEventListener("submit", (event) => event.preventDefault());
+      this.place.addEventListener("keydown", (event) => {
+        if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in keys)) return;
+        event.preventDefault();
+        acts[keys[event.key]]();
+      });
+      this.place.addEventListener("wheel", (event) => {
+        if (!event.ctrlKey && document.activeElement !== this.place) return; // else the page scrolls
+        event.preventDefault();
+        const over = this.plots[0].over.getBoundingClientRect();
+        this.zoom(event.deltaY > 0 ? 1.25 : 0.8, (event.clientX - over.left) / over.width);
+      }, { passive: false });
+      this.place.addEventListener("pointerdown", (event) => {
+        this.place.focus({ preventScroll: true });
+        if (!event.shiftKey) return;
+        event.preventDefault();
+        event.stopPropagation();
+        const from = event.clientX, view = [...this.view], wide = this.plots[0].over.clientWidth;
+        const move = (next) => {
+          const by = ((from - next.clientX) / wide) * (view[1] - view[0]);
+          this.show(view[0] + by, view[1] + by);
+        };
+        window.addEventListener("pointermove", move);
+        window.addEventListener("pointerup", () => window.removeEventListener("pointermove", move), { once: true });
+      }, { capture: true });
+      this.place.addEventListener("mousedown", (event) => { if (event.shiftKey) event.stopPropagation(); }, { capture: true });
+      new ResizeObserver(() => this.fit()).observe(this.place);
+      for (const query of ["(prefers-color-scheme: dark)", "print"])
+        window.matchMedia(query).addEventListener("change", () => this.build());
+    }
+
+    curves(panel) {
+      const chosen = panel.curves.filter((c) => c.choice === null || c.choice === this.choice);
+      const first = panel.first && this.choice > 0 ? panel.curves.filter((c) => c.choice === 0) : [];
+      return [...first, ...chosen];
+    }
+
+    build() {
+      this.place.replaceChildren();
+      const key = uPlot.sync(Math.random().toString(36));
+      this.plots = this.data.panels.map((panel, k) => this.plot(panel, k, key));
+      this.draw();
+    }
+
+    plot(panel, k, sync) {
+      const readout = document.createElement("div");
+      readout.className = "readout";
+      this.place.append(readout);
+      const curves = this.curves(panel), last = k === this.data.panels.length - 1;
+      const colours = curves.map((c) => colour(panel.first && c.choice === 0 && this.choice > 0 ? "first" : c.role));
+      const axis = { stroke: colour("soft"), grid: { stroke: colour("rule"), width: 1 }, ticks: { stroke: colour("rule"), width: 1 }, font: "12px system-ui, sans-serif" };
+      const tell = (u) => this.tell(u, readout, panel, curves, colours);
+      const plot = new uPlot({
+        width: this.place.clientWidth || 600,
+        height: (k === 0 ? HEIGHT.first : HEIGHT.other) + (last ? 38 : 0),
+        legend: { show: false },
+        padding: [6, 8, 0, 0],
+        scales: { x: { time: false } },
+        axes: [
+          { ...axis, size: last ? 42 : 4, label: last ? "time / s" : undefined, labelSize: 18, labelFont: axis.font, values: last ? undefined : (u, splits) => splits.map(() => "") },
+          { ...axis, size: 64, space: 24 },
+        ],
+        series: [{}, ...curves.map((c, i) => ({ label: c.name, stroke: colours[i], width: c.role === "measured" ? 3 : 1.3, points: { show: false }, spanGaps: false }))],
+        cursor: { sync: { key: sync.key, scales: ["x", null] }, drag: { x: true, y: false, setScale: false }, y: false, points: { size: 6 },
+          bind: { dblclick: () => () => { this.show(...this.whole); return null; } } },
+        hooks: {
+          setCursor: [tell],
+          setSelect: [(u) => {
+            if (u.select.width < 4) return;
+            const at = (pixel) => (u.posToVal(pixel, "x") - this.data.start) / this.data.step;
+            const [left, right] = [at(u.select.left), at(u.select.left + u.select.width)];
+            u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+            this.show(left, right);
+          }],
+        },
+      }, [[], ...curves.map(() => [])], this.place);
+      sync.sub(plot);
+      Object.assign(plot, { curves, tell: () => tell(plot) });
+      plot.tell();
+      return plot;
+    }
+
+    tell(u, readout, panel, curves, colours) {
+      const at = u.cursor.idx;
+      const name = document.createElement("b");
+      name.textContent = panel.label + (panel.unit ? " / " + panel.unit : "");
+      const parts = curves.map((curve, i) => {
+        const part = document.createElement("span"), line = document.createElement("i");
+        line.style.color = colours[i];
+        part.append(line, curve.name + (at == null ? "" : " " + shown(u.data[i + 1][at], "")));
+        return part;
+      });
+      const when = document.createElement("span");
+      when.textContent = at == null || u.data[0][at] == null ? "" : "at " + Number(u.data[0][at].toFixed(4)) + " s";
+      readout.replaceChildren(name, ...parts, when);
+    }
+
+    pan(share) {
+      const by = share * (this.view[1] - this.view[0]);
+      this.show(this.view[0] + by, this.view[1] + by);
+    }
+
+    zoom(factor, around = 0.5) {
+      const [a, b] = this.view, centre = a + around * (b - a);
+      this.show(centre - around * (b - a) * factor, centre + (1 - around) * (b - a) * factor);
+    }
+
+    show(from, to) {
+      const [first, last] = this.whole, size = Math.min(Math.max(to - from, LEAST), last - first);
+      const middle = (from + to) / 2;
+      const start = Math.min(Math.max(middle - size / 2, first), last - size);
+      this.view = [start, start + size];
+      if (this.waiting) return;
+      this.waiting = requestAnimationFrame(() => { this.waiting = 0; this.draw(); });
+    }
+
+    draw() {
+      const { start, step } = this.data, [a, b] = this.view;
+      const from = Math.max(0, Math.floor(a) - 1), to = Math.min(this.data.count, Math.ceil(b) + 2);
+      const size = Math.max(1, Math.floor((to - from) / Math.max(200, this.plots[0].over.clientWidth || 600)));
+      const plain = this.single && size === 1;
+      const x = [];
+      for (let k = from; k < to; k += size) {
+        x.push(start + step * (plain ? k : k - 0.5 + size * 0.25));
+        if (!plain) x.push(start + step * (k - 0.5 + size * 0.75));
+      }
+      const scale = { min: start + step * a, max: start + step * b };
+      for (const plot of this.plots) {
+        const columns = plot.curves.map((curve) => (plain ? this.values(curve, from, to) : this.extremes(curve, from, to, size)));
+        plot.batch(() => { plot.setData([x, ...columns], false); plot.setScale("x", scale); });
+        plot.tell();
+      }
+      const [first, last] = [Math.max(a, 0), Math.min(b, this.data.count - 1)].map((k) => shown(start + step * k));
+      this.range.value = `${first} to ${last} s`;
+    }
+
+    values(curve, from, to) {
+      const { offset, scale } = curve.samples, found = [];
+      for (let k = from; k < to; k++) found.push(curve.low[k] === NOTHING ? null : offset + scale * curve.low[k]);
+      return found;
+    }
+
+    extremes(curve, from, to, size) {
+      const { offset, scale } = curve.samples, found = [];
+      for (let k = from; k < to; k += size) {
+        let low = 32767, high = NOTHING;
+        for (let i = k, end = Math.min(k + size, to); i < end; i++) {
+          if (curve.low[i] === NOTHING) continue;
+          if (curve.low[i] < low) low = curve.low[i];
+          if (curve.high[i] > high) high = curve.high[i];
+        }
+        if (high === NOTHING) found.push(null, null);
+        else found.push(offset + scale * low, offset + scale * high);
+      }
+      return found;
+    }
+
+    fit() {
+      const width = this.place.clientWidth;
+      if (!width || width === this.plots[0].width) return;
+      this.plots.forEach((plot) => plot.setSize({ width, height: plot.height }));
+      this.draw();
+    }
+  }
+
+  document.querySelectorAll("figure.time").forEach((figure) => new TimeGraph(figure));
+})();

@@ -1,0 +1,238 @@
+"""What a page is made of. A page is data: kept beside its HTML, it is made anew from there (`bench report`).
+
+All text in it is text: a name from a file is shown, whatever it holds, and never obeyed.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+SCHEMA = "bench.page/1"
+
+#: How a verdict is meant: all is well, something is left to do, or the answer is no.
+Tone = Literal["sure", "open", "refused"]
+
+
+class Block(BaseModel):
+    """A part of a page: frozen, and an unknown key in it is an error."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Paragraph(Block):
+    """A paragraph of text."""
+
+    kind: Literal["paragraph"] = "paragraph"
+    text: str
+
+
+class Points(Block):
+    """A list of short texts."""
+
+    kind: Literal["points"] = "points"
+    items: tuple[str, ...]
+
+
+class Column(Block):
+    """A column of a table.
+
+    Attributes:
+        heading: of it.
+        number: whether it holds numbers, which are set to the right.
+        prose: whether it holds sentences, which need room.
+    """
+
+    heading: str
+    number: bool = False
+    prose: bool = False
+
+
+class Table(Block):
+    """A table.
+
+    Attributes:
+        caption: what it tells.
+        columns, rows: of it; the first cell of a row names it.
+        marked: rows to be noticed, by their numbers.
+    """
+
+    kind: Literal["table"] = "table"
+    caption: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[str, ...], ...]
+    marked: tuple[int, ...] = ()
+
+
+class Samples(Block):
+    """A curve on the grid of its graph, in 16 bits; see `bench.report.page.samples`.
+
+    Attributes:
+        offset, scale: a value is offset + scale*number.
+        low, high: numbers in base 64; `high` is None where one value stands for each interval.
+    """
+
+    offset: float
+    scale: float
+    low: str
+    high: str | None
+
+
+class Curve(Block):
+    """A curve of a graph over time.
+
+    Attributes:
+        name: of it.
+        role: how it is drawn: what was measured, what a model makes, or what a model leaves.
+        choice: shown where this one of the graph's choices is made; None always.
+        samples: of it.
+    """
+
+    name: str
+    role: Literal["measured", "model", "left"]
+    choice: int | None
+    samples: Samples
+
+
+class Panel(Block):
+    """Curves over one y axis; `first`: whether those of the first choice stay in sight beside another one's."""
+
+    label: str
+    unit: str
+    curves: tuple[Curve, ...]
+    first: bool = False
+
+
+class TimeGraph(Block):
+    """Panels over one time axis that zoom, pan and hover together.
+
+    Attributes:
+        title: of the graph.
+        alternative: what it shows, in words.
+        start, step, count: of the grid of its curves - s.
+        choices: models to choose from, the last one first in sight.
+        panels: from top to bottom.
+    """
+
+    kind: Literal["time"] = "time"
+    title: str
+    alternative: str
+    start: float
+    step: float = Field(gt=0.0)
+    count: int = Field(gt=0)
+    choices: tuple[str, ...] = ()
+    panels: tuple[Panel, ...]
+
+
+class Series(Block):
+    """What is drawn into a chart.
+
+    Attributes:
+        name: of it, for the legend.
+        style: dots, rings, a line, or a band between `low` and `high`.
+        colour: by what it stands for: what was measured, a model, what is left, noise, or what comes first.
+        x, y: points (b,); `y` is () of a band.
+        low, high: of a band, or of an interval around each dot (b,); () without.
+    """
+
+    name: str
+    style: Literal["dots", "rings", "line", "band"]
+    colour: Literal["ink", "model", "left", "floor", "first"]
+    x: tuple[float, ...]
+    y: tuple[float, ...] = ()
+    low: tuple[float, ...] = ()
+    high: tuple[float, ...] = ()
+
+
+class Axes(Block):
+    """One panel of a chart; `note` stands in its corner."""
+
+    x_label: str
+    x_unit: str = ""
+    note: str = ""
+    series: tuple[Series, ...]
+
+
+class Chart(Block):
+    """Panels of points and lines over anything, on one y scale; drawn without a script.
+
+    Attributes:
+        title: of the chart.
+        alternative: what it shows, in words.
+        y_label, y_unit: of all panels.
+        symmetric: whether zero is in the middle of the scale.
+        panels: of it.
+    """
+
+    kind: Literal["chart"] = "chart"
+    title: str
+    alternative: str
+    y_label: str
+    y_unit: str = ""
+    symmetric: bool = False
+    panels: tuple[Axes, ...]
+
+
+class File(Block):
+    """A file inside the page.
+
+    Attributes:
+        name: under which it is saved.
+        about: what it is.
+        media: its type.
+        content: its text.
+    """
+
+    name: str
+    about: str
+    media: str
+    content: str
+
+
+class Downloads(Block):
+    """Files to take along."""
+
+    kind: Literal["downloads"] = "downloads"
+    files: tuple[File, ...]
+
+
+AnyBlock = Annotated[Paragraph | Points | Table | TimeGraph | Chart | Downloads, Field(discriminator="kind")]
+
+
+class Section(Block):
+    """A section under a heading; `key` is its anchor on the page."""
+
+    key: str = Field(pattern=r"^[a-z][a-z0-9-]*$")
+    heading: str
+    blocks: tuple[AnyBlock, ...]
+
+
+class Answer(Block):
+    """A question that a reader comes with, and what the page has to say to it."""
+
+    question: str
+    answer: str
+
+
+class Page(Block):
+    """A report.
+
+    Attributes:
+        title: of the window.
+        subject: what it is about: rig and recordings.
+        verdict: in a sentence.
+        tone: of it.
+        answers: what a reader wants to know first.
+        sections: the rest.
+        origin: version and digests, so that anybody can tell what it rests on.
+    """
+
+    page: Literal["bench.page/1"] = SCHEMA
+    title: str
+    subject: str
+    verdict: str
+    tone: Tone
+    answers: tuple[Answer, ...]
+    sections: tuple[Section, ...]
+    origin: tuple[str, ...] = ()

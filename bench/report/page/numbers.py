@@ -1,0 +1,75 @@
+"""Numbers and units as a person reads them."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from bench.balance.parameter import Parameter
+
+#: Keeps a value, its interval and its unit on one line.
+SPACE = "\N{NO-BREAK SPACE}"
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+#: Values outside of these are told with a power of ten.
+SMALL, LARGE = 1e-2, 1e5
+#: Digits behind the point, where an interval is next to nothing.
+MOST_DECIMALS = 9
+#: Shares below it are not told apart.
+LEAST_SHARE = 1e-3
+
+
+def unit_text(unit: str) -> str:
+    """A unit as it is printed: `kg·m²` of `kg*m**2`; empty where there is none."""
+    if unit == "dimensionless":
+        return ""
+    raised = re.sub(r"\*\*(-?\d+)", lambda found: found[1].translate(_RAISED), unit)
+    return raised.replace("*", "·").replace("ohm", "Ω")
+
+
+def number(value: float, unit: str = "", digits: int = 4) -> str:
+    """A value with its unit."""
+    if not math.isfinite(value):
+        return "not known"
+    told = f"{value:.{digits}g}"
+    if "e" in told:
+        mantissa, power = told.split("e")
+        told = f"{mantissa}·10{str(int(power)).translate(_RAISED)}"
+    return f"{_minus(told)}{SPACE}{unit_text(unit)}".strip()
+
+
+def interval(found: Parameter, unit: bool = True) -> str:
+    """A parameter with half of its interval of 95 %, both to the second digit of that half."""
+    shown = unit_text(found.unit) if unit else ""
+    half = 0.5 * (found.ci95[1] - found.ci95[0])
+    if not math.isfinite(half) or half <= 0.0:
+        return f"{number(found.value, digits=5)}{SPACE}{shown}".strip()
+    size = abs(found.value)
+    power = 3 * math.floor(math.log10(size) / 3) if size > 0.0 and not SMALL <= size < LARGE else 0
+    scale = 10.0**power
+    decimals = min(max(0, 1 - math.floor(math.log10(half / scale))), MOST_DECIMALS)
+    told = f"{_minus(f'{found.value / scale:.{decimals}f}')}{SPACE}±{SPACE}{half / scale:.{decimals}f}"
+    if power:
+        told = f"({told})·10{str(power).translate(_RAISED)}"
+    return f"{told}{SPACE}{shown}".strip()
+
+
+def _minus(told: str) -> str:
+    """A number with a minus sign rather than a hyphen."""
+    return told.replace("-", "−")
+
+
+def share(value: float) -> str:
+    """A share in per cent."""
+    if 0.0 < value < LEAST_SHARE:
+        return f"< {100.0 * LEAST_SHARE:g}{SPACE}%"
+    return f"{100.0 * value:.0f}{SPACE}%" if not 0.0 < value < 0.1 else f"{100.0 * value:.2g}{SPACE}%"
+
+
+def words(name: str) -> str:
+    """A name of the contract in words."""
+    return name.replace("_", " ")
+
+
+def sentence(text: str) -> str:
+    """A text with a capital at its beginning."""
+    return text[:1].upper() + text[1:]

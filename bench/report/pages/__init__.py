@@ -1,0 +1,1 @@
+"""What each result says on its page, put together from `bench.report.page`."""

@@ -1,0 +1,238 @@
+"""The page of a diagnosis: what was missing, how sure that is, and whether the simulation moves as the axis does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.diagnose.diagnosis import Diagnosis
+from bench.diagnose.found import Course, Profile
+from bench.report.page.blocks import (
+    Axes,
+    Chart,
+    Column,
+    Downloads,
+    File,
+    Page,
+    Paragraph,
+    Points,
+    Section,
+    Series,
+    Table,
+    TimeGraph,
+)
+from bench.report.page.numbers import number, sentence, share, unit_text, words
+from bench.report.pages.over_time import Measured, time_graph
+from bench.report.pages.tables import (
+    checks_section,
+    effort_word,
+    noise_band,
+    origin,
+    parameters_table,
+    recordings_table,
+)
+from bench.report.pages.verdict import answers, following, verdict_sentence
+
+#: Coordinates of the gap that are drawn; the table has all.
+DRAWN = ("position", "velocity", "current", "time")
+#: Additions drawn over time at most, the last ones: more would be no page any more.
+STEPS = 6
+
+
+def diagnosis_page(
+    diagnosis: Diagnosis, title: str, files: Sequence[File], provenance: Mapping[str, Any] | None = None
+) -> Page:
+    """The page of a diagnosis.
+
+    Args:
+        diagnosis: what was found.
+        title: rig and recordings.
+        files: to take along: the model.
+        provenance: of the files it came from.
+    """
+    explained = diagnosis.verdict != "unexplained_remainder"
+    sections = [
+        _motion(diagnosis),
+        _where(diagnosis),
+        _parameters(diagnosis),
+        _suspects(diagnosis),
+        _next(diagnosis),
+        checks_section(diagnosis.checks, diagnosis.warnings),
+        Section(key="model", heading="The model", blocks=(Downloads(files=tuple(files)),)),
+    ]
+    return Page(
+        title=title,
+        subject=f"Diagnosis of {title}",
+        verdict=verdict_sentence(diagnosis),
+        tone="sure" if explained else "open",
+        answers=answers(diagnosis),
+        sections=tuple(sections),
+        origin=origin(provenance),
+    )
+
+
+def _motion(diagnosis: Diagnosis) -> Section:
+    """Speed and torque over time for each recording, and the gaps after each addition."""
+    graphs = [_over_time(diagnosis, course) for course in diagnosis.courses]
+    loop = Paragraph(
+        text=f"The models run in MuJoCo on the recorded torque, held softly to the recorded motion at "
+        f"{number(diagnosis.bandwidth, 'rad/s', 3)}."
+    )
+    return Section(key="motion", heading="Measured and simulated", blocks=(_steps(diagnosis), *graphs, loop))
+
+
+def _labels(diagnosis: Diagnosis) -> list[str]:
+    first = "inertia and friction"
+    return [first if k == 0 else f"+ {words(step.effect)}" for k, step in enumerate(diagnosis.steps)]
+
+
+def _steps(diagnosis: Diagnosis) -> Table:
+    columns = [Column(heading="model")]
+    names = [course.name for course in diagnosis.courses]
+    gaps = ("torque", diagnosis.torque), ("velocity", diagnosis.velocity)
+    for what, gap in gaps:
+        columns += [Column(heading=f"{what} gap, {name} / {unit_text(gap.unit)}", number=True) for name in names]
+    rows = [
+        (label, *(number(gap, digits=3) for gap in (*step.torque, *step.velocity)))
+        for label, step in zip(_labels(diagnosis), diagnosis.steps, strict=True)
+    ]
+    rows.append(("noise floor", *(number(gap.noise_floor, digits=3) for _, gap in gaps for _ in names)))
+    return Table(caption="RMS gaps before and after each addition", columns=tuple(columns), rows=tuple(rows))
+
+
+def _over_time(diagnosis: Diagnosis, course: Course) -> TimeGraph:
+    shown = [0, *range(max(1, len(diagnosis.steps) - STEPS), len(diagnosis.steps))]
+    labels = [_labels(diagnosis)[k] for k in shown]
+    first, last = diagnosis.steps[0], diagnosis.steps[-1]
+    place = [one.name for one in diagnosis.courses].index(course.name)
+    speed = Measured(
+        "speed", diagnosis.velocity.unit, course.time, course.velocity, [course.velocity_left[k] for k in shown]
+    )
+    torque = Measured(
+        effort_word(diagnosis.torque.unit),
+        diagnosis.torque.unit,
+        course.time[course.rows],
+        course.torque,
+        [course.torque_left[k] for k in shown],
+        "modelled",
+    )
+    told = (
+        f"Speed and torque of {Path(course.origin).name} as measured and as the model has them. RMS of what is left "
+        f"with inertia and friction alone, then with all that was found: speed "
+        f"{number(first.velocity[place], digits=3)}, "
+        f"{number(last.velocity[place], diagnosis.velocity.unit, 3)}; torque {number(first.torque[place], digits=3)}, "
+        f"{number(last.torque[place], diagnosis.torque.unit, 3)}."
+    )
+    title = {"recording": "The recording.", "holdout": "The holdout, which was not fitted."}[course.name]
+    part = course.time.size / sum(one.time.size for one in diagnosis.courses)
+    return time_graph(title, told, course.time, [speed, torque], labels, part)
+
+
+def _where(diagnosis: Diagnosis) -> Section:
+    """The gap over the coordinates."""
+    found = {profile.coordinate: profile for profile in diagnosis.profiles}
+    most = diagnosis.profiles[0]
+    names = " and ".join(words(effect.name) for effect in diagnosis.effects)
+    told = (
+        f"Mean of measured less modelled {effort_word(diagnosis.torque.unit)} in bins of each coordinate. "
+        f"Most of it hangs on {most.coordinate}, {share(most.share)} of its variance."
+    )
+    graph = Chart(
+        title="The gap, and what was found in it.",
+        alternative=told,
+        y_label="gap",
+        y_unit=unit_text(diagnosis.torque.unit),
+        symmetric=True,
+        panels=tuple(_over(found[name], diagnosis, names) for name in DRAWN if name in found),
+    )
+    columns = (
+        Column(heading="coordinate"),
+        Column(heading="share of the gap", number=True),
+        Column(heading="most of it between", number=True),
+        Column(heading="unit"),
+    )
+    rows = tuple(
+        (one.coordinate, share(one.share), f"{number(one.region[0])} and {number(one.region[1])}", unit_text(one.unit))
+        for one in diagnosis.where
+    )
+    table = Table(caption="Share of the gap's variance that each coordinate accounts for", columns=columns, rows=rows)
+    return Section(key="where", heading="Where the gap sits", blocks=(graph, table))
+
+
+def _over(profile: Profile, diagnosis: Diagnosis, names: str) -> Axes:
+    x, before, after = (tuple(values.tolist()) for values in _in_order(profile))
+    series = [
+        noise_band(x, diagnosis.torque.noise_floor),
+        Series(name="gap before", style="dots", colour="ink", x=x, y=before),
+    ]
+    if diagnosis.effects:
+        explained = tuple(early - late for early, late in zip(before, after, strict=True))
+        series.append(Series(name=f"what {names} makes of it", style="line", colour="model", x=x, y=explained))
+        series.append(Series(name="left after", style="rings", colour="left", x=x, y=after))
+    note = f"{share(profile.share)} of the gap"
+    return Axes(x_label=_coordinate(profile), x_unit=unit_text(profile.unit), note=note, series=tuple(series))
+
+
+def _in_order(profile: Profile) -> tuple[Array, Array, Array]:
+    order = np.argsort(profile.centres)
+    return profile.centres[order], profile.before[order], profile.after[order]
+
+
+def _coordinate(profile: Profile) -> str:
+    """What a coordinate is called where its unit says that it is another signal: torque was recorded, no current."""
+    return effort_word(profile.unit) if profile.coordinate == "current" else profile.coordinate
+
+
+def _parameters(diagnosis: Diagnosis) -> Section:
+    tables = [parameters_table("The axis", diagnosis.parameters)]
+    tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in diagnosis.effects]
+    if diagnosis.recordings:
+        units = {name: found.unit for name, found in diagnosis.parameters.items()}
+        tables.append(recordings_table(diagnosis.recordings, diagnosis.between, units))
+    return Section(key="parameters", heading="Parameters", blocks=tuple(tables))
+
+
+def _suspects(diagnosis: Diagnosis) -> Section:
+    def told(value: float | None) -> str:
+        return "–" if value is None else share(value)
+
+    columns = (
+        Column(heading="effect"),
+        Column(heading="taken"),
+        Column(heading="of the gap, alone", number=True),
+        Column(heading="of what is left, beside the others", number=True),
+        Column(heading="why", prose=True),
+    )
+    rows = tuple(
+        (words(one.effect.name), "yes" if one.taken else "no", told(one.alone), told(one.beside), one.reason)
+        for one in diagnosis.considered
+    )
+    marked = tuple(k for k, one in enumerate(diagnosis.considered) if one.taken)
+    caption = "Every effect of the catalogue: the share it would explain, and why it was taken or was not"
+    table = Table(caption=caption, columns=columns, rows=rows, marked=marked)
+    return Section(key="suspects", heading="Suspects", blocks=(table,))
+
+
+def _next(diagnosis: Diagnosis) -> Section:
+    """What to record next, and what is unexplained."""
+    blocks: list[Paragraph | Points] = [
+        Paragraph(text=following(diagnosis) or "Nothing is left open that another motion of this rig would tell.")
+    ]
+    if diagnosis.because:
+        blocks.append(Paragraph(text="What speaks against this being all:"))
+        blocks.append(Points(items=tuple(diagnosis.because)))
+    if diagnosis.unexplained_where:
+        blocks.append(
+            Points(
+                items=tuple(
+                    f"{share(one.share)} of what is left hangs on {one.coordinate}, most of it between "
+                    f"{number(one.region[0])} and {number(one.region[1], one.unit)}"
+                    for one in diagnosis.unexplained_where
+                )
+            )
+        )
+    return Section(key="next", heading="What to record next", blocks=tuple(blocks))

@@ -1,0 +1,113 @@
+"""What a diagnosis comes to, in sentences: what was missing, how sure that is, whether it moves alike, what next."""
+
+from __future__ import annotations
+
+import math
+
+from bench.axis_kind import INERTIA, KINDS
+from bench.diagnose.add.refine import NULL
+from bench.diagnose.found import Gap, NamedEffect
+from bench.diagnose.show.show import Diagnosis
+from bench.report.page.blocks import Answer
+from bench.report.page.numbers import interval, number, sentence, share, unit_text, words
+
+
+def verdict_sentence(diagnosis: Diagnosis) -> str:
+    """What was missing and how much of the gap it accounts for, in a sentence."""
+    gap, unit = diagnosis.torque, unit_text(diagnosis.torque.unit)
+    before, after = gap.identify or (math.nan, math.nan)
+    noise = f"the noise floor is {number(gap.noise_floor, digits=3)} {unit}"
+    if not diagnosis.effects:
+        if diagnosis.verdict == "nothing_missing":
+            left = f"inertia and friction leave {number(after, digits=3)} {unit} of the torque"
+            return f"Nothing is missing: {left}, {noise}."
+        return (
+            f"Something is missing that no effect of the catalogue explains: {number(after, digits=3)} {unit} "
+            f"of the torque are left, {noise}."
+        )
+    several = len(diagnosis.effects) > 1
+    named = "; ".join(_named(effect) for effect in diagnosis.effects)
+    sensors = all(effect.effect.kind == "measurement" for effect in diagnosis.effects)
+    what = f"{'were' if several else 'was'} {'wrong in the measurement' if sensors else 'missing'}"
+    gone = f"with {'them' if several else 'it'} {share(1.0 - after / before)} of the torque gap is gone"
+    if diagnosis.verdict == "explained":
+        return f"{sentence(named)} {what}; {gone}, and what is left is noise."
+    return f"{sentence(named)} {what}; {gone}, but {number(_chi(gap), digits=2)} times the noise is left."
+
+
+def _named(effect: NamedEffect) -> str:
+    """An effect with its quantities; a phase says nothing to a reader."""
+    angles = {quantity.name for quantity in effect.effect.quantities if quantity.angle}
+    told = [f"{words(name)} {interval(found)}" for name, found in effect.parameters.items() if name not in angles]
+    return f"{words(effect.name)} ({', '.join(told)})" if told else words(effect.name)
+
+
+def answers(diagnosis: Diagnosis) -> tuple[Answer, ...]:
+    """What a reader comes with, answered."""
+    kind = next(kind for kind in KINDS if kind.speed_unit == diagnosis.velocity.unit)
+    inertia = diagnosis.parameters[kind.parameter(INERTIA)]
+    names = "; ".join(f"{_named(effect)}: {effect.effect.summary}" for effect in diagnosis.effects)
+    told = {
+        f"{sentence(kind.spoken(INERTIA))}?": f"{interval(inertia)} (95 %)",
+        "What was missing?": names or "No effect of the catalogue.",
+        "How sure?": _sure(diagnosis),
+        "Does it move like the axis now?": _moves(diagnosis.velocity, bool(diagnosis.effects)),
+        "What next?": following(diagnosis) or "Nothing is left open that another motion would tell.",
+    }
+    return tuple(Answer(question=question, answer=answer) for question, answer in told.items())
+
+
+def _sure(diagnosis: Diagnosis) -> str:
+    """What bears the verdict out, and what speaks against it."""
+    gap, said = diagnosis.torque, []
+    if diagnosis.because:
+        said.append(f"Not wholly: {'; '.join(diagnosis.because)}.")
+    if gap.holdout is not None:
+        before, after = gap.holdout
+        said.append(
+            f"On the recording that was not fitted the torque gap goes from {number(before, digits=3)} to "
+            f"{number(after, gap.unit, 3)}, where noise alone leaves {number(gap.noise_floor, digits=3)}."
+        )
+    elif diagnosis.effects:
+        said.append("The last third of the recording, kept from the fit, bears it out; no holdout was given.")
+    if diagnosis.holdout.same is False:
+        said.append("The holdout is of another axis, or of this one changed.")
+    said += [
+        f"{sentence(words(effect.name))} cannot be told here from {' or '.join(map(words, effect.ambiguous_with))}."
+        for effect in diagnosis.effects
+        if effect.ambiguous_with
+    ]
+    if not said:
+        said.append(f"What is left of the torque is {number(_chi(gap), digits=3)} times what noise alone leaves.")
+    return " ".join(said)
+
+
+def _chi(gap: Gap) -> float:
+    return math.nan if gap.identify is None else gap.identify[1] / gap.noise_floor
+
+
+def _moves(gap: Gap, added: bool) -> str:
+    """Whether the simulation moves as the axis does."""
+    pair = gap.holdout or gap.identify
+    if pair is None:
+        return "Not known: MuJoCo cannot have the model, or it diverged."
+    like = "Yes" if pair[1] <= NULL * gap.noise_floor else "Not wholly"
+    before = f", {number(pair[0], digits=3)} before" if added else ""
+    where = "on the recording that was not fitted" if gap.holdout else "on the recording"
+    return (
+        f"{like}: simulated speed is off by {number(pair[1], gap.unit, 3)} RMS {where}{before}; "
+        f"the sensor's noise is {number(gap.noise_floor, digits=3)}."
+    )
+
+
+def following(diagnosis: Diagnosis) -> str:
+    """What to record next; empty where nothing is open."""
+    found = diagnosis.next_experiment
+    if found is None:
+        return ""
+    times = number(found.separation, digits=2)
+    return (
+        f"Record {words(found.profile)} up to {number(found.speed, diagnosis.velocity.unit, 3)}, "
+        f"{found.repetitions} times: it tells {' from '.join(map(words, found.tells_apart))} "
+        f"({times} times the noise); {found.reason}."
+    )
