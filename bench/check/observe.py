@@ -21,7 +21,6 @@ from bench.check.state import TORQUE_GAP, VELOCITY_GAP, Gap, NamedHere, Shows, S
 from bench.checks.gate import passed
 from bench.diagnose.diagnosis import POLICY, Diagnosis, diagnose
 from bench.diagnose.found import NamedEffect
-from bench.diagnose.name.rules import row_correlation
 from bench.diagnose.recordings import Recordings
 from bench.identify.estimate import Alone
 from bench.identify.regression import identify
@@ -159,13 +158,13 @@ def _torque(fitted: Fit, index: int, unit: str) -> Measured:
     """
     less = fit(fitted.rows, fitted.hypothesis.without(index))
     saved = max(less.squares - fitted.squares, 0.0) / fitted.count
-    error = fitted.floor * np.sqrt(row_correlation(fitted.rows) / fitted.count)
+    error = fitted.floor * np.sqrt(fitted.rows.correlation / fitted.count)
     return Measured(float(np.sqrt(saved)), unit, float(error))
 
 
 def _torque_gap(fitted: Fit) -> Measured:
     """Residual over noise floor; both are read from as many independent rows as the filter leaves."""
-    independent = fitted.count / row_correlation(fitted.rows)
+    independent = fitted.count / fitted.rows.correlation
     return Measured(fitted.chi, "dimensionless", float(fitted.chi / np.sqrt(independent)))
 
 
