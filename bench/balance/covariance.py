@@ -19,6 +19,9 @@ WIDENED = 1.5
 PLAIN = 4
 #: Parts of equally many rows by acceleration or speed, and by time.
 LEVELS, QUARTERS = 8, 4
+#: Residual in noise floors above which something else than noise is left; on 100 recordings of axes that lack nothing
+#: 97 lay below.
+NOISE_ALONE = 1.12
 #: Share of a column's power that one part of the rows may hold at most.
 MOST = 0.9
 
@@ -44,6 +47,18 @@ def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float
     variance, floor = np.diag(covariance), least * np.diag(inverse)
     widened = np.sqrt(np.where(variance > 0.0, np.maximum(variance, floor) / np.maximum(variance, 1e-300), 1.0))
     return covariance * np.outer(widened, widened), float(special.stdtrit(degrees, 0.975))
+
+
+def misfit(columns: Array, residual: Array, floor: float) -> Array:
+    """How far intervals of 95 % have to reach (p,) because of what stands above the noise; 0 where nothing does.
+
+    Args:
+        columns: (m, p) in order of time, acceleration and speed first.
+        residual: (m,) - the effort's unit.
+        floor: RMS that the sensors' noise leaves - the effort's unit.
+    """
+    above = 1.0 - (NOISE_ALONE * floor) ** 2 / max(float(np.mean(residual**2)), 1e-300)
+    return np.sqrt(above) * left_out(columns, residual) if above > 0.0 else np.zeros(columns.shape[1])
 
 
 def left_out(columns: Array, residual: Array) -> Array:

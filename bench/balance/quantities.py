@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.arrays import Array
-from bench.balance.covariance import estimated
+from bench.balance.covariance import estimated, misfit
 from bench.balance.fit import Fit, least_squares
 from bench.balance.layout import BASE, COULOMB, INERTIA, VISCOUS, lay_out
 from bench.balance.normal_equations import block_edges, solved
@@ -121,6 +121,9 @@ def uncertain(fitted: Fit) -> Uncertain:
     inverse[told] = solved(gram, numbers[seen], count.sum() * noise[told])[1]
     conditioning = rows.conditioning
     covariance, reach = estimated(scores, inverse, conditioning.effort_noise**2 / conditioning.filter.stride)
+    heavy = np.sqrt(weight)
+    left = misfit(jacobian[:, seen] * heavy[:, None], fitted.left * heavy, fitted.floor)
+    covariance[told] += np.diag((left / reach) ** 2)
     covariance[place:, place:] += np.diag(known**2)
     shapes = np.array([fitted.terms[index].shape[k] for index, k in slots])
     for index, term in enumerate(fitted.terms):

@@ -12,6 +12,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.balance import layout
+from bench.balance.covariance import NOISE_ALONE
 from bench.balance.hypothesis import Hypothesis
 from bench.balance.normal_equations import BLOCKS, NormalEquations, join
 from bench.balance.parameter import Parameter
@@ -24,7 +25,7 @@ from bench.identify.determined import left_open, only_direction, require_determi
 from bench.identify.estimate import Estimate, RefusedEstimateError, Residual
 from bench.identify.load_inertia import load_inertia
 from bench.identify.parallel import in_parallel
-from bench.identify.solution import NOISE_ALONE, SURE, Left, Solved, equations_of, solved_with_shift
+from bench.identify.solution import SURE, Left, Solved, equations_of, solved_with_shift
 from bench.identify.tolerance import by_hint, by_tolerance
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
@@ -41,7 +42,7 @@ class Gathered:
         effort_unit: N*m, N, or what the rig allows.
         samples_read: of all parts.
         doubt: how far J, K_w and K_0 may be off as they move with the filter's cut-off (3,).
-        hinted: how far a fault of a sensor that the recording hints at would move them (3,).
+        hinted: how far an effect that the recording hints at would move them (3,).
         tolerance: how far coefficients may be off by the rig's tolerances (p,).
         warnings: that they move.
         checks: of all parts.

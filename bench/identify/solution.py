@@ -9,7 +9,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.balance import layout
-from bench.balance.covariance import estimated, left_out
+from bench.balance.covariance import estimated, misfit
 from bench.balance.hypothesis import Hypothesis
 from bench.balance.last_digit import rounding
 from bench.balance.layout import Layout, lay_out
@@ -20,9 +20,6 @@ from bench.identify.determined import INDEPENDENT_SHARE, independent_share
 
 #: Standard errors by which a shift of torque against speed must exceed a tick to be one: below, it is held at a tick.
 SURE = 3.0
-#: Residual in noise floors above which something else than noise is left; on 100 recordings of axes that lack nothing
-#: 97 lay below.
-NOISE_ALONE = 1.12
 
 
 def equations_of(rows: Rows, hypothesis: Hypothesis) -> NormalEquations:
@@ -116,12 +113,10 @@ class Left:
 
     def misfit(self, found: Solved) -> Array:
         """How far intervals of 95 % have to reach because of what stands above the noise (p,); 0 where nothing does."""
-        above = 1.0 - (NOISE_ALONE * self.floor) ** 2 / max(float(np.mean(self.residual**2)), 1e-300)
+        columns = self.laid.columns
+        if found.offset:
+            columns = np.column_stack([columns, np.ones(self.residual.size)])
+        free = [k for k in range(found.theta.size) if not (found.held and k == layout.MISALIGNMENT)]
         reaches = np.zeros(found.theta.size)
-        if above > 0.0:
-            columns = self.laid.columns
-            if found.offset:
-                columns = np.column_stack([columns, np.ones(self.residual.size)])
-            free = [k for k in range(found.theta.size) if not (found.held and k == layout.MISALIGNMENT)]
-            reaches[free] = np.sqrt(above) * left_out(columns[:, free], self.residual)
+        reaches[free] = misfit(columns[:, free], self.residual, self.floor)
         return reaches

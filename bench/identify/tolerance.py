@@ -1,4 +1,4 @@
-"""What is left open of an estimate by the rig's tolerances, and by a sensor's fault too weak to be named."""
+"""What is left open of an estimate by the rig's tolerances, and by an effect too weak to be named."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def by_tolerance(first: Trace, rig: Rig, tried: Tried) -> Array:
 
 
 def by_hint(tried: Tried) -> Array:
-    """How far J, K_w and K_0 would move with the sensor's fault that a recording hints at (3,); 0 without one.
+    """How far J, K_w and K_0 would move with the effect that a recording hints at (3,); 0 without one.
 
     Args:
         tried: the estimate of the recording, or of its first part, at the cut-off taken.

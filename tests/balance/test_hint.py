@@ -1,4 +1,4 @@
-"""A fault of a sensor too weak to be named: what it may move is counted; what is not there is not."""
+"""An effect too weak to be named: what it may move is counted; what is not there is not."""
 
 import numpy as np
 
@@ -20,6 +20,12 @@ def drifting(trace):
     return trace.with_signals({"current": trace["current"] / gain}, {"current": "A"})
 
 
+def dragged(trace, drag):
+    """The recording of an axis with a torque that grows with the square of speed - N*m*s**2/rad**2."""
+    current = trace["current"] + drag * trace["velocity"] * np.abs(trace["velocity"]) / 0.8
+    return trace.with_signals({"current": current}, {"current": "A"})
+
+
 def hinted(trace):
     return hint(fit(Rows.of(trace, RIG), Hypothesis()), catalogue().values())
 
@@ -37,7 +43,15 @@ def test_the_interval_of_the_inertia_holds_it_under_a_weak_drift():
         assert low < Truth().inertia < high
 
 
+def test_the_interval_of_viscous_friction_holds_it_under_a_weak_drag():
+    """Off by a third to a half of itself: without the hint no interval holds it, at 1.02 noise floors."""
+    traces = [dragged(recording(np.random.default_rng(seed)), 2e-6) for seed in range(10)]
+    told = [identify(trace, RIG)["viscous_friction_coefficient"] for trace in traces]
+    assert all(found.value > 1.3 * Truth().viscous for found in told)
+    assert sum(found.ci95[0] < Truth().viscous < found.ci95[1] for found in told) >= 8
+
+
 def test_what_chance_makes_is_no_hint():
-    """Three faults tried at three standard errors each: 8 in 1000 recordings by chance."""
+    """Some ten effects tried at three standard errors each: 3 in 100 recordings by chance."""
     told = [hinted(recording(np.random.default_rng(seed))) is not None for seed in range(40)]
-    assert sum(told) <= 3  # of 40: by chance one time in 2500
+    assert sum(told) <= 5  # of 40: by chance one time in 300
