@@ -105,10 +105,11 @@ def check_table(checked: Checked, title: str) -> Table:
     caption = [f"{checked.result}: {headline(checked)}"]
     caption += [f"rig: {line}" for line in checked.rig]
     caption += [f"not as in the baseline: {line}" for line in checked.conditions]
-    caption.append(
-        f"{checked.family} comparisons, of which an axis that is the same raises an alarm in at most "
-        f"{checked.false_alarm_rate:.2g} of all checks"
-    )
+    if checked.false_alarm_rate:
+        caption.append(
+            f"{checked.family} comparisons; of axes that differ by no margin at most {checked.false_alarm_rate:.2%} "
+            "are called changed"
+        )
     table = Table(
         title=title, caption="\n".join(caption), title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD
     )

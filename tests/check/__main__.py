@@ -1,0 +1,118 @@
+"""`python -m tests.check --axes 1000 --out docs/check`: false alarms and detections of `bench check`, in tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.progress import track
+
+from tests.check.draw import (
+    Again,
+    Drawn,
+    as_it_was,
+    drawn,
+    heavier,
+    more_friction,
+    moved_otherwise,
+    recorded,
+    rigs,
+    sampled_otherwise,
+    with_effect,
+)
+from tests.check.run import SHOWN, Answers, allows, answer, observed
+from tests.check.table import markdown
+
+#: Spread between recordings in their own errors.
+SPREADS = {"none": 0.0, "small": 1.0 / 3.0, "equal to within": 1.0}
+#: Recordings of the larger baseline.
+SEVERAL = 5
+#: What changes, how it is made, and the name under which it is to be found.
+CHANGES: dict[str, tuple[Callable[[Drawn], Again], str]] = {
+    "+10 % Coulomb friction": (more_friction, "coulomb_friction_torque"),
+    "+2 % inertia": (heavier, "moment_of_inertia"),
+    "weak backlash appears": (partial(with_effect, name="backlash"), "backlash"),
+    "weak cogging appears": (partial(with_effect, name="cogging_torque"), "cogging_torque"),
+}
+#: By how much, of quantities that are not there or gone.
+BY = {"coulomb_friction_torque": 0.1, "moment_of_inertia": 0.02}
+OTHERWISE = {"another motion": moved_otherwise, "half the samples": sampled_otherwise}
+#: Axes simulated together.
+BATCH = 60
+
+
+def unchanged(axes: list[Drawn], seed: int, spread: float) -> dict[str, Answers]:
+    """Parameters of unchanged axes against baselines of one recording and of several."""
+    found = {f"{count} recording{'s' * (count > 1)}": Answers() for count in (1, SEVERAL)}
+    rng = np.random.default_rng([seed, 3])
+    for batch in _batches(axes, f"unchanged, spread {spread:.2g}"):
+        again = [as_it_was(one, spread, rng) for one in batch for _ in range(SEVERAL + 1)]
+        runs = recorded(again, seed, (SEVERAL + 1) * batch[0].number)
+        for k, rig in enumerate(rigs(batch)):
+            traces = [run.trace for run in runs[k * (SEVERAL + 1) : (k + 1) * (SEVERAL + 1)]]
+            now = observed(traces[-1:], rig, False)
+            for answers, count in zip(found.values(), (1, SEVERAL), strict=True):
+                answers.add(answer(observed(traces[:count], rig, False), now, rig))
+    return found
+
+
+def changes(axes: list[Drawn], seed: int, names: bool) -> dict[str, Answers]:
+    """Axes as they were, with one thing changed each time, and recorded otherwise, against one recording."""
+    wanted = {name: made for name, (made, _) in CHANGES.items()} | OTHERWISE
+    found = {name: Answers() for name in ("unchanged", *wanted)}
+    for batch in _batches(axes, f"changes, {'with' if names else 'without'} names"):
+        again = [
+            one for each in batch for one in (as_it_was(each), as_it_was(each), *(m(each) for m in wanted.values()))
+        ]
+        runs = recorded(again, seed, len(again) // len(batch) * batch[0].number)
+        each = len(again) // len(batch)
+        for k, rig in enumerate(rigs(batch)):
+            first, *others = runs[k * each : (k + 1) * each]
+            baseline = observed([first.trace], rig, names)
+            same = answer(baseline, observed([others[0].trace], rig, names), rig)
+            found["unchanged"].add(same)
+            for name, run in zip(wanted, others[1:], strict=True):
+                _, what = CHANGES.get(name, (None, ""))
+                possible = allows(same, what, BY[what]) if what in BY else bool(what) and names and run.ratio > SHOWN
+                found[name].add(answer(baseline, observed([run.trace], rig, names), rig), possible, what)
+    return found
+
+
+def _batches(axes: list[Drawn], what: str) -> list[list[Drawn]]:
+    batches = [axes[k : k + BATCH] for k in range(0, len(axes), BATCH)]
+    return track(batches, what, console=Console(stderr=True))  # type: ignore[return-value]
+
+
+def main(
+    axes: Annotated[int, typer.Option(min=1, help="Unchanged axes, over all spreads.")] = 1000,
+    named: Annotated[int, typer.Option(min=0, help="Axes of which effects are looked for.")] = 100,
+    seed: int = 1,
+    out: Annotated[Path | None, typer.Option(help="Folder for table.md.")] = None,
+) -> None:
+    """Check unchanged and changed axes; print tables."""
+    share = -(-axes // len(SPREADS))
+    parts = {}
+    for place, (name, spread) in enumerate(SPREADS.items()):
+        for baseline, answers in unchanged(drawn(share, 10 * seed + place), seed, spread).items():
+            parts[f"unchanged, spread {name}, baseline of {baseline}"] = answers
+    quick = changes(drawn(share, 10 * seed + 5), seed, False)
+    parts |= {f"{name}, without names": answers for name, answers in quick.items()}
+    if named:
+        parts |= {
+            f"{name}, with names": found for name, found in changes(drawn(named, 10 * seed + 6), seed, True).items()
+        }
+    command = f"python -m tests.check --axes {axes} --named {named} --seed {seed}"
+    text = markdown(parts, command)
+    typer.echo(text)
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "table.md").write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    typer.run(main)
