@@ -10,9 +10,10 @@ import numpy as np
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.balance.fit import Fit, fit
 from bench.balance.hum import with_hum
-from bench.balance.hypothesis import Term
+from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.parameter import Parameter
 from bench.balance.quantities import uncertain
+from bench.balance.rows import Rows
 from bench.balance.shapes import shaped
 from bench.check.conditions import conditions
 from bench.check.measured import Measured
@@ -26,11 +27,27 @@ from bench.diagnose.recordings import Recordings
 from bench.identify.estimate import Alone
 from bench.identify.regression import identify
 from bench.rig.rig import Rig
+from bench.trace.join import join
 from bench.trace.trace import Trace
 
 Progress = Callable[[float], None]
 #: Effects that another state has, and which of one's own each of them is.
 Others = Sequence[tuple[NamedHere, NamedHere | None]]
+
+
+@dataclass(frozen=True)
+class Under:
+    """What recordings say with the effects of another state.
+
+    Attributes:
+        quantities: by name.
+        torques: of those effects that the torque balance holds, by their `id`.
+        noise_floor: of the torque gap - N*m (N).
+    """
+
+    quantities: Mapping[str, Measured]
+    torques: Mapping[int, Measured]
+    noise_floor: float
 
 
 @dataclass(frozen=True)
@@ -47,8 +64,8 @@ class Observed:
     recordings: Recordings | None = None
     fitted: Fit | None = None
 
-    def under(self, others: Others) -> tuple[dict[str, Measured], list[Measured | None]]:
-        """Quantities with the effects of another state in the place of one's own, and the torque of each of them.
+    def under(self, others: Others) -> Under:
+        """What the recording says with the effects of another state in the place of its own.
 
         A name that comes or goes moves J, K_w and K_0 with it: what is the same axis has to be so under both.
 
@@ -66,8 +83,9 @@ class Observed:
                 fitted = shaped(fitted.rows, fitted.hypothesis, index)
         base = uncertain(fitted).base(recordings.base_units)
         torques = iter([_torque(fitted, index, recordings.unit) for index in range(len(held))])
-        found = [next(torques) if effect.shape is not None else None for effect, _ in others]
-        return {name: Measured.of(one) for name, one in base.items()} | {TORQUE_GAP: _torque_gap(fitted)}, found
+        found = {id(effect): next(torques) for effect, _ in held}
+        parameters = {name: Measured.of(one) for name, one in base.items()}
+        return Under(parameters | {TORQUE_GAP: _torque_gap(fitted, recordings.unit)}, found, fitted.floor)
 
 
 def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
@@ -79,16 +97,14 @@ def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
     """
     traces = [passed(trace, rig).trace for trace in traces]
     found = identify(traces, rig)
-    kind, left = rig.axis_kind, found.residual
+    kind, fitted = rig.axis_kind, with_hum(fit(Rows.of(join(traces), rig), Hypothesis()))
     names = [kind.parameter(term) for term in (INERTIA, VISCOUS, COULOMB)]
-    ratio = left.rms / left.noise_floor
-    rows = found.samples_used * (traces[0].sample_period * found.cutoff)
+    gap = _torque_gap(fitted, found.residual.unit)
     state = State(
         source="recordings",
         names=False,
-        quantities=_parameters(names, found.parameters, found.recordings)
-        | {TORQUE_GAP: Measured(ratio, "dimensionless", ratio / np.sqrt(max(rows, 1.0)))},
-        gaps={"torque": Gap(left.rms, left.noise_floor, left.unit)},
+        quantities=_parameters(names, found.parameters, found.recordings) | {TORQUE_GAP: gap},
+        gaps={"torque": Gap(gap.value, fitted.floor, gap.unit)},
         conditions=conditions(traces, rig, found.cutoff),
         rig=rig_values(rig),
     )
@@ -112,7 +128,8 @@ def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda sha
     state = State(
         source="recordings",
         names=True,
-        quantities=_parameters(recordings.base_units, found.parameters, found.recordings) | _gaps(found, fitted),
+        quantities=_parameters(recordings.base_units, found.parameters, found.recordings)
+        | _gaps(found, fitted, recordings.unit),
         effects=tuple(effects),
         verdict=found.verdict,
         gaps={
@@ -163,10 +180,10 @@ def _torque(fitted: Fit, index: int, unit: str) -> Measured:
     return Measured(float(np.sqrt(saved)), unit, float(error))
 
 
-def _torque_gap(fitted: Fit) -> Measured:
-    """Residual over noise floor; both are read from as many independent rows as the filter leaves."""
+def _torque_gap(fitted: Fit, unit: str) -> Measured:
+    """RMS residual, read from as many independent rows as the filter leaves: r/sqrt(2*n)."""
     independent = fitted.count / row_correlation(fitted.rows)
-    return Measured(fitted.chi, "dimensionless", float(fitted.chi / np.sqrt(independent)))
+    return Measured(fitted.rms, unit, float(fitted.rms / np.sqrt(2.0 * independent)))
 
 
 def _shows(fitted: Fit) -> Shows:
@@ -176,11 +193,10 @@ def _shows(fitted: Fit) -> Shows:
     return Shows(float(np.sqrt(significant)), float(fitted.floor * np.sqrt(hidden)))
 
 
-def _gaps(found: Diagnosis, fitted: Fit) -> dict[str, Measured]:
-    gaps = {TORQUE_GAP: _torque_gap(fitted)}
-    velocity = found.velocity
-    if velocity.identify is not None and velocity.noise_floor > 0.0:
-        gaps[VELOCITY_GAP] = Measured(velocity.identify[1] / velocity.noise_floor, "dimensionless", 0.0)
+def _gaps(found: Diagnosis, fitted: Fit, unit: str) -> dict[str, Measured]:
+    gaps, velocity = {TORQUE_GAP: _torque_gap(fitted, unit)}, found.velocity
+    if velocity.identify is not None:
+        gaps[VELOCITY_GAP] = Measured(velocity.identify[1], velocity.unit, 0.0)
     return gaps
 
 

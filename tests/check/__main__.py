@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -42,22 +42,20 @@ CHANGES: dict[str, tuple[Callable[[Drawn], Again], str]] = {
 #: By how much, of quantities that are not there or gone.
 BY = {"coulomb_friction_torque": 0.1, "moment_of_inertia": 0.02}
 OTHERWISE = {"another motion": moved_otherwise, "half the samples": sampled_otherwise}
-#: Axes simulated together.
-BATCH = 60
+#: Recordings simulated together.
+TOGETHER = 400
 
 
-def unchanged(axes: list[Drawn], seed: int, spread: float) -> dict[str, Answers]:
-    """Parameters of unchanged axes against baselines of one recording and of several."""
-    found = {f"{count} recording{'s' * (count > 1)}": Answers() for count in (1, SEVERAL)}
-    rng = np.random.default_rng([seed, 3])
-    for batch in _batches(axes, f"unchanged, spread {spread:.2g}"):
-        again = [as_it_was(one, spread, rng) for one in batch for _ in range(SEVERAL + 1)]
-        runs = recorded(again, seed, (SEVERAL + 1) * batch[0].number)
+def unchanged(axes: list[Drawn], seed: int, spread: float, count: int) -> Answers:
+    """Parameters of unchanged axes against a baseline of so many recordings."""
+    found, rng, each = Answers(), np.random.default_rng([seed, count]), count + 1
+    for batch in _batches(axes, f"unchanged, spread {spread:.2g}, baseline of {count}", each):
+        runs = recorded(
+            [as_it_was(one, spread, rng) for one in batch for _ in range(each)], seed, each * batch[0].number
+        )
         for k, rig in enumerate(rigs(batch)):
-            traces = [run.trace for run in runs[k * (SEVERAL + 1) : (k + 1) * (SEVERAL + 1)]]
-            now = observed(traces[-1:], rig, False)
-            for answers, count in zip(found.values(), (1, SEVERAL), strict=True):
-                answers.add(answer(observed(traces[:count], rig, False), now, rig))
+            traces = [run.trace for run in runs[k * each : (k + 1) * each]]
+            found.add(answer(observed(traces[:-1], rig, False), observed(traces[-1:], rig, False), rig))
     return found
 
 
@@ -65,7 +63,7 @@ def changes(axes: list[Drawn], seed: int, names: bool) -> dict[str, Answers]:
     """Axes as they were, with one thing changed each time, and recorded otherwise, against one recording."""
     wanted = {name: made for name, (made, _) in CHANGES.items()} | OTHERWISE
     found = {name: Answers() for name in ("unchanged", *wanted)}
-    for batch in _batches(axes, f"changes, {'with' if names else 'without'} names"):
+    for batch in _batches(axes, f"changes, {'with' if names else 'without'} names", 2 + len(wanted)):
         again = [
             one for each in batch for one in (as_it_was(each), as_it_was(each), *(m(each) for m in wanted.values()))
         ]
@@ -83,30 +81,33 @@ def changes(axes: list[Drawn], seed: int, names: bool) -> dict[str, Answers]:
     return found
 
 
-def _batches(axes: list[Drawn], what: str) -> list[list[Drawn]]:
-    batches = [axes[k : k + BATCH] for k in range(0, len(axes), BATCH)]
-    return track(batches, what, console=Console(stderr=True))  # type: ignore[return-value]
+def _batches(axes: list[Drawn], what: str, each: int) -> Iterable[list[Drawn]]:
+    """Axes in batches whose recordings, so many of each, are simulated together."""
+    size = max(1, TOGETHER // each)
+    return track([axes[k : k + size] for k in range(0, len(axes), size)], what, console=Console(stderr=True))
 
 
 def main(
-    axes: Annotated[int, typer.Option(min=1, help="Unchanged axes, over all spreads.")] = 1000,
-    named: Annotated[int, typer.Option(min=0, help="Axes of which effects are looked for.")] = 100,
+    axes: Annotated[int, typer.Option(min=1, help="Unchanged axes against one recording, over all spreads.")] = 1000,
+    several: Annotated[int, typer.Option(min=1, help="The same against several recordings.")] = 300,
+    changed: Annotated[int, typer.Option(min=1, help="Axes that are changed, without names.")] = 100,
+    named: Annotated[int, typer.Option(min=1, help="Axes that are changed, with names.")] = 40,
     seed: int = 1,
     out: Annotated[Path | None, typer.Option(help="Folder for table.md.")] = None,
 ) -> None:
     """Check unchanged and changed axes; print tables."""
-    share = -(-axes // len(SPREADS))
-    parts = {}
+    command = (
+        f"python -m tests.check --axes {axes} --several {several} --changed {changed} --named {named} --seed {seed}"
+    )
+    parts: dict[str, Answers] = {}
     for place, (name, spread) in enumerate(SPREADS.items()):
-        for baseline, answers in unchanged(drawn(share, 10 * seed + place), seed, spread).items():
-            parts[f"unchanged, spread {name}, baseline of {baseline}"] = answers
-    quick = changes(drawn(share, 10 * seed + 5), seed, False)
-    parts |= {f"{name}, without names": answers for name, answers in quick.items()}
-    if named:
-        parts |= {
-            f"{name}, with names": found for name, found in changes(drawn(named, 10 * seed + 6), seed, True).items()
-        }
-    command = f"python -m tests.check --axes {axes} --named {named} --seed {seed}"
+        for count, number in ((1, axes), (SEVERAL, several)):
+            drawn_axes = drawn(-(-number // len(SPREADS)), 100 * seed + 10 * place + count)
+            told = f"unchanged, spread {name}, baseline of {count} recording{'s' * (count > 1)}"
+            parts[told] = unchanged(drawn_axes, seed, spread, count)
+    for names, number, how in ((False, changed, "without names"), (True, named, "with names")):
+        found = changes(drawn(number, 100 * seed + 50 + names), seed, names)
+        parts |= {f"{name}, {how}": answers for name, answers in found.items()}
     text = markdown(parts, command)
     typer.echo(text)
     if out is not None:

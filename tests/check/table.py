@@ -6,17 +6,18 @@ from collections.abc import Mapping
 
 from tests.check.run import SHOWN, Answers
 
-NOTE = f"""Recordings of the independent integrator, 4 s each, sensors drawn at random. Bounds are Clopper and Pearson's at
-95 %. `refused`: no answer, as the recording determines too little. `allows it`: errors, spread and margin of the unchanged
-axis leave a chance of 95 % to find the change; of a new effect, that it stands {SHOWN} times the noise above what J, K_w and
-K_0 explain. `found`: what was changed is called changed, by its name."""
+NOTE = f"""Recordings of the independent integrator, 4 s each, sensors drawn at random. Bounds are Clopper and Pearson's
+at 95 %. `refused`: no answer, as the recording determines too little. `allows it`: errors, spread and margin of the
+unchanged axis leave a chance of 95 % to find the change; of a new effect, that what J, K_w and K_0 leave of the torque is
+{SHOWN} times the noise. `found`: what was changed is called changed, by its name."""
+HEADS = ("what", "checks", "refused", "same", "undecided", "changed", "changed, share", "allows it", "found", "share")
 
 
 def markdown(parts: Mapping[str, Answers], command: str) -> str:
     """All answers as a page."""
     rows = [
-        "| what | checks | refused | same | undecided | changed | changed, share | allows it | found | share of those |",
-        "|---|---|---|---|---|---|---|---|---|---|",
+        f"| {' | '.join(HEADS)} |",
+        "|---" * len(HEADS) + "|",
         *(_row(name, answers) for name, answers in parts.items()),
     ]
     alarms = [f"- {name}: {_alarms(found)}" for name, found in parts.items() if _no_change(name) and found.alarms]
@@ -38,5 +39,6 @@ def _row(name: str, answers: Answers) -> str:
     share = results["changed"] / max(answers.answered, 1)
     told = f"{found / allowed:.1%} ({least:.1%} to {most:.1%})" if allowed else "-"
     counts = [results[key] for key in ("refused", "same", "undecided", "changed")]
-    numbers = " | ".join(map(str, [sum(results.values()), *counts]))
-    return f"| {name} | {numbers} | {share:.1%} ({low:.1%} to {high:.1%}) | {allowed or '-'} | {found if allowed else '-'} | {told} |"
+    cells = [name, sum(results.values()), *counts, f"{share:.1%} ({low:.1%} to {high:.1%})"]
+    cells += [allowed or "-", found if allowed else "-", told]
+    return f"| {' | '.join(map(str, cells))} |"
