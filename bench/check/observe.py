@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from bench.balance.hum import with_hum
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.parameter import Parameter
 from bench.balance.quantities import uncertain
-from bench.balance.rows import Rows
+from bench.balance.rows import WIDEST, Rows
 from bench.balance.shapes import shaped
 from bench.check.conditions import conditions
 from bench.check.measured import Measured
@@ -56,13 +56,15 @@ class Observed:
 
     Attributes:
         state: of the axis.
-        recordings: laid out; None without names.
-        fitted: the torque balance with the effects that were found; None without names.
+        fitted: the torque balance with the effects that were found, through the filter that all states share.
+        base_units: names and units of J, K_w and K_0.
+        unit: of the effort.
     """
 
     state: State
-    recordings: Recordings | None = None
     fitted: Fit | None = None
+    base_units: Mapping[str, str] = field(default_factory=dict)
+    unit: str = ""
 
     def under(self, others: Others) -> Under:
         """What the recording says with the effects of another state in the place of its own.
@@ -73,19 +75,19 @@ class Observed:
             others: effects of the other state. Those which are not one's own keep the shape they had there to begin
                 with; those which the torque balance does not hold are left out.
         """
-        recordings, own = self.recordings, self.fitted
-        assert recordings is not None and own is not None
+        own = self.fitted
+        assert own is not None
         held = [pair for pair in others if pair[0].shape is not None]
         hypothesis = own.hypothesis.with_terms(_term(effect, mine, own, self.state) for effect, mine in held)
-        fitted = fit(recordings.rows, hypothesis)
+        fitted = fit(own.rows, hypothesis)
         for index, (_, mine) in enumerate(held):
             if mine is None:
                 fitted = shaped(fitted.rows, fitted.hypothesis, index)
-        base = uncertain(fitted).base(recordings.base_units)
-        torques = iter([_torque(fitted, index, recordings.unit) for index in range(len(held))])
+        base = uncertain(fitted).base(self.base_units)
+        torques = iter([_torque(fitted, index, self.unit) for index in range(len(held))])
         found = {id(effect): next(torques) for effect, _ in held}
         parameters = {name: Measured.of(one) for name, one in base.items()}
-        return Under(parameters | {TORQUE_GAP: _torque_gap(fitted, recordings.unit)}, found, fitted.floor)
+        return Under(parameters | {TORQUE_GAP: _torque_gap(fitted, self.unit)}, found, fitted.floor)
 
 
 def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
@@ -97,7 +99,7 @@ def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
     """
     traces = [passed(trace, rig).trace for trace in traces]
     found = identify(traces, rig)
-    kind, fitted = rig.axis_kind, with_hum(fit(Rows.of(join(traces), rig), Hypothesis()))
+    kind, fitted = rig.axis_kind, balance(join(traces), rig, Hypothesis())
     names = [kind.parameter(term) for term in (INERTIA, VISCOUS, COULOMB)]
     gap = _torque_gap(fitted, found.residual.unit)
     state = State(
@@ -120,7 +122,7 @@ def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda sha
     found = diagnose(traces, rig, progress=progress)
     traces = [passed(trace, rig).trace for trace in traces]
     recordings = Recordings.of(traces, rig, None)
-    fitted = with_hum(fit(recordings.rows, found.balance.hypothesis))
+    fitted = balance(recordings.seen, rig, replace(found.balance.hypothesis, hum=()))
     count = len(fitted.terms)
     effects = [_named(effect, fitted, index, recordings.unit) for index, effect in enumerate(found.effects[:count])]
     effects += [NamedHere(e.effect, _measured(e.parameters)) for e in found.effects[count:]]
@@ -141,7 +143,16 @@ def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda sha
         conditions=conditions(traces, rig, cutoff),
         rig=rig_values(rig),
     )
-    return Observed(state, recordings, fitted)
+    return Observed(state, fitted, recordings.base_units, recordings.unit)
+
+
+def balance(trace: Trace, rig: Rig, hypothesis: Hypothesis) -> Fit:
+    """The torque balance of a recording through the filter that all states share.
+
+    Which filter a recording chooses for itself depends on its noise, and what passes it of noise and of an effect's
+    torque on the filter.
+    """
+    return with_hum(fit(Rows.of(trace, rig, width=WIDEST), hypothesis))
 
 
 def _parameters(

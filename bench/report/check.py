@@ -102,7 +102,7 @@ def _gaps(baseline: State, now: State) -> dict[str, Any]:
 
 def check_table(checked: Checked, title: str) -> Table:
     """Every comparison with its answer, worst first."""
-    caption = [f"{checked.result}: {headline(checked)}"]
+    caption = [headline(checked)]
     caption += [f"rig: {line}" for line in checked.rig]
     caption += [f"not as in the baseline: {line}" for line in checked.conditions]
     if checked.false_alarm_rate:

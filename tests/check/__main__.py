@@ -89,30 +89,34 @@ def _batches(axes: list[Drawn], what: str, each: int) -> Iterable[list[Drawn]]:
 
 def main(
     axes: Annotated[int, typer.Option(min=1, help="Unchanged axes against one recording, over all spreads.")] = 1000,
-    several: Annotated[int, typer.Option(min=1, help="The same against several recordings.")] = 300,
+    several: Annotated[int, typer.Option(min=1, help="The same against several recordings.")] = 150,
     changed: Annotated[int, typer.Option(min=1, help="Axes that are changed, without names.")] = 100,
-    named: Annotated[int, typer.Option(min=1, help="Axes that are changed, with names.")] = 40,
+    named: Annotated[int, typer.Option(min=1, help="Axes that are changed, with names.")] = 30,
     seed: int = 1,
     out: Annotated[Path | None, typer.Option(help="Folder for table.md.")] = None,
 ) -> None:
     """Check unchanged and changed axes; print tables."""
-    command = (
-        f"python -m tests.check --axes {axes} --several {several} --changed {changed} --named {named} --seed {seed}"
-    )
+    counts = f"--axes {axes} --several {several} --changed {changed} --named {named} --seed {seed}"
     parts: dict[str, Answers] = {}
+
+    def told() -> str:
+        text = markdown(parts, f"python -m tests.check {counts}")
+        if out is not None:
+            out.mkdir(parents=True, exist_ok=True)
+            (out / "table.md").write_text(text, encoding="utf-8")
+        return text
+
     for place, (name, spread) in enumerate(SPREADS.items()):
         for count, number in ((1, axes), (SEVERAL, several)):
             drawn_axes = drawn(-(-number // len(SPREADS)), 100 * seed + 10 * place + count)
-            told = f"unchanged, spread {name}, baseline of {count} recording{'s' * (count > 1)}"
-            parts[told] = unchanged(drawn_axes, seed, spread, count)
+            what = f"unchanged, spread {name}, baseline of {count} recording{'s' * (count > 1)}"
+            parts[what] = unchanged(drawn_axes, seed, spread, count)
+            told()
     for names, number, how in ((False, changed, "without names"), (True, named, "with names")):
         found = changes(drawn(number, 100 * seed + 50 + names), seed, names)
         parts |= {f"{name}, {how}": answers for name, answers in found.items()}
-    text = markdown(parts, command)
-    typer.echo(text)
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        (out / "table.md").write_text(text, encoding="utf-8")
+        told()
+    typer.echo(told())
 
 
 if __name__ == "__main__":

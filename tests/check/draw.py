@@ -16,7 +16,7 @@ from tests.independent.case import residual_ratio
 from tests.independent.rig import write_rig
 
 #: Tick of all drives, so that many run side by side, and step of the integration - s.
-TICK, LONGEST_STEP = 250e-6, 31.25e-6
+TICK, LONGEST_STEP = 250e-6, 62.5e-6
 #: Of a recording, about - s.
 DURATION = 4.0
 #: What recordings tell of J, K_w and K_0 is off by, relative: `within`, by which spreads between them are measured.
