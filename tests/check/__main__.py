@@ -106,16 +106,16 @@ def main(
             (out / "table.md").write_text(text, encoding="utf-8")
         return text
 
+    for names, number, how in ((False, changed, "without names"), (True, named, "with names")):
+        found = changes(drawn(number, 100 * seed + 50 + names), seed, names)
+        parts |= {f"{name}, {how}": answers for name, answers in found.items()}
+        told()
     for place, (name, spread) in enumerate(SPREADS.items()):
         for count, number in ((1, axes), (SEVERAL, several)):
             drawn_axes = drawn(-(-number // len(SPREADS)), 100 * seed + 10 * place + count)
             what = f"unchanged, spread {name}, baseline of {count} recording{'s' * (count > 1)}"
             parts[what] = unchanged(drawn_axes, seed, spread, count)
             told()
-    for names, number, how in ((False, changed, "without names"), (True, named, "with names")):
-        found = changes(drawn(number, 100 * seed + 50 + names), seed, names)
-        parts |= {f"{name}, {how}": answers for name, answers in found.items()}
-        told()
     typer.echo(told())
 
 
