@@ -147,7 +147,7 @@ def test_github_gets_commands_of_its_own_alone(axis, monkeypatch):
 
 def test_a_workflow_command_is_escaped_as_github_does():
     told = command("error", "a\r\nb::c % \x1b", {"file": "a:b,c\n%.toml"})
-    assert told == "::error file=a%3Ab%2Cc%0A%25.toml,title=bench check::a\\x0d%0Ab::c %25 \\x1b"
+    assert told == "::error file=a%3Ab%2Cc%0A%25.toml,title=bench check::a\\r%0Ab::c %25 \\x1b"
 
 
 def test_gitlab_gets_a_code_quality_report(axis):
