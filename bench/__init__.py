@@ -65,8 +65,8 @@ class _FrontDoor(ModuleType):
 
     `identify`, `diagnose` and `check` are functions here and packages below. Loading a package, whoever does it first,
     ends with the import system's `setattr(bench, "identify", <package>)`, after which `bench.identify(...)` would call
-    a module. That one binding is declined, so `bench.identify` is the function whatever was imported before or after, while
-    `from bench.identify.regression import ...` finds the package in `sys.modules` as ever. (Only the spelling
+    a module. That one binding is declined, so `bench.identify` is the function whatever was imported before or after,
+    while `from bench.identify.regression import ...` finds the package in `sys.modules` as ever. (Only the spelling
     `import bench.identify.regression as r` is lost: it goes through the attribute.)
     """
 

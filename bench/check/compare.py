@@ -64,7 +64,7 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     family = len(baseline.quantities) + len(names) + len(pairs) + silent
     sure = all(one.chance <= rate / family for one in names)
     views = [*_views(state, under, sure)]
-    comparisons = [*_of_quantities(baseline, views, allowed, bool(moved)), *pairs, *names]
+    comparisons = [*_of_quantities(baseline, views, allowed, bool(moved)), *_untold(baseline, state), *pairs, *names]
     if rig:
         comparisons = [replace(one, chance=1.0, held_back="the rig is not that of the baseline") for one in comparisons]
     rejected = holm({one.name: one.chance for one in comparisons}, rate, silent)
@@ -136,6 +136,13 @@ def _of_quantities(baseline: State, views: Sequence[View], allowed: Allowed, mov
         margin = allowed.margin_of(name, before, baseline)
         least = 0.0 if name != TORQUE_GAP else _louder(baseline, view)
         yield Comparison.of(name, before.unit, values, differences, margin, held_back=held_back, least_chance=least)
+
+
+def _untold(baseline: State, now: State) -> Iterator[Comparison]:
+    """What the baseline knows and the recordings now do not tell."""
+    for name, before in baseline.quantities.items():
+        if name not in now.quantities:
+            yield Comparison.of(name, before.unit, (before.value, None), [], 0.0, held_back="it is not told now")
 
 
 def _louder(baseline: State, view: View) -> float:

@@ -167,3 +167,12 @@ def test_another_unit_is_not_compared():
     now = state()
     quantities = {**now.quantities, "moment_of_inertia": Measured(0.002, "A*s**2/rad", 1e-6)}
     assert results(checked(state(), replace(now, quantities=quantities)))["moment_of_inertia"] == "undecided"
+
+
+def test_what_is_not_told_now_is_not_called_the_same():
+    now = state()
+    told = {name: one for name, one in now.quantities.items() if name != "coulomb_friction_torque"}
+    found = checked(state(), replace(now, quantities=told))
+    assert found.result == "undecided"
+    assert results(found)["coulomb_friction_torque"] == "undecided"
+    assert "it is not told now" in headline(found)
