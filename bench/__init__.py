@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 from bench.errors import BenchError, InputError, UndeterminedError
 
 if TYPE_CHECKING:
+    from bench.check.check import check
+    from bench.check.compare import Checked
     from bench.diagnose.diagnosis import diagnose
     from bench.diagnose.replay import replay
     from bench.diagnose.show.show import Diagnosis
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BenchError",
+    "Checked",
     "Diagnosis",
     "Effects",
     "Estimate",
@@ -32,6 +35,7 @@ __all__ = [
     "Trace",
     "UndeterminedError",
     "__version__",
+    "check",
     "diagnose",
     "identify",
     "load_rig",
@@ -43,11 +47,13 @@ __version__ = "0.1.0"
 
 #: Module that each name comes from; a test holds it against the imports above, which are what type checkers read.
 _HOMES = {
+    "Checked": "bench.check.compare",
     "Diagnosis": "bench.diagnose.show.show",
     "Effects": "bench.export.effects",
     "Estimate": "bench.identify.estimate",
     "Rig": "bench.rig.rig",
     "Trace": "bench.trace.trace",
+    "check": "bench.check.check",
     "diagnose": "bench.diagnose.diagnosis",
     "identify": "bench.identify.regression",
     "load_rig": "bench.rig.rig",
@@ -60,10 +66,10 @@ _HOMES = {
 class _FrontDoor(ModuleType):
     """Loads a name when it is asked for, and keeps it though a package has the same one.
 
-    `identify` and `diagnose` are functions here and packages below. Loading a package, whoever does it first, ends with
-    the import system's `setattr(bench, "identify", <package>)`, after which `bench.identify(...)` would call a module.
-    That one binding is declined, so `bench.identify` is the function whatever was imported before or after, while
-    `from bench.identify.regression import ...` finds the package in `sys.modules` as ever. (Only the spelling
+    `identify`, `diagnose` and `check` are functions here and packages below. Loading a package, whoever does it first,
+    ends with the import system's `setattr(bench, "identify", <package>)`, after which `bench.identify(...)` would call
+    a module. That one binding is declined, so `bench.identify` is the function whatever was imported before or after,
+    while `from bench.identify.regression import ...` finds the package in `sys.modules` as ever. (Only the spelling
     `import bench.identify.regression as r` is lost: it goes through the attribute.)
     """
 

@@ -53,13 +53,18 @@ def test_a_name_it_does_not_have_is_an_error():
 
 
 IDENTIFY = permutations(["import bench.identify.estimate", "bench.identify", "from bench import identify"])
+CHECK = permutations(["import bench.check.difference", "bench.check"])
 DIAGNOSE = permutations(["import bench.diagnose.diagnosis", "bench.diagnose"])
 RELOADED = ("import bench.identify", "import importlib", "importlib.reload(bench)")
 
 
 @pytest.mark.parametrize(
     ("name", "statements"),
-    [*(("identify", order) for order in (*IDENTIFY, RELOADED)), *(("diagnose", order) for order in DIAGNOSE)],
+    [
+        *(("identify", order) for order in (*IDENTIFY, RELOADED)),
+        *(("diagnose", order) for order in DIAGNOSE),
+        *(("check", order) for order in CHECK),
+    ],
 )
 def test_a_function_holds_in_every_order_of_imports(name, statements):
     script = "\n".join(["import bench", *statements, f"print(bench.{name}.__name__, type(bench.{name}).__name__)"])

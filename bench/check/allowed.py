@@ -20,10 +20,12 @@ from bench.units import nearest, parse
 
 _SHARE = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
 #: Margins where the rig states none, as shares of the baseline's value.
-MARGINS = {INERTIA: 0.005, VISCOUS: 0.10, COULOMB: 0.03, TORQUE_GAP: 0.25, VELOCITY_GAP: 1.0}
+MARGINS = {INERTIA: 0.005, VISCOUS: 0.15, COULOMB: 0.03, TORQUE_GAP: 0.25, VELOCITY_GAP: 0.5}
 #: Standard deviations between recordings where fewer than `difference.ENOUGH` tell them and the rig states none, as
 #: shares of the baseline's value: of an axis that is warm and moved alike. Several recordings say better.
-BETWEEN = {INERTIA: 0.001, VISCOUS: 0.03, COULOMB: 0.0075, TORQUE_GAP: 0.04, VELOCITY_GAP: 0.2}
+BETWEEN = {INERTIA: 0.001, VISCOUS: 0.03, COULOMB: 0.0075, TORQUE_GAP: 0.04, VELOCITY_GAP: 0.1}
+#: Standard deviation of the noise floor that a recording tells, as share: coloured noise is hard to tell from a gap.
+FLOOR = 0.12
 #: The same of quantities of effects, and of the torque that they make.
 OF_EFFECTS, BETWEEN_OF_EFFECTS = 0.25, 0.05
 #: Share of the effort that a motion takes, below which what a parameter does to it matters to nobody.

@@ -77,7 +77,11 @@ def _table(state: State) -> dict[str, Any]:
 
 
 def _measured(found: Measured) -> dict[str, Any]:
-    table: dict[str, Any] = {"value": _text(found.value, found.unit), "std_error": _text(found.std_error, found.unit)}
+    """A quantity; one that is exact has a value alone."""
+    table: dict[str, Any] = {"value": _text(found.value, found.unit)}
+    if not found.std_error:
+        return table
+    table["std_error"] = _text(found.std_error, found.unit)
     if math.isfinite(found.degrees):
         table["degrees"] = round(found.degrees, 1)
     table["recordings"] = found.recordings
@@ -95,6 +99,7 @@ def _effect(effect: NamedHere) -> dict[str, Any]:
 
 
 def _text(value: float, unit: str) -> str:
+    """A number in as many digits as any comparison needs, with its unit."""
     return f"{value:.9g} {unit}" if unit != "dimensionless" else f"{value:.9g}"
 
 

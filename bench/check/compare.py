@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from bench.check.allowed import OTHER_MOTION, Allowed
+from bench.check.allowed import FLOOR, MARGINS, OTHER_MOTION, Allowed
 from bench.check.comparison import CHANGED, RESULTS, SAME, UNDECIDED, Comparison
 from bench.check.conditions import unlike
 from bench.check.difference import Difference, holm
 from bench.check.measured import Measured
-from bench.check.names import Matched, matched, of_both, of_names
-from bench.check.observe import Observed
+from bench.check.names import matched, of_both, of_names
+from bench.check.observe import Observed, Under
 from bench.check.same_rig import differing
 from bench.check.state import GAPS, TORQUE_GAP, VELOCITY_GAP, NamedHere, State
 from bench.effects.catalogue import catalogue
@@ -55,15 +56,15 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     state = now.state
     rig, moved = differing(baseline.rig, state.rig), unlike(baseline.conditions, state.conditions)
     found = matched(baseline, state)
-    parameters, torques = ({}, {}) if found.alike or now.fitted is None else _under(baseline, found, now)
+    under = None if found.alike or now.fitted is None else now.under(found.others(baseline))
     other_motion = "the motion is not that of the baseline" if moved else ""
-    names = [*of_names(found, torques, baseline, allowed, other_motion)]
+    names = [*of_names(found, {} if under is None else under.torques, baseline, allowed, other_motion)]
     pairs = [*of_both(found.both, allowed, baseline, OTHER_MOTION if moved else 0.0)]
     silent = _silent(baseline, state) if baseline.shows is not None else 0
     family = len(baseline.quantities) + len(names) + len(pairs) + silent
     sure = all(one.chance <= rate / family for one in names)
-    under = {name: one for name, one in parameters.items() if name == TORQUE_GAP or not sure}
-    comparisons = [*_of_quantities(baseline, state, under, allowed, bool(moved), found.alike), *pairs, *names]
+    views = [*_views(state, under, sure)]
+    comparisons = [*_of_quantities(baseline, views, allowed, bool(moved)), *_untold(baseline, state), *pairs, *names]
     if rig:
         comparisons = [replace(one, chance=1.0, held_back="the rig is not that of the baseline") for one in comparisons]
     rejected = holm({one.name: one.chance for one in comparisons}, rate, silent)
@@ -84,48 +85,72 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     )
 
 
-def _under(baseline: State, found: Matched, now: Observed) -> tuple[dict[str, Measured], dict[int, Measured | None]]:
-    """Quantities now with the effects of the baseline, and the torque of each of these, by its `id`."""
-    others = found.others(baseline)
-    parameters, torques = now.under(others)
-    return parameters, {id(effect): torque for (effect, _), torque in zip(others, torques, strict=True)}
+@dataclass(frozen=True)
+class View:
+    """A quantity now, with the effects of one's own, of the baseline, or of both in turn.
+
+    Attributes:
+        name: of the quantity.
+        values: one or two.
+        noise_floor: of a torque gap - N*m (N).
+    """
+
+    name: str
+    values: tuple[Measured, ...]
+    noise_floor: float = float("nan")
 
 
-def _of_quantities(
-    baseline: State,
-    now: State,
-    under: Mapping[str, Measured],
-    allowed: Allowed,
-    moved: bool,
-    alike: bool,
-) -> Iterator[Comparison]:
-    """Comparisons of parameters and gaps.
+def _views(now: State, under: Under | None, sure: bool) -> Iterator[View]:
+    """Quantities now.
 
     Args:
-        baseline, now: the states.
-        under: quantities now with the effects of the baseline. A name that has surely come or gone has changed the
-            axis, and each state is told by its own; one on the edge has not, and a change has to show with both.
-        allowed: margins and spreads.
-        moved: whether motion or sampling differ.
-        alike: whether the effects are the same.
+        now: the state.
+        under: with the effects of the baseline; None where they are the same.
+        sure: whether all names that differ have surely come or gone. That changed the axis, and each state is told by
+            its own; a name on the edge has not, and a change has to show with both.
     """
-    for name in (name for name in baseline.quantities if name in now.quantities):
-        before, after = baseline.quantities[name], now.quantities[name]
-        views = [after] + ([under[name]] if name in under else [])
-        if name == VELOCITY_GAP and not alike:
+    for name, own in now.quantities.items():
+        if name == TORQUE_GAP:  # how much the effects of the baseline leave now, whatever else was found
+            floor = now.gaps["torque"].noise_floor if under is None else under.noise_floor
+            yield View(name, (own if under is None else under.quantities[name],), floor)
+        elif name == VELOCITY_GAP and under is not None:
             continue  # of models with other effects, which are told apart by these
-        held_back = "what a model leaves depends on the motion" if name in GAPS and moved else ""
-        if name == TORQUE_GAP and name in under:
-            views = [under[name]]  # how much the baseline's effects leave now, whatever else was found
-        if before.unit != after.unit:
-            yield Comparison.of(name, before.unit, (before.value, None), [], 0.0, held_back=f"now in {after.unit}")
+        elif under is None or sure or name not in under.quantities:
+            yield View(name, (own,))
+        else:
+            yield View(name, (own, under.quantities[name]))
+
+
+def _of_quantities(baseline: State, views: Sequence[View], allowed: Allowed, moved: bool) -> Iterator[Comparison]:
+    """Comparisons of parameters and gaps; `moved`: whether motion or sampling differ."""
+    for view in (view for view in views if view.name in baseline.quantities):
+        name, before, now = view.name, baseline.quantities[view.name], view.values[0]
+        values = before.value, now.value
+        if before.unit != now.unit:
+            yield Comparison.of(name, before.unit, (before.value, None), [], 0.0, held_back=f"now in {now.unit}")
             continue
+        held_back = "what a model leaves depends on the motion" if name in GAPS and moved else ""
         between = allowed.between_of(name, before)
         beside = OTHER_MOTION * between if moved else 0.0
-        differences = [Difference.of(before, view, between, beside) for view in views]
+        differences = [Difference.of(before, value, between, beside) for value in view.values]
         margin = allowed.margin_of(name, before, baseline)
-        values = before.value, views[0].value
-        yield Comparison.of(name, before.unit, values, differences, margin, held_back=held_back)
+        least = 0.0 if name != TORQUE_GAP else _louder(baseline, view)
+        yield Comparison.of(name, before.unit, values, differences, margin, held_back=held_back, least_chance=least)
+
+
+def _untold(baseline: State, now: State) -> Iterator[Comparison]:
+    """What the baseline knows and the recordings now do not tell."""
+    for name, before in baseline.quantities.items():
+        if name not in now.quantities:
+            yield Comparison.of(name, before.unit, (before.value, None), [], 0.0, held_back="it is not told now")
+
+
+def _louder(baseline: State, view: View) -> float:
+    """Chance that a torque gap over its noise floor differs as it does, were only the sensors louder than they were."""
+    before = baseline.gaps["torque"]
+    ratio, now = before.after / before.noise_floor, view.values[0].value / view.noise_floor
+    shown = Difference(now - ratio, math.sqrt(2.0) * FLOOR * ratio, math.inf)
+    return shown.chance(MARGINS[TORQUE_GAP] * ratio)
 
 
 def _silent(baseline: State, now: State) -> int:

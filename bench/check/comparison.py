@@ -50,13 +50,20 @@ class Comparison:
         margin: float,
         effect: str = "",
         held_back: str = "",
+        least_chance: float = 0.0,
     ) -> Comparison:
-        """A comparison with its chance: the largest of those of its differences, all of one sign."""
+        """A comparison with its chance: the largest of those of its differences, all of one sign.
+
+        Args:
+            name, unit, differences, margin, effect, held_back: as the attributes.
+            values: in the baseline and now.
+            least_chance: of what has to differ beside.
+        """
         found = cls(name, unit, *values, tuple(differences), margin, effect, held_back)
         signs = {difference.value > 0.0 for difference in differences}
         if held_back or len(signs) != 1:
             return found
-        return replace(found, chance=max(difference.chance(margin) for difference in differences))
+        return replace(found, chance=max(least_chance, *(difference.chance(margin) for difference in differences)))
 
     def answered(self, rejected: frozenset[str]) -> Comparison:
         """With its result, given those of the family that are rejected."""

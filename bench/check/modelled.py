@@ -19,7 +19,7 @@ from bench.check.comparison import CHANGED, RESULTS, SAME, Comparison
 from bench.check.difference import Difference
 from bench.check.measured import Measured
 from bench.check.names import matched
-from bench.check.response import response
+from bench.check.response import RESPONSE_TORQUE, response
 from bench.check.state import NamedHere, State
 from bench.plant.model import parameter_quantities
 from bench.plant.model_file import SCHEMA, StoredModel, load_model, read_table
@@ -27,8 +27,6 @@ from bench.units import Quantity
 
 #: Margins: of an angle - rad -, and of the response's torque as a share of its RMS.
 ANGLE, RESPONSE = 0.05, 0.01
-#: The comparison of responses.
-RESPONSE_TORQUE = "response_torque"
 
 
 def is_model(path: str | Path) -> bool:

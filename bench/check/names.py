@@ -8,7 +8,7 @@ looked for again, named or not.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from bench.check.allowed import OF_EFFECTS, Allowed
@@ -121,7 +121,7 @@ def of_appeared(after: NamedHere, baseline: State, allowed: Allowed, unlike: str
 
 
 def of_names(
-    found: Matched, torques: dict[int, Measured | None], baseline: State, allowed: Allowed, unlike: str
+    found: Matched, torques: Mapping[int, Measured], baseline: State, allowed: Allowed, unlike: str
 ) -> Iterator[Comparison]:
     """Comparisons of all names that are not the same in both states.
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.balance.fit import Fit, fit
 from bench.balance.hum import with_hum
-from bench.balance.hypothesis import Term
+from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.parameter import Parameter
 from bench.balance.quantities import uncertain
+from bench.balance.rows import WIDEST, Rows
 from bench.balance.shapes import shaped
 from bench.check.conditions import conditions
 from bench.check.measured import Measured
@@ -25,6 +26,7 @@ from bench.diagnose.recordings import Recordings
 from bench.identify.estimate import Alone
 from bench.identify.regression import identify
 from bench.rig.rig import Rig
+from bench.trace.join import join
 from bench.trace.trace import Trace
 
 Progress = Callable[[float], None]
@@ -33,21 +35,38 @@ Others = Sequence[tuple[NamedHere, NamedHere | None]]
 
 
 @dataclass(frozen=True)
+class Under:
+    """What recordings say with the effects of another state.
+
+    Attributes:
+        quantities: by name.
+        torques: of those effects that the torque balance holds, by their `id`.
+        noise_floor: of the torque gap - N*m (N).
+    """
+
+    quantities: Mapping[str, Measured]
+    torques: Mapping[int, Measured]
+    noise_floor: float
+
+
+@dataclass(frozen=True)
 class Observed:
     """A state, and what it was read from.
 
     Attributes:
         state: of the axis.
-        recordings: laid out; None without names.
-        fitted: the torque balance with the effects that were found; None without names.
+        fitted: the torque balance with the effects that were found, through the filter that all states share.
+        base_units: names and units of J, K_w and K_0.
+        unit: of the effort.
     """
 
     state: State
-    recordings: Recordings | None = None
     fitted: Fit | None = None
+    base_units: Mapping[str, str] = field(default_factory=dict)
+    unit: str = ""
 
-    def under(self, others: Others) -> tuple[dict[str, Measured], list[Measured | None]]:
-        """Quantities with the effects of another state in the place of one's own, and the torque of each of them.
+    def under(self, others: Others) -> Under:
+        """What the recording says with the effects of another state in the place of its own.
 
         A name that comes or goes moves J, K_w and K_0 with it: what is the same axis has to be so under both.
 
@@ -55,18 +74,19 @@ class Observed:
             others: effects of the other state. Those which are not one's own keep the shape they had there to begin
                 with; those which the torque balance does not hold are left out.
         """
-        recordings, own = self.recordings, self.fitted
-        assert recordings is not None and own is not None
+        own = self.fitted
+        assert own is not None
         held = [pair for pair in others if pair[0].shape is not None]
         hypothesis = own.hypothesis.with_terms(_term(effect, mine, own, self.state) for effect, mine in held)
-        fitted = fit(recordings.rows, hypothesis)
+        fitted = fit(own.rows, hypothesis)
         for index, (_, mine) in enumerate(held):
             if mine is None:
                 fitted = shaped(fitted.rows, fitted.hypothesis, index)
-        base = uncertain(fitted).base(recordings.base_units)
-        torques = iter([_torque(fitted, index, recordings.unit) for index in range(len(held))])
-        found = [next(torques) if effect.shape is not None else None for effect, _ in others]
-        return {name: Measured.of(one) for name, one in base.items()} | {TORQUE_GAP: _torque_gap(fitted)}, found
+        base = uncertain(fitted).base(self.base_units)
+        torques = iter([_torque(fitted, index, self.unit) for index in range(len(held))])
+        found = {id(effect): next(torques) for effect, _ in held}
+        parameters = {name: Measured.of(one) for name, one in base.items()}
+        return Under(parameters | {TORQUE_GAP: _torque_gap(fitted, self.unit)}, found, fitted.floor)
 
 
 def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
@@ -78,16 +98,14 @@ def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
     """
     traces = [passed(trace, rig).trace for trace in traces]
     found = identify(traces, rig)
-    kind, left = rig.axis_kind, found.residual
+    kind, fitted = rig.axis_kind, balance(join(traces), rig, Hypothesis())
     names = [kind.parameter(term) for term in (INERTIA, VISCOUS, COULOMB)]
-    ratio = left.rms / left.noise_floor
-    rows = found.samples_used * (traces[0].sample_period * found.cutoff)
+    gap = _torque_gap(fitted, found.residual.unit)
     state = State(
         source="recordings",
         names=False,
-        quantities=_parameters(names, found.parameters, found.recordings)
-        | {TORQUE_GAP: Measured(ratio, "dimensionless", ratio / np.sqrt(max(rows, 1.0)))},
-        gaps={"torque": Gap(left.rms, left.noise_floor, left.unit)},
+        quantities=_parameters(names, found.parameters, found.recordings) | {TORQUE_GAP: gap},
+        gaps={"torque": Gap(gap.value, fitted.floor, gap.unit)},
         conditions=conditions(traces, rig, found.cutoff),
         rig=rig_values(rig),
     )
@@ -103,7 +121,7 @@ def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda sha
     found = diagnose(traces, rig, progress=progress)
     traces = [passed(trace, rig).trace for trace in traces]
     recordings = Recordings.of(traces, rig, None)
-    fitted = with_hum(fit(recordings.rows, found.balance.hypothesis))
+    fitted = balance(recordings.seen, rig, replace(found.balance.hypothesis, hum=()))
     count = len(fitted.terms)
     effects = [_named(effect, fitted, index, recordings.unit) for index, effect in enumerate(found.effects[:count])]
     effects += [NamedHere(e.effect, _measured(e.parameters)) for e in found.effects[count:]]
@@ -111,7 +129,8 @@ def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda sha
     state = State(
         source="recordings",
         names=True,
-        quantities=_parameters(recordings.base_units, found.parameters, found.recordings) | _gaps(found, fitted),
+        quantities=_parameters(recordings.base_units, found.parameters, found.recordings)
+        | _gaps(found, fitted, recordings.unit),
         effects=tuple(effects),
         verdict=found.verdict,
         gaps={
@@ -123,7 +142,16 @@ def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda sha
         conditions=conditions(traces, rig, cutoff),
         rig=rig_values(rig),
     )
-    return Observed(state, recordings, fitted)
+    return Observed(state, fitted, recordings.base_units, recordings.unit)
+
+
+def balance(trace: Trace, rig: Rig, hypothesis: Hypothesis) -> Fit:
+    """The torque balance of a recording through the filter that all states share.
+
+    Which filter a recording chooses for itself depends on its noise, and what passes it of noise and of an effect's
+    torque on the filter.
+    """
+    return with_hum(fit(Rows.of(trace, rig, width=WIDEST), hypothesis))
 
 
 def _parameters(
@@ -162,10 +190,10 @@ def _torque(fitted: Fit, index: int, unit: str) -> Measured:
     return Measured(float(np.sqrt(saved)), unit, float(error))
 
 
-def _torque_gap(fitted: Fit) -> Measured:
-    """Residual over noise floor; both are read from as many independent rows as the filter leaves."""
+def _torque_gap(fitted: Fit, unit: str) -> Measured:
+    """RMS residual, read from as many independent rows as the filter leaves: r/sqrt(2*n)."""
     independent = fitted.count / fitted.rows.correlation
-    return Measured(fitted.chi, "dimensionless", float(fitted.chi / np.sqrt(independent)))
+    return Measured(fitted.rms, unit, float(fitted.rms / np.sqrt(2.0 * independent)))
 
 
 def _shows(fitted: Fit) -> Shows:
@@ -175,11 +203,10 @@ def _shows(fitted: Fit) -> Shows:
     return Shows(float(np.sqrt(significant)), float(fitted.floor * np.sqrt(hidden)))
 
 
-def _gaps(found: Diagnosis, fitted: Fit) -> dict[str, Measured]:
-    gaps = {TORQUE_GAP: _torque_gap(fitted)}
-    velocity = found.velocity
-    if velocity.identify is not None and velocity.noise_floor > 0.0:
-        gaps[VELOCITY_GAP] = Measured(velocity.identify[1] / velocity.noise_floor, "dimensionless", 0.0)
+def _gaps(found: Diagnosis, fitted: Fit, unit: str) -> dict[str, Measured]:
+    gaps, velocity = {TORQUE_GAP: _torque_gap(fitted, unit)}, found.velocity
+    if velocity.identify is not None:
+        gaps[VELOCITY_GAP] = Measured(velocity.identify[1], velocity.unit, 0.0)
     return gaps
 
 

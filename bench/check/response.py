@@ -17,6 +17,8 @@ from bench.plant.plant import Plant
 from bench.plant.references import References
 from bench.plant.run import run
 
+#: Name of its comparison.
+RESPONSE_TORQUE = "response_torque"
 #: Of the run: length - s -, tick - s -, and of its speed: frequencies - Hz -, shares, time to fade in - s.
 DURATION, TICK = 2.5, 250e-6
 FREQUENCIES, SHARES, FADE = (0.8, 3.1), (0.6, 0.4), 0.3

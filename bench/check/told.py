@@ -7,10 +7,13 @@ import math
 from bench.check.compare import Checked
 from bench.check.comparison import CHANGED, SAME, Comparison
 from bench.check.measured import Measured
+from bench.check.response import RESPONSE_TORQUE
 from bench.check.state import GAPS, NamedHere
 
 #: Units that people read otherwise, with the factor.
 READ = {"rad": ("deg", 180.0 / math.pi)}
+#: What changes where something else does.
+FOLLOWING = frozenset({*GAPS, RESPONSE_TORQUE})
 
 
 def headline(checked: Checked) -> str:
@@ -32,8 +35,8 @@ def headline(checked: Checked) -> str:
 def _changes(checked: Checked) -> list[str]:
     """What changed: names, then parameters; gaps where nothing else says why they did."""
     changed = [one for one in checked.comparisons if one.result == CHANGED]
-    changed.sort(key=lambda one: (not one.effect, one.name in GAPS))
-    parts = [one for one in changed if one.name not in GAPS] or changed
+    changed.sort(key=lambda one: not one.effect)
+    parts = [one for one in changed if one.name not in FOLLOWING] or changed
     return [told(one, checked) for one in parts]
 
 
@@ -71,7 +74,7 @@ def _why(one: Comparison) -> str:
     unit = unit_of(one.unit)
     if one.held_back:
         return f", but {one.held_back}"
-    if one.effect == "appeared":
+    if one.effect == "appeared" and one.differences:
         makes, least = read(one.now or 0.0, one.unit), read(one.margin, one.unit)
         seen = "would have shown" if one.result == CHANGED else "may have hidden"
         return f" ({makes}{unit} RMS, where the baseline {seen} {least}{unit})"

@@ -92,8 +92,9 @@ class Asked:
     @property
     def title(self) -> str:
         """What stands above results."""
-        what = [self.simulated] if self.simulated is not None else self.traces
-        return f"{', '.join(path.name for path in what)} against {self.baseline.name}"
+        if self.simulated is not None:  # all of which are named model.toml
+            return f"{self.simulated} against {self.baseline}"
+        return f"{', '.join(path.name for path in self.traces)} against {self.baseline.name}"
 
     @property
     def axis(self) -> Rig | None:

@@ -102,13 +102,14 @@ def _gaps(baseline: State, now: State) -> dict[str, Any]:
 
 def check_table(checked: Checked, title: str) -> Table:
     """Every comparison with its answer, worst first."""
-    caption = [f"{checked.result}: {headline(checked)}"]
+    caption = [headline(checked)]
     caption += [f"rig: {line}" for line in checked.rig]
     caption += [f"not as in the baseline: {line}" for line in checked.conditions]
-    caption.append(
-        f"{checked.family} comparisons, of which an axis that is the same raises an alarm in at most "
-        f"{checked.false_alarm_rate:.2g} of all checks"
-    )
+    if checked.false_alarm_rate:
+        caption.append(
+            f"{checked.family} comparisons; of axes that differ by no margin at most {checked.false_alarm_rate:.2%} "
+            "are called changed"
+        )
     table = Table(
         title=title, caption="\n".join(caption), title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD
     )

@@ -1,0 +1,64 @@
+"""The baseline on disk comes back as it was written, and says what is wrong with it."""
+
+from dataclasses import replace
+
+import pytest
+
+from bench.check.baseline import read_baseline, write_baseline
+from bench.check.measured import Measured
+from bench.check.response import INSTANTS, Response
+from bench.errors import InputError
+from tests.check.states import named, state
+
+
+def test_a_state_comes_back(tmp_path):
+    effect = named("cogging_torque", 0.03, ["torque_ripple"], amplitude=0.05, harmonic=6.0, phase=1.0)
+    before = state(None, [replace(effect, gain=120.0)], "explained")
+    several = Measured(0.0613, "N*m", 2e-4, 31.2, 5, 7e-4)
+    before = replace(before, quantities={**before.quantities, "coulomb_friction_torque": several})
+    write_baseline(tmp_path / "b.toml", before)
+    assert read_baseline(tmp_path / "b.toml") == before
+    text = (tmp_path / "b.toml").read_text(encoding="utf-8")
+    assert 'value = "0.0613 N*m"' in text
+    assert text.count("not told by fewer than two recordings") == 7
+
+
+def test_a_model_comes_back(tmp_path):
+    before = replace(state(), source="model", shows=None, response=Response(1e-3, 50.0, (0.1,) * INSTANTS))
+    write_baseline(tmp_path / "b.toml", before)
+    assert read_baseline(tmp_path / "b.toml") == before
+
+
+WRONG = {
+    "bench.baseline/1": ("bench.baseline/2", "schema"),
+    'value = "0.06 N*m"': ('value = "much"', "quantities.coulomb_friction_torque.value: found 'much'"),
+    'std_error = "0.0002 N*m"': ('std_error = "-1 N*m"', "below zero"),
+    "recordings = 1": ('recordings = "one"', "recordings: found 'one'"),
+    'name = "cogging_torque"': ('name = "cogging"', "did you mean 'cogging_torque'"),
+    "names = true": ("", "names: missing"),
+    'left = "0.0025 N*m"': ("left = nan", "shows.left"),
+    "[rig]": ("rig = 3\n[rigs]", "rig: found 3"),
+}
+
+
+@pytest.mark.parametrize("there", WRONG)
+def test_what_is_wrong_is_one_line(there, tmp_path):
+    path = tmp_path / "b.toml"
+    write_baseline(path, state(None, [named("cogging_torque", 0.03, amplitude=0.05, harmonic=6.0)]))
+    text = path.read_text(encoding="utf-8")
+    instead, message = WRONG[there]
+    assert there in text
+    head, rest = text.split("\n[provenance]", 1)
+    if there == "[rig]":
+        head, rest = head + "\nrig = 3", rest.replace("[rig]", "[rigs]")
+        text = f"{head}\n[provenance]{rest}"
+    path.write_text(text.replace(there, instead) if there != "[rig]" else text, encoding="utf-8")
+    with pytest.raises(InputError) as told:
+        read_baseline(path)
+    assert message in str(told.value)
+    assert str(path) in str(told.value)
+
+
+def test_no_baseline_says_how_to_make_one(tmp_path):
+    with pytest.raises(InputError, match="--update"):
+        read_baseline(tmp_path / "none.toml")
