@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -86,13 +87,18 @@ def read_manifest(path: Path) -> Manifest:
 
 def _of_csv(content: bytes) -> pa.Table:
     """Columns with the types that their values have; numbers that would change, as 007 does, stay text."""
-    named = csv.ConvertOptions(column_types={name: pa.string() for name in ("file", "rig", "axis")})
-    table = csv.read_csv(io.BytesIO(content), convert_options=named)
-    every = csv.ConvertOptions(column_types={name: pa.string() for name in table.column_names})
-    text = csv.read_csv(io.BytesIO(content), convert_options=every)
+    header = content.partition(b"\n")[0]
+    layout = csv.ParseOptions(delimiter=";" if header.count(b";") > header.count(b",") else ",")
+
+    def read(names: Iterable[str]) -> pa.Table:
+        texts = csv.ConvertOptions(column_types={name: pa.string() for name in names})
+        return csv.read_csv(io.BytesIO(content), parse_options=layout, convert_options=texts)
+
+    table = read(("file", "rig", "axis"))
+    text = read(table.column_names)
     for place, field in enumerate(table.schema):
-        column = text[field.name]
-        if pa.types.is_integer(field.type) and not table[field.name].cast(pa.string()).equals(column):
+        column = text.column(place)
+        if pa.types.is_integer(field.type) and not table.column(place).cast(pa.string()).equals(column):
             table = table.set_column(place, field.name, column)
     return table
 

@@ -10,6 +10,7 @@ from statistics import median
 import numpy as np
 
 from bench.arrays import Array
+from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
 from bench.fleet.change import Change, change
 from bench.fleet.manifest import Manifest
 from bench.fleet.plan import Planned
@@ -21,6 +22,9 @@ ALARM = 0.01
 EXPLAINED = 0.9
 #: Standard errors over the median one beyond which a recording says too little of a quantity to be compared.
 VAGUE = 5.0
+#: Quantities of the axis itself; what follows from them, or is the drive's, would be told twice.
+COMPARED = (INERTIA, VISCOUS, COULOMB, OFFSET)
+_UNTOLD: Plain = {"std_error": None}
 STATUSES = ("done", "refused", "failed", "timed_out")
 
 
@@ -138,9 +142,11 @@ def _series(
     axes, times = manifest.text("axis"), manifest.times
     told: dict[tuple[str, str, str, str], list[tuple[int, float, float]]] = {}
     for row in order:
-        if np.isnan(times[row]) or results[row]["status"] != "done":
+        task = planned[row].task
+        if task is None or np.isnan(times[row]) or results[row]["status"] != "done":
             continue
-        for name, found in results[row]["parameters"].items():
+        for name in map(task.rig.axis_kind.parameter, COMPARED):
+            found = results[row]["parameters"].get(name, _UNTOLD)
             if found["std_error"] is not None:
                 key = (axes[row], planned[row].basis["rig_sha256"], name, found["unit"])
                 told.setdefault(key, []).append((row, found["value"], found["std_error"]))

@@ -7,8 +7,6 @@ import signal
 import sys
 import time
 
-CPU = "of whoever did it"
-
 
 def work(item):
     kind, number = item
@@ -38,6 +36,12 @@ def crash(number):
 
 def killed(number):
     os.kill(os.getpid(), signal.SIGKILL)
+
+
+def parricide(number):
+    """Ends the worker that it works beside, as a machine that is switched off does."""
+    os.kill(os.getppid(), signal.SIGKILL)
+    time.sleep(1.0)
 
 
 def leave(number):

@@ -51,6 +51,14 @@ def test_the_same_on_dask(cluster):
     assert compared(each(work, ITEMS, LIMITS, scheduler=cluster.scheduler_address)) == OUTCOMES
 
 
+@pytest.mark.slow
+def test_a_worker_that_is_lost_is_dasks_matter_and_ends_no_run(cluster):
+    items = [("parricide", 0), *[("square", number) for number in range(20)]]
+    found = dict(each(work, items, LIMITS, scheduler=cluster.scheduler_address))
+    assert found.pop(0) == Failure("failed", "its worker was killed (Dask tried it as often as it is allowed to)")
+    assert found == {1 + number: number**2 for number in range(20)}
+
+
 def test_a_long_job_goes_to_dask_and_a_short_one_does_not(monkeypatch):
     asked = []
 
