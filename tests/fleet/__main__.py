@@ -1,4 +1,4 @@
-"""`python -m tests.fleet --out docs/fleet/table.md`: what 1000 recordings may do to a fleet's run, and how fast it is."""
+"""`python -m tests.fleet --out docs/fleet/table.md`: what a fleet's run endures, and how fast it is."""
 
 from __future__ import annotations
 
@@ -72,6 +72,7 @@ def _endured(folder: Path, recordings: int, deadline: float) -> list[str]:
     again = _run(folder, manifest, "killed", deadline).communicate()[0]
     evaluated = int(re.search(r"\((\d+) evaluated now\)", again)[1])
     same = (folder / "killed" / "fleet.parquet").read_bytes() == table
+    risen = sum(axis < recordings // EACH for axis in CHANGED)
     told = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()))
     never_begun = sum(row["status"] == "refused" and row["result"] is None for row in rows)
     return [
@@ -84,7 +85,7 @@ def _endured(folder: Path, recordings: int, deadline: float) -> list[str]:
         _row("reasons", "; ".join(_reasons(rows))),
         _row(
             "axes whose friction rose by 15 %",
-            f"{_named(printed)} named of {sum(axis < recordings // EACH for axis in CHANGED)}; of others {_others(printed)}",
+            f"{_named(printed)} named of {risen}; of others {_others(printed)}",
         ),
         _row("whole run, two workers", f"{seconds:.0f} s"),
         _row("killed half-way (SIGKILL to all its processes)", f"{kept} results kept, {left} processes left"),
