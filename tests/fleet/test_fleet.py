@@ -2,8 +2,12 @@
 
 import json
 import logging
+import re
+import shlex
 import shutil
 import sys
+from dataclasses import replace
+from pathlib import Path
 
 import fsspec
 import numpy as np
@@ -14,9 +18,11 @@ from distributed import LocalCluster
 from bench.cli import main
 from bench.fleet.fleet import fleet
 from bench.jobs.limits import Limits
+from bench.trace.write import write
+from tests.diagnose.command import RIG
 from tests.fleet.made import DAMAGES, fleet_of
 from tests.fleet.storage import Deadly, Never, offer
-from tests.identify.motions import NAMES, Truth
+from tests.identify.motions import NAMES, Truth, recording
 
 LIMITS = Limits(deadline=12.0)  # far beyond what a busy machine takes for the others
 
@@ -168,8 +174,8 @@ def test_the_axis_that_changed_is_named_with_its_day(found):
 def test_who_needs_a_person_is_told_gravest_first(found):
     told = [(one.axis, one.kind, one.count, one.of) for one in found[0].summary.concerns]
     assert told == [
-        ("press 2", "timed_out", 1, 4),
         ("press 2", "failed", 1, 4),
+        ("press 2", "timed_out", 1, 4),
         ("press 0", "refused", 7, 15),
         ("press 2", "refused", 1, 4),
     ]
@@ -188,18 +194,25 @@ def test_the_command_prints_and_writes_what_it_found(made, found, capsys, monkey
     assert summary["schema"] == "bench.fleet/1"
     assert summary["recordings"] == {"total": 27, "done": 17, "refused": 8, "failed": 1, "timed_out": 1}
     assert [one["quantity"] for one in summary["changed"]] == ["coulomb_friction_torque"]
-    assert summary["attention"][0]["reason"] == "no result within 12 s"
+    assert summary["attention"][1]["reason"] == "no result within 12 s"
 
 
 def test_effects_are_named_where_that_is_asked_for(tmp_path):
-    made = fleet_of(tmp_path / "fleet", axes=1, each=1)
+    made = fleet_of(tmp_path / "fleet", axes=1, each=2)
+    trace = recording(np.random.default_rng(0), duration=4.0, position=True)
+    more = 0.12 * np.sin(trace["position"]) / 0.8
+    unbalanced = replace(trace, signals={**trace.signals, "current": trace["current"] + more})
+    write(unbalanced, made.folder / "press_0_1.csv.gz")
     found = fleet(made.write(), tmp_path / "out", diagnose=True, workers=1)
-    (row,) = pq.read_table(tmp_path / "out" / "fleet.parquet").to_pylist()
-    assert found.summary.counts["done"] == 1
-    assert (row["verdict"], row["names"]) == ("nothing_missing", [])
-    assert row["gap_velocity"] > 0.0
-    assert row["gap_torque_before"] == row["gap_torque"]
-    assert np.isfinite(row["explained"])
+    plain, heavy = pq.read_table(tmp_path / "out" / "fleet.parquet").to_pylist()
+    assert (plain["verdict"], plain["names"]) == ("nothing_missing", [])
+    assert (heavy["verdict"], heavy["names"]) == ("explained", ["unbalance"])
+    assert plain["gap_torque_before"] == plain["gap_torque"]
+    assert heavy["gap_torque_before"] > 2.0 * heavy["gap_torque"]
+    assert heavy["gap_velocity"] > 0.0
+    assert heavy["explained"] < plain["explained"]
+    (named,) = found.summary.named
+    assert (named.effect, named.count, named.of, named.since) == ("unbalance", 1, 2, "2026-01-02 06:00:00")
 
 
 @pytest.mark.parametrize(
@@ -235,3 +248,25 @@ def test_an_output_is_never_an_input(tmp_path, capsys, monkeypatch):
         main()
     assert stop.value.code == 2
     assert "is an input of this command" in capsys.readouterr().err
+
+
+def test_the_manuals_commands_run(tmp_path, cluster, capsys, monkeypatch):
+    manual = (Path(__file__).resolve().parents[2] / "docs" / "fleet.md").read_text()
+    commands = re.findall(r"^bench .*$", manual, re.MULTILINE)
+    assert len(commands) == 4
+    (example,) = re.findall(r"^```csv\n(.*?)^```", manual, re.MULTILINE | re.DOTALL)
+    (tmp_path / "fleet.csv").write_text(example)
+    (tmp_path / "rig.toml").write_text(RIG)
+    for row, line in enumerate(example.splitlines()[1:]):
+        write(recording(np.random.default_rng(row), duration=2.0, position=True), tmp_path / line.split(",")[0])
+    monkeypatch.chdir(tmp_path)
+    for command in commands:
+        words = shlex.split(command.replace("tcp://scheduler:8786", cluster.scheduler_address))
+        monkeypatch.setattr(sys, "argv", words)
+        with pytest.raises(SystemExit) as stop:
+            main()
+        assert stop.value.code == 0
+    assert "3 recordings of 2 axes: 3 done" in capsys.readouterr().out
+    columns = pq.read_table("result/fleet.parquet").column_names
+    for name in re.findall(r"`(\w+)`", manual.partition("fleet.parquet`:")[2].partition("- `results`")[0]):
+        assert any(name in column for column in columns), name
