@@ -15,7 +15,7 @@ from bench.jobs.limits import Failure, Limits
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-#: Seconds until Dask's first result on this machine, and until it has ended (5 to 8 s measured on two cores).
+#: Seconds that Dask takes to start and to end, and its workers to load numerics (4 s on two idle cores, 8 s on busy ones).
 DASK_STARTS = 7.0
 
 

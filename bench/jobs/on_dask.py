@@ -26,6 +26,8 @@ Result = TypeVar("Result")
 
 #: Seconds within which a scheduler has to answer.
 ANSWERS = 15
+#: Run by each worker of ours as it starts: an interrupt of the terminal is the command's, which ends them.
+_DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 #: Items sent to the scheduler at a time.
 BATCH = 1000
 
@@ -62,13 +64,15 @@ def on_dask(
 @contextmanager
 def _client(workers: int, limits: Limits, scheduler: str | None) -> Iterator[Client]:
     if scheduler is None:
-        memory, quiet = int(limits.memory), logging.CRITICAL
-        with (
-            LocalCluster(
-                workers, threads_per_worker=1, memory_limit=memory, dashboard_address="127.0.0.1:0", silence_logs=quiet
-            ) as cluster,
-            Client(cluster) as client,
-        ):
+        local = LocalCluster(
+            workers,
+            threads_per_worker=1,
+            memory_limit=int(limits.memory),
+            dashboard_address="127.0.0.1:0",
+            silence_logs=logging.CRITICAL,
+            preload=[_DEAF],
+        )
+        with local as cluster, Client(cluster) as client:
             yield client
         return
     try:

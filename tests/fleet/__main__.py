@@ -74,7 +74,7 @@ def _endured(folder: Path, recordings: int, deadline: float) -> list[str]:
     same = (folder / "killed" / "fleet.parquet").read_bytes() == table
     risen = sum(axis < recordings // EACH for axis in CHANGED)
     told = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()))
-    never_begun = sum(row["status"] == "refused" and row["result"] is None for row in rows)
+    distinct = len({row["result"] for row in rows} - {None})  # empty files are one, what cannot be begun is none
     return [
         _row(f"{recordings} recordings, {len(wrong)} of them damaged, hanging or deadly", told),
         _row("sound ones done", f"{sum(row['status'] == 'done' for row in sound)} of {len(sound)}"),
@@ -89,7 +89,7 @@ def _endured(folder: Path, recordings: int, deadline: float) -> list[str]:
         ),
         _row("whole run, two workers", f"{seconds:.0f} s"),
         _row("killed half-way (SIGKILL to all its processes)", f"{kept} results kept, {left} processes left"),
-        _row("run again", f"{evaluated} evaluated, {recordings - never_begun - kept} were missing; same table: {same}"),
+        _row("run again", f"{evaluated} evaluated, {distinct - kept} were missing; same table: {same}"),
     ]
 
 
