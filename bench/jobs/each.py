@@ -15,7 +15,7 @@ from bench.jobs.limits import Failure, Limits
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-#: Seconds that Dask takes to start and to end, and its workers to load numerics (4 s on two idle cores, 8 s on busy ones).
+#: Seconds that Dask takes to be loaded, to start and to end (7 s measured on two cores that had other work too).
 DASK_STARTS = 7.0
 
 
