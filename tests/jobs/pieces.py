@@ -49,9 +49,9 @@ def leave(number):
 
 
 def fill(number):
-    held = bytearray(number * 2**20)
-    held[::4096] = bytes(len(held[::4096]))
+    held = b"1" * (number * 2**20)
     time.sleep(60.0)
+    return len(held)
 
 
 def unpicklable(number):
@@ -68,5 +68,6 @@ def process(number):
 
 
 ACTS = {
-    act.__name__: act for act in (square, refuse, hang, sleep, crash, killed, leave, fill, unpicklable, wait, process)
+    act.__name__: act
+    for act in (square, refuse, hang, sleep, crash, killed, parricide, leave, fill, unpicklable, wait, process)
 }

@@ -9,27 +9,27 @@ from bench.errors import InputError
 from bench.jobs.beside import Beside
 from bench.jobs.each import each
 from bench.jobs.limits import Failure, Limits
-from tests.jobs.pieces import work
+from tests.jobs.pieces import refuse, work
 
-LIMITS = Limits(deadline=2.0, memory=400 * 2**20)
+LIMITS = Limits(deadline=5.0, memory=300 * 2**20)
 ITEMS = [
     ("square", 3),
     ("refuse", 7),
     ("hang", 0),
     ("crash", 0),
     ("killed", 0),
-    ("fill", 700),
+    ("fill", 400),
     ("leave", 3),
     ("unpicklable", 1),
     ("square", 5),
 ]
 OUTCOMES = {
     0: 9,
-    1: Failure("failed", "ValueError: 7 is not for me (at pieces.py:23)"),
-    2: Failure("timed_out", "no result within 2 s"),
+    1: Failure("failed", f"ValueError: 7 is not for me (at pieces.py:{refuse.__code__.co_firstlineno + 1})"),
+    2: Failure("timed_out", "no result within 5 s"),
     3: Failure("failed", "its worker was killed (SIGSEGV)"),
     4: Failure("failed", "its worker was killed (SIGKILL)"),
-    5: Failure("failed", "its worker was killed (it took more than 400 MB)"),
+    5: Failure("failed", "its worker was killed (it took more than 300 MB)"),
     6: Failure("failed", "its worker was killed (exit status 3)"),
     8: 25,
 }
