@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 import pyarrow.csv as csv
 import pyarrow.parquet as pq
 
@@ -50,7 +49,8 @@ class Manifest:
         """When each was recorded (n,) - s, or what the manifest counts in; nan where it does not say."""
         column = self.table["time"].combine_chunks()
         if pa.types.is_temporal(column.type):
-            column = pc.cast(pc.cast(column, pa.timestamp("us")), pa.int64())
+            microseconds = column.cast(pa.timestamp("us"), safe=False).cast(pa.int64())
+            return 1e-6 * microseconds.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
         return column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
 
 
@@ -66,6 +66,9 @@ def read_manifest(path: Path) -> Manifest:
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         told = str(error).splitlines()[0]
         raise InputError(path, f"found no table ({told})", "allowed: a manifest, CSV or Parquet") from error
+    for place, field in enumerate(table.schema):
+        if pa.types.is_dictionary(field.type):  # as data frames keep categories
+            table = table.set_column(place, field.name, table.column(place).cast(field.type.value_type))
     names = table.column_names
     double = next((name for name in names if names.count(name) > 1), None)
     if double is not None:
@@ -76,35 +79,48 @@ def read_manifest(path: Path) -> Manifest:
             raise InputError(
                 path, found, f"allowed: {', '.join(REQUIRED)}, axis, time and any others; {name} is missing"
             )
+        _require_text(path, table, name)
         _require_filled(path, table, name)
     if not table.num_rows:
         raise InputError(path, "found no recording", "allowed: a row for each")
-    table = table if "axis" in names else table.append_column("axis", table["rig"])
+    if "axis" in names:
+        _require_text(path, table, "axis")
+    else:
+        table = table.append_column("axis", table["rig"])
     table = table if "time" in names else table.append_column("time", pa.nulls(table.num_rows, pa.float64()))
     return Manifest(path, _timed(path, table))
 
 
 def _of_csv(content: bytes) -> pa.Table:
     """Columns with the types that their values have; numbers that would change, as 007 does, stay text."""
-    named = csv.ConvertOptions(column_types={name: pa.string() for name in ("file", "rig", "axis")})
-    table = csv.read_csv(io.BytesIO(content), convert_options=named)
-    every = csv.ConvertOptions(column_types={name: pa.string() for name in table.column_names})
-    text = csv.read_csv(io.BytesIO(content), convert_options=every)
+    header = content.partition(b"\n")[0]
+    layout = csv.ParseOptions(delimiter=";" if header.count(b";") > header.count(b",") else ",")
+
+    def read(names: Iterable[str]) -> pa.Table:
+        texts = csv.ConvertOptions(column_types={name: pa.string() for name in names})
+        return csv.read_csv(io.BytesIO(content), parse_options=layout, convert_options=texts)
+
+    table = read(("file", "rig", "axis"))
+    text = read(table.column_names)
     for place, field in enumerate(table.schema):
-        column = text[field.name]
-        if pa.types.is_integer(field.type) and not table[field.name].cast(pa.string()).equals(column):
+        column = text.column(place)
+        if pa.types.is_integer(field.type) and not table.column(place).cast(pa.string()).equals(column):
             table = table.set_column(place, field.name, column)
     return table
 
 
+def _require_text(path: Path, table: pa.Table, name: str) -> None:
+    """InputError if a column holds anything but text."""
+    kind = table[name].type
+    if not (pa.types.is_string(kind) or pa.types.is_large_string(kind)):
+        raise InputError(f"{path}: {name}", f"found values of type {kind}", "allowed: text")
+
+
 def _require_filled(path: Path, table: pa.Table, name: str) -> None:
-    """InputError naming the row if a cell of a column is empty, or holds no text."""
-    column = table[name]
-    if not (pa.types.is_string(column.type) or pa.types.is_large_string(column.type)):
-        raise InputError(f"{path}: {name}", f"found values of type {column.type}", "allowed: text")
-    empty = np.flatnonzero([not value for value in column.to_pylist()])
-    if empty.size:
-        raise InputError(f"{path}: row {empty[0] + 1}: {name}", "found nothing", f"allowed: a {name} in every row")
+    """InputError naming the row if a cell of a column is empty."""
+    empty = next((row for row, value in enumerate(table[name].to_pylist(), 1) if not value), None)
+    if empty is not None:
+        raise InputError(f"{path}: row {empty}: {name}", "found nothing", f"allowed: a {name} in every row")
 
 
 def _timed(path: Path, table: pa.Table) -> pa.Table:
@@ -112,7 +128,8 @@ def _timed(path: Path, table: pa.Table) -> pa.Table:
     kind = table["time"].type
     if pa.types.is_null(kind):
         return table.set_column(table.column_names.index("time"), "time", table["time"].cast(pa.float64()))
-    if pa.types.is_temporal(kind) or pa.types.is_integer(kind) or pa.types.is_floating(kind):
+    told = (pa.types.is_timestamp, pa.types.is_date, pa.types.is_integer, pa.types.is_floating)
+    if any(is_one(kind) for is_one in told):
         return table
     example = next((value for value in table["time"].to_pylist() if value is not None), None)
     raise InputError(f"{path}: time", f"found {example!r}", "allowed: ISO 8601 (2026-03-01T12:00:00), or a number")

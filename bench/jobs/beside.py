@@ -16,6 +16,7 @@ import sys
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -33,6 +34,8 @@ Result = TypeVar("Result")
 LOOK = 0.2
 #: Seconds after the deadline at which the process ends itself, should nobody be left to end it.
 GRACE = 10.0
+#: Processes side by side would fight over the cores (BLAS; Arrow goes by the first too).
+_ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 _SERVE = "import sys; from bench.jobs.beside import serve; serve(int(sys.argv[1]))"
 
 
@@ -97,9 +100,9 @@ def _process() -> tuple[subprocess.Popen[bytes], Connection]:
     calls, other = Pipe()
     with other:
         command = [sys.executable, "-c", _SERVE, str(other.fileno())]
-        path = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+        own = {**_ONE_THREAD, **os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
         nowhere = subprocess.DEVNULL
-        return subprocess.Popen(command, pass_fds=[other.fileno()], env=path, stdin=nowhere, stdout=nowhere), calls
+        return subprocess.Popen(command, pass_fds=[other.fileno()], env=own, stdin=nowhere, stdout=nowhere), calls
 
 
 def _memory(number: int) -> int:
@@ -129,15 +132,13 @@ def serve(handle: int) -> None:
             calls.send(raised(error))
             return
         calls.send(None)
-        while True:
-            try:
+        with suppress(EOFError, ConnectionError):  # nobody is left to work for
+            while True:
                 item = calls.recv()
-            except EOFError:
-                return
-            faulthandler.dump_traceback_later(deadline + GRACE, exit=True, file=nowhere)
-            answer = _answer(work, item)
-            faulthandler.cancel_dump_traceback_later()
-            calls.send_bytes(answer)
+                faulthandler.dump_traceback_later(deadline + GRACE, exit=True, file=nowhere)
+                answer = _answer(work, item)
+                faulthandler.cancel_dump_traceback_later()
+                calls.send_bytes(answer)
 
 
 def _answer(work: Callable[[Any], Any], item: object) -> bytes:

@@ -15,7 +15,7 @@ from bench.jobs.limits import Failure, Limits
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-#: Seconds until Dask's first result on this machine, and until it has ended (5 to 8 s measured on two cores).
+#: Seconds that Dask takes to be loaded, to start and to end (7 s measured on two cores that had other work too).
 DASK_STARTS = 7.0
 
 

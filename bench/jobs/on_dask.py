@@ -14,6 +14,7 @@ from functools import partial
 from typing import Any, TypeVar, cast
 from uuid import uuid4
 
+from dask.config import set as configured
 from distributed import Client, Future, KilledWorker, LocalCluster, Worker, WorkerPlugin, as_completed, get_worker
 
 from bench import __version__
@@ -26,6 +27,10 @@ Result = TypeVar("Result")
 
 #: Seconds within which a scheduler has to answer.
 ANSWERS = 15
+#: A scheduler's setting: a thread has no task that waits behind the one it does, and would be suspected with it.
+ONE_EACH = {"distributed.scheduler.worker-saturation": 1.0}
+#: Run by each worker of ours as it starts: an interrupt of the terminal is the command's, which ends them.
+_DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 #: Items sent to the scheduler at a time.
 BATCH = 1000
 
@@ -62,13 +67,16 @@ def on_dask(
 @contextmanager
 def _client(workers: int, limits: Limits, scheduler: str | None) -> Iterator[Client]:
     if scheduler is None:
-        memory, quiet = int(limits.memory), logging.CRITICAL
-        with (
-            LocalCluster(
-                workers, threads_per_worker=1, memory_limit=memory, dashboard_address="127.0.0.1:0", silence_logs=quiet
-            ) as cluster,
-            Client(cluster) as client,
-        ):
+        with configured(ONE_EACH):
+            local = LocalCluster(
+                workers,
+                threads_per_worker=1,
+                memory_limit=int(limits.memory),
+                dashboard_address="127.0.0.1:0",
+                silence_logs=logging.CRITICAL,
+                preload=[_DEAF],
+            )
+        with local as cluster, Client(cluster) as client:
             yield client
         return
     try:

@@ -8,8 +8,9 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
+from bench.fleet.changed import ALARM, Changed
 from bench.fleet.fleet import TABLE, Fleet
-from bench.fleet.summary import ALARM, STATUSES, Changed, Concern
+from bench.fleet.summary import STATUSES, Concern, Named
 from bench.names import short
 from bench.structured import json_text
 
@@ -34,17 +35,8 @@ def fleet_json(fleet: Fleet, provenance: Mapping[str, Any]) -> str:
             "false_alarm_rate": ALARM,
             "compared": summary.compared,
             "changed": [_changed(one) for one in summary.changed],
-            "attention": [
-                {
-                    "axis": one.axis,
-                    "kind": one.kind,
-                    "recordings": one.count,
-                    "of": one.of,
-                    "file": one.file,
-                    "reason": one.reason,
-                }
-                for one in summary.concerns
-            ],
+            "named": [_named(one) for one in summary.named],
+            "attention": [_concern(one) for one in summary.concerns],
             "table": TABLE,
             "provenance": provenance,
         }
@@ -68,6 +60,15 @@ def _changed(one: Changed) -> dict[str, Any]:
     }
 
 
+def _named(one: Named) -> dict[str, Any]:
+    return {"axis": one.axis, "name": one.effect, "recordings": one.count, "of": one.of, "since": one.since}
+
+
+def _concern(one: Concern) -> dict[str, Any]:
+    told = {"axis": one.axis, "kind": one.kind, "recordings": one.count, "of": one.of}
+    return {**told, "file": one.file, "reason": one.reason}
+
+
 def fleet_tables(fleet: Fleet) -> Iterator[Table | str]:
     """What a person wants to know: how many gave a result, which axes changed, which need a look."""
     summary = fleet.summary
@@ -79,6 +80,8 @@ def fleet_tables(fleet: Fleet) -> Iterator[Table | str]:
         yield f"no axis changed: {summary.compared} series of a quantity compared, false alarms at most {ALARM:.0%}"
     else:
         yield "no axis could be compared over time: that needs three recordings with a time, by one rig"
+    if summary.named:
+        yield named_table(summary.named)
     if summary.concerns:
         yield concerns_table(summary.concerns)
 
@@ -95,6 +98,16 @@ def changed_table(changed: tuple[Changed, ...]) -> Table:
         values = (f"{step.before:.4g}", f"{step.after:.4g} {unit}", share)
         counts = f"{one.counts[0]} before, {one.counts[1]} after"
         table.add_row(one.axis, one.quantity.replace("_", " "), *values, one.since, counts)
+    return table
+
+
+def named_table(named: tuple[Named, ...]) -> Table:
+    """Effects that the axes show."""
+    table = _table("effects named", len(named))
+    for heading in ("axis", "effect", "recordings", "first"):
+        table.add_column(heading)
+    for one in named[:SHOWN]:
+        table.add_row(one.axis, one.effect, f"{one.count} of {one.of}", one.since)
     return table
 
 

@@ -1,6 +1,9 @@
 import logging
 
+import dask
 import pytest
+
+from bench.jobs.on_dask import ONE_EACH
 
 
 @pytest.fixture(scope="module")
@@ -8,7 +11,10 @@ def cluster():
     """Two Dask workers, as somebody else may have started them."""
     from distributed import LocalCluster
 
-    with LocalCluster(
-        2, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
-    ) as cluster:
+    with (
+        dask.config.set(ONE_EACH),
+        LocalCluster(
+            2, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
+        ) as cluster,
+    ):
         yield cluster

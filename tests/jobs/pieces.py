@@ -7,8 +7,6 @@ import signal
 import sys
 import time
 
-CPU = "of whoever did it"
-
 
 def work(item):
     kind, number = item
@@ -40,14 +38,20 @@ def killed(number):
     os.kill(os.getpid(), signal.SIGKILL)
 
 
+def parricide(number):
+    """Ends the worker that it works beside, as a machine that is switched off does."""
+    os.kill(os.getppid(), signal.SIGKILL)
+    time.sleep(1.0)
+
+
 def leave(number):
     sys.exit(number)
 
 
 def fill(number):
-    held = bytearray(number * 2**20)
-    held[::4096] = bytes(len(held[::4096]))
+    held = b"1" * (number * 2**20)
     time.sleep(60.0)
+    return len(held)
 
 
 def unpicklable(number):
@@ -64,5 +68,6 @@ def process(number):
 
 
 ACTS = {
-    act.__name__: act for act in (square, refuse, hang, sleep, crash, killed, leave, fill, unpicklable, wait, process)
+    act.__name__: act
+    for act in (square, refuse, hang, sleep, crash, killed, parricide, leave, fill, unpicklable, wait, process)
 }

@@ -9,27 +9,27 @@ from bench.errors import InputError
 from bench.jobs.beside import Beside
 from bench.jobs.each import each
 from bench.jobs.limits import Failure, Limits
-from tests.jobs.pieces import work
+from tests.jobs.pieces import refuse, work
 
-LIMITS = Limits(deadline=2.0, memory=400 * 2**20)
+LIMITS = Limits(deadline=5.0, memory=300 * 2**20)
 ITEMS = [
     ("square", 3),
     ("refuse", 7),
     ("hang", 0),
     ("crash", 0),
     ("killed", 0),
-    ("fill", 700),
+    ("fill", 400),
     ("leave", 3),
     ("unpicklable", 1),
     ("square", 5),
 ]
 OUTCOMES = {
     0: 9,
-    1: Failure("failed", "ValueError: 7 is not for me (at pieces.py:23)"),
-    2: Failure("timed_out", "no result within 2 s"),
+    1: Failure("failed", f"ValueError: 7 is not for me (at pieces.py:{refuse.__code__.co_firstlineno + 1})"),
+    2: Failure("timed_out", "no result within 5 s"),
     3: Failure("failed", "its worker was killed (SIGSEGV)"),
     4: Failure("failed", "its worker was killed (SIGKILL)"),
-    5: Failure("failed", "its worker was killed (it took more than 400 MB)"),
+    5: Failure("failed", "its worker was killed (it took more than 300 MB)"),
     6: Failure("failed", "its worker was killed (exit status 3)"),
     8: 25,
 }
@@ -49,6 +49,14 @@ def test_every_item_has_its_outcome_beside_this_process():
 
 def test_the_same_on_dask(cluster):
     assert compared(each(work, ITEMS, LIMITS, scheduler=cluster.scheduler_address)) == OUTCOMES
+
+
+@pytest.mark.slow
+def test_a_worker_that_is_lost_is_dasks_matter_and_ends_no_run(cluster):
+    items = [("parricide", 0), *[("square", number) for number in range(20)]]
+    found = dict(each(work, items, LIMITS, scheduler=cluster.scheduler_address))
+    assert found.pop(0) == Failure("failed", "its worker was killed (Dask tried it as often as it is allowed to)")
+    assert found == {1 + number: number**2 for number in range(20)}
 
 
 def test_a_long_job_goes_to_dask_and_a_short_one_does_not(monkeypatch):

@@ -1,0 +1,272 @@
+"""A fleet as a user meets it: a row for every recording whatever it does, once, and the same table every time."""
+
+import json
+import logging
+import re
+import shlex
+import shutil
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import fsspec
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from distributed import LocalCluster
+
+from bench.cli import main
+from bench.fleet.fleet import fleet
+from bench.jobs.limits import Limits
+from bench.trace.write import write
+from tests.diagnose.command import RIG
+from tests.fleet.made import DAMAGES, fleet_of
+from tests.fleet.storage import Deadly, Never, offer
+from tests.identify.motions import NAMES, Truth, recording
+
+LIMITS = Limits(deadline=12.0)  # far beyond what a busy machine takes for the others
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A manifest of two axes that are recorded eight times, of which one changes, and of whatever goes wrong."""
+    folder = tmp_path_factory.mktemp("fleet")
+    made = fleet_of(folder, axes=2, each=8, changed={1})
+    for place, damage in enumerate(DAMAGES):
+        damage(folder / f"{damage.__name__}.csv.gz")
+        made.add(f"{damage.__name__}.csv.gz", "press 0", 8 + place)
+    made.add("press_0_0.csv.gz", "press 2", 0, rig="no_such_rig.toml")
+    made.add("never://disk/1.csv", "press 2", 1)
+    made.add("deadly://disk/2.csv", "press 2", 2)
+    made.add(f"file://{folder}/press_0_1.csv.gz", "press 2", 3)
+    offer(folder / "site")
+    return made.write()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def broken_storage(made):
+    """Known here and, by its entry points, to every process that is started from here."""
+    for storage in (Never, Deadly):
+        fsspec.register_implementation(storage.protocol, storage)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(made.parent / "site")
+        yield
+
+
+@pytest.fixture(scope="module")
+def cluster(broken_storage):
+    """Two Dask workers, as somebody else may have started them."""
+    with LocalCluster(
+        2, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
+    ) as cluster:
+        yield cluster
+
+
+@pytest.fixture(scope="module")
+def found(made):
+    """What one process makes of it."""
+    out = made.parent / "out"
+    return fleet(made, out, limits=LIMITS, workers=1), out, pq.read_table(out / "fleet.parquet").to_pylist()
+
+
+def test_every_recording_has_a_row_in_the_manifests_order(made, found):
+    _, _, rows = found
+    named = [line.split(",")[0] for line in made.read_text().splitlines()[1:]]
+    assert [row["file"] for row in rows] == named
+    statuses = {row["file"]: row["status"] for row in rows[:-4]}
+    assert {statuses[name] for name in named[:16]} == {"done"}
+    assert {statuses[f"{damage.__name__}.csv.gz"] for damage in DAMAGES} == {"refused"}
+    assert [row["status"] for row in rows[-4:]] == ["refused", "timed_out", "failed", "done"]
+    assert all((row["reason"] is None) == (row["status"] == "done") for row in rows)
+
+
+def test_reasons_say_what_was_found_without_where_it_lay(made, found):
+    reasons = {row["file"]: row["reason"] for row in found[2] if row["reason"]}
+    assert reasons["missing.csv.gz"] == "recording: no such file; give the path of a file"
+    assert "pipe or a device" in reasons["pipe.csv.gz"]
+    assert "the file is empty" in reasons["empty.csv.gz"]
+    assert reasons["never://disk/1.csv"] == "no result within 12 s"
+    assert reasons["deadly://disk/2.csv"] == "its worker was killed (SIGKILL)"
+    assert not any(str(made.parent) in reason for reason in reasons.values())
+
+
+def test_the_row_is_what_identify_tells(made, found, capsys, monkeypatch):
+    row, target = found[2][0], made.parent / "single.json"
+    monkeypatch.setattr(
+        sys,
+        "argv",
+        [
+            "bench",
+            "identify",
+            str(made.parent / row["file"]),
+            "--rig",
+            str(made.parent / "rig.toml"),
+            "--json",
+            str(target),
+        ],
+    )
+    with pytest.raises(SystemExit):
+        main()
+    single = json.loads(target.read_text())
+    for name, truth in zip(NAMES, Truth().values, strict=True):
+        assert row[name] == single["parameters"][name]["value"] == pytest.approx(truth, rel=0.05)
+        assert row[f"{name}_std_error"] == single["parameters"][name]["std_error"]
+        assert row[f"{name}_unit"] == single["parameters"][name]["unit"]
+    assert row["explained"] == single["explained"]
+    assert row["gap_torque"] == single["residual"]["rms"]
+    assert (row["rig_sha256"], row["trace_sha256"]) == (
+        single["provenance"]["rig_sha256"],
+        single["provenance"]["traces"][0]["sha256"],
+    )
+    assert row["shift"] == "000"  # carried along as it was
+
+
+def test_a_copy_of_a_url_tells_the_same(found):
+    rows = {row["file"]: row for row in found[2]}
+    url = next(name for name in rows if name.startswith("file://"))
+    assert rows[url]["moment_of_inertia"] == rows["press_0_1.csv.gz"]["moment_of_inertia"]
+    assert rows[url]["trace_sha256"] == rows["press_0_1.csv.gz"]["trace_sha256"]
+
+
+def test_only_what_is_missing_is_done_and_the_table_is_the_same_to_the_byte(made, found):
+    first, out, _ = found
+    assert first.evaluated == 16 + 5 + 2 + 1  # all but what cannot be begun: missing, pipe, no rig
+    table = (out / "fleet.parquet").read_bytes()
+    again = fleet(made, out, limits=LIMITS, workers=1)
+    assert again.evaluated == 0
+    assert (out / "fleet.parquet").read_bytes() == table
+    results = sorted((out / "results").rglob("*.json"))
+    results[0].unlink()
+    results[1].write_text("{")
+    (out / "fleet.parquet").unlink()
+    assert fleet(made, out, limits=LIMITS, workers=1).evaluated == 2
+    assert (out / "fleet.parquet").read_bytes() == table
+
+
+def test_on_dask_the_table_is_the_same_to_the_byte(made, found, cluster):
+    out = made.parent / "on_dask"
+    assert fleet(made, out, limits=LIMITS, scheduler=cluster.scheduler_address).evaluated == 24
+    assert (out / "fleet.parquet").read_bytes() == (found[1] / "fleet.parquet").read_bytes()
+
+
+def test_another_trace_rig_or_option_is_another_result(made, tmp_path):
+    folder = tmp_path / "fleet"
+    made = fleet_of(folder, axes=1, each=2)
+    path, out = made.write(), tmp_path / "out"
+    assert fleet(path, out, workers=1).evaluated == 2
+    shutil.copy(folder / "press_0_1.csv.gz", folder / "press_0_0.csv.gz")
+    assert fleet(path, out, workers=1).evaluated == 0  # what it holds now is known
+    rig = (folder / "rig.toml").read_text()
+    (folder / "rig.toml").write_text(rig.replace("0.8 N*m/A", "0.9 N*m/A"))
+    assert fleet(path, out, workers=1).evaluated == 1  # the same recording twice is one
+    rows = pq.read_table(out / "fleet.parquet").to_pylist()
+    assert rows[0]["moment_of_inertia"] == rows[1]["moment_of_inertia"] == pytest.approx(1.5e-3 * 0.9 / 0.8, rel=0.02)
+
+
+def test_the_axis_that_changed_is_named_with_its_day(found):
+    (changed,) = found[0].summary.changed
+    assert (changed.axis, changed.quantity, changed.since) == ("press 1", NAMES[2], "2026-01-05 06:00:00")
+    assert changed.file == "press_1_4.csv.gz"
+    assert changed.step.after / changed.step.before == pytest.approx(1.15, abs=0.03)
+    assert changed.chance < 0.01
+
+
+def test_who_needs_a_person_is_told_gravest_first(found):
+    told = [(one.axis, one.kind, one.count, one.of) for one in found[0].summary.concerns]
+    assert told == [
+        ("press 2", "failed", 1, 4),
+        ("press 2", "timed_out", 1, 4),
+        ("press 0", "refused", 7, 15),
+        ("press 2", "refused", 1, 4),
+    ]
+
+
+def test_the_command_prints_and_writes_what_it_found(made, found, capsys, monkeypatch):
+    out = made.parent / "out"
+    monkeypatch.setattr(sys, "argv", ["bench", "fleet", str(made), "--out", str(out), "--workers", "1"])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    printed = capsys.readouterr().out
+    assert stop.value.code == 0
+    assert "27 recordings of 3 axes: 17 done, 8 refused, 1 failed, 1 timed out (0 evaluated now)" in printed
+    assert "press 1" in printed
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["schema"] == "bench.fleet/1"
+    assert summary["recordings"] == {"total": 27, "done": 17, "refused": 8, "failed": 1, "timed_out": 1}
+    assert [one["quantity"] for one in summary["changed"]] == ["coulomb_friction_torque"]
+    assert summary["attention"][1]["reason"] == "no result within 12 s"
+
+
+def test_effects_are_named_where_that_is_asked_for(tmp_path):
+    made = fleet_of(tmp_path / "fleet", axes=1, each=2)
+    trace = recording(np.random.default_rng(0), duration=4.0, position=True)
+    more = 0.12 * np.sin(trace["position"]) / 0.8
+    unbalanced = replace(trace, signals={**trace.signals, "current": trace["current"] + more})
+    write(unbalanced, made.folder / "press_0_1.csv.gz")
+    found = fleet(made.write(), tmp_path / "out", diagnose=True, workers=1)
+    plain, heavy = pq.read_table(tmp_path / "out" / "fleet.parquet").to_pylist()
+    assert (plain["verdict"], plain["names"]) == ("nothing_missing", [])
+    assert (heavy["verdict"], heavy["names"]) == ("explained", ["unbalance"])
+    assert plain["gap_torque_before"] == plain["gap_torque"]
+    assert heavy["gap_torque_before"] > 2.0 * heavy["gap_torque"]
+    assert heavy["gap_velocity"] > 0.0
+    assert heavy["explained"] < plain["explained"]
+    (named,) = found.summary.named
+    assert (named.effect, named.count, named.of, named.since) == ("unbalance", 1, 2, "2026-01-02 06:00:00")
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("file,axis\na.csv,x\n", "rig is missing"),
+        ("file,rig\n,rig.toml\n", "row 1: file"),
+        ("file,rig,time\na.csv,rig.toml,yesterday\n", "found 'yesterday'"),
+        ("file,rig,status\na.csv,rig.toml,7\n", "status: found a column that the fleet's table has too"),
+        ("file,rig,file\na,b,c\n", "found this column twice"),
+        ("file,rig\n", "found no recording"),
+        ("", "found no table"),
+        ("file,rig\na.csv\n", "found no table"),
+    ],
+)
+def test_a_bad_manifest_is_one_line(text, told, tmp_path, capsys, monkeypatch):
+    (tmp_path / "fleet.csv").write_text(text)
+    monkeypatch.setattr(sys, "argv", ["bench", "fleet", str(tmp_path / "fleet.csv"), "--out", str(tmp_path / "out")])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    message = capsys.readouterr().err
+    assert (stop.value.code, message.count("\n")) == (2, 1)
+    assert told in message
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_output_is_never_an_input(tmp_path, capsys, monkeypatch):
+    made = fleet_of(tmp_path, axes=1, each=1)
+    (tmp_path / "press_0_0.csv.gz").rename(tmp_path / "fleet.parquet")
+    made.rows = [made.rows[0].replace("press_0_0.csv.gz", "fleet.parquet")]
+    monkeypatch.setattr(sys, "argv", ["bench", "fleet", str(made.write()), "--out", str(tmp_path)])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert stop.value.code == 2
+    assert "is an input of this command" in capsys.readouterr().err
+
+
+def test_the_manuals_commands_run(tmp_path, cluster, capsys, monkeypatch):
+    manual = (Path(__file__).resolve().parents[2] / "docs" / "fleet.md").read_text()
+    commands = re.findall(r"^bench .*$", manual, re.MULTILINE)
+    assert len(commands) == 4
+    (example,) = re.findall(r"^```csv\n(.*?)^```", manual, re.MULTILINE | re.DOTALL)
+    (tmp_path / "fleet.csv").write_text(example)
+    (tmp_path / "rig.toml").write_text(RIG)
+    for row, line in enumerate(example.splitlines()[1:]):
+        write(recording(np.random.default_rng(row), duration=2.0, position=True), tmp_path / line.split(",")[0])
+    monkeypatch.chdir(tmp_path)
+    for command in commands:
+        words = shlex.split(command.replace("tcp://scheduler:8786", cluster.scheduler_address))
+        monkeypatch.setattr(sys, "argv", words)
+        with pytest.raises(SystemExit) as stop:
+            main()
+        assert stop.value.code == 0
+    assert "3 recordings of 2 axes: 3 done" in capsys.readouterr().out
+    columns = pq.read_table("result/fleet.parquet").column_names
+    for name in re.findall(r"`(\w+)`", manual.partition("fleet.parquet`:")[2].partition("- `results`")[0]):
+        assert any(name in column for column in columns), name

@@ -1,0 +1,103 @@
+"""Over a fleet: who is compared with what, how often nothing is taken for a change, and what calls for a person."""
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from scipy import stats
+
+from bench.bounds import bounds
+from bench.fleet.manifest import Manifest
+from bench.fleet.plan import Planned
+from bench.fleet.recording import Task
+from bench.fleet.summary import summarise
+from tests.identify.motions import NAMES, RIG
+
+TASK = Task("", "", RIG, False, bounds())
+
+
+def looked_over(values, times=None, rigs=None, errors=None, results=None):
+    """Summary of axes (a,) that are recorded n times each, all quantities from values (a, n)."""
+    count, each = values.shape
+    times = np.tile(np.arange(each, dtype=float), count) if times is None else times
+    axes = [f"axis {axis}" for axis in range(count) for _ in range(each)]
+    files = [f"{row}.csv" for row in range(count * each)]
+    table = pa.table({"file": files, "rig": ["rig.toml"] * len(files), "axis": axes, "time": times})
+    rigs = ["same"] * len(files) if rigs is None else rigs
+    planned = [Planned(str(row), TASK, None, {"rig_sha256": rig}) for row, rig in enumerate(rigs)]
+    errors = np.full(values.size, 1e-3) if errors is None else errors
+    told = [found(value, error) for value, error in zip(values.ravel(), errors, strict=True)]
+    return summarise(Manifest(Path("fleet.csv"), table), planned, results or told)
+
+
+def found(value, error, **more):
+    parameter = {"value": float(value), "unit": "kg*m**2", "std_error": float(error)}
+    told = {"status": "done", "reason": None, "parameters": {NAMES[0]: parameter}, "explained": 0.99, "checks": []}
+    return told | more
+
+
+def test_of_fleets_in_which_nothing_changes_at_most_one_in_a_hundred_names_an_axis():
+    rng, fleets = np.random.default_rng(5), 200
+    alarms = sum(bool(looked_over(rng.normal(1.0, 0.02, (20, 8))).changed) for _ in range(fleets))
+    assert alarms <= stats.binom.ppf(0.999, fleets, 0.01)
+
+
+def test_axes_that_change_are_found_among_those_that_do_not():
+    values = np.random.default_rng(1).normal(1.0, 0.01, (40, 12))
+    values[[3, 17], 6:] += 0.15
+    summary = looked_over(values)
+    assert {one.axis for one in summary.changed} == {"axis 3", "axis 17"}
+    assert {one.since for one in summary.changed} == {"6"}
+    assert {one.counts for one in summary.changed} == {(6, 6)}
+    assert summary.compared == 40
+
+
+def test_recordings_are_compared_in_the_order_of_time_whatever_the_manifests_is():
+    values = np.random.default_rng(1).normal(1.0, 0.01, (1, 12))
+    values[0, ::2] += 0.3
+    times = np.array([100.0 + k if k % 2 == 0 else float(k) for k in range(12)])
+    assert not looked_over(values).changed
+    (changed,) = looked_over(values, times).changed
+    assert (changed.since, changed.file, changed.step.place) == ("100", "0.csv", 6)
+
+
+def test_what_has_no_time_or_another_rig_is_not_compared():
+    values = np.random.default_rng(1).normal(1.0, 0.01, (1, 12))
+    values[0, 6:] += 0.3
+    assert looked_over(values).changed
+    assert not looked_over(values, rigs=["one"] * 6 + ["other"] * 6).changed
+    assert looked_over(values, np.full(12, np.nan)).compared == 0
+
+
+def test_a_recording_that_says_little_neither_alarms_nor_hides():
+    values = np.random.default_rng(1).normal(1.0, 0.01, (1, 12))
+    errors = np.full(12, 1e-3)
+    values[0, 11], errors[11] = 3.0, 1.0
+    assert not looked_over(values, errors=errors).changed
+    values[0, 6:11] += 0.15
+    (changed,) = looked_over(values, errors=errors).changed
+    assert changed.counts == (6, 5)
+
+
+@pytest.mark.parametrize(
+    ("more", "kind", "reason"),
+    [
+        ({"status": "refused", "reason": "too short"}, "refused", "too short"),
+        ({"explained": 0.5}, "unexplained", "inertia and friction explain only 50% of the effort"),
+        ({"verdict": "unexplained_remainder", "effects": []}, "unexplained", "no effect of the catalogue"),
+        ({"checks": [{"name": "lost_samples", "found": "7"}]}, "checks", "lost_samples: 7"),
+    ],
+)
+def test_a_person_is_called_for(more, kind, reason):
+    results = [found(1.0, 0.1), found(1.0, 0.1, **more), found(1.0, 0.1)]
+    (concern,) = looked_over(np.ones((1, 3)), results=results).concerns
+    assert (concern.kind, concern.count, concern.of, concern.file) == (kind, 1, 3, "1.csv")
+    assert reason in concern.reason
+
+
+def test_nobody_is_called_for_what_is_explained():
+    told = {"explained": 0.5, "verdict": "explained", "effects": [{"name": "an_effect"}]}
+    summary = looked_over(np.ones((1, 2)), results=[found(1.0, 0.1), found(1.0, 0.1, **told)])
+    assert not summary.concerns
+    assert [(one.effect, one.count, one.of, one.since) for one in summary.named] == [("an_effect", 1, 1, "1")]
