@@ -14,7 +14,7 @@ from bench.validate.independent.effects import KINDS, Effect
 from bench.validate.independent.motions import MOTIONS
 from bench.validate.independent.references import Motion
 from bench.validate.independent.rig import Axis, random_rig, rig_text
-from bench.validate.independent.sensors import Sensors, random_sensors
+from bench.validate.independent.sensors import Noise, Sensors, random_sensors
 
 Plant = Literal["independent", "mujoco"]
 PLANTS: tuple[Plant, ...] = ("independent", "mujoco")
@@ -24,6 +24,8 @@ DURATION = (4.0, 8.0)
 CONTROL_PERIOD = 250e-6
 #: Share of drawn axes that are linear, and of drawn motions that are mixed; the others are as many of each kind.
 LINEAR, MIXED = 0.12, 0.4
+#: Share of drawn recordings whose noise is white in speed and current; the others have any kind in either.
+WHITE = 0.3
 #: How strong a hidden effect is: from just above noise to drastic.
 SEVERITY = (0.15, 0.8)
 
@@ -72,18 +74,20 @@ class Population(Protocol):
 class AnyAxis:
     """Axes, motions and sensors over all their ranges; these stand in `docs/validate.md`."""
 
-    turning: bool = False
-
     def plain(self, index: int, rng: np.random.Generator) -> Case:
         """As the protocol has it."""
-        linear = bool(rng.random() < LINEAR) and not self.turning
+        linear = bool(rng.random() < LINEAR)
         axis = replace(random_rig(rng, f"run {index}", linear=linear), control_period=CONTROL_PERIOD)
         others = (1.0 - MIXED) / (len(MOTIONS) - 1)
         name = str(rng.choice([*MOTIONS], p=[MIXED if k == 0 else others for k in range(len(MOTIONS))]))
         motion = MOTIONS[name](axis, rng, float(rng.uniform(*DURATION)))
         rig = Rig.of(tomllib.loads(rig_text(axis)), axis.name)
         plant = PLANTS[int(rng.integers(len(PLANTS)))]
-        return Case(index, plant, axis, rig, motion, name, random_sensors(axis, rng))
+        sensors = random_sensors(axis, rng)
+        if rng.random() < WHITE:
+            velocity, current = Noise(white=sensors.velocity.white), Noise(white=sensors.current.white)
+            sensors = replace(sensors, velocity=velocity, current=current)
+        return Case(index, plant, axis, rig, motion, name, sensors)
 
 
 def hide(case: Case, names: Sequence[str], rng: np.random.Generator) -> Case:
