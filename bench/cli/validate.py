@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -26,8 +26,8 @@ def validate(
     ] = False,
     rig: Annotated[Path | None, typer.Option("--rig", help="Your own axis instead of any: its rig file.")] = None,
     profile: Annotated[
-        str, typer.Option("--profile", help=f"With --rig, its motion: a recording's file, or {', '.join(NAMES)}.")
-    ] = DEFAULT,
+        Path, typer.Option("--profile", help=f"With --rig, its motion: a recording's file, or {', '.join(NAMES)}.")
+    ] = Path(DEFAULT),
     workers: Annotated[int | None, typer.Option("--workers", help="Processes on this machine.", min=1)] = None,
     scheduler: Annotated[
         str | None, typer.Option("--scheduler", help="Dask cluster to work on, e.g. tcp://host:8786.")
@@ -36,26 +36,21 @@ def validate(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for tables, figures and JSON.")] = None,
 ) -> None:
     """Monte Carlo on synthetic recordings: how far off numbers are, and how often intervals and names hold."""
-    from bench import __version__
     from bench.report.progress import progress
-    from bench.report.provenance import provenance
+    from bench.report.provenance import without_files
     from bench.report.validation import determined, sheets, validation_json, write_validation
+    from bench.validate.case import AnyAxis
     from bench.validate.hiding import Hiding
     from bench.validate.plan import Plan
     from bench.validate.validate import validate as run_validation
 
+    if rig is None and str(profile) != DEFAULT:
+        raise InputError("--profile", "found without --rig", "allowed: with the rig whose motion it is")
     hiding = Hiding.parse(effects)
     named = diagnose or (rig is not None and hiding.anything)  # what is hidden in one's own axis is to be named
-    options = {"rigs": rigs, "seed": seed, "effects": effects, "diagnose": named}
-    if rig is None:
-        if profile != DEFAULT:
-            raise InputError("--profile", "found without --rig", "allowed: with the rig whose motion it is")
-        plan = Plan(seed, hiding, named)
-        basis: dict[str, object] = {"version": __version__, "rig_sha256": None, "traces": [], "options": options}
-    else:
-        axis, files = _own(rig, profile)
-        plan = Plan(seed, hiding, named, axis)
-        basis = provenance(rig, files, options | {"profile": profile})
+    options = {"rigs": rigs, "seed": seed, "effects": effects, "diagnose": named, "profile": str(profile)}
+    population, basis = (AnyAxis(), without_files(options)) if rig is None else _own(rig, profile, options)
+    plan = Plan(seed, hiding, named, population)
     with progress(f"validating on {rigs} runs") as done:
         found = run_validation(plan, rigs, workers, scheduler, done)
     command = f"bench validate --rigs {rigs} --seed {seed} --effects {effects}{' --diagnose' * named}"
@@ -71,16 +66,16 @@ def validate(
         tell_files(written)
 
 
-def _own(rig: Path, profile: str) -> tuple[OwnAxis, list[Path]]:
-    """The axis of a rig along a named motion, or one of a file; and the file."""
+def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis, dict[str, Any]]:
+    """The axis of a rig along a named motion, or the one of a file, and what it rests on."""
+    from bench.report.provenance import provenance
     from bench.rig.rig import load_rig
     from bench.trace.read import read
     from bench.validate.own import own_axis
 
     known = load_rig(rig)
-    if profile in NAMES:
-        return own_axis(known, profile, None), []
-    path = Path(profile)
-    if not path.exists():
+    if str(profile) in NAMES:
+        return own_axis(known, str(profile), None), provenance(rig, [], options)
+    if not profile.exists():
         raise InputError("--profile", f"found '{profile}'", f"allowed: the file of a recording, or {', '.join(NAMES)}")
-    return own_axis(known, path.name, read(path, known.trace)), [path]
+    return own_axis(known, profile.name, read(profile, known.trace)), provenance(rig, [profile], options)

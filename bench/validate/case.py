@@ -14,7 +14,7 @@ from bench.validate.independent.effects import KINDS, Effect
 from bench.validate.independent.motions import MOTIONS
 from bench.validate.independent.references import Motion
 from bench.validate.independent.rig import Axis, random_rig, rig_text
-from bench.validate.independent.sensors import Noise, Sensors, random_sensors
+from bench.validate.independent.sensors import Sensors, random_sensors
 
 Plant = Literal["independent", "mujoco"]
 PLANTS: tuple[Plant, ...] = ("independent", "mujoco")
@@ -24,8 +24,6 @@ DURATION = (4.0, 8.0)
 CONTROL_PERIOD = 250e-6
 #: Share of drawn axes that are linear, and of drawn motions that are mixed; the others are as many of each kind.
 LINEAR, MIXED = 0.12, 0.4
-#: Share of drawn recordings whose noise is white in speed and current; the others have any kind in either.
-WHITE = 0.3
 #: How strong a hidden effect is: from just above noise to drastic.
 SEVERITY = (0.15, 0.8)
 
@@ -83,11 +81,7 @@ class AnyAxis:
         motion = MOTIONS[name](axis, rng, float(rng.uniform(*DURATION)))
         rig = Rig.of(tomllib.loads(rig_text(axis)), axis.name)
         plant = PLANTS[int(rng.integers(len(PLANTS)))]
-        sensors = random_sensors(axis, rng)
-        if rng.random() < WHITE:
-            velocity, current = Noise(white=sensors.velocity.white), Noise(white=sensors.current.white)
-            sensors = replace(sensors, velocity=velocity, current=current)
-        return Case(index, plant, axis, rig, motion, name, sensors)
+        return Case(index, plant, axis, rig, motion, name, random_sensors(axis, rng))
 
 
 def hide(case: Case, names: Sequence[str], rng: np.random.Generator) -> Case:
