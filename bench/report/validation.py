@@ -142,7 +142,10 @@ def _of(share: Share) -> str:
 
 
 def _percent(value: float, digits: int = 3) -> str:
-    return f"{100.0 * value:.{digits}g}" if math.isfinite(value) else "-"
+    percent = 100.0 * value
+    if not math.isfinite(percent):
+        return "-"
+    return f"{percent:.0f}" if abs(percent) >= 10.0 ** (digits - 1) else f"{percent:.{digits}g}"
 
 
 def _number(value: float) -> str:

@@ -94,11 +94,11 @@ def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
         InputError: rig or recording lack something.
         UndeterminedError: what the rig does not say, the recording does not tell.
     """
+    if rig.load is not None and rig.load.eccentric_mass is not None:
+        raise InputError(f"{rig.source}: load.eccentric_mass", "found one", "allowed: none; the plants do not swing it")
     if rig.simulation is None and recording is not None and _tells_effort(recording):
         rig = rig.model_copy(update={"simulation": as_recorded(rig, recording)})
     require(rig, "validate")
-    if rig.load is not None and rig.load.eccentric_mass is not None:
-        raise InputError(f"{rig.source}: load.eccentric_mass", "found one", "allowed: none; the plants do not swing it")
     parameters, cascade = AxisParameters.from_rig(rig), Cascade.from_rig(rig)
     if recording is None:
         references = plan(profile, MotionLimits.from_rig(rig, parameters, cascade.control_period))
