@@ -33,6 +33,18 @@ def plain(rows: Rows) -> Hypothesis:
     return Hypothesis(step=conditioning.effort_step if 0.5 * conditioning.effort_step > UNSEEN * noise else 0.0)
 
 
+def cut_beforehand(step: float) -> tuple[float, float]:
+    """What is known of what is cut off before it is measured, no more than a half of a step - N*m (N).
+
+    Args:
+        step: of the digit - N*m (N).
+
+    Returns:
+        The middle of that range, and the variance of a value that lies anywhere in it.
+    """
+    return 0.25 * step, (0.5 * step) ** 2 / 12.0
+
+
 def cut_off(signals: Signals) -> list[Column]:
     """What a fraction that is cut off takes from the effort, per unit of half a step."""
     return [[(-np.sign(signals.effort), 0)]]

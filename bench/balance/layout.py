@@ -22,6 +22,8 @@ from bench.trace.filter import Column
 BASE, HUM, DIGIT = -1, -2, -3
 #: Places of J, K_w, K_0 and of the time by which torque is behind speed among the columns.
 INERTIA, VISCOUS, COULOMB, MISALIGNMENT = range(4)
+#: Place behind them of what a last digit cuts off, where it is a column.
+CUT = 4
 #: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
 FREQUENCIES, REACH = 400, 4.0
 

@@ -66,6 +66,20 @@ class NormalEquations:
         """Coefficients (p,), and the inverse of the matrix (p, p)."""
         return solved(self.gram.sum(axis=0), self.moment.sum(axis=0), self.count * self.noise)
 
+    def knowing(self, place: int, value: float, weight: float) -> NormalEquations:
+        """The same equations and, as if it had been measured, what is known of one coefficient beforehand.
+
+        Args:
+            place: of the coefficient.
+            value: that it is about.
+            weight: variance of a row over that of the value.
+        """
+        gram, moment = np.zeros((1, *self.noise.shape)), np.zeros((1, self.noise.shape[0]))
+        gram[0, place, place], moment[0, place] = weight, weight * value
+        added = {"gram": np.concatenate([self.gram, gram]), "moment": np.concatenate([self.moment, moment])}
+        none = np.zeros(1)
+        return replace(self, power=np.append(self.power, none), rows=np.append(self.rows, none.astype(int)), **added)
+
     def scores(self, theta: Array) -> Array:
         """X'(y - X*theta) of each block, less the part of it that is due to noise in the columns - (b, p)."""
         return self.moment - self.gram @ theta + np.outer(self.rows, self.noise @ theta)

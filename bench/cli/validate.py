@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from bench.console import JsonOption, console, tell_files, write_json
+from bench.errors import InputError
+from bench.plant.profile_names import DEFAULT, NAMES
+
+if TYPE_CHECKING:
+    from bench.validate.own import OwnAxis
 
 
 def validate(
@@ -19,6 +24,10 @@ def validate(
     diagnose: Annotated[
         bool, typer.Option("--diagnose", help="Name what is missing too, a second or two a run.")
     ] = False,
+    rig: Annotated[Path | None, typer.Option("--rig", help="Your own axis instead of any: its rig file.")] = None,
+    profile: Annotated[
+        Path, typer.Option("--profile", help=f"With --rig, its motion: a recording's file, or {', '.join(NAMES)}.")
+    ] = Path(DEFAULT),
     workers: Annotated[int | None, typer.Option("--workers", help="Processes on this machine.", min=1)] = None,
     scheduler: Annotated[
         str | None, typer.Option("--scheduler", help="Dask cluster to work on, e.g. tcp://host:8786.")
@@ -27,23 +36,46 @@ def validate(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for tables, figures and JSON.")] = None,
 ) -> None:
     """Monte Carlo on synthetic recordings: how far off numbers are, and how often intervals and names hold."""
-    from bench import __version__
     from bench.report.progress import progress
-    from bench.report.validation import sheets, validation_json, write_validation
+    from bench.report.provenance import without_files
+    from bench.report.validation import determined, sheets, validation_json, write_validation
+    from bench.validate.case import AnyAxis
     from bench.validate.hiding import Hiding
     from bench.validate.plan import Plan
     from bench.validate.validate import validate as run_validation
 
-    plan = Plan(seed, Hiding.parse(effects), diagnose)
+    if rig is None and str(profile) != DEFAULT:
+        raise InputError("--profile", "found without --rig", "allowed: with the rig whose motion it is")
+    hiding = Hiding.parse(effects)
+    named = diagnose or (rig is not None and hiding.anything)  # what is hidden in one's own axis is to be named
+    options = {"rigs": rigs, "seed": seed, "effects": effects, "diagnose": named, "profile": str(profile)}
+    population, basis = (AnyAxis(), without_files(options)) if rig is None else _own(rig, profile, options)
+    plan = Plan(seed, hiding, named, population)
     with progress(f"validating on {rigs} runs") as done:
         found = run_validation(plan, rigs, workers, scheduler, done)
-    options = {"rigs": rigs, "seed": seed, "effects": effects, "diagnose": diagnose}
-    basis = {"version": __version__, "rig_sha256": None, "traces": [], "options": options}
-    command = f"bench validate --rigs {rigs} --seed {seed} --effects {effects}" + " --diagnose" * diagnose
-    files = write_validation(out, found, basis, command) if out is not None else []
+    command = f"bench validate --rigs {rigs} --seed {seed} --effects {effects}{' --diagnose' * named}"
+    command += "" if rig is None else f" --rig {rig} --profile {profile}"
+    written = write_validation(out, found, basis, command) if out is not None else []
     if json is not None:
         write_json(json, validation_json(found, basis))
     if json != Path("-"):
+        if rig is not None:
+            console().print(determined(found.runs).table())
         for sheet in sheets(found):
             console().print(sheet.table())
-        tell_files(files)
+        tell_files(written)
+
+
+def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis, dict[str, Any]]:
+    """The axis of a rig along a named motion, or the one of a file, and what it rests on."""
+    from bench.report.provenance import provenance
+    from bench.rig.rig import load_rig
+    from bench.trace.read import read
+    from bench.validate.own import own_axis
+
+    known = load_rig(rig)
+    if str(profile) in NAMES:
+        return own_axis(known, str(profile), None), provenance(rig, [], options)
+    if not profile.exists():
+        raise InputError("--profile", f"found '{profile}'", f"allowed: the file of a recording, or {', '.join(NAMES)}")
+    return own_axis(known, profile.name, read(profile, known.trace)), provenance(rig, [profile], options)

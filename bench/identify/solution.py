@@ -11,7 +11,7 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.balance import layout
 from bench.balance.covariance import estimated, misfit
 from bench.balance.hypothesis import Hypothesis
-from bench.balance.last_digit import rounding
+from bench.balance.last_digit import cut_beforehand, plain, rounding
 from bench.balance.layout import Layout, lay_out
 from bench.balance.noise import noise_floor, white_power
 from bench.balance.normal_equations import NormalEquations, normal_equations, solved
@@ -65,10 +65,13 @@ def solved_with_shift(equations: NormalEquations, rows: Rows, offset: bool) -> S
     """
     width = equations.noise.shape[0]
     columns = list(range(width if offset else width - 1))
-    chosen = equations.select(columns)
+    measured = equations.select(columns)
+    chosen, beforehand = with_digit(measured, rows)
     theta, inverse = chosen.solve()
     least = rows.conditioning.effort_noise**2 / rows.conditioning.filter.stride
-    covariance, reach = estimated(chosen.scores(theta), inverse, least)
+    unknown = inverse @ beforehand @ inverse
+    covariance, reach = estimated(measured.scores(theta), inverse, least)
+    covariance = covariance + unknown
     at = layout.MISALIGNMENT
     shift = float(theta[at]), float(np.sqrt(max(covariance[at, at], 0.0)))
     bound = rows.scope.latched
@@ -81,8 +84,25 @@ def solved_with_shift(equations: NormalEquations, rows: Rows, offset: bool) -> S
         gram, moment = chosen.gram.sum(axis=0), chosen.moment.sum(axis=0) - held * chosen.gram.sum(axis=0)[:, at]
         rest, _ = solved(gram[np.ix_(kept, kept)], moment[kept], chosen.count * chosen.noise[np.ix_(kept, kept)])
         theta = np.insert(rest, at, held)
-        covariance, reach = estimated(chosen.scores(theta), inverse, least)
+        covariance, reach = estimated(measured.scores(theta), inverse, least)
+        covariance = covariance + unknown
     return Solved(columns, offset, theta, covariance, reach, shift if apart else (0.0, shift[1]), hold)
+
+
+def with_digit(equations: NormalEquations, rows: Rows) -> tuple[NormalEquations, Array]:
+    """The equations with what is known of the effort's last digit, where it is a column; the variance it adds (p, p).
+
+    Where torque and speed turn together, what is cut off a current and dry friction are one number; half a step at most
+    is cut off, and the friction's interval counts where in between. Free, it took half of the friction.
+    """
+    beforehand, step = np.zeros_like(equations.noise), plain(rows).step
+    if not step:
+        return equations, beforehand
+    value, variance = cut_beforehand(step)
+    power = max(equations.residual_power(equations.solve()[0]), 0.0) / equations.count
+    weight = power / variance
+    beforehand[layout.CUT, layout.CUT] = weight**2 * variance
+    return equations.knowing(layout.CUT, value, weight), beforehand
 
 
 @dataclass(frozen=True)

@@ -31,3 +31,12 @@ def provenance(
         "options": dict(options),
     }
     return found if holdout is None else found | {"holdout": {"file": str(holdout), "sha256": sha256(holdout)}}
+
+
+def without_files(options: Mapping[str, Any]) -> dict[str, Any]:
+    """The same of what rests on no file.
+
+    Args:
+        options: of the command that change its result.
+    """
+    return {"version": __version__, "rig_sha256": None, "traces": [], "options": dict(options)}

@@ -19,7 +19,7 @@ from bench.report.sheet import Sheet
 from bench.report.validation_figures import confusion_figure, coverage_figure
 from bench.statistics import NORMAL95
 from bench.structured import json_text
-from bench.validate.coverage import LEVELS, Coverage, Share
+from bench.validate.coverage import LEVELS, Coverage, Group, Share
 from bench.validate.naming import Naming
 from bench.validate.run import Run
 from bench.validate.validate import Validation
@@ -66,6 +66,23 @@ def _first_words(reason: str) -> str:
     return reason.partition(":")[0]
 
 
+def determined(runs: tuple[Run, ...]) -> Sheet:
+    """How well a motion determines each quantity of one axis with nothing hidden in it: how often, and how closely."""
+    plain = [run for run in runs if not run.hidden and run.status != "failed"]
+    rows = []
+    for term, symbol in SYMBOLS.items():
+        told = [one for run in plain for one in run.told if one.by == "identify" and one.quantity == term]
+        found = Coverage.of("identify", Group("", len(plain), True), term, told)
+        known = Share(sum(abs(one.parameter.value) > one.half_width * one.scale for one in told), len(plain))
+        true = f"{told[0].true:.4g} {told[0].parameter.unit}" if told else "-"
+        rows.append(
+            (symbol, true, _of(known), _percent(found.half_width), _percent(found.bias), _percent(found.typical))
+        )
+    headings = ("quantity", "true", "determined", "± % (95 %)", "bias %", "RMS error %")
+    note = "determined: runs, with nothing hidden, that tell the quantity by an interval which excludes zero."
+    return Sheet("How well this motion on this drive determines the axis", headings, rows, words=2, note=note)
+
+
 def covered(found: Sequence[Coverage], title: str) -> Sheet:
     """Bias, spread, width and coverage."""
     rows = [
@@ -73,7 +90,7 @@ def covered(found: Sequence[Coverage], title: str) -> Sheet:
             each.group,
             SYMBOLS.get(each.quantity, each.quantity),
             f"{each.told}/{each.runs}",
-            f"{_percent(each.bias, 2)}±{_percent(NORMAL95 * each.bias_error, 2)}",
+            f"{_percent(each.bias, 2)}±{_percent(NORMAL95 * each.bias_error, 1)}",
             _percent(each.typical),
             _percent(each.half_width),
             _number(each.width_over_error),
@@ -91,11 +108,18 @@ def names(found: Naming) -> Sheet:
     """Whether names are right, over all runs that were diagnosed."""
     rows = [
         ("nulls with a false name", told(found.nulls), _of(found.nulls)),
+        *((f"  {name}", told(share), _of(share)) for name, share in _apart(found.nulls_by_motion)),
         ("runs with a false name", told(found.false), _of(found.false)),
+        ("  and no remainder beside it", told(found.silent), _of(found.silent)),
         ("runs named exactly", told(found.exact), _of(found.exact)),
         ("refused", told(found.refused), _of(found.refused)),
     ]
     return Sheet("Names", ("what", "share", "runs"), rows)
+
+
+def _apart(by_motion: Mapping[str, Share]) -> list[tuple[str, Share]]:
+    """By motion, where there are several."""
+    return [*by_motion.items()] if len(by_motion) > 1 else []
 
 
 def by_name(found: Naming) -> Sheet:
@@ -118,7 +142,10 @@ def _of(share: Share) -> str:
 
 
 def _percent(value: float, digits: int = 3) -> str:
-    return f"{100.0 * value:.{digits}g}" if math.isfinite(value) else "-"
+    percent = 100.0 * value
+    if not math.isfinite(percent):
+        return "-"
+    return f"{percent:.0f}" if abs(percent) >= 10.0 ** (digits - 1) else f"{percent:.{digits}g}"
 
 
 def _number(value: float) -> str:
@@ -159,10 +186,12 @@ def _share_json(share: Share) -> dict[str, Any]:
 
 
 def _naming_json(found: Naming) -> dict[str, Any]:
-    shares = {name: _share_json(getattr(found, name)) for name in ("nulls", "false", "exact", "refused")}
+    shares = {name: _share_json(getattr(found, name)) for name in ("nulls", "false", "silent", "exact", "refused")}
     return {
         "nulls_with_false_name": shares["nulls"],
+        "nulls_by_motion": {name: _share_json(share) for name, share in found.nulls_by_motion.items()},
         "with_false_name": shares["false"],
+        "with_false_name_explained": shares["silent"],
         "named_exactly": shares["exact"],
         "refused": shares["refused"],
         "named": {name: _share_json(share) for name, share in found.named.items()},

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from bench.report.figures import MEASURED, MODELLED, REST, title_figure
 from bench.validate.coverage import LEVELS, Coverage
-from bench.validate.naming import NOTHING, Naming
+from bench.validate.naming import Naming
 
 COLOURS = {"inertia": MEASURED, "viscous": MODELLED, "coulomb": REST}
 SYMBOLS = {"inertia": "J", "viscous": "$K_\\omega$", "coulomb": "$K_0$"}
@@ -61,6 +61,6 @@ def confusion_figure(found: Naming) -> Figure:
     axis.set_xticks(range(len(columns)), [name.replace("_", " ") for name in columns], rotation=55, ha="left")
     axis.set_yticks(range(len(rows)), [name.replace("_", " ") for name in rows])
     axis.xaxis.tick_top()
-    axis.set_ylabel(f"hidden ({NOTHING}: a null)")
+    axis.set_ylabel("hidden")
     axis.tick_params(length=0)
     return figure

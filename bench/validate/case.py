@@ -72,11 +72,9 @@ class Population(Protocol):
 class AnyAxis:
     """Axes, motions and sensors over all their ranges; these stand in `docs/validate.md`."""
 
-    turning: bool = False
-
     def plain(self, index: int, rng: np.random.Generator) -> Case:
         """As the protocol has it."""
-        linear = bool(rng.random() < LINEAR) and not self.turning
+        linear = bool(rng.random() < LINEAR)
         axis = replace(random_rig(rng, f"run {index}", linear=linear), control_period=CONTROL_PERIOD)
         others = (1.0 - MIXED) / (len(MOTIONS) - 1)
         name = str(rng.choice([*MOTIONS], p=[MIXED if k == 0 else others for k in range(len(MOTIONS))]))

@@ -136,7 +136,7 @@ def _groups(runs: Sequence[Run], by: str) -> Iterator[tuple[str, bool, list[Run]
     asked = [run for run in runs if run.status != "failed" and (by == "identify" or run.named is not None)]
     for count in sorted({len(run.hidden) for run in asked}):
         some = [run for run in asked if len(run.hidden) == count]
-        name = ("nothing hidden", "1 effect", f"{count} effects")[min(count, 2)]
+        name = ("nulls", "1 effect", f"{count} effects")[min(count, 2)]
         yield name, True, some
         if by == "identify" and count == 0:
             yield from ((part, False, those) for part, those in _apart(some))

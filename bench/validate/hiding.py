@@ -12,6 +12,7 @@ from bench.errors import InputError
 from bench.units import nearest
 from bench.validate.independent.draw import any_effects
 from bench.validate.independent.effects import KINDS
+from bench.validate.independent.rig import Axis
 
 #: Names that can be hidden: those that the independent axis has too, and that a recording can name.
 HIDEABLE = tuple(name for name in KINDS if name in catalogue() and not catalogue()[name].undiagnosed)
@@ -59,16 +60,16 @@ class Hiding:
         """Whether any run hides an effect."""
         return self.most > 0 or bool(self.names)
 
-    def drawn(self, index: int, rng: np.random.Generator, linear: bool) -> tuple[str, ...]:
-        """Names hidden in a run; on a linear axis, of those that it can have.
+    def drawn(self, index: int, rng: np.random.Generator, axis: Axis) -> tuple[str, ...]:
+        """Names hidden in a run, of those that the axis can have.
 
         Args:
             index: of the run.
             rng: of the run.
-            linear: whether the axis is.
+            axis: of the run.
         """
+        impossible = frozenset(name for name in HIDEABLE if not KINDS[name].possible(axis))
         if self.names:
-            allowed = [name for name in self.names if KINDS[name].on_linear_axis or not linear]
             place = index % (len(self.names) + 1)
-            return tuple(name for name in self.names[place : place + 1] if name in allowed)
-        return any_effects(int(rng.integers(self.least, self.most + 1)), rng, linear=linear)
+            return tuple(name for name in self.names[place : place + 1] if name not in impossible)
+        return any_effects(int(rng.integers(self.least, self.most + 1)), rng, without=impossible)

@@ -10,6 +10,8 @@ from bench.validate.coverage import Share
 from bench.validate.run import Run
 from bench.validate.told import Named
 
+#: Verdicts, as the contract has them.
+EXPLAINED, UNEXPLAINED = "explained", "unexplained_remainder"
 #: What is hidden in a null; what is said instead of a name.
 NOTHING, NOTHING_MISSING, REMAINDER, REFUSED = "nothing", "nothing missing", "only a remainder", "refused"
 
@@ -20,7 +22,9 @@ class Naming:
 
     Attributes:
         nulls: those of them with a false name, of runs with nothing hidden that were not refused.
-        false: the same of all runs.
+        nulls_by_motion: the same by the kind of motion.
+        false: the same of all runs, whatever is hidden.
+        silent: of these runs, those with a false name in a verdict that explains all.
         exact: runs whose names are those of what is hidden, of all, refused ones too.
         refused: runs without a diagnosis.
         named: by effect, how often it is named where it is hidden.
@@ -29,7 +33,9 @@ class Naming:
     """
 
     nulls: Share
+    nulls_by_motion: Mapping[str, Share]
     false: Share
+    silent: Share
     exact: Share
     refused: Share
     named: Mapping[str, Share]
@@ -43,7 +49,8 @@ def naming(runs: Sequence[Run]) -> Naming | None:
     if not pairs:
         return None
     told = [(run, named) for run, named in pairs if named.verdict]
-    nulls = [named for run, named in told if not run.hidden]
+    nulls = [(run.motion, named) for run, named in told if not run.hidden]
+    motions = {motion: [named for other, named in nulls if other == motion] for motion in sorted({m for m, _ in nulls})}
     hidden = Counter(name for run, _ in pairs for name in run.hidden)
     missed = Counter(name for _, named in pairs for name in named.missed)
     confusion: dict[str, Counter[str]] = {}
@@ -51,8 +58,10 @@ def naming(runs: Sequence[Run]) -> Naming | None:
         if len(run.hidden) < 2:
             confusion.setdefault(next(iter(run.hidden), NOTHING), Counter()).update(given(named))
     return Naming(
-        nulls=Share(sum(bool(named.false) for named in nulls), len(nulls)),
-        false=Share(sum(bool(named.false) for _, named in told), len(told)),
+        nulls=_false([named for _, named in nulls]),
+        nulls_by_motion={motion: _false(those) for motion, those in motions.items()},
+        false=_false([named for _, named in told]),
+        silent=Share(sum(bool(named.false) and named.verdict == EXPLAINED for _, named in told), len(told)),
         exact=Share(sum(named.exact for _, named in pairs), len(pairs)),
         refused=Share(len(pairs) - len(told), len(pairs)),
         named={name: Share(hidden[name] - missed[name], hidden[name]) for name in sorted(hidden)},
@@ -61,9 +70,13 @@ def naming(runs: Sequence[Run]) -> Naming | None:
     )
 
 
+def _false(told: Sequence[Named]) -> Share:
+    return Share(sum(bool(named.false) for named in told), len(told))
+
+
 def given(named: Named) -> tuple[str, ...]:
     """Names, or what was said instead."""
     if not named.verdict:
         return (REFUSED,)
-    instead = REMAINDER if named.verdict == "unexplained_remainder" else NOTHING_MISSING
+    instead = REMAINDER if named.verdict == UNEXPLAINED else NOTHING_MISSING
     return named.names or (instead,)

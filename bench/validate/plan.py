@@ -30,4 +30,4 @@ class Plan:
         """The case of an index."""
         rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(index,)))
         plain = self.population.plain(index, rng)
-        return hide(plain, self.hiding.drawn(index, rng, plain.axis.linear), rng)
+        return hide(plain, self.hiding.drawn(index, rng, plain.axis), rng)

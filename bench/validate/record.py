@@ -79,4 +79,6 @@ def with_truth(case: Case) -> Rig:
         "encoder_resolution": sensors.encoder_resolution,
         "sample_period": sensors.sample_period,
     }
-    return case.rig.model_copy(update={"simulation": Simulation().model_copy(update=truth)})
+    stated = case.rig.simulation or Simulation()
+    own = stated.model_copy(update=truth | {"velocity_noise": 0.0, "current_noise": 0.0})
+    return case.rig.model_copy(update={"simulation": own})

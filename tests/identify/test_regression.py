@@ -181,3 +181,15 @@ def test_an_inertia_below_zero_is_refused_and_told():
         identify(trace, RIG)
     assert any("negative" in warning for warning in told.value.estimate.warnings)
     assert told.value.estimate["moment_of_inertia"].value < 0.0
+
+
+@pytest.mark.parametrize("whole", [np.round, np.trunc])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_coarse_current_that_turns_with_the_speed_leaves_friction_open_by_half_a_step(seed, whole):
+    made = recording(np.random.default_rng(seed), duration=8.0, torque_noise=6e-3, velocity_noise=3e-4, speed=0.008)
+    step, constant = 0.015, 0.8  # four steps of friction; along so slow a motion the torque has the speed's sign
+    current = step * whole(made["current"] / step)
+    found = identify(Trace(made.time, {**made.signals, "current": current}, UNITS, "coarse"), RIG)[NAMES[2]]
+    low, high = found.ci95
+    assert low < Truth().coulomb < high
+    assert 0.25 * step * constant < 0.5 * (high - low) < step * constant

@@ -31,9 +31,11 @@ def hidden(
     return Hidden(name, axis, drawn, sensors, "outside" if outside else GROUPS[len(effects)], strength, duration)
 
 
-def any_effects(count: int, rng: np.random.Generator, *, linear: bool = False) -> tuple[str, ...]:
-    """Names of `count` effects of the catalogue that can be hidden together."""
-    allowed = [name for name, kind in CATALOGUE.items() if kind.on_linear_axis or not linear]
+def any_effects(
+    count: int, rng: np.random.Generator, *, linear: bool = False, without: frozenset[str] = frozenset()
+) -> tuple[str, ...]:
+    """Names of `count` effects of the catalogue that can be hidden together, on a linear axis or without some."""
+    allowed = [name for name, kind in CATALOGUE.items() if (kind.on_linear_axis or not linear) and name not in without]
     while True:
         names = tuple(str(name) for name in rng.choice(allowed, count, replace=False))
         if not any(KINDS[name].never_beside in names for name in names):

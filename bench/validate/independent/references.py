@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -101,7 +102,20 @@ def _faded(
     return f * x, df * x + f * dx, ddf * x + 2.0 * df * dx + f * ddx
 
 
-Phase = Ramps | Multisine | Chirp
+class Phase(Protocol):
+    """A part of a motion.
+
+    Attributes:
+        duration: of it - s.
+        distance: gone in it - rad.
+    """
+
+    duration: float
+    distance: float
+
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
+        ...
 
 
 @dataclass(frozen=True)

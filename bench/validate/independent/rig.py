@@ -18,7 +18,7 @@ class Axis:
         inertia, viscous, coulomb: J - kg*m**2, K_w - N*m*s/rad, K_0 - N*m.
         rotor_inertia: the motor's share of J - kg*m**2; a coupling separates it from the rest.
         torque_constant, peak_current: of the motor - N*m/A, A.
-        resistance, inductance, back_emf_constant: of the winding - ohm, H, V*s/rad.
+        resistance, inductance, back_emf_constant: of the winding - ohm, H, V*s/rad; the last 0 where it is not known.
         position_gain, velocity_gain, integral_gain, inertia_feedforward, control_period: of the drive, as the rig file
             names them - 1/s, N*m*s/rad, N*m/rad, kg*m**2, s.
         top_speed: the axis is meant for - rad/s.

@@ -34,6 +34,11 @@ class Effect:
     never_beside: ClassVar[str] = ""
 
     @classmethod
+    def possible(cls, axis: Axis) -> bool:
+        """Whether an axis can have it."""
+        return cls.on_linear_axis or not axis.linear
+
+    @classmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         """An effect of this kind, as strong as `severity` (1: drastic) says, for a recording of `duration` - s."""
         raise NotImplementedError

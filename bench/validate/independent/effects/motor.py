@@ -76,6 +76,10 @@ class VoltageLimit(Effect):
     voltage: float
 
     @classmethod
+    def possible(cls, axis: Axis) -> bool:
+        return axis.back_emf_constant > 0.0
+
+    @classmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         # motions reach 0.85 of top speed or more, which a weak limit must still cut off
         return cls(axis.back_emf_constant * axis.top_speed * (0.93 - 0.35 * min(about(severity, rng), 1.0)))

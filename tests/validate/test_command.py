@@ -1,0 +1,72 @@
+"""The commands of docs/validate.md run as they stand there, and what they write is what the contract says."""
+
+import json
+import re
+import shlex
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+from pyarrow import csv
+
+from bench.cli import app
+
+MANUAL = (Path(__file__).resolve().parents[2] / "docs" / "validate.md").read_text(encoding="utf-8")
+COMMANDS = [
+    shlex.split(line)[1:]
+    for block in re.findall(r"^```sh\n(.*?)^```", MANUAL, re.MULTILINE | re.DOTALL)
+    for line in block.splitlines()
+]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    home = tmp_path_factory.mktemp("manual")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(home)
+        for command in COMMANDS:
+            app(command, standalone_mode=False)
+    return home
+
+
+def test_a_command_of_each_kind_is_shown():
+    assert [command[0] for command in COMMANDS] == ["validate", "rigs", "validate", "validate"]
+
+
+def test_the_json_is_the_contracts(folder):
+    found = json.loads((folder / "any.json").read_text(encoding="utf-8"))
+    assert found["schema"] == "bench.validate/1"
+    assert found["runs"]["asked"] == 4 == sum(found["runs"][name] for name in ("done", "refused", "failed"))
+    assert found["naming"] is None
+    inertia = next(each for each in found["coverage"] if (each["group"], each["quantity"]) == ("nulls", "inertia"))
+    assert [each["level"] for each in inertia["inside"]] == [0.5, 0.8, 0.95]
+    assert abs(inertia["bias"]) < 0.05
+    assert found["provenance"]["options"]["seed"] == 1
+
+
+def test_files_of_a_run_agree_with_each_other(folder):
+    home = folder / "mine"
+    found = json.loads((home / "validation.json").read_text(encoding="utf-8"))
+    runs = pq.read_table(home / "runs.parquet")
+    assert runs.column("hidden").to_pylist() == ["unbalance", "cogging_torque", ""]
+    assert csv.read_csv(home / "runs.csv").num_rows == runs.num_rows == 3
+    told = pq.read_table(home / "quantities.parquet").to_pylist()
+    asked = [each for each in found["coverage"] if each["group"] == "nulls" and each["by"] == "identify"]
+    mine = [row for row in told if row["by"] == "identify" and row["index"] % 3 == 2]
+    assert sum(each["told"] for each in asked) == len(mine) == 3
+    assert set(found["naming"]["named"]) == {"unbalance", "cogging_torque"}
+    assert {"coverage.png", "confusion.png", "validation.md"} <= {path.name for path in home.iterdir()}
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--effects", "3-1"], "allowed: 0 to 6"),
+        (["--profile", "monday.csv"], "allowed: with the rig"),
+        (["--rig", "my.toml", "--profile", "monday.csv"], "allowed: the file of a recording"),
+    ],
+)
+def test_bad_input_is_one_line(folder, monkeypatch, options, told):
+    monkeypatch.chdir(folder)
+    with pytest.raises(Exception, match=told):
+        app(["validate", *options], standalone_mode=False)
