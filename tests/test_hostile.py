@@ -98,6 +98,20 @@ def test_reading_takes_time_in_proportion(tmp_path, case):
             assert "\n" not in str(error)
 
 
+TWINCAT = "Name\tp\nStarttime of export\t{}\n\nName\tvelocity\nUnit\trad/s\n\n0\t1\n1\t2\n"
+
+
+@pytest.mark.parametrize("ticks", ["132959733843³760000", "1" * 5000])
+def test_digits_that_are_no_number_tell_no_time(tmp_path, ticks):
+    """Found by fuzzing: a raised digit is a digit to Python, but no number; nor are more than 4300 of them."""
+    (tmp_path / "x").write_text(TWINCAT.format(ticks))
+    assert "starttime of export" not in read_recording(tmp_path / "x").metadata
+    codesys = f"[key]; [value]\nFlags; {ticks}\n0.Variable; A.Velocity\n0.Data; \n; 0; 1\n; 1; 2\n"
+    (tmp_path / "y").write_text(codesys)
+    time = read_recording(tmp_path / "y").channels[0].time
+    assert time is not None and time.unit == "ms"
+
+
 @pytest.mark.parametrize(
     ("label", "expected"),
     [

@@ -198,7 +198,7 @@ def test_a_truncated_container_is_told_as_such(tmp_path, name, share):
 
 @pytest.mark.parametrize(
     ("name", "module", "extra"),
-    [("run.mcap", "mcap.reader", "mcap"), ("run.tdms", "nptdms", "tdms"), ("run.h5", "h5py", "hdf5")],
+    [("run.mcap", "mcap.stream_reader", "mcap"), ("run.tdms", "nptdms", "tdms"), ("run.h5", "h5py", "hdf5")],
 )
 def test_a_missing_library_is_told_with_how_to_install_it(tmp_path, monkeypatch, name, module, extra):
     path = WRITTEN[name](tmp_path / name)

@@ -17,6 +17,7 @@ FORMAT = "CODESYS / Machine Expert CSV export"
 ENDINGS = ()
 
 _MICROSECONDS = 32
+_FLAGS = re.compile(r"[0-9]{1,19}")
 _VARIABLE = re.compile(r"(\d+)\.Variable")
 
 
@@ -57,7 +58,7 @@ def read(source: Source) -> Recording:
 def _channel(keys: dict[str, str], number: str, pairs: list[tuple[str, str]], line: int, path: str) -> Channel:
     name = keys.get(f"{number}.Variable", f"variable {number}")
     flags = keys.get("Flags", "16")
-    unit = "us" if flags.isdigit() and int(flags) & _MICROSECONDS else "ms"
+    unit = "us" if _FLAGS.fullmatch(flags) and int(flags) & _MICROSECONDS else "ms"
 
     def place(sample: int) -> str:
         return f"{path}: line {line + sample}, variable '{name}'"

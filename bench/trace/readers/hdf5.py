@@ -43,7 +43,7 @@ def read(source: Source) -> Recording:
     metadata: dict[str, str] = {}
     try:
         with h5py.File(BytesIO(source.content), "r") as file:
-            found = list(_datasets(file, h5py, ""))
+            found = list(_datasets(file, h5py, "", set()))
             size = sum(dataset.nbytes for _, dataset in found if dataset.shape is not None)
             require_expansion(source.path, size, len(source.content))
             for name, dataset in found:
@@ -57,15 +57,20 @@ def read(source: Source) -> Recording:
     return Recording(tuple(channels), FORMAT, source.path, metadata)
 
 
-def _datasets(group: Any, h5py: Any, prefix: str) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
+def _datasets(group: Any, h5py: Any, prefix: str, seen: set[int]) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
+    """Datasets in a group and the groups in it, each once, whatever links lead to it; by their address in the file."""
     for name in group:
         link = group.get(name, getlink=True)
         if name.startswith("#") or not isinstance(link, h5py.HardLink):
             continue  # MATLAB's references, and what lies in other files
         value = group[name]
+        address = h5py.h5o.get_info(value.id).addr
+        if address in seen:
+            continue
+        seen.add(address)
         if isinstance(value, h5py.Group):
-            yield from _datasets(value, h5py, f"{prefix}{name}.")
-        elif isinstance(value, h5py.Dataset):
+            yield from _datasets(value, h5py, f"{prefix}{name}.", seen)
+        elif isinstance(value, h5py.Dataset) and not value.external and not value.is_virtual:  # those are other files
             yield prefix + name, value
 
 

@@ -10,15 +10,18 @@ from __future__ import annotations
 import json
 from array import array
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from io import BytesIO
+from itertools import islice
 from typing import Any
 
 import numpy as np
 
+from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
 from bench.trace.readers.extras import damaged, library
+from bench.trace.readers.packed import unpack
 from bench.trace.source import Source
 
 FORMAT = "MCAP"
@@ -29,14 +32,17 @@ _JOINT_STATE = ("sensor_msgs/msg/JointState", "sensor_msgs/JointState")
 _JOINT_UNITS = {"position": "rad", "velocity": "rad/s", "effort": "N*m"}
 #: Numbers of a message, and messages in one another; a scope has fewer, a point cloud more.
 _MOST, _DEEPEST = 256, 8
+#: Bytes of a number and its times.
+_WIDTH = 24
 
 
 @dataclass
 class _Column:
-    """Numbers of one field of a topic as they come, with their times in ns."""
+    """Numbers of one field of a topic as they come, with the times of the log and their own in ns."""
 
     unit: str | None = None
     axis: str | None = None
+    logged: array[int] = field(default_factory=lambda: array("q"))
     times: array[int] = field(default_factory=lambda: array("q"))
     values: array[float] = field(default_factory=lambda: array("d"))
 
@@ -54,10 +60,12 @@ def read(source: Source) -> Recording:
     """
     columns: dict[tuple[str, str], _Column] = {}
     unread: dict[str, str] = {}
-    for topic, schema, stamp, message in _messages(source, unread):
-        _gather(columns, topic, schema, stamp, message)
+    numbers = 0
+    for topic, schema, logged, message in _messages(source, unread):
+        numbers += _gather(columns, topic, schema, logged, message)
+        require_expansion(source.path, numbers * _WIDTH, len(source.content))
     notes = tuple(f"{topic} left out: messages in {encoding}" for topic, encoding in unread.items())
-    first = min((column.times[0] for column in columns.values()), default=0)
+    first = min((column.times[np.argmin(column.logged)] for column in columns.values()), default=0)
     several = len({topic for topic, _ in columns if columns[topic, _].axis is not None}) > 1
     channels = [
         _channel(topic, name, column, first, several, source.path)
@@ -75,20 +83,45 @@ def read(source: Source) -> Recording:
 
 def _messages(source: Source, unread: dict[str, str]) -> Iterator[tuple[str, str, int, Any]]:
     """Topic, schema's name, time - ns - and content of each message that can be decoded."""
-    reader = library("mcap.reader", "mcap", "mcap", source.path, FORMAT)
     ros2 = library("mcap_ros2.decoder", "mcap-ros2-support", "mcap", source.path, FORMAT).DecoderFactory()
+    records = library("mcap.records", "mcap", "mcap", source.path, FORMAT)
+    schemas: dict[int, Any] = {}
+    channels: dict[int, Any] = {}
     decoders: dict[int, Callable[[bytes], Any] | None] = {}
     try:
-        for schema, channel, message in reader.make_reader(BytesIO(source.content)).iter_messages():
-            if channel.id not in decoders:
-                decoders[channel.id] = _decoder(ros2, schema, channel)
-                if decoders[channel.id] is None:
-                    unread[channel.topic] = channel.message_encoding or "an unknown encoding"
-            decode = decoders[channel.id]
-            if decode is not None:
-                yield channel.topic, schema.name if schema is not None else "", message.log_time, decode(message.data)
+        for record in _records(source):
+            if isinstance(record, records.Schema):
+                schemas[record.id] = record
+            elif isinstance(record, records.Channel):
+                channels.setdefault(record.id, record)
+            elif isinstance(record, records.Message):
+                channel = channels[record.channel_id]
+                schema = schemas[channel.schema_id] if channel.schema_id else None  # 0: none
+                if channel.id not in decoders:
+                    decoders[channel.id] = _decoder(ros2, schema, channel)
+                    if decoders[channel.id] is None:
+                        unread[channel.topic] = channel.message_encoding or "an unknown encoding"
+                decode = decoders[channel.id]
+                if decode is not None:
+                    yield channel.topic, schema.name if schema is not None else "", record.log_time, decode(record.data)
+    except InputError:
+        raise
     except Exception as error:  # mcap and its decoders raise many kinds on a damaged file
         raise damaged(source.path, FORMAT, error) from error
+
+
+def _records(source: Source) -> Iterator[Any]:
+    """Records in the file's order, those of chunks too, which are unpacked one at a time within the bounds."""
+    reader = library("mcap.stream_reader", "mcap", "mcap", source.path, FORMAT)
+    size = 0
+    for record in reader.StreamReader(BytesIO(source.content), emit_chunks=True).records:
+        if not isinstance(record, reader.Chunk):
+            yield record
+            continue
+        size += record.uncompressed_size
+        require_expansion(source.path, size, len(source.content))
+        data = unpack(record.data, record.uncompressed_size) if record.compression else record.data
+        yield from reader.breakup_chunk(replace(record, compression="", data=data))
 
 
 def _decoder(ros2: Any, schema: Any, channel: Any) -> Callable[[bytes], Any] | None:  # noqa: ANN401
@@ -97,32 +130,26 @@ def _decoder(ros2: Any, schema: Any, channel: Any) -> Callable[[bytes], Any] | N
     return ros2.decoder_for(channel.message_encoding, schema)
 
 
-def _gather(columns: dict[tuple[str, str], _Column], topic: str, schema: str, logged: int, message: Any) -> None:  # noqa: ANN401
-    stamp = _stamp(message, logged)
+def _gather(columns: dict[tuple[str, str], _Column], topic: str, schema: str, logged: int, message: Any) -> int:  # noqa: ANN401
+    """Append a message's numbers to their columns; how many they are."""
+    stamp, count = _stamp(message, logged), 0
     if schema in _JOINT_STATE:
         for number, joint in enumerate(message.name):
             for name, unit in _JOINT_UNITS.items():
                 values = getattr(message, name)
                 if len(values) == len(message.name):
-                    _append(columns, (topic, f"{joint}.{name}"), stamp, values[number], unit, joint)
-        return
-    for count, (path, value) in enumerate(_numbers(message, "", 0)):
-        if count == _MOST:
-            break
-        _append(columns, (topic, path), stamp, value)
+                    column = columns.setdefault((topic, f"{joint}.{name}"), _Column(unit, joint))
+                    _append(column, logged, stamp, values[number])
+                    count += 1
+        return count
+    for path, value in islice(_numbers(message, "", 0), _MOST):
+        _append(columns.setdefault((topic, path), _Column()), logged, stamp, value)
+        count += 1
+    return count
 
 
-def _append(
-    columns: dict[tuple[str, str], _Column],
-    key: tuple[str, str],
-    stamp: int,
-    value: float,
-    unit: str | None = None,
-    axis: str | None = None,
-) -> None:
-    column = columns.get(key)
-    if column is None:
-        column = columns[key] = _Column(unit, axis)
+def _append(column: _Column, logged: int, stamp: int, value: float) -> None:
+    column.logged.append(logged)
     column.times.append(stamp)
     column.values.append(value)
 
@@ -167,6 +194,7 @@ def _channel(topic: str, name: str, column: _Column, first: int, several: bool, 
     if axis is not None:
         label = name.removeprefix(f"{axis}.")
         axis = f"{topic}/{axis}" if several else axis
-    times = np.asarray((np.array(column.times, dtype=np.int64) - first) * 1e-9, dtype=np.float64)
+    order = np.argsort(column.logged, kind="stable")
+    times = np.asarray((np.array(column.times, dtype=np.int64)[order] - first) * 1e-9, dtype=np.float64)
     time = Channel(f"{label} time", "s", times, path, axis=axis)
-    return Channel(label, column.unit, np.array(column.values), path, time=time, axis=axis)
+    return Channel(label, column.unit, np.array(column.values)[order], path, time=time, axis=axis)

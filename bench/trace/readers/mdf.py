@@ -1,24 +1,36 @@
 """Reader of MDF4 (ASAM; measurement of vehicles and test benches), by asammdf.
 
-Channels of a group share its master channel, the time in s; values are physical, after the file's conversions.
+Channels of a group share its master channel, the time in s; values are physical, after the file's conversions. A
+conversion that is a formula is a program in a file of somebody else's, which asammdf would have evaluated: such a
+channel is left out.
 """
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from io import BytesIO
+from typing import Any
 
 import numpy as np
 
+from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
-from bench.trace.readers.extras import damaged, library
+from bench.trace.readers.extras import damaged, library, warnings_of
+from bench.trace.readers.packed import unpack
 from bench.trace.source import Source
 
 FORMAT = "MDF4"
 ENDINGS = (".mf4", ".mdf")
 
 _MAGIC = b"MDF     "
+#: Conversions that are arithmetic with the file's numbers: none, linear, rational, tables; MDF 4 (the standard's
+#: `cc_type`) and MDF 3 (`conversion formula identifier`, polynomials, exponentials and logarithms too).
+_ARITHMETIC = {4: {0, 1, 2, 4, 5, 6}, 3: {0, 1, 2, 6, 7, 8, 9, 65535}}
+_FORMULA = {4: 3, 3: 10}
+#: Bytes of a value, and of its time.
+_WIDTH = 8
 
 
 def recognises(source: Source) -> bool:
@@ -30,12 +42,17 @@ def read(source: Source) -> Recording:
     """Recording of an MDF file; where groups hold channels of the same names, each group is an axis.
 
     Raises:
-        InputError: asammdf is not installed; damaged, or without a channel of numbers.
+        InputError: asammdf is not installed; damaged, beyond the bounds, or without a channel of numbers.
     """
     asammdf = library("asammdf", "asammdf", "mdf", source.path, FORMAT)
+    formulas: list[str] = []
     try:
-        with asammdf.MDF(BytesIO(source.content)) as file:
-            signals = list(file.iter_channels(skip_master=True, copy_master=True))
+        with warnings_of("asammdf"), asammdf.MDF(BytesIO(source.content), process_bus_logging=False) as file:
+            chosen = list(_chosen(file, formulas))
+            _require_bounds(file, chosen, source)
+            signals = [signal for channels in chosen for signal in file.select(channels, copy_master=False)]
+    except InputError:
+        raise
     except Exception as error:  # asammdf raises many kinds on a damaged file
         raise damaged(source.path, FORMAT, error) from error
     numeric = [
@@ -50,10 +67,46 @@ def read(source: Source) -> Recording:
         )
         values = np.asarray(signal.samples, dtype=np.float64)
         channels.append(Channel(signal.name, signal.unit or None, values, source.path, time=time, axis=axis))
+    notes = tuple(f"{name} left out: its conversion is a formula, which is not evaluated" for name in formulas)
     if not channels:
-        raise InputError(source.path, "holds no channel of numbers", "allowed: channels of samples")
-    return Recording(with_shared_times(channels), FORMAT, source.path)
+        found = "; ".join(("holds no channel of numbers", *notes))
+        raise InputError(source.path, found, "allowed: channels of samples")
+    return Recording(with_shared_times(channels), FORMAT, source.path, notes=notes)
 
 
 def _group(signal: object) -> str:
     return f"group {getattr(signal, 'group_index', '')}".strip()
+
+
+def _chosen(file: Any, formulas: list[str]) -> Iterator[list[tuple[None, int, int]]]:  # noqa: ANN401
+    """Channels to read of each group: name, number of the group and of the channel; names of those with a formula."""
+    version = 4 if file.version >= "4" else 3
+    for group in file.virtual_groups:
+        found = []
+        for number, indices in file.included_channels(group)[group].items():
+            for index in indices:
+                channel = file.groups[number].channels[index]
+                kind = 0 if channel.conversion is None else channel.conversion.conversion_type
+                if kind in _ARITHMETIC[version]:
+                    found.append((None, number, index))
+                elif kind == _FORMULA[version]:
+                    formulas.append(channel.name)
+        if found:
+            yield found
+
+
+def _require_bounds(file: Any, chosen: list[list[tuple[None, int, int]]], source: Source) -> None:  # noqa: ANN401
+    """InputError where the channels to read, or the blocks they lie in, grow beyond what they may."""
+    size = 0
+    for number, channels in Counter(number for group in chosen for _, number, _ in group).items():
+        group = file.groups[number]
+        stored = 0
+        for block in (part for one in group.get_data_blocks() for part in (one, one.invalidation_block) if part):
+            stored += block.original_size or 0
+            require_expansion(source.path, size + stored, len(source.content))
+            if block.block_type:  # compressed
+                unpack(source.content[block.address :][: block.compressed_size], block.original_size)
+        head = group.channel_group
+        rows = max(head.cycles_nr, stored // max(head.samples_byte_nr, 1))
+        size += stored + rows * (channels + 1) * _WIDTH
+        require_expansion(source.path, size, len(source.content))

@@ -12,16 +12,19 @@ from typing import Any
 
 import numpy as np
 
+from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
 from bench.trace.readers.arrays import channels_of
-from bench.trace.readers.extras import damaged, library
+from bench.trace.readers.extras import damaged, library, warnings_of
 from bench.trace.source import Source
 
 FORMAT = "TDMS"
 ENDINGS = (".tdms",)
 
 _MAGIC = b"TDSm"
+#: Kinds of NumPy's types that are numbers or moments, and bytes of a value.
+_NUMERIC, _WIDTH = "fiubM", 8
 
 
 def recognises(source: Source) -> bool:
@@ -33,13 +36,18 @@ def read(source: Source) -> Recording:
     """Recording of a TDMS file; where groups hold channels of the same names, each group is an axis.
 
     Raises:
-        InputError: npTDMS is not installed; damaged, or without a channel of numbers.
+        InputError: npTDMS is not installed; damaged, beyond the bounds, or without a channel of numbers.
     """
     nptdms = library("nptdms", "npTDMS", "tdms", source.path, FORMAT)
     try:
-        with nptdms.TdmsFile.open(BytesIO(source.content)) as file:
-            groups = {group.name: [(channel, channel[:]) for channel in group.channels()] for group in file.groups()}
+        with warnings_of("nptdms") as warnings, nptdms.TdmsFile.open(BytesIO(source.content)) as file:
+            numeric = {group.name: [one for one in group.channels() if _numeric(one)] for group in file.groups()}
+            size = sum(len(channel) for channels in numeric.values() for channel in channels) * _WIDTH
+            require_expansion(source.path, size, len(source.content))
+            groups = {name: [(channel, channel[:]) for channel in channels] for name, channels in numeric.items()}
             metadata = {str(name): str(value) for name, value in file.properties.items()}
+    except InputError:
+        raise
     except Exception as error:  # npTDMS raises many kinds on a damaged file
         raise damaged(source.path, FORMAT, error) from error
     names = Counter(channel.name for channels in groups.values() for channel, _ in channels)
@@ -50,13 +58,18 @@ def read(source: Source) -> Recording:
         _channel(channel, values, group if alike else None, first, source.path)
         for group, channels in groups.items()
         for channel, values in channels
-        if isinstance(values, np.ndarray) and values.dtype.kind in "fiubM" and values.ndim == 1 and values.size > 1
+        if isinstance(values, np.ndarray) and values.dtype.kind in _NUMERIC and values.ndim == 1 and values.size > 1
     ]
     if not found:
         raise InputError(source.path, "holds no channel of numbers", "allowed: channels of samples")
     timed = iter(with_shared_times([channel for channel in found if channel.time is not None]))
     channels = tuple(next(timed) if channel.time is not None else channel for channel in found)
-    return Recording(channels, FORMAT, source.path, metadata)
+    return Recording(channels, FORMAT, source.path, metadata, notes=tuple(warnings))
+
+
+def _numeric(channel: Any) -> bool:  # noqa: ANN401
+    """Whether a channel holds numbers or moments; texts are not read."""
+    return channel.dtype is not None and np.dtype(channel.dtype).kind in _NUMERIC
 
 
 def _channel(channel: Any, values: np.ndarray, axis: str | None, first: Any, path: str) -> Channel:  # noqa: ANN401

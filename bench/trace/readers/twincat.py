@@ -27,6 +27,7 @@ ENDINGS = ()
 
 _HEAD = re.compile(r"\AName[\t;,].*^(Starttime of export|Data-Type|SymbolName)[\t;,]", re.DOTALL | re.MULTILINE)
 _NUMBER = re.compile(r"\s*[+-]?\d")
+_TICKS = re.compile(r"[0-9]{1,19}")
 _FILETIME = re.compile(rb"\s*\d{17,19}\D")
 _LAST_MOMENT = 2.6e17  # us; a date of Python ends with the year 9999
 _EMPTY = ("", " ")
@@ -167,7 +168,7 @@ def _sampled(channel: Channel, time: Array, values: Array) -> Channel:
 def _metadata(header: list[list[str]]) -> dict[str, str]:
     metadata = {"project": header[0][1]} if len(header[0]) > 1 else {}
     for cells in header:
-        if cells[0].endswith("time of export") and len(cells) > 1 and cells[1].isdigit():
+        if cells[0].endswith("time of export") and len(cells) > 1 and _TICKS.fullmatch(cells[1]):
             # Windows FILETIME: steps of 100 ns since 1601
             microseconds = int(cells[1]) // 10
             if microseconds < _LAST_MOMENT:
