@@ -7,7 +7,7 @@
 
 The joint is one that `bench export` has put the model onto, which carries what is native. Before each step effects set
 the joint's dry friction (`dof_frictionloss`), its added inertia (`dof_armature`) and a torque (`qfrc_applied`), from
-position, velocity, time and the torque of its actuators; they are those of the bench's own plant (`bench.plant.ticked`).
+position, velocity, time and the torque of its actuators, as they do in the bench's own plant (`bench.plant.ticked`).
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 from mujoco.batch import Batch
+from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.effects.mjcf import AXIS, BRISTLES
@@ -151,8 +152,8 @@ class Drive:
         limits: lowest and highest input, and force, of each (k, 4).
     """
 
-    controls: Array
-    actuators: Array
+    controls: NDArray[np.intp]
+    actuators: NDArray[np.intp]
     gears: Array
     gains: Array
     limits: Array

@@ -27,9 +27,20 @@ from bench.units import nearest
 
 #: What makes an actuator what it is, but for its name, its joint and its gear.
 ACTUATOR = (
-    "gaintype biastype dyntype gainprm biasprm dynprm actdim actearly actlimited actrange ctrllimited ctrlrange "
-    "ctrlspec forcelimited forcerange nsample interp delay"
-).split()
+    *(
+        "gaintype",
+        "biastype",
+        "dyntype",
+        "gainprm",
+        "biasprm",
+        "dynprm",
+        "actdim",
+        "actearly",
+        "actlimited",
+        "actrange",
+    ),
+    *("ctrllimited", "ctrlrange", "ctrlspec", "forcelimited", "forcerange", "nsample", "interp", "delay"),
+)
 TRANSMISSION = mujoco.mjtTrn.mjTRN_JOINT
 #: Whether a joint of a type turns.
 TURNS = {mujoco.mjtJoint.mjJNT_HINGE: True, mujoco.mjtJoint.mjJNT_SLIDE: False}
@@ -42,6 +53,19 @@ class Share(StrEnum):
 
     MOTOR = "motor"
     ALL = "all"
+
+
+@dataclass(frozen=True)
+class Armature:
+    """Inertia of a joint beside that of its links.
+
+    Attributes:
+        value: on the joint's side - kg*m**2 (kg).
+        origin: what of the model's inertia it is.
+    """
+
+    value: float
+    origin: str
 
 
 @dataclass(frozen=True)
@@ -63,31 +87,33 @@ class Carried:
     @property
     def lines(self) -> tuple[str, ...]:
         """All of it in sentences."""
-        native = f"native: {', '.join(self.native)}" if self.native else "no effect beyond friction and inertia is native"
+        native = (
+            f"native: {', '.join(self.native)}" if self.native else "no effect beyond friction and inertia is native"
+        )
         left = [f"not carried: {name} ({instead})" for name, instead in self.left]
         return f"{self.joint}: {native}", *left, *self.notes
 
 
-def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, share: Share | None = None) -> Carried:
+def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature | None = None) -> Carried:
     """Put a model onto a joint of a robot, in the place of the armature, damping and friction that the joint had.
 
     Args:
         spec: of the robot; changed.
         name: of the joint.
         stored: the model.
-        share: of the model's inertia that becomes the joint's armature; None: what the model tells.
+        armature: of the joint; None: what the model tells.
 
     Raises:
         InputError: no such joint, one of another kind, a coupling on a body of several joints, or no armature is left.
     """
     joint, model, ratio = joint_of(spec, name, stored.model), stored.model, stored.mounting.gear_ratio
     links = link_inertia(spec, name)
-    armature, because = armature_of(stored, share)
+    armature = armature or armature_of(stored)
     axis = model.spec(spec.option.timestep)
     alone = axis.joint(AXIS)
     if model.coupled:
         _couple(joint, axis, name, ratio)
-    joint.armature = armature
+    joint.armature = armature.value
     joint.damping = _scaled(alone.damping, ratio)
     joint.stiffness = np.asarray(joint.stiffness) + _scaled(alone.stiffness, ratio)
     joint.frictionloss = alone.frictionloss * ratio
@@ -99,14 +125,18 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, share: Share | Non
     driven = f"driven by {', '.join(moving)} as before"
     if not moving:
         spec.add_actuator(name=f"{name} motor", target=name, trntype=TRANSMISSION, gear=[ratio, 0, 0, 0, 0, 0])
-        driven = f"the joint had no actuator: '{name} motor' takes the motor's {model.parameters.kind.effort} as control"
+        driven = (
+            f"the joint had no actuator: '{name} motor' takes the motor's {model.parameters.kind.effort} as control"
+        )
     unit = model.parameters.kind.inertia_unit
     geared = f", behind a gear of {ratio:g}: all values are those of the joint" if ratio != 1.0 else ""
     inertia = (
-        f"armature {armature:.4g} {unit}, {because}; the links beyond the joint have {links:.4g} {unit} where the MJCF "
-        f"stands{geared}"
+        f"armature {armature.value:.4g} {unit}, {armature.origin}; the links beyond the joint have {links:.4g} {unit} "
+        f"where the MJCF stands{geared}"
     )
-    between = [f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in joint.parent.joints[1:]]
+    between = [
+        f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in joint.parent.joints[1:]
+    ]
     return Carried(name, model.structure, _left(model), (inertia, driven, *(between if model.coupled else [])))
 
 
@@ -122,12 +152,14 @@ def joint_of(spec: mujoco.MjSpec, name: str, model: AxisModel) -> mujoco.MjsJoin
         raise InputError(f"--joint {name}", found, f"allowed: {', '.join(names) or 'an MJCF with a named joint'}")
     if TURNS.get(joint.type) is not model.parameters.kind.turns:
         found = f"found a joint of type {joint.type.name.removeprefix('mjJNT_').lower()}"
-        raise InputError(f"--joint {name}", found, f"allowed: one that moves as the model does, {model.parameters.kind.name}")
+        raise InputError(
+            f"--joint {name}", found, f"allowed: one that moves as the model does, {model.parameters.kind.name}"
+        )
     return joint
 
 
-def armature_of(stored: StoredModel, share: Share | None) -> tuple[float, str]:
-    """Armature of the joint - kg*m**2 (kg) - and what of the model's inertia it is.
+def armature_of(stored: StoredModel, share: Share | None = None) -> Armature:
+    """Armature of the joint: a share of the model's inertia, or what the model tells.
 
     Raises:
         InputError: the model tells no inertia of the motor, or none is left beside the links.
@@ -139,13 +171,13 @@ def armature_of(stored: StoredModel, share: Share | None) -> tuple[float, str]:
     if share is Share.MOTOR:
         if parameters.motor_inertia <= 0.0:
             raise InputError("--armature motor", "found a model without the motor's inertia", "allowed: --armature all")
-        return parameters.motor_inertia * mounting.gear_ratio**2, "the motor's"
+        return Armature(parameters.motor_inertia * mounting.gear_ratio**2, "the motor's")
     armature = parameters.inertia * mounting.gear_ratio**2 - mounting.link_inertia
     if armature <= 0.0:
         found = f"found an inertia of {parameters.inertia:.4g}, of which the links have {mounting.link_inertia:.4g}"
         raise InputError("the model's inertia", found, "allowed: more than the links have")
     beside = "all that moved but the links" if mounting.link_inertia else "all that moved in the recording"
-    return armature, f"{beside} (--armature motor: the motor's alone)"
+    return Armature(armature, beside)
 
 
 def link_inertia(spec: mujoco.MjSpec, name: str) -> float:
@@ -179,7 +211,10 @@ def _scaled(values: np.ndarray, ratio: float) -> np.ndarray:
 def _couple(joint: mujoco.MjsJoint, axis: mujoco.MjSpec, name: str, ratio: float) -> None:
     """Join motor and link by a second joint of the link, along the first: the sum of both is the link's position."""
     if len(joint.parent.joints) > 1:
-        found, allowed = "found a body of several joints", "allowed: one that has its body alone, as motor and load part"
+        found, allowed = (
+            "found a body of several joints",
+            "allowed: one that has its body alone, as motor and load part",
+        )
         raise InputError(f"--joint {name}", found, allowed)
     for between in axis.body(LOAD).joints:
         added = joint.parent.add_joint(name=f"{name} {between.name}", type=joint.type, axis=joint.axis, pos=joint.pos)

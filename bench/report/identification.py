@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from bench.rig.rig import Rig
 from bench.trace.conditioning import condition
 from bench.trace.motion import motion
 from bench.trace.stream import stream
+from bench.trace.trace import Trace
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
     from bench.identify.refine import Refinement
@@ -29,6 +30,7 @@ def write_identification(
     estimate: Estimate,
     refinement: Refinement | None = None,
     provenance: Mapping[str, Any] | None = None,
+    read: Callable[[Path], Trace] | None = None,
 ) -> list[Path]:
     """Write `identification.png` (`identification-2.png`, ... of further recordings) and `identify.json` into a folder.
 
@@ -39,6 +41,7 @@ def write_identification(
         estimate: what was identified.
         refinement: what polishing did, where it was asked for.
         provenance: of the estimate.
+        read: how its files are read, unless part by part as the rig says.
 
     Returns:
         Paths written.
@@ -46,10 +49,10 @@ def write_identification(
     figures, text = [], out / "identify.json"
     with held(out):
         for number, trace in enumerate(traces, 1):
-            first = gate(next(stream(trace, rig.trace)), rig).trace
-            effort, _ = rig.net_effort(first)
+            first = gate(read(trace) if read is not None else next(stream(trace, rig.trace)), rig).trace
+            (effort, _), (own, _) = rig.net_effort(first), rig.own_effort(first)
             cutoff = estimate.cutoff if estimate.cutoff > 0.0 else None
-            moved = motion(first, effort, condition(first, effort, cutoff))
+            moved = motion(first, effort, condition(first, own, cutoff))
             figures.append(out / ("identification.png" if number == 1 else f"identification-{number}.png"))
             title = f"{rig.name}: {trace.name}"
             save(identification_figure(moved, _along(estimate, number - 1, rig), rig.axis_kind, title), figures[-1])
