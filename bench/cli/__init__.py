@@ -18,6 +18,7 @@ from typer.exceptions import TyperException
 
 from bench import __version__
 from bench.cli.common import guarded
+from bench.cli.compensate import compensate
 from bench.cli.demo import demo
 from bench.cli.diagnose import diagnose
 from bench.cli.effects import effects
@@ -48,7 +49,7 @@ def bench(
         typer.echo(context.get_help())
 
 
-for command in (demo, simulate, effects, inspect, identify, diagnose, replay, export, friction, lab, limits, rigs):
+for command in (demo, simulate, effects, inspect, identify, diagnose, replay, export, compensate, friction, lab, limits, rigs):
     app.command()(guarded(command))
 
 

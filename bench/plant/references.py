@@ -18,12 +18,19 @@ class References:
         position: rad (m on a linear axis).
         velocity: rad/s (m/s).
         acceleration: rad/s**2 (m/s**2).
+        torque: that is added to the drive's set-point, beside its own feed-forward - N*m (N); None without any.
     """
 
     time: Array
     position: Array
     velocity: Array
     acceleration: Array
+    torque: Array | None = None
+
+    def feedforward(self, inertia: Array | float) -> Array:
+        """Torque that is fed forward - N*m (N) - by a drive that takes its inertia to be one - kg*m**2 (kg)."""
+        accelerating = inertia * self.acceleration
+        return accelerating if self.torque is None else accelerating + self.torque
 
     @property
     def period(self) -> float:
@@ -45,4 +52,5 @@ def side_by_side(references: list[References]) -> References:
         np.stack([r.position for r in references], axis=1),
         np.stack([r.velocity for r in references], axis=1),
         np.stack([r.acceleration for r in references], axis=1),
+        np.stack([r.feedforward(0.0) for r in references], axis=1),
     )
