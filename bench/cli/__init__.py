@@ -28,6 +28,7 @@ from bench.cli.identify import identify
 from bench.cli.inspect import inspect
 from bench.cli.lab import lab
 from bench.cli.limits import limits
+from bench.cli.plan import plan
 from bench.cli.replay import replay
 from bench.cli.rigs import rigs
 from bench.cli.simulate import simulate
@@ -49,7 +50,7 @@ def bench(
         typer.echo(context.get_help())
 
 
-for command in (demo, simulate, effects, inspect, identify, diagnose, replay, export, compensate, friction, lab, limits, rigs):
+for command in (demo, simulate, effects, inspect, identify, diagnose, replay, export, compensate, plan, friction, lab, limits, rigs):
     app.command()(guarded(command))
 
 
