@@ -28,20 +28,20 @@ def plan(
     """Plan the motion to record inside the rig's limits: the one that tells best, and how well it will."""
     from bench.effects.present import parse_effect
     from bench.export.drive_units import DriveUnits
-    from bench.export.plan import motion_csv, motions
+    from bench.export.plan import motions
     from bench.report.progress import progress
     from bench.rig.rig import load_rig
     from bench.rig.suffices import require
 
     axis = load_rig(rig)
-    require(axis, "simulate")
+    require(axis, "plan")
     units = DriveUnits.of(axis)
     effect = None if wanted is None else parse_effect(wanted, axis.axis_kind)
     with progress(f"planning for {axis.name}"):
         found = motions(axis, effect)
     best = found[0]
-    counted = {"position": units.position, "velocity": units.velocity}
-    write_text(out, motion_csv(best.motion, {name: (u.text, u.factor) for name, u in counted.items()}, period * 1e-3))
+    counted = ((unit.text, unit.factor) for unit in (units.position, units.velocity))
+    write_text(out, best.motion.csv(period * 1e-3, *counted))
     console().print(_table(best))
     typer.echo(plain(_others(found)))
     tell_files([out])

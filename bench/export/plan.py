@@ -7,9 +7,9 @@ included, and fitted by the engine that will fit the recording; its errors are t
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import reduce
 
 import numpy as np
 
@@ -80,7 +80,8 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
         raise InputError(f"--for {effect.name}", "is none of the torque balance", "allowed: an effect that has columns")
     found = []
     for name in PLANNED:
-        motion = repeated(plan(name, limits))
+        once = plan(name, limits)
+        motion = once.repeated(math.ceil(LONG_ENOUGH / float(once.time[-1])))
         trace = simulate(rig, name, references=motion, effects=effects).trace
         found.append(_planned(name, motion, trace, rig, effect))
     found.sort(key=lambda each: each.worst)
@@ -88,12 +89,6 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
         what = "inertia and friction" if effect is None else effect.name.replace("_", " ")
         raise UndeterminedError(what, f"no profile tells it: {found[0].reason}", "nothing yet: state more of the rig")
     return found
-
-
-def repeated(motion: References) -> References:
-    """A motion one after the other until it is long enough."""
-    again: Sequence[References] = [motion] * int(np.ceil(LONG_ENOUGH / float(motion.time[-1])))
-    return reduce(References.then, again)
 
 
 def _planned(name: str, motion: References, trace: Trace, rig: Rig, effect: Effect | None) -> Planned:
@@ -117,26 +112,3 @@ def _planned(name: str, motion: References, trace: Trace, rig: Rig, effect: Effe
         return kind.unit(next(quantity for quantity in known if quantity.name == key))
 
     return Planned(name, motion, uncertain(fitted).quantities(0, unit_of))
-
-
-def motion_csv(motion: References, units: Mapping[str, tuple[str, float]], period: float) -> str:
-    """A motion as CSV for a controller: time, and position, velocity and acceleration in units of their own.
-
-    Args:
-        motion: at the drive's ticks.
-        units: of `position` and `velocity`: text, and SI per one of it.
-        period: between rows - s.
-    """
-    stride = max(1, round(period / motion.period))
-    rows = slice(None, None, stride)
-    (length, meters), (speed, rate) = units["position"], units["velocity"]
-    table = np.column_stack(
-        [
-            motion.time[rows],
-            motion.position[rows] / meters,
-            motion.velocity[rows] / rate,
-            motion.acceleration[rows] / rate,
-        ]
-    )
-    head = f"time [s],position [{length}],velocity [{speed}],acceleration [{speed}/s]"
-    return "\n".join([head, *(",".join(f"{value:.9g}" for value in row) for row in table.tolist())]) + "\n"

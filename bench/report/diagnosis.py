@@ -25,6 +25,8 @@ from bench.report.figures import MEASURED, MODELLED, save, title_figure
 from bench.structured import json_text
 
 SCHEMA = "bench.diagnose/1"
+#: Between rows of the motion to record next - s.
+PERIOD = 1e-3
 #: Share of the gap above which the region that holds most of it is shaded.
 SHADED = 0.1
 
@@ -258,7 +260,7 @@ def gaps_figure(diagnosis: Diagnosis, title: str) -> Figure:
 def write_diagnosis(
     out: Path, diagnosis: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None
 ) -> list[Path]:
-    """Write `diagnosis.json`, two figures, `model.toml` and, where MuJoCo has all of it, `model.xml`; returns paths."""
+    """Write `diagnosis.json`, two figures, `model.toml`, `model.xml` where MuJoCo has all of it, and what to record next."""
     written = [out / "diagnosis.json", out / "where.png", out / "gaps.png", out / "model.toml"]
     with held(out):
         write_text(written[0], diagnosis_json(diagnosis, provenance) + "\n")
@@ -268,6 +270,11 @@ def write_diagnosis(
         if diagnosis.model is not None:
             written.append(out / "model.xml")
             write_text(written[-1], model_xml(diagnosis.model))
+        if diagnosis.next_experiment is not None:
+            kind = next(kind for kind in KINDS if kind.speed_unit == diagnosis.velocity.unit)
+            units = (kind.length_unit, 1.0), (kind.speed_unit, 1.0)
+            written.append(out / "next_experiment.csv")
+            write_text(written[-1], diagnosis.next_experiment.motion.csv(PERIOD, *units))
     return written
 
 
