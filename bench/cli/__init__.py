@@ -50,7 +50,22 @@ def bench(
         typer.echo(context.get_help())
 
 
-for command in (demo, simulate, effects, inspect, identify, diagnose, replay, export, compensate, plan, friction, lab, limits, rigs):
+for command in (
+    demo,
+    simulate,
+    effects,
+    inspect,
+    identify,
+    diagnose,
+    replay,
+    export,
+    compensate,
+    plan,
+    friction,
+    lab,
+    limits,
+    rigs,
+):
     app.command()(guarded(command))
 
 

@@ -130,7 +130,9 @@ def feedforward(model: AxisModel, fastest: float, travelled: tuple[float, float]
         raise InputError("the motion", "found no speed in it", "allowed: one that moves")
     turn = Asked(model, fastest, (0.0, 2.0 * math.pi))
     ends = resisting_torque(model, np.array(turn.span), np.full(2, SLOWLY * fastest))
-    repeats = model.parameters.kind.turns and abs(ends[1] - ends[0]) <= OPEN * max(np.abs(turn.over_speed).max(), 1e-300)
+    repeats = model.parameters.kind.turns and abs(ends[1] - ends[0]) <= OPEN * max(
+        np.abs(turn.over_speed).max(), 1e-300
+    )
     asked = turn if repeats else replace(turn, span=travelled)
     return Feedforward(
         model.parameters.inertia,

@@ -46,6 +46,4 @@ def tracking(model: AxisModel, rig: Rig, references: References, told: Feedforwa
         cascade, motion = replace(cascade, inertia_feedforward=told.inertia), told.along(references)
     plant = Plant(model.parameters, cascade, cascade.control_period, effects=model.effects, winding=model.winding)
     states = run([plant], [motion])
-    return Tracking(
-        rms(references.position - states.position[:, 0]), rms(references.velocity - states.velocity[:, 0])
-    )
+    return Tracking(rms(references.position - states.position[:, 0]), rms(references.velocity - states.velocity[:, 0]))

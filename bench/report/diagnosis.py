@@ -260,7 +260,7 @@ def gaps_figure(diagnosis: Diagnosis, title: str) -> Figure:
 def write_diagnosis(
     out: Path, diagnosis: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None
 ) -> list[Path]:
-    """Write `diagnosis.json`, two figures, `model.toml`, `model.xml` where MuJoCo has all of it, and what to record next."""
+    """Write `diagnosis.json`, two figures and `model.toml`; `model.xml` where MuJoCo can, and what to record next."""
     written = [out / "diagnosis.json", out / "where.png", out / "gaps.png", out / "model.toml"]
     with held(out):
         write_text(written[0], diagnosis_json(diagnosis, provenance) + "\n")

@@ -30,7 +30,13 @@ def lacking(rig: Rig) -> dict[str, tuple[str, ...]]:
     limits = [
         f"motor.{name}" for name in ("peak_torque", "continuous_stall_torque") if getattr(motor, name) is None
     ] + ([] if motor.peak_curves else ["motor.peak_curves"])
-    return {"identify": (), "diagnose": (), "simulate": tuple(simulate), "plan": tuple(simulate), "limits": tuple(limits)}
+    return {
+        "identify": (),
+        "diagnose": (),
+        "simulate": tuple(simulate),
+        "plan": tuple(simulate),
+        "limits": tuple(limits),
+    }
 
 
 def without_constant(rig: Rig) -> str | None:

@@ -1,4 +1,4 @@
-"""Tables for a drive: what they hold, against closed forms; how much better an axis tracks that they do not quite fit."""
+"""Tables for a drive: what they hold, against closed forms, and how much better an axis tracks that is a little off."""
 
 import shlex
 from dataclasses import replace
@@ -73,7 +73,7 @@ def test_tracking_errors_are_at_least_halved_with_a_model_that_is_off():
     motion = plan("slow_reversals", MotionLimits.from_rig(RIG, known, plant.cascade.control_period))
     told = feedforward(guess, float(np.abs(motion.velocity).max()), (-10.0, 10.0))
     before, after = tracking(plant.model, RIG, motion), tracking(plant.model, RIG, motion, told)
-    print(f"\nposition {before.position:.3g} -> {after.position:.3g}, velocity {before.velocity:.3g} -> {after.velocity:.3g}")
+    print(f"\n{before} -> {after}")
     assert after.position < 0.5 * before.position
     assert after.velocity < 0.5 * before.velocity
 

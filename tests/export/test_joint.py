@@ -11,6 +11,7 @@ from bench.errors import InputError
 from bench.export.joint import Share, armature_of, onto
 from bench.export.mjcf import commented, joint_alone, read_mjcf, robot_with
 from bench.plant.model_file import model_xml
+from bench.plant.quiet import quiet
 from tests.export.arms import ARM, PARAMETERS, stored
 
 COGGING = ("cogging_torque", {"amplitude": 0.05, "harmonic": 6.0, "phase": 0.3})
@@ -113,7 +114,8 @@ def test_files_attach_to_a_moving_body(text):
     """The child's timestep is not the parent's, which MuJoCo says and keeps."""
     parent = mujoco.MjSpec.from_string(FLYING)
     child = mujoco.MjSpec.from_string(text(stored(COGGING, gear_ratio=3.0, load_mass=0.9)))
-    parent.attach(child, prefix="servo ", frame=parent.body("boom").add_frame(pos=[0.0, 0.0, 0.1]))
+    with quiet():
+        parent.attach(child, prefix="servo ", frame=parent.body("boom").add_frame(pos=[0.0, 0.0, 0.1]))
     model = parent.compile()
     assert "servo axis" in [model.joint(k).name for k in range(model.njnt)]
     data = mujoco.MjData(model)
