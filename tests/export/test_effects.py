@@ -133,6 +133,17 @@ def test_torque_of_others_stays_and_a_reset_begins_anew():
         assert seen[-1] == pytest.approx(0.5)
 
 
+def test_a_second_run_of_a_model_begins_with_its_own_inertia():
+    model_ = stored(("position_dependent_inertia", VALUES["position_dependent_inertia"]))
+    simulation, effects = model_.model.spec(PERIOD).compile(), bench.Effects(model_)
+    ends = []
+    for _ in range(2):
+        data = mujoco.MjData(simulation)
+        pushed(lambda data=data: effects.step(simulation, data), data.ctrl, TIME[:200])
+        ends.append(data.qvel[0])
+    assert ends[0] == ends[1] != 0.0
+
+
 def test_a_servo_of_ones_own_is_asked_for_its_torque():
     """A position servo's torque is not its input."""
     xml = ARM.replace("</actuator>", '<position name="servo" joint="elbow" kp="30" kv="2"/></actuator>')
