@@ -5,6 +5,8 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
@@ -126,10 +128,20 @@ def test_files_attach_to_a_moving_body(text):
 def test_masses_are_known_or_said_to_be_invented():
     known = mujoco.MjModel.from_xml_string(model_xml(stored(load_mass=0.9)))
     assert known.body("load").mass[0] == 0.9
-    np.testing.assert_allclose(known.body("load").inertia, [9e-4, 4.5e-4, 4.5e-4])
+    np.testing.assert_allclose(known.body("load").inertia, [9e-4, 4.5e-4, 4.5e-4], rtol=2e-4)
     assert "the load's either; 1e-06 kg stands in" in model_xml(stored())
     assert "motor's side of a gear of 7" in model_xml(stored(gear_ratio=7.0))
     assert "gear" not in model_xml(stored()).partition("<mujoco")[0]
+
+
+@given(st.floats(1e-7, 1e3), st.floats(0.0, 0.99))
+def test_files_open_whatever_the_inertia(inertia, motor):
+    """MuJoCo wants A + B >= C of every body, and its own files hold six digits."""
+    parameters = replace(PARAMETERS, inertia=inertia, motor_inertia=motor * inertia, viscous_friction_coefficient=0.0)
+    model = stored(parameters=parameters)
+    for text in (model_xml(model), joint_alone(model, "axis")[0]):
+        opened = mujoco.MjModel.from_xml_string(text)
+        assert opened.dof_M0[0] == pytest.approx(inertia, rel=2e-3)
 
 
 def test_the_snippet_has_its_values_in_a_class():
@@ -138,7 +150,7 @@ def test_the_snippet_has_its_values_in_a_class():
     assert '<joint name="axis" class="the_axis"' in text
     model = mujoco.MjModel.from_xml_string(text)
     assert model.dof_armature[0] == pytest.approx(4e-4)
-    np.testing.assert_allclose(model.body("load").inertia, [3.6e-3, 1.8e-3, 1.8e-3])
+    np.testing.assert_allclose(model.body("load").inertia, [3.6e-3, 1.8e-3, 1.8e-3], rtol=2e-4)
     assert model.body("load").mass[0] == 0.9
     assert "stands in for one that is not known" in joint_alone(stored(), "axis")[0]
 
