@@ -92,6 +92,9 @@ class AxisKind:
         return unit.replace(ROTARY.effort_unit, effort_unit or self.effort_unit)
 
 
+#: Inertia of a joint beside that of its links, on the joint's side.
+ARMATURE = "armature"
+
 ROTARY = AxisKind("rotary", True, "rad", "torque", "N*m", "moment_of_inertia", "kg*m**2")
 LINEAR = AxisKind("linear", False, "m", "force", "N", "moving_mass", "kg")
 #: All kinds; tables with a column for each keep this order.

@@ -19,6 +19,7 @@ from typer.exceptions import TyperException
 from bench import __version__
 from bench.cli.check import check
 from bench.cli.common import guarded
+from bench.cli.compensate import compensate
 from bench.cli.demo import demo
 from bench.cli.diagnose import diagnose
 from bench.cli.effects import effects
@@ -29,6 +30,7 @@ from bench.cli.identify import identify
 from bench.cli.inspect import inspect
 from bench.cli.lab import lab
 from bench.cli.limits import limits
+from bench.cli.plan import plan
 from bench.cli.replay import replay
 from bench.cli.report import report
 from bench.cli.rigs import rigs
@@ -65,6 +67,8 @@ COMMANDS = (
     validate,
     fleet,
     export,
+    compensate,
+    plan,
     lab,
     limits,
     rigs,

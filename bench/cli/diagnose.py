@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
+from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
 from bench.console import (
     AxisOption,
     JsonOption,
-    RigOption,
     TracesArgument,
     console,
     tell_files,
@@ -22,7 +22,7 @@ from bench.console import (
 
 def diagnose(
     traces: TracesArgument,
-    rig: RigOption,
+    rig: BesideRigOption = None,
     holdout: Annotated[
         Path | None, typer.Option("--holdout", help="Another recording of the axis, not fitted.")
     ] = None,
@@ -30,6 +30,9 @@ def diagnose(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
     axis_name: AxisOption = None,
+    mjcf: MjcfOption = None,
+    joint: JointOption = None,
+    at: AtOption = None,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
     from bench.checks.gate import spoken
@@ -38,17 +41,17 @@ def diagnose(
     from bench.report.diagnosis import SCHEMA, diagnosis_json, diagnosis_table, write_diagnosis
     from bench.report.progress import progress
     from bench.report.provenance import provenance
-    from bench.rig.rig import load_rig
-    from bench.trace.read import read
 
-    axis = load_rig(rig).on_axis(axis_name)
+    of = subject(rig, axis_name, mjcf, joint, at)
+    axis, read = of.rig, of.read
     excluded = frozenset(named(name, "--without").name for name in without or [])
-    other = read(holdout, axis.trace) if holdout else None
+    other = read(holdout) if holdout else None
     names = ", ".join(trace.name for trace in traces)
     with told_in_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
-        recordings = [read(trace, axis.trace) for trace in traces]
+        recordings = [read(trace) for trace in traces]
         found = run_diagnosis(recordings, axis, other, excluded, done)
-    basis = provenance(rig, traces, {"without": sorted(excluded)}, holdout)
+    options = {"without": sorted(excluded)} | ({"joint": joint, "at": at or []} if of.robot else {})
+    basis = provenance(rig, traces, options, holdout, mjcf)
     files = write_diagnosis(out, found, f"{axis.name}: {names}", basis) if out is not None else []
     if json is not None:
         write_json(json, diagnosis_json(found, basis))

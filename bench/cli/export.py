@@ -26,19 +26,28 @@ def export(
     mjcf: Annotated[Path | None, typer.Option("--mjcf", help="MJCF of the robot that has the joint.")] = None,
     joint: Annotated[str | None, typer.Option("--joint", help="Joint that the model goes onto.")] = None,
     snippet: Annotated[bool, typer.Option("--snippet", help="A default class and a body on this joint alone.")] = False,
+    ranges: Annotated[
+        Path | None, typer.Option("--ranges", help="JSON of identify or diagnose: ranges for domain randomisation.")
+    ] = None,
     armature: Annotated[
         str | None, typer.Option("--armature", help="Inertia that becomes the joint's armature: motor, or all.")
     ] = None,
 ) -> None:
-    """Put a diagnosed model into a robot's MJCF, or write its joint as an MJCF of its own."""
+    """Put a diagnosed model into a robot's MJCF; or write its joint as an MJCF of its own, or ranges of its values."""
     from bench.plant.model_file import load_model
 
-    if snippet == (mjcf is not None):
-        raise InputError("bench export", "found neither or both of --mjcf and --snippet", "allowed: one of them")
-    text, carried = _text(load_model(model), out, mjcf, joint, armature)
-    write_text(out, text)
-    for line in carried.lines:
-        typer.echo(plain(line))
+    if [snippet, mjcf is not None, ranges is not None].count(True) != 1:
+        raise InputError("bench export", "found none or several of --mjcf, --snippet, --ranges", "allowed: one of them")
+    stored = load_model(model)
+    if ranges is not None:
+        from bench.export.ranges import ranges_json
+
+        write_text(out, ranges_json(stored, ranges))
+    else:
+        text, carried = _text(stored, out, mjcf, joint, armature)
+        write_text(out, text)
+        for line in carried.lines:
+            typer.echo(plain(line))
     tell_files([out])
 
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
 from bench.console import (
     AxisOption,
     JsonOption,
-    RigOption,
     TracesArgument,
     console,
     tell_files,
@@ -24,6 +24,7 @@ from bench.console import (
 from bench.errors import InputError
 
 if TYPE_CHECKING:
+    from bench.cli.robot import Subject
     from bench.identify.estimate import Estimate
     from bench.identify.refine import Refinement
     from bench.rig.rig import Rig
@@ -38,7 +39,7 @@ class Estimator(StrEnum):
 
 def identify(
     traces: TracesArgument,
-    rig: RigOption,
+    rig: BesideRigOption = None,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for figures and JSON.")] = None,
     estimator: Annotated[
@@ -50,22 +51,25 @@ def identify(
         float | None, typer.Option("--cutoff", help="Filter's half-power frequency in Hz.", min=1e-6)
     ] = None,
     axis_name: AxisOption = None,
+    mjcf: MjcfOption = None,
+    joint: JointOption = None,
+    at: AtOption = None,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.checks.gate import spoken
     from bench.identify.estimate import RefusedEstimateError
-    from bench.report.estimate import SCHEMA, estimate_json, estimate_table, recordings_table, refinement_line
+    from bench.report.estimate import SCHEMA, estimate_json
     from bench.report.provenance import provenance
-    from bench.rig.rig import load_rig
 
-    axis = load_rig(rig).on_axis(axis_name)
-    axis = axis.model_copy(update={"offset": axis.offset or offset})
+    of = subject(rig, axis_name, mjcf, joint, at)
+    axis = of.rig.model_copy(update={"offset": of.rig.offset or offset})
     _require_consistent(traces, estimator, refine, bool(offset or cutoff))
     options = {"estimator": estimator.value, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
-    basis = partial(provenance, rig, traces, options)
+    options |= {"joint": joint, "at": at or []} if of.robot else {}
+    basis = partial(provenance, rig, traces, options, None, mjcf)
     try:
         with told_in_json(json, SCHEMA):
-            estimate, refinement = _estimate(traces, axis, estimator, refine, cutoff)
+            estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, cutoff)
     except RefusedEstimateError as refusal:
         if json is not None:
             write_json(json, estimate_json(refusal.estimate, None, str(refusal), basis()))
@@ -75,17 +79,24 @@ def identify(
     if out is not None:
         from bench.report.identification import write_identification  # matplotlib: 0.35 s
 
-        files = write_identification(out, traces, axis, estimate, refinement, basis())
+        files = write_identification(out, traces, axis, estimate, refinement, basis(), of.read if of.robot else None)
     if json is not None:
         write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):
-        console().print(estimate_table(estimate, f"{axis.name}: {', '.join(trace.name for trace in traces)}"))
-        if estimate.recordings:
-            console().print(recordings_table(estimate))
-        if refinement is not None:
-            typer.echo(refinement_line(refinement, axis.axis_kind))
+        _tell(estimate, refinement, axis, traces)
         tell_files(files)
     tell_warnings([*estimate.warnings, *spoken(estimate.checks)])
+
+
+def _tell(estimate: Estimate, refinement: Refinement | None, axis: Rig, traces: list[Path]) -> None:
+    """Tables for a person."""
+    from bench.report.estimate import estimate_table, recordings_table, refinement_line
+
+    console().print(estimate_table(estimate, f"{axis.name}: {', '.join(trace.name for trace in traces)}"))
+    if estimate.recordings:
+        console().print(recordings_table(estimate))
+    if refinement is not None:
+        typer.echo(refinement_line(refinement, axis.axis_kind))
 
 
 def _require_consistent(traces: list[Path], estimator: Estimator, refine: bool, tuned: bool) -> None:
@@ -99,17 +110,16 @@ def _require_consistent(traces: list[Path], estimator: Estimator, refine: bool, 
 
 
 def _estimate(
-    traces: list[Path], rig: Rig, estimator: Estimator, refine: bool, cutoff: float | None
+    traces: list[Path], of: Subject, estimator: Estimator, refine: bool, cutoff: float | None
 ) -> tuple[Estimate, Refinement | None]:
     """Estimate by the method asked for, and what polishing did to it."""
     from bench.checks.gate import passed
-    from bench.trace.read import read
 
-    how, trace = rig.trace, traces[0]
+    rig, trace = of.rig, traces[0]
     if estimator is Estimator.LAB:
         from bench.identify.lab import identify_as_in_the_lab
 
-        gated = passed(read(trace, how), rig)
+        gated = passed(of.read(trace), rig)
         return replace(identify_as_in_the_lab(gated.trace, rig), checks=gated.checks), None
     from bench.identify.regression import identify as regress
     from bench.report.progress import progress
@@ -117,8 +127,9 @@ def _estimate(
 
     with progress(f"identifying {', '.join(each.name for each in traces)}") as done:
         if not refine:
-            return regress([stream(each, how) for each in traces], rig, cutoff), None
+            parts = [of.read(each) if of.robot else stream(each, rig.trace) for each in traces]
+            return regress(parts, rig, cutoff), None
         from bench.identify.refine import refine as polish  # MuJoCo: 0.1 s
 
-        recording = passed(read(trace, how), rig).trace
+        recording = passed(of.read(trace), rig).trace
         return polish(recording, rig, regress(recording, rig, cutoff), done)

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from bench.console import AxisOption, ReportOption, RigOption, tell_files, tell_warnings
+from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
+from bench.console import AxisOption, ReportOption, tell_files, tell_warnings
 from bench.files import read_text, write_text
 from bench.names import plain
 
@@ -15,18 +16,19 @@ from bench.names import plain
 def replay(
     model: Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")],
     trace: Annotated[Path, typer.Argument(help="Recording to run it along.")],
-    rig: RigOption,
     out: Annotated[Path, typer.Option("--out", help="CSV to write.")],
+    rig: BesideRigOption = None,
     axis_name: AxisOption = None,
     report: ReportOption = None,
+    mjcf: MjcfOption = None,
+    joint: JointOption = None,
+    at: AtOption = None,
 ) -> None:
     """Run a diagnosed model along a recording; write measured and simulated signals."""
     from bench.diagnose.replay import replay as run_replay
-    from bench.rig.rig import load_rig
-    from bench.trace.read import read
 
-    axis = load_rig(rig).on_axis(axis_name)
-    replayed = run_replay(model, read(trace, axis.trace), axis)
+    of = subject(rig, axis_name, mjcf, joint, at)
+    replayed = run_replay(model, of.read(trace), of.rig)
     write_text(out, replayed.csv())
     if report is not None:
         from bench.report.page.blocks import File

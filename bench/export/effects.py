@@ -7,7 +7,7 @@
 
 The joint is one that `bench export` has put the model onto, which carries what is native. Before each step effects set
 the joint's dry friction (`dof_frictionloss`), its added inertia (`dof_armature`) and a torque (`qfrc_applied`), from
-position, velocity, time and the torque of its actuators; they are those of the bench's own plant (`bench.plant.ticked`).
+position, velocity, time and the torque of its actuators, as they do in the bench's own plant (`bench.plant.ticked`).
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 from mujoco.batch import Batch
+from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.effects.mjcf import AXIS, BRISTLES
@@ -90,6 +91,8 @@ class Effects:
         """The effects on a simulation; begun anew where it is another one, or its time runs back."""
         running = self._running
         if running is None or running.data is not data or running.model is not model or data.time < running.time:
+            if running is not None:
+                running.seat.leave()
             self._running = running = _Running(model, data, self.stored, self.joint)
         return running
 
@@ -151,8 +154,8 @@ class Drive:
         limits: lowest and highest input, and force, of each (k, 4).
     """
 
-    controls: Array
-    actuators: Array
+    controls: NDArray[np.intp]
+    actuators: NDArray[np.intp]
     gears: Array
     gains: Array
     limits: Array
@@ -197,9 +200,9 @@ class _Running:
         self._ratio, here = stored.mounting.gear_ratio, model.joint(joint)
         self._qpos, self._dof = int(here.qposadr[0]), int(here.dofadr[0])
         self.drive = Drive.of(model, joint, self._ratio)
-        self._seat = ModelSeat(model, data, joint, self._ratio, _bristles(model, joint))
+        self.seat = ModelSeat(model, data, joint, self._ratio, _bristles(model, joint))
         velocity = self._ratio * data.qvel[self._dof : self._dof + 1]
-        self._ticked = TickedEffects(self._seat, [stored.model], velocity)
+        self._ticked = TickedEffects(self.seat, [stored.model], velocity)
 
     def prepare(self) -> None:
         """Set the effects for the step that comes."""
@@ -208,7 +211,7 @@ class _Running:
         velocity = self._ratio * data.qvel[self._dof : self._dof + 1]
         demand = self.drive.torque(data.ctrl[None], data.actuator_force[None])
         _, torque = self._ticked.act(data.time, position, velocity, demand)
-        self._seat.add_torque(torque - demand)
+        self.seat.add_torque(torque - demand)
 
 
 def _bristles(model: mujoco.MjModel, joint: str) -> str:

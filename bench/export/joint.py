@@ -27,9 +27,20 @@ from bench.units import nearest
 
 #: What makes an actuator what it is, but for its name, its joint and its gear.
 ACTUATOR = (
-    "gaintype biastype dyntype gainprm biasprm dynprm actdim actearly actlimited actrange ctrllimited ctrlrange "
-    "ctrlspec forcelimited forcerange nsample interp delay"
-).split()
+    *(
+        "gaintype",
+        "biastype",
+        "dyntype",
+        "gainprm",
+        "biasprm",
+        "dynprm",
+        "actdim",
+        "actearly",
+        "actlimited",
+        "actrange",
+    ),
+    *("ctrllimited", "ctrlrange", "ctrlspec", "forcelimited", "forcerange", "nsample", "interp", "delay"),
+)
 TRANSMISSION = mujoco.mjtTrn.mjTRN_JOINT
 #: Whether a joint of a type turns.
 TURNS = {mujoco.mjtJoint.mjJNT_HINGE: True, mujoco.mjtJoint.mjJNT_SLIDE: False}
@@ -42,6 +53,19 @@ class Share(StrEnum):
 
     MOTOR = "motor"
     ALL = "all"
+
+
+@dataclass(frozen=True)
+class Armature:
+    """Inertia of a joint beside that of its links.
+
+    Attributes:
+        value: on the joint's side - kg*m**2 (kg).
+        origin: what of the model's inertia it is.
+    """
+
+    value: float
+    origin: str
 
 
 @dataclass(frozen=True)
@@ -70,26 +94,26 @@ class Carried:
         return f"{self.joint}: {native}", *left, *self.notes
 
 
-def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, share: Share | None = None) -> Carried:
+def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature | None = None) -> Carried:
     """Put a model onto a joint of a robot, in the place of the armature, damping and friction that the joint had.
 
     Args:
         spec: of the robot; changed.
         name: of the joint.
         stored: the model.
-        share: of the model's inertia that becomes the joint's armature; None: what the model tells.
+        armature: of the joint; None: what the model tells.
 
     Raises:
         InputError: no such joint, one of another kind, a coupling on a body of several joints, or no armature is left.
     """
     joint, model, ratio = joint_of(spec, name, stored.model), stored.model, stored.mounting.gear_ratio
     links = link_inertia(spec, name)
-    armature, because = armature_of(stored, share)
+    armature = armature or armature_of(stored)
     axis = model.spec(spec.option.timestep)
     alone = axis.joint(AXIS)
     if model.coupled:
         _couple(joint, axis, name, ratio)
-    joint.armature = armature
+    joint.armature = armature.value
     joint.damping = _scaled(alone.damping, ratio)
     joint.stiffness = np.asarray(joint.stiffness) + _scaled(alone.stiffness, ratio)
     joint.frictionloss = alone.frictionloss * ratio
@@ -107,8 +131,8 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, share: Share | Non
     unit = model.parameters.kind.inertia_unit
     geared = f", behind a gear of {ratio:g}: all values are those of the joint" if ratio != 1.0 else ""
     inertia = (
-        f"armature {armature:.4g} {unit}, {because}; the links beyond the joint have {links:.4g} {unit} where the MJCF "
-        f"stands{geared}"
+        f"armature {armature.value:.4g} {unit}, {armature.origin}; the links beyond the joint have {links:.4g} {unit} "
+        f"where the MJCF stands{geared}"
     )
     between = [
         f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in joint.parent.joints[1:]
@@ -134,8 +158,8 @@ def joint_of(spec: mujoco.MjSpec, name: str, model: AxisModel) -> mujoco.MjsJoin
     return joint
 
 
-def armature_of(stored: StoredModel, share: Share | None) -> tuple[float, str]:
-    """Armature of the joint - kg*m**2 (kg) - and what of the model's inertia it is.
+def armature_of(stored: StoredModel, share: Share | None = None) -> Armature:
+    """Armature of the joint: a share of the model's inertia, or what the model tells.
 
     Raises:
         InputError: the model tells no inertia of the motor, or none is left beside the links.
@@ -147,13 +171,13 @@ def armature_of(stored: StoredModel, share: Share | None) -> tuple[float, str]:
     if share is Share.MOTOR:
         if parameters.motor_inertia <= 0.0:
             raise InputError("--armature motor", "found a model without the motor's inertia", "allowed: --armature all")
-        return parameters.motor_inertia * mounting.gear_ratio**2, "the motor's"
+        return Armature(parameters.motor_inertia * mounting.gear_ratio**2, "the motor's")
     armature = parameters.inertia * mounting.gear_ratio**2 - mounting.link_inertia
     if armature <= 0.0:
         found = f"found an inertia of {parameters.inertia:.4g}, of which the links have {mounting.link_inertia:.4g}"
         raise InputError("the model's inertia", found, "allowed: more than the links have")
     beside = "all that moved but the links" if mounting.link_inertia else "all that moved in the recording"
-    return armature, f"{beside} (--armature motor: the motor's alone)"
+    return Armature(armature, beside)
 
 
 def link_inertia(spec: mujoco.MjSpec, name: str) -> float:

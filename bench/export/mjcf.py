@@ -9,7 +9,7 @@ from pathlib import Path
 import mujoco
 
 from bench.errors import InputError
-from bench.export.joint import Carried, Share, compiled, onto
+from bench.export.joint import Armature, Carried, Share, armature_of, compiled, onto
 from bench.files import read_bytes, reason
 from bench.names import plain
 from bench.plant.model import NO_MASS, disk_inertia
@@ -17,6 +17,8 @@ from bench.plant.model_file import StoredModel
 
 #: The body of a file that holds the joint alone.
 BODY = "load"
+#: Of a joint whose motor nobody told: the body has it all.
+UNKNOWN = Armature(0.0, "as the motor's inertia is not known")
 
 
 def read_mjcf(path: Path) -> mujoco.MjSpec:
@@ -47,7 +49,7 @@ def robot_with(path: Path, joint: str, stored: StoredModel, out: Path, share: Sh
         InputError: the MJCF cannot be read, or cannot have the model at this joint.
     """
     spec = read_mjcf(path)
-    carried = onto(spec, joint, stored, share)
+    carried = onto(spec, joint, stored, armature_of(stored, share))
     compiled(spec)
     for folder in ("meshdir", "texturedir"):
         where = path.resolve().parent / (getattr(spec, folder) or "")
@@ -63,12 +65,14 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
     turns = model.parameters.kind.turns
     joint = body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_HINGE if turns else mujoco.mjtJoint.mjJNT_SLIDE)
     joint.axis = [1.0, 0.0, 0.0]
-    motor = model.parameters.motor_inertia
-    beyond = (model.parameters.inertia - motor) * mounting.gear_ratio**2
+    armature = UNKNOWN
+    if model.parameters.motor_inertia > 0.0 or mounting.link_inertia:
+        armature = armature_of(stored)
+    beyond = model.parameters.inertia * mounting.gear_ratio**2 - armature.value
     body.explicitinertial, body.ipos, body.iquat = True, [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
     body.mass = (mounting.load_mass or NO_MASS) if turns else beyond
     body.inertia = disk_inertia(beyond) if turns else [NO_MASS] * 3
-    carried = onto(spec, name, stored, Share.MOTOR if motor > 0.0 else None)
+    carried = onto(spec, name, stored, armature)
     kept = spec.add_default(class_of(stored.name), spec.default)
     for key in ("armature", "damping", "stiffness", "frictionloss", "solimp_friction", "solref_friction"):
         setattr(kept.joint, key, getattr(joint, key))

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
+from bench.axis_kind import ARMATURE, COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.balance import layout
 from bench.balance.normal_equations import NormalEquations
 from bench.balance.parameter import Parameter
@@ -39,6 +39,7 @@ RECORD = {
 }
 
 TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
+LINKS = "nothing; the MJCF's links, the gear_ratio or the torque are another robot's"
 SMALLER = "nothing; the rig's rotor_inertia (gear_inertia, gear_ratio) or torque constant is another one's"
 EXPLAINED = "a motion in which inertia and friction take most of the effort, and ask bench diagnose what else acts"
 
@@ -135,12 +136,12 @@ def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, told: Se
         kind: of the axis.
         told: what else is suspicious about the recording, and may be why.
     """
-    for name in (kind.inertia, "load_moment_of_inertia"):
+    for name in (kind.inertia, "load_moment_of_inertia", ARMATURE):
         found = parameters.get(name)
         if found is not None and found.ci95[1] < 0.0:
             low, high = found.ci95
             reason = f"it comes out negative, {found.value:.3g} {found.unit} ({low:.3g} to {high:.3g})"
-            advice = TURNED if name == kind.inertia else SMALLER
+            advice = {kind.inertia: TURNED, ARMATURE: LINKS}.get(name, SMALLER)
             raise UndeterminedError(name.replace("_", " "), "; ".join([reason, *told]), advice)
 
 

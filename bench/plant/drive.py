@@ -105,7 +105,7 @@ class CascadeDrive:
         self._upper = np.asarray(cascade.torque_limit)
         self._lower = -self._upper
         self._speed_demand = references.velocity + self._position_gain * references.position
-        self._feedforward = np.asarray(cascade.inertia_feedforward) * references.acceleration
+        self._feedforward = references.feedforward(np.asarray(cascade.inertia_feedforward))
         self._integral = np.zeros(references.velocity.shape[1:])
         self._friction = None if emulation is None else _EmulatedFriction(emulation, period, references.velocity[0])
 
@@ -184,7 +184,7 @@ def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
 def pid_controls(cascade: Cascade, references: References) -> Array:
     """Inputs pos, vel, ff of the actuator that `add_pid` makes, for one axis: (ticks, 3)."""
     lead = cascade.control_period / 2.0 * references.velocity
-    feedforward = cascade.inertia_feedforward * references.acceleration
+    feedforward = references.feedforward(cascade.inertia_feedforward)
     return np.stack([references.position + lead, references.velocity, feedforward], axis=-1)
 
 

@@ -41,6 +41,10 @@ FLOOR = "floor"
 #: Mass of a body whose mass nobody told - kg: MuJoCo wants one, and where the body is moved about it weighs nothing.
 NO_MASS = 1e-6
 
+#: Inertia of a flat disk about its diameter, over that about its shaft: half, and as much more as a thickness of a
+#: hundredth of the diameter gives it, so that numbers rounded in a file still add up to a body's.
+ACROSS = 0.5 + 2.0 / 3.0 * 0.01**2
+
 #: The visible disk is drawn to size up to what clears the floor - m.
 LARGEST_VISIBLE_RADIUS = 0.13
 
@@ -154,7 +158,7 @@ def _set_inertia(spec: mujoco.MjSpec, parameters: AxisParameters) -> None:
 
 def disk_inertia(inertia: float) -> list[float]:
     """Inertia about the shaft and about two diameters of a flat disk - kg*m**2 - whose shaft is x."""
-    return [inertia, 0.5 * inertia, 0.5 * inertia]
+    return [inertia, ACROSS * inertia, ACROSS * inertia]
 
 
 def set_masses(spec: mujoco.MjSpec, kind: AxisKind, mounting: Mounting) -> str:

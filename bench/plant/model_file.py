@@ -27,7 +27,7 @@ from bench.errors import InputError
 from bench.files import write_text
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import FLOOR, AxisParameters, parameter_quantities, set_masses
-from bench.plant.mounting import Mounting
+from bench.plant.mounting import DIRECT, Mounting
 from bench.structured import read_toml
 from bench.units import nearest
 
@@ -52,7 +52,7 @@ class StoredModel:
     name: str
     model: AxisModel
     misalignment: float = 0.0
-    mounting: Mounting = Mounting()
+    mounting: Mounting = DIRECT
 
 
 def write_model(folder: str | Path, stored: StoredModel, timestep: float = TIMESTEP) -> tuple[Path, Path]:

@@ -1,4 +1,4 @@
-"""How an axis sits in its machine: what a model on the motor's side needs to be put onto a joint of somebody's robot."""
+"""How an axis sits in its machine: what a model on the motor's side needs to go onto a joint of somebody's robot."""
 
 from __future__ import annotations
 
@@ -32,3 +32,7 @@ class Mounting:
     def told(self) -> dict[str, float]:
         """Values other than those of an axis without gear and robot, by name - SI."""
         return {f.name: getattr(self, f.name) for f in fields(self) if getattr(self, f.name) != f.default}
+
+
+#: Of an axis without gear and robot, whose load nobody told.
+DIRECT = Mounting()

@@ -90,10 +90,11 @@ class Robot:
         return cls(model, joint, str(path))
 
     @property
-    def others(self) -> list[str]:
-        """Names of the other joints."""
-        names = [self.model.joint(k).name for k in range(self.model.njnt)]
-        return [name for name in names if name != self.joint]
+    def units(self) -> dict[str, str]:
+        """Names of the other joints with the units of their positions."""
+        turning = int(mujoco.mjtJoint.mjJNT_HINGE)
+        joints = {self.model.joint(k).name: kind for k, kind in enumerate(self.model.jnt_type)}
+        return {name: "rad" if kind == turning else "m" for name, kind in joints.items() if name != self.joint}
 
     @property
     def turns(self) -> bool:
@@ -166,11 +167,6 @@ def read_beside(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float])
     Raises:
         InputError: the log cannot be read, or a joint is neither in it nor stated.
     """
-    unknown = sorted(set(stated) - set(robot.others))
-    if unknown:
-        raise InputError(
-            f"--at {unknown[0]}", f"found no such joint{nearest(unknown[0], robot.others)}", _allowed(robot)
-        )
     recording = read_recording(path)
     own = rig.on_axis(robot.joint) if _holds(recording, robot.joint) and rig.trace.axis is None else rig
     trace, ratio = assemble(recording, own.trace), (rig.load or Load()).gear_ratio
@@ -184,19 +180,15 @@ def read_beside(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float])
         elif name in stated:
             position[:, k], velocity[:, k] = stated[name], 0.0
         else:
-            found = "is neither in the log nor stated"
-            raise InputError(
-                f"{path}: joint '{name}'", found, f"allowed: a column '{name}.position [rad]', or --at {name}=0"
-            )
+            allowed = f"allowed: a column '{name}.position [rad]', or --at {name}=0"
+            raise InputError(f"{path}: joint '{name}'", "is neither in the log nor stated", allowed)
     torque, momentum = robot.rest(position, velocity)
     return with_known(trace, torque / ratio, momentum / ratio, rig.effort_unit)
 
 
 def _holds(recording: Recording, name: str) -> bool:
     """Whether a log has signals of a joint."""
-    return any(
-        name == channel.axis or name.lower() in channel.name.lower().split(".") for channel in recording.channels
-    )
+    return any(name == one.axis or name.lower() in one.name.lower().split(".") for one in recording.channels)
 
 
 def _motion(trace: Trace, at: Trace) -> tuple[Array, Array]:
@@ -211,7 +203,3 @@ def _motion(trace: Trace, at: Trace) -> tuple[Array, Array]:
     if np.array_equal(trace.time, at.time):
         return position, velocity
     return interpolate(at.time, trace.time, position), interpolate(at.time, trace.time, velocity)
-
-
-def _allowed(robot: Robot) -> str:
-    return f"allowed: {', '.join(robot.others) or 'none, as the robot has one joint'}"

@@ -132,6 +132,10 @@ class ModelSeat:
         """See `Seat`."""
         self._model.dof_armature[self._dof] = self._armature + self._ratio**2 * float(inertia[0])
 
+    def leave(self) -> None:
+        """Give the model back the inertia it had."""
+        self._model.dof_armature[self._dof] = self._armature
+
     def set_friction(self, level: Array) -> None:
         """See `Seat`."""
         if self._bristles >= 0:

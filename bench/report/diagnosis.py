@@ -28,6 +28,8 @@ from bench.report.pages.diagnosis import diagnosis_page
 from bench.structured import json_text
 
 SCHEMA = "bench.diagnose/1"
+#: Between rows of the motion to record next - s.
+PERIOD = 1e-3
 #: Share of the gap above which the region that holds most of it is shaded.
 SHADED = 0.1
 
@@ -279,6 +281,11 @@ def write_diagnosis(
         if xml is not None:
             written.append(out / "model.xml")
             write_text(written[-1], xml)
+        if diagnosis.next_experiment is not None:
+            kind = next(kind for kind in KINDS if kind.speed_unit == diagnosis.velocity.unit)
+            units = (kind.length_unit, 1.0), (kind.speed_unit, 1.0)
+            written.append(out / "next_experiment.csv")
+            write_text(written[-1], diagnosis.next_experiment.motion.csv(PERIOD, *units))
         return [*write_page(out, diagnosis_page(diagnosis, title, files, provenance)), *written]
 
 

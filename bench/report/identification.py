@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +20,7 @@ from bench.rig.rig import Rig
 from bench.trace.conditioning import condition
 from bench.trace.motion import Motion, motion
 from bench.trace.stream import stream
+from bench.trace.trace import Trace
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
     from bench.identify.refine import Refinement
@@ -32,6 +33,7 @@ def write_identification(
     estimate: Estimate,
     refinement: Refinement | None = None,
     provenance: Mapping[str, Any] | None = None,
+    read: Callable[[Path], Trace] | None = None,
 ) -> list[Path]:
     """Write the page, `identification.png` (`identification-2.png`, ... of further recordings) and `identify.json`.
 
@@ -42,6 +44,7 @@ def write_identification(
         estimate: what was identified.
         refinement: what polishing did, where it was asked for.
         provenance: of the estimate.
+        read: how its files are read, unless part by part as the rig says.
 
     Returns:
         Paths written.
@@ -51,7 +54,7 @@ def write_identification(
     names = ", ".join(trace.name for trace in traces)
     with held(out):
         for number, trace in enumerate(traces, 1):
-            moved, along = _motion(trace, rig, estimate), _along(estimate, number - 1, rig)
+            moved, along = _motion(trace, rig, estimate, read), _along(estimate, number - 1, rig)
             motions.append((trace.name, moved, along))
             figures.append(out / ("identification.png" if number == 1 else f"identification-{number}.png"))
             save(identification_figure(moved, along, rig.axis_kind, f"{rig.name}: {trace.name}"), figures[-1])
@@ -61,11 +64,11 @@ def write_identification(
         return [*write_page(out, page), *figures, text]
 
 
-def _motion(trace: Path, rig: Rig, estimate: Estimate) -> Motion:
+def _motion(trace: Path, rig: Rig, estimate: Estimate, read: Callable[[Path], Trace] | None) -> Motion:
     """The first part of a recording through the filter that the estimate was made with."""
-    first = gate(next(stream(trace, rig.trace)), rig).trace
-    effort, _ = rig.net_effort(first)
-    return motion(first, effort, condition(first, effort, estimate.cutoff if estimate.cutoff > 0.0 else None))
+    first = gate(read(trace) if read is not None else next(stream(trace, rig.trace)), rig).trace
+    (effort, _), (own, _) = rig.net_effort(first), rig.own_effort(first)
+    return motion(first, effort, condition(first, own, estimate.cutoff if estimate.cutoff > 0.0 else None))
 
 
 def _along(estimate: Estimate, index: int, rig: Rig) -> Estimate:

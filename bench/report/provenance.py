@@ -11,26 +11,33 @@ from bench.files import sha256
 
 
 def provenance(
-    rig: Path, traces: Sequence[Path], options: Mapping[str, Any], holdout: Path | None = None
+    rig: Path | None,
+    traces: Sequence[Path],
+    options: Mapping[str, Any],
+    holdout: Path | None = None,
+    mjcf: Path | None = None,
 ) -> dict[str, Any]:
     """The contract's `provenance`.
 
     Args:
-        rig: file of the axis.
+        rig: file of the axis; None of a joint that only an MJCF knows.
         traces: files of the recordings, in the order given.
         options: of the command that change its result.
         holdout: file of the recording that was not fitted.
+        mjcf: file of the robot around the axis.
 
     Raises:
         InputError: a file cannot be read.
     """
     found = {
         "version": __version__,
-        "rig_sha256": sha256(rig),
+        "rig_sha256": None if rig is None else sha256(rig),
         "traces": [{"file": str(trace), "sha256": sha256(trace)} for trace in traces],
         "options": dict(options),
     }
-    return found if holdout is None else found | {"holdout": {"file": str(holdout), "sha256": sha256(holdout)}}
+    beside = {"holdout": holdout, "mjcf": mjcf}
+    given = {key: path for key, path in beside.items() if path is not None}
+    return found | {key: {"file": str(path), "sha256": sha256(path)} for key, path in given.items()}
 
 
 def without_files(options: Mapping[str, Any]) -> dict[str, Any]:

@@ -30,7 +30,7 @@ def lacking(rig: Rig) -> dict[str, tuple[str, ...]]:
     limits = [
         f"motor.{name}" for name in ("peak_torque", "continuous_stall_torque") if getattr(motor, name) is None
     ] + ([] if motor.peak_curves else ["motor.peak_curves"])
-    simulated = dict.fromkeys(("simulate", "validate"), tuple(simulate))
+    simulated = dict.fromkeys(("simulate", "validate", "plan"), tuple(simulate))
     return {"identify": (), "diagnose": (), **simulated, "limits": tuple(limits)}
 
 

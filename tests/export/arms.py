@@ -17,7 +17,9 @@ ARM = """
       <body name="forearm" pos="0 0 -.4">
         <joint name="elbow" axis="0 1 0" armature=".7" damping=".3" frictionloss=".4"/>
         <geom type="capsule" fromto="0 0 0 0 0 -.3" size=".02" mass=".5"/>
-        <body name="hand" pos="0 0 -.3"><joint name="slide" type="slide" axis="0 0 1"/><geom size=".03" mass=".1"/></body>
+        <body name="hand" pos="0 0 -.3">
+          <joint name="slide" type="slide" axis="0 0 1"/><geom size=".03" mass=".1"/>
+        </body>
       </body>
     </body>
   </worldbody>

@@ -11,7 +11,7 @@ import bench
 from bench.effects.catalogue import catalogue
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
-from bench.export.joint import Share, onto
+from bench.export.joint import Share, armature_of, onto
 from bench.plant.drive import CascadeDrive
 from bench.plant.model_file import StoredModel, write_model
 from bench.plant.mounting import Mounting
@@ -44,7 +44,7 @@ def driven(simulation, effects, joint=AXIS, actuator=DRIVE, ratio=1.0):
     return velocity
 
 
-@pytest.mark.parametrize("names", [*((name,) for name in ACTING), TOGETHER], ids=lambda names: "+".join(names))
+@pytest.mark.parametrize("names", [*((name,) for name in ACTING), TOGETHER], ids="+".join)
 def test_it_agrees_with_the_plant(names):
     expected = run([plant(*names)], [REFERENCES]).velocity[:, 0]
     effects = bench.Effects(StoredModel("axis", plant(*names).model))
@@ -63,7 +63,7 @@ def test_it_agrees_on_a_joint_behind_a_gear(tmp_path):
       <inertial pos="0 0 0" mass="1" diaginertia="{load} {load} {load}"/></body></body></worldbody></mujoco>"""
     spec = mujoco.MjSpec.from_string(xml.replace("</body></body>", "</body>"))
     effects = bench.Effects(toml, joint="elbow")
-    onto(spec, "elbow", effects.stored, Share.MOTOR)
+    onto(spec, "elbow", effects.stored, armature_of(effects.stored, Share.MOTOR))
     velocity = driven(spec.compile(), effects, "elbow", "elbow motor", ratio)
     # damping acts at the end of a step here, in its middle in the plant
     assert np.abs(velocity - expected).max() < 1e-3 * np.abs(expected).max()
@@ -79,7 +79,8 @@ def test_many_copies_move_as_each_alone():
     """Copies with models of their own: each as in a loop of its own, to the last bit."""
     values = [0.1, 0.14, 0.3]
     models = [
-        stored(("stribeck_friction", {"static_friction": value, "stribeck_velocity": 5.0}), *RIPPLED) for value in values
+        stored(("stribeck_friction", {"static_friction": value, "stribeck_velocity": 5.0}), *RIPPLED)
+        for value in values
     ]
     simulation = models[0].model.spec(PERIOD).compile()
     batch = Batch(simulation, len(models))
@@ -130,6 +131,17 @@ def test_torque_of_others_stays_and_a_reset_begins_anew():
             seen.append(data.qfrc_applied[0])
         assert seen[10] == pytest.approx(0.3)
         assert seen[-1] == pytest.approx(0.5)
+
+
+def test_a_second_run_of_a_model_begins_with_its_own_inertia():
+    model_ = stored(("position_dependent_inertia", VALUES["position_dependent_inertia"]))
+    simulation, effects = model_.model.spec(PERIOD).compile(), bench.Effects(model_)
+    ends = []
+    for _ in range(2):
+        data = mujoco.MjData(simulation)
+        pushed(lambda data=data: effects.step(simulation, data), data.ctrl, TIME[:200])
+        ends.append(data.qvel[0])
+    assert ends[0] == ends[1] != 0.0
 
 
 def test_a_servo_of_ones_own_is_asked_for_its_torque():

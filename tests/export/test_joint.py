@@ -1,14 +1,19 @@
 """A model on a joint of somebody's MJCF moves it as the axis of its own; what is not carried is told."""
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
-from bench.export.joint import Share, onto
+from bench.export.joint import Share, armature_of, onto
 from bench.export.mjcf import commented, joint_alone, read_mjcf, robot_with
 from bench.plant.model_file import model_xml
+from bench.plant.quiet import quiet
 from tests.export.arms import ARM, PARAMETERS, stored
 
 COGGING = ("cogging_torque", {"amplitude": 0.05, "harmonic": 6.0, "phase": 0.3})
@@ -43,14 +48,14 @@ def moved(spec, joint, actuator, scale=1.0, count=6000):
     ids=lambda effects: "+".join(name for name, _ in effects) or "bare",
 )
 def test_it_moves_as_the_axis_alone(effects, ratio):
-    """The link has the load's inertia, so that the robot is the axis; the gear turns angles and torques into its own."""
+    """The link has the load's inertia, so that the robot is the axis, seen through its gear."""
     model = stored(*effects, gear_ratio=ratio)
     load = (PARAMETERS.inertia - PARAMETERS.motor_inertia) * ratio**2
     xml = f"""<mujoco><worldbody><body name="base"><body name="link"><joint name="joint" axis="0 0 1" armature="9"/>
       <inertial pos="0 0 0" mass="1" diaginertia="{load} {load} {load}"/></body></body></worldbody></mujoco>"""
     spec = mujoco.MjSpec.from_string(xml)
     spec.option.timestep = TIMESTEP
-    carried = onto(spec, "joint", model, Share.MOTOR)
+    carried = onto(spec, "joint", model, armature_of(model, Share.MOTOR))
     assert set(carried.native) == {name for name, _ in effects}
     robot = moved(spec, "joint", "joint motor", ratio)
     alone = model.model.spec(TIMESTEP)
@@ -68,7 +73,7 @@ def test_what_the_joint_had_is_replaced_and_the_rest_kept():
     assert elbow.damping[0] == pytest.approx(0.11)
     assert elbow.frictionloss == pytest.approx(0.8)
     assert spec.joint("shoulder").damping[0] == 0.2
-    assert [model.actuator(k).name for k in range(model.nu)][0] == "lift"
+    assert model.actuator(0).name == "lift"
     assert carried.native == ("cogging_torque",)
     assert carried.left == (("stribeck_friction", "bench.Effects steps it"),)
 
@@ -88,7 +93,7 @@ def test_the_links_of_a_robot_are_not_counted_twice():
 
 
 @pytest.mark.parametrize(
-    ("joint", "says"), [("elbo", "did you mean 'elbow'"), ("slide", "type slide; allowed: .* rotary")]
+    ("joint", "says"), [("elbo", "did you mean 'elbow'"), ("slide", "type slide; allowed: .*rotary")]
 )
 def test_a_joint_that_cannot_have_it_is_told(joint, says):
     with pytest.raises(InputError, match=says):
@@ -111,7 +116,8 @@ def test_files_attach_to_a_moving_body(text):
     """The child's timestep is not the parent's, which MuJoCo says and keeps."""
     parent = mujoco.MjSpec.from_string(FLYING)
     child = mujoco.MjSpec.from_string(text(stored(COGGING, gear_ratio=3.0, load_mass=0.9)))
-    parent.attach(child, prefix="servo ", frame=parent.body("boom").add_frame(pos=[0.0, 0.0, 0.1]))
+    with quiet():
+        parent.attach(child, prefix="servo ", frame=parent.body("boom").add_frame(pos=[0.0, 0.0, 0.1]))
     model = parent.compile()
     assert "servo axis" in [model.joint(k).name for k in range(model.njnt)]
     data = mujoco.MjData(model)
@@ -122,10 +128,20 @@ def test_files_attach_to_a_moving_body(text):
 def test_masses_are_known_or_said_to_be_invented():
     known = mujoco.MjModel.from_xml_string(model_xml(stored(load_mass=0.9)))
     assert known.body("load").mass[0] == 0.9
-    np.testing.assert_allclose(known.body("load").inertia, [9e-4, 4.5e-4, 4.5e-4])
+    np.testing.assert_allclose(known.body("load").inertia, [9e-4, 4.5e-4, 4.5e-4], rtol=2e-4)
     assert "the load's either; 1e-06 kg stands in" in model_xml(stored())
     assert "motor's side of a gear of 7" in model_xml(stored(gear_ratio=7.0))
     assert "gear" not in model_xml(stored()).partition("<mujoco")[0]
+
+
+@given(st.floats(1e-7, 1e3), st.floats(0.0, 0.99))
+def test_files_open_whatever_the_inertia(inertia, motor):
+    """MuJoCo wants A + B >= C of every body, and its own files hold six digits."""
+    parameters = replace(PARAMETERS, inertia=inertia, motor_inertia=motor * inertia, viscous_friction_coefficient=0.0)
+    model = stored(parameters=parameters)
+    for text in (model_xml(model), joint_alone(model, "axis")[0]):
+        opened = mujoco.MjModel.from_xml_string(text)
+        assert opened.dof_M0[0] == pytest.approx(inertia, rel=2e-3)
 
 
 def test_the_snippet_has_its_values_in_a_class():
@@ -134,9 +150,17 @@ def test_the_snippet_has_its_values_in_a_class():
     assert '<joint name="axis" class="the_axis"' in text
     model = mujoco.MjModel.from_xml_string(text)
     assert model.dof_armature[0] == pytest.approx(4e-4)
-    np.testing.assert_allclose(model.body("load").inertia, [3.6e-3, 1.8e-3, 1.8e-3])
+    np.testing.assert_allclose(model.body("load").inertia, [3.6e-3, 1.8e-3, 1.8e-3], rtol=2e-4)
     assert model.body("load").mass[0] == 0.9
     assert "stands in for one that is not known" in joint_alone(stored(), "axis")[0]
+
+
+@pytest.mark.parametrize("known", [{"motor_inertia": 1e-4}, {"motor_inertia": 0.0}, {"link_inertia": 0.02}], ids=str)
+def test_the_snippet_has_the_models_inertia_once(known):
+    parameters = replace(PARAMETERS, motor_inertia=known.get("motor_inertia", 0.0))
+    whole = stored(parameters=parameters, gear_ratio=10.0, link_inertia=known.get("link_inertia", 0.0))
+    model = mujoco.MjModel.from_xml_string(joint_alone(whole, "axis")[0])
+    assert model.dof_M0[0] == pytest.approx(PARAMETERS.inertia * 100.0)
 
 
 def test_a_robot_in_a_file_keeps_its_meshes(tmp_path):
@@ -155,7 +179,9 @@ def test_a_robot_in_a_file_keeps_its_meshes(tmp_path):
     assert mujoco.MjModel.from_xml_path(str(out)).dof_frictionloss[0] == pytest.approx(0.08)
 
 
-@pytest.mark.parametrize(("content", "says"), [("<mujoco>", "does not read"), ("", "does not read"), (None, "no such file")])
+@pytest.mark.parametrize(
+    ("content", "says"), [("<mujoco>", "does not read"), ("", "does not read"), (None, "no such file")]
+)
 def test_a_robot_that_is_none_is_told_in_one_line(tmp_path, content, says):
     path = tmp_path / "robot.xml"
     if content is not None:

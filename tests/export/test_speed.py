@@ -1,4 +1,4 @@
-"""What effects cost in a simulation of one's own: `pytest -m slow tests/export/test_speed.py -s` prints docs/export.md's."""
+"""What effects cost in a simulation of one's own: `pytest -m slow tests/export/test_speed.py -s`."""
 
 from time import process_time
 
@@ -13,7 +13,13 @@ from tests.export.arms import ARM, stored
 
 NATIVE = ("cogging_torque",)
 ONE = ("stribeck_friction",)
-FIVE = ("direction_dependent_friction", "friction_warmup", "position_dependent_inertia", "stribeck_friction", "torque_ripple")
+FIVE = (
+    "direction_dependent_friction",
+    "friction_warmup",
+    "position_dependent_inertia",
+    "stribeck_friction",
+    "torque_ripple",
+)
 STEPS, COPIES = 20_000, 200
 
 

@@ -36,9 +36,11 @@ HIDDEN = Hidden()
 MJCF = f"""<mujoco model="two links"><option timestep="0.0005" gravity="0 0 -{GRAVITY}"/><worldbody>
   <body name="upper arm"><joint name="shoulder" axis="0 1 0"/>
     <inertial pos="0 0 -{C1}" mass="{M1}" diaginertia="{I1} {I1} 1e-3"/>
-    <body name="forearm" pos="0 0 -{L1}"><joint name="elbow" axis="0 1 0" armature="0.5" damping="1" frictionloss="3"/>
+    <body name="forearm" pos="0 0 -{L1}">
+      <joint name="elbow" axis="0 1 0" armature="0.5" damping="1" frictionloss="3"/>
       <inertial pos="0 0 -{C2}" mass="{M2}" diaginertia="{I2} {I2} 1e-3"/></body></body></worldbody>
-  <actuator><motor name="shoulder motor" joint="shoulder"/><motor name="elbow motor" joint="elbow"/></actuator></mujoco>"""
+  <actuator><motor name="shoulder motor" joint="shoulder"/>
+    <motor name="elbow motor" joint="elbow"/></actuator></mujoco>"""
 
 
 def waves(time, amplitudes, frequencies, phases):
@@ -46,7 +48,11 @@ def waves(time, amplitudes, frequencies, phases):
     omega = 2.0 * np.pi * np.asarray(frequencies)[:, None]
     angle = omega * time + np.asarray(phases)[:, None]
     size = np.asarray(amplitudes)[:, None]
-    return (size * np.sin(angle)).sum(0), (size * omega * np.cos(angle)).sum(0), -(size * omega**2 * np.sin(angle)).sum(0)
+    return (
+        (size * np.sin(angle)).sum(0),
+        (size * omega * np.cos(angle)).sum(0),
+        -(size * omega**2 * np.sin(angle)).sum(0),
+    )
 
 
 def shoulder_torque(q1, w1, a1, q2, w2, a2):

@@ -63,6 +63,7 @@ class NextExperiment:
         tells_apart: what was named and its rival.
         separation: of the two, over the noise floor.
         reason: why it is needed.
+        motion: all of it, repetitions included, at a tick that is quick to simulate.
     """
 
     profile: str
@@ -73,6 +74,7 @@ class NextExperiment:
     tells_apart: tuple[str, str]
     separation: float
     reason: str
+    motion: References
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,8 @@ def propose(recordings: Recordings, suspects: Suspects, added: Added) -> NextExp
             speed, acceleration = (float(np.abs(v).max()) for v in (references.velocity, references.acceleration))
             duration = float(references.time[-1])
             again = int(np.ceil(LONG_ENOUGH / duration))
-            return NextExperiment(name, speed, acceleration, duration, again, rival.names, best, rival.reason)
+            motion = references.repeated(again)
+            return NextExperiment(name, speed, acceleration, duration, again, rival.names, best, rival.reason, motion)
     return None
 
 

@@ -1,0 +1,74 @@
+"""`bench compensate`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from bench.console import RigOption, console, tell_files
+from bench.errors import InputError
+from bench.files import held, write_text
+from bench.names import plain
+from bench.plant.profile_names import DEFAULT, NAMES
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from bench.axis_kind import AxisKind
+    from bench.export.tracking import Tracking
+
+
+def compensate(
+    model: Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")],
+    rig: RigOption,
+    out: Annotated[Path, typer.Option("--out", help="Folder for the tables.")],
+    profile: Annotated[str, typer.Option("--profile", help=f"Motion to track: {', '.join(NAMES)}.")] = DEFAULT,
+) -> None:
+    """Make of a diagnosed model what its drive feeds forward; say how much better it tracks with it, by simulation."""
+    import numpy as np
+
+    from bench.export.drive_units import DriveUnits
+    from bench.export.feedforward import feedforward
+    from bench.export.tracking import tracking
+    from bench.plant.drive import Cascade
+    from bench.plant.limits import MotionLimits
+    from bench.plant.model_file import load_model
+    from bench.plant.profiles import plan
+    from bench.report.progress import progress
+    from bench.rig.rig import load_rig
+
+    axis, stored = load_rig(rig), load_model(model).model
+    kind = stored.parameters.kind
+    if kind is not axis.axis_kind:
+        raise InputError(f"{model}: kind", f"found '{kind.name}'", f"allowed: '{axis.kind}', as {axis.source} says")
+    motion = plan(profile, MotionLimits.from_rig(axis, stored.parameters, Cascade.from_rig(axis).control_period))
+    reach = float(motion.position.min()), float(motion.position.max())
+    with progress(f"tracking {profile}") as done:
+        told = feedforward(stored, float(np.abs(motion.velocity).max()), reach)
+        done(0.4)
+        before = tracking(stored, axis, motion)
+        done(0.7)
+        after = tracking(stored, axis, motion, told)
+    files = DriveUnits.of(axis).files(told)
+    with held(out):
+        for name, text in files.items():
+            write_text(out / name, text)
+    console().print(_table(f"{axis.name}: {profile}", before, after, kind))
+    if told.left:
+        typer.echo(plain(f"left to the drive's feedback: {', '.join(told.left)}"))
+    tell_files(out / name for name in files)
+
+
+def _table(title: str, before: Tracking, after: Tracking, kind: AxisKind) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
+    for name in ("RMS tracking error", "as the rig's drive is", "with the tables", "times less", "unit"):
+        table.add_column(name, justify="left" if name in ("RMS tracking error", "unit") else "right")
+    for name, unit in (("position", kind.length_unit), ("velocity", kind.speed_unit)):
+        was, now = getattr(before, name), getattr(after, name)
+        table.add_row(name, f"{was:.4g}", f"{now:.4g}", f"{was / now:.3g}" if now > 0.0 else "", unit)
+    return table

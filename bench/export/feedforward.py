@@ -1,0 +1,157 @@
+"""A model as what a drive feeds forward: its inertia, friction over speed, and torque over position.
+
+    M_ff = J*alpha + F(omega) + C(q)
+
+F - mean over a turn of what resists steady motion at a speed - N*m; C - what it varies by over the position, mean over
+both directions at a slow speed - N*m; alpha, omega, q - references. What is neither - ripple, which grows with the
+current; a friction level that varies with position; what the drive itself does - is left to the drive's feedback.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.errors import InputError
+from bench.export.resisting import resisting_torque
+from bench.plant.axis_model import AxisModel
+from bench.plant.references import References
+
+#: Points of the table over position, and of each side of the table over speed.
+POSITIONS, SPEEDS = 720, 60
+#: Slowest speed of the table over speed, as a share of the fastest: below it friction is taken from rest linearly.
+SLOWEST = 1e-3
+#: Speed at which torque over position is asked, as a share of the fastest.
+SLOWLY = 0.05
+#: Share of a table's largest torque below which an effect changes nothing in it.
+NOTHING = 1e-6
+#: Share of the torque over a turn by which its ends differ where it does not repeat itself.
+OPEN = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Torque over a coordinate, linear between its points and held beyond them.
+
+    Attributes:
+        coordinate: rad/s or rad (m/s, m), increasing - (n,).
+        torque: N*m (N) - (n,).
+        period: after which it repeats itself - rad (m); None where it does not.
+    """
+
+    coordinate: Array
+    torque: Array
+    period: float | None = None
+
+    def __call__(self, at: Array) -> Array:
+        """Torque - N*m (N) - (m,)."""
+        return np.interp(at, self.coordinate, self.torque, period=self.period)
+
+
+@dataclass(frozen=True, eq=False)
+class Feedforward:
+    """What a drive is told.
+
+    Attributes:
+        inertia: J - kg*m**2 (kg).
+        friction: F over speed.
+        cogging: C over position.
+        left: effects that neither table holds anything of.
+    """
+
+    inertia: float
+    friction: Table
+    cogging: Table
+    left: tuple[str, ...]
+
+    def along(self, references: References) -> References:
+        """References with the torque of both tables; inertia is the drive's own feed-forward."""
+        torque = self.friction(references.velocity) + self.cogging(references.position)
+        return replace(references, torque=torque)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a model is asked for: torque over speed and position.
+
+    Attributes:
+        model: with effects.
+        fastest: speed of the table - rad/s (m/s).
+        span: first and last position - rad (m).
+    """
+
+    model: AxisModel
+    fastest: float
+    span: tuple[float, float]
+
+    @cached_property
+    def positions(self) -> Array:
+        """Of the table over position, its end left out where that is its beginning - (n,)."""
+        return np.linspace(*self.span, POSITIONS, endpoint=False)
+
+    @cached_property
+    def speeds(self) -> Array:
+        """Of the table over speed, from standstill closely to both sides - (m,)."""
+        side = np.geomspace(SLOWEST, 1.0, SPEEDS) * self.fastest
+        return np.concatenate([-side[::-1], [0.0], side])
+
+    @cached_property
+    def over_position(self) -> Array:
+        """C, less its mean - N*m (N) - (n,)."""
+        slowly = SLOWLY * self.fastest
+        both = [resisting_torque(self.model, self.positions, np.full(POSITIONS, way * slowly)) for way in (1.0, -1.0)]
+        mean = 0.5 * (both[0] + both[1])
+        return mean - mean.mean()
+
+    @cached_property
+    def over_speed(self) -> Array:
+        """F - N*m (N) - (m,)."""
+        some = self.positions[:: POSITIONS // 60]
+        q, w = (grid.ravel() for grid in np.meshgrid(some, self.speeds, indexing="ij"))
+        return resisting_torque(self.model, q, w).reshape(some.size, -1).mean(axis=0)
+
+
+def feedforward(model: AxisModel, fastest: float, travelled: tuple[float, float]) -> Feedforward:
+    """What a drive is to feed forward for a model.
+
+    Args:
+        model: with effects.
+        fastest: speed that the tables reach - rad/s (m/s).
+        travelled: positions they reach on an axis that does not turn, or whose torque does not repeat itself - rad (m).
+
+    Raises:
+        InputError: no speed to lay the tables out for.
+    """
+    if not fastest > 0.0:
+        raise InputError("the motion", "found no speed in it", "allowed: one that moves")
+    turn = Asked(model, fastest, (0.0, 2.0 * math.pi))
+    ends = resisting_torque(model, np.array(turn.span), np.full(2, SLOWLY * fastest))
+    repeats = model.parameters.kind.turns and abs(ends[1] - ends[0]) <= OPEN * max(
+        np.abs(turn.over_speed).max(), 1e-300
+    )
+    asked = turn if repeats else replace(turn, span=travelled)
+    return Feedforward(
+        model.parameters.inertia,
+        Table(asked.speeds, asked.over_speed),
+        Table(asked.positions, asked.over_position, 2.0 * math.pi if repeats else None),
+        tuple(_left(asked)),
+    )
+
+
+def _left(asked: Asked) -> list[str]:
+    """Effects without which both tables would be the same."""
+    model, left = asked.model, []
+    least = NOTHING * max(float(np.abs(asked.over_speed).max()), 1e-300)
+    for present in model.effects:
+        without = replace(asked, model=model.with_effects([other for other in model.effects if other is not present]))
+        moved = max(
+            float(np.abs(without.over_speed - asked.over_speed).max()),
+            float(np.abs(without.over_position - asked.over_position).max()),
+        )
+        if moved < least:
+            left.append(present.name)
+    return left

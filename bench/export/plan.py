@@ -1,0 +1,114 @@
+"""The motion to record, and how well it will tell: every profile inside the rig's limits, simulated and fitted.
+
+What a recording tells is known before it is made: the inverse of the information matrix of its regression is the
+covariance of what will be found. Each profile is simulated on the axis as the rig file describes it, its sensors' noise
+included, and fitted by the engine that will fit the recording; its errors are those to expect.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.balance.fit import fit
+from bench.balance.hypothesis import Hypothesis
+from bench.balance.parameter import Parameter
+from bench.balance.quantities import uncertain
+from bench.balance.rows import Rows
+from bench.balance.shapes import shaped
+from bench.diagnose.name.candidates import candidates
+from bench.effects.effect import Effect
+from bench.effects.present import Present
+from bench.errors import InputError, UndeterminedError
+from bench.plant.limits import MotionLimits
+from bench.plant.plant import Plant
+from bench.plant.profiles import PROFILES, full_torque, plan
+from bench.plant.references import References
+from bench.plant.simulate import simulate
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+#: Least duration of a recording that tells anything - s: a shorter profile is repeated.
+LONG_ENOUGH = 4.0
+#: Profiles that ask for more than the motor has serve another end.
+PLANNED = tuple(name for name, profile in PROFILES.items() if profile is not full_torque)
+
+
+@dataclass(frozen=True, eq=False)
+class Planned:
+    """A motion and what it will tell.
+
+    Attributes:
+        profile: its name.
+        motion: at the drive's ticks, repeated until it is long enough.
+        tells: quantities with the errors to expect, by name.
+        reason: why it tells nothing; empty where it does.
+    """
+
+    profile: str
+    motion: References
+    tells: Mapping[str, Parameter]
+    reason: str = ""
+
+    @property
+    def worst(self) -> float:
+        """Largest standard error of what it tells, over the value; infinite where it tells nothing."""
+        shares = [found.std_error / abs(found.value) for found in self.tells.values() if found.value]
+        return max((share for share in shares if np.isfinite(share)), default=np.inf) if not self.reason else np.inf
+
+
+def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
+    """Every profile that the rig can follow, the one that tells best first.
+
+    Args:
+        rig: with `[drive]` and `[simulation]`, which is what is expected of axis and sensors.
+        wanted: an effect that is to be told, as strong as it may be; None: inertia and friction are.
+
+    Raises:
+        InputError: the rig lacks what a simulation needs, or no torque balance tells the effect.
+        UndeterminedError: no profile tells what is wanted.
+    """
+    effects = [] if wanted is None else [wanted]
+    plant = Plant.from_rig(rig, effects)
+    limits = MotionLimits.from_rig(rig, plant.parameters, plant.cascade.control_period)
+    effect = None if wanted is None else wanted.effect
+    if effect is not None and not (effect.overrides("columns") or effect.overrides("columns_of") or effect.shapes):
+        raise InputError(f"--for {effect.name}", "is none of the torque balance", "allowed: an effect that has columns")
+    found = []
+    for name in PLANNED:
+        once = plan(name, limits)
+        motion = once.repeated(math.ceil(LONG_ENOUGH / float(once.time[-1])))
+        trace = simulate(rig, name, references=motion, effects=effects).trace
+        found.append(_planned(name, motion, trace, rig, effect))
+    found.sort(key=lambda each: each.worst)
+    if not np.isfinite(found[0].worst):
+        what = "inertia and friction" if effect is None else effect.name.replace("_", " ")
+        raise UndeterminedError(what, f"no profile tells it: {found[0].reason}", "nothing yet: state more of the rig")
+    return found
+
+
+def _planned(name: str, motion: References, trace: Trace, rig: Rig, effect: Effect | None) -> Planned:
+    """What a simulated recording tells of the effect, or of inertia and friction."""
+    kind = rig.axis_kind
+    units = {kind.parameter(term): kind.parameter_unit(term) for term in (INERTIA, VISCOUS, COULOMB)}
+    try:
+        rows = Rows.of(trace, rig)
+    except UndeterminedError as error:
+        return Planned(name, motion, {}, error.reason)
+    bare = fit(rows, Hypothesis())
+    if effect is None:
+        return Planned(name, motion, uncertain(bare).base(units))
+    tried = candidates(bare, [effect])
+    if not tried:
+        return Planned(name, motion, {}, "the motion cannot show it")
+    fitted = shaped(rows, Hypothesis().plus(tried[0].term), 0)
+
+    def unit_of(owner: Effect, key: str) -> str:
+        known = (*owner.quantities, *owner.derived, *(shape.quantity for shape in owner.shapes))
+        return kind.unit(next(quantity for quantity in known if quantity.name == key))
+
+    return Planned(name, motion, uncertain(fitted).quantities(0, unit_of))

@@ -1,0 +1,122 @@
+"""Tables for a drive: what they hold, against closed forms, and how much better an axis tracks that is a little off."""
+
+import shlex
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bench.assets import asset
+from bench.effects.present import Present
+from bench.export.drive_units import DriveUnits
+from bench.export.feedforward import Table, feedforward
+from bench.export.resisting import resisting_torque
+from bench.export.tracking import tracking
+from bench.plant.limits import MotionLimits
+from bench.plant.plant import Plant
+from bench.plant.profiles import plan
+from bench.rig.rig import Rig, load_rig
+from tests.diagnose.command import started
+from tests.effects.axes import PARAMETERS, VALUES, model
+
+RIG = load_rig(asset("data", "rigs", "sh30701p.toml"))
+HIDDEN = {
+    "cogging_torque": {"amplitude": 0.05, "harmonic": 6.0, "phase": 0.4},
+    "stribeck_friction": {"static_friction": 0.12, "stribeck_velocity": 2.0},
+}
+Q = np.linspace(-4.0, 9.0, 40)
+W = 8.0 * np.sin(np.arange(40.0))
+K0, KW = PARAMETERS.coulomb_friction, PARAMETERS.viscous_friction_coefficient
+
+#: Torque of each effect in steady motion beside K_0 and K_w, by its equation.
+STEADY = {
+    "cogging_torque": lambda v: v["amplitude"] * np.sin(v["harmonic"] * Q + v["phase"]),
+    "unbalance": lambda v: v["amplitude"] * np.sin(Q + v["phase"]),
+    "torsion_spring": lambda v: v["stiffness"] * Q,
+    "torque_offset": lambda v: v["torque"] + 0.0 * Q,
+    "quadratic_drag": lambda v: v["quadratic_drag"] * W * np.abs(W),
+    "stribeck_friction": lambda v: (
+        (v["static_friction"] - K0) * np.exp(-((W / v["stribeck_velocity"]) ** 2)) * np.sign(W)
+    ),
+    "direction_dependent_friction": lambda v: 0.5 * (v["coulomb_difference"] + v["viscous_difference"] * np.abs(W)),
+    "presliding_friction": lambda v: 0.0 * Q,
+    "friction_warmup": lambda v: 0.0 * Q,
+    "load_torque_event": lambda v: 0.0 * Q,
+    "torque_ripple": lambda v: 0.0 * Q,
+    "elastic_coupling": lambda v: 0.0 * Q,
+    "position_dependent_inertia": None,
+}
+
+
+@pytest.mark.parametrize("name", [name for name, torque in STEADY.items() if torque is not None])
+def test_what_resists_is_what_the_equations_say(name):
+    expected = KW * W + K0 * np.sign(W) + STEADY[name](VALUES[name])
+    np.testing.assert_allclose(resisting_torque(model(name), Q, W), expected, atol=1e-9)
+
+
+def perturbed(values, share):
+    return {key: value if key in ("harmonic", "phase") else value * share for key, value in values.items()}
+
+
+def test_tracking_errors_are_at_least_halved_with_a_model_that_is_off():
+    """The axis is the truth; the tables are of a model whose every value is 3 % too large or too small."""
+    effects = [Present.of(name, values) for name, values in HIDDEN.items()]
+    plant = Plant.from_rig(RIG, effects)
+    known = replace(
+        plant.parameters,
+        inertia=0.97 * plant.parameters.inertia,
+        coulomb_friction=1.03 * plant.parameters.coulomb_friction,
+    )
+    off = [Present.of(name, perturbed(values, 0.97)) for name, values in HIDDEN.items()]
+    guess = replace(plant.model, parameters=known, effects=tuple(off))
+    motion = plan("slow_reversals", MotionLimits.from_rig(RIG, known, plant.cascade.control_period))
+    told = feedforward(guess, float(np.abs(motion.velocity).max()), (-10.0, 10.0))
+    before, after = tracking(plant.model, RIG, motion), tracking(plant.model, RIG, motion, told)
+    print(f"\n{before} -> {after}")
+    assert after.position < 0.5 * before.position
+    assert after.velocity < 0.5 * before.velocity
+
+
+def test_what_the_tables_do_not_hold_is_named():
+    told = feedforward(model("torque_ripple", "cogging_torque", "current_loop_lag"), 20.0, (-1.0, 1.0))
+    assert set(told.left) == {"torque_ripple", "current_loop_lag"}
+    assert told.cogging.period == pytest.approx(2.0 * np.pi)
+
+
+def test_a_torque_that_does_not_repeat_itself_spans_the_travel():
+    told = feedforward(model("torsion_spring"), 20.0, (-3.0, 5.0))
+    assert told.cogging.period is None
+    assert told.cogging.coordinate[0] == -3.0
+    slope = np.polyfit(told.cogging.coordinate, told.cogging.torque, 1)[0]
+    assert slope == pytest.approx(VALUES["torsion_spring"]["stiffness"], rel=1e-6)
+
+
+def test_a_table_is_in_the_units_of_the_drive():
+    columns = {"velocity": "Axis.Vel [rpm]", "position": "-Axis.Pos [deg]", "current": "Axis.Iq [mA]"}
+    motor = {"torque_constant": "0.5 N*m/A"}
+    rig = Rig.of({"name": "axis", "kind": "rotary", "motor": motor, "trace": {"columns": columns}})
+    units = DriveUnits.of(rig)
+    speed = units.table("velocity", units.velocity, Table(np.array([0.0, np.pi]), np.array([0.0, 0.25])))
+    assert speed == "velocity [rpm],torque [N*m],current [mA]\n0,0,0\n30,0.25,500\n"
+    place = units.table("position", units.position, Table(np.array([0.0, np.pi]), np.array([0.0, 0.25])))
+    assert place == "position [deg],torque [N*m],current [mA]\n-180,0.25,500\n-0,0,0\n"
+
+
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "drive.md").read_text(encoding="utf-8")
+
+
+def test_the_pages_commands_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    bench = started(tmp_path)
+    (tmp_path / "rig.toml").write_text(asset("data", "rigs", "sh30701p.toml").read_text(encoding="utf-8"))
+    commands = [line for block in PAGE.split("```sh\n")[1:] for line in block.split("```")[0].splitlines()]
+    for command in commands:
+        assert bench(*shlex.split(command)[1:]) == 0, command
+    cogging = np.genfromtxt(tmp_path / "tables" / "cogging.csv", delimiter=",", names=True)
+    assert np.abs(cogging["torque_Nm"]).max() == pytest.approx(0.05, rel=0.02)
+    motion = np.genfromtxt(tmp_path / "motion.csv", delimiter=",", names=True)
+    assert motion["time_s"][-1] > 4.0
+    assert np.diff(motion["time_s"]) == pytest.approx(1e-3)
+    travelled = np.cumsum(motion["velocity_rads"]) * 1e-3
+    np.testing.assert_allclose(motion["position_rad"], travelled, atol=0.1)

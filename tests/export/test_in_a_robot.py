@@ -1,0 +1,108 @@
+"""docs/export.md: from the log of a joint that moves among others to the robot's MJCF with the joint in it."""
+
+import json
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.diagnose.command import started
+from tests.export.held import followed
+from tests.export.two_links import HIDDEN, MJCF, log, motion, write_log
+
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "export.md").read_text(encoding="utf-8")
+COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
+EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Where the page's commands have run."""
+    before = Path.cwd()
+    folder = tmp_path_factory.mktemp("page")
+    (folder / "robot.xml").write_text(MJCF)
+    write_log(folder / "log.csv", log())
+    bench = started(folder)
+    try:
+        for command in COMMANDS:
+            assert bench(*shlex.split(command)[1:]) == 0, command
+    finally:
+        import os
+
+        os.chdir(before)
+    return folder
+
+
+def test_the_joints_hidden_physics_is_recovered(folder):
+    found = json.loads((folder / "found" / "diagnosis.json").read_text())
+    assert found["verdict"] == "explained"
+    (cogging,) = found["effects"]
+    assert cogging["name"] == "cogging_torque"
+    assert cogging["parameters"]["amplitude"]["value"] == pytest.approx(HIDDEN.cogging, rel=0.03)
+    for name, true, share in (
+        ("armature", HIDDEN.armature, 0.01),
+        ("viscous_friction_coefficient", HIDDEN.viscous, 0.03),
+        ("coulomb_friction_torque", HIDDEN.coulomb, 0.03),
+    ):
+        value = found["parameters"][name]["value"]
+        print(f"\n{name}: {value:.6g}, {100.0 * abs(value / true - 1.0):.2g} % off", end="")
+        assert value == pytest.approx(true, rel=share)
+
+
+def test_the_exported_arm_moves_as_the_log(folder, tmp_path):
+    """As closely as the same MJCF with the true values, held and driven by the same noisy log."""
+    exported, columns, (_, _, elbow) = (folder / "robot_id.xml").read_text(), log(), motion()
+    true = f'armature="{HIDDEN.armature}" damping="{HIDDEN.viscous}" frictionloss="{HIDDEN.coulomb}"'
+    truth = re.sub(r'armature="\S+" damping="\S+" frictionloss="\S+"', true, exported)
+    truth = re.sub(r'biasprm="[^"]+"', f'biasprm="{-HIDDEN.cogging} {HIDDEN.harmonic} 0"', truth)
+    assert truth != exported
+    (tmp_path / "truth.xml").write_text(truth)
+    gaps = [
+        float(np.sqrt(np.mean((followed(path, columns, 0.044) - elbow[1]) ** 2)))
+        for path in (folder / "robot.xml", folder / "robot_id.xml", tmp_path / "truth.xml")
+    ]
+    print(f"\nRMS off the true speed: as it was {gaps[0]:.3g}, exported {gaps[1]:.4g}, true values {gaps[2]:.4g} rad/s")
+    assert gaps[1] < 1.05 * gaps[2]
+    assert gaps[1] < 5e-3
+
+
+def test_the_replay_says_what_is_left(folder):
+    table = np.genfromtxt(folder / "replay.csv", delimiter=",", names=True)
+    left = table["torque_Nm"] - table["torque_simulated_Nm"]
+    assert np.sqrt(np.nanmean(left**2)) < 0.025
+
+
+def test_the_pages_examples_run(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    names = {}
+    for block in EXAMPLES:
+        exec(compile(block, "docs/export.md", "exec"), names)
+    assert names["data"].qvel[1] != 0.0
+    np.testing.assert_allclose(names["batch"].qvel[:, 1], names["batch"].qvel[0, 1])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ("identify log.csv", "--rig: missing; allowed: a rig file, or --mjcf and --joint"),
+        ("identify log.csv --mjcf robot.xml", "--joint: missing"),
+        ("identify log.csv --rig rig.toml --joint elbow", "--joint: found without --mjcf"),
+        ("identify log.csv --mjcf robot.xml --joint elbow --at shoulder", "has no ="),
+        ("identify log.csv --mjcf robot.xml --joint elbow --at wrist=0", "NAME one of shoulder"),
+        ("export found/model.toml --out x.xml", "one of them"),
+        ("export found/model.toml --mjcf robot.xml --out x.xml", "--joint: missing"),
+        ("export found/model.toml --mjcf robot.xml --joint elbow --armature some --out x.xml", "allowed: motor, all"),
+        ("export found/model.toml --mjcf robot.xml --joint elbow --armature motor --out x.xml", "without the motor's"),
+        ("export found/model.toml --mjcf robot.xml --joint elbow --out robot.xml", "is an input of this command"),
+        ("export robot.xml --snippet --out x.xml", "not TOML"),
+    ],
+)
+def test_wrong_input_is_one_line(folder, monkeypatch, capsys, arguments, says):
+    monkeypatch.chdir(folder)
+    bench = started(folder)
+    assert bench(*shlex.split(arguments)) == 2
+    told = capsys.readouterr().err
+    assert says in told
+    assert told.count("\n") == 1

@@ -1,0 +1,106 @@
+"""What the rest of a robot asks of a joint, against Lagrange's equations written out."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import bench
+from bench.errors import InputError
+from bench.plant.robot import Robot, beside_robot, read_beside
+from bench.rig.rig import Rig
+from bench.trace.known import less_known
+from tests.export.two_links import C2, HIDDEN, I2, M2, MJCF, elbow_torque, log, motion, shoulder_torque, write_log
+
+ELBOW = Rig.of({"name": "elbow", "kind": "rotary"})
+
+
+@pytest.fixture
+def arm(tmp_path):
+    path = tmp_path / "arm.xml"
+    path.write_text(MJCF)
+    return path
+
+
+@pytest.mark.parametrize(("joint", "torque", "place"), [("elbow", elbow_torque, 1), ("shoulder", shoulder_torque, 0)])
+def test_it_is_that_of_lagranges_equations(arm, joint, torque, place):
+    robot = Robot.of(arm, joint)
+    _, shoulder, elbow = motion(2.0, 1e-4)
+    moved = shoulder, elbow
+    r, p = robot.rest(*(np.column_stack([each[k] for each in moved]) for k in (0, 1)))
+    asked = torque(*shoulder, *elbow)
+    found = r + np.gradient(p, 1e-4) + robot.inertia * moved[place][2]
+    np.testing.assert_allclose(found[2:-2], asked[2:-2], atol=1e-5 * np.abs(asked).max())
+
+
+def test_its_own_inertia_is_that_where_the_mjcf_stands(arm):
+    assert Robot.of(arm, "elbow").inertia == pytest.approx(I2 + M2 * C2**2, rel=1e-12)
+
+
+def identified(path, arm, rig=ELBOW, **stated):
+    robot = Robot.of(arm, "elbow")
+    beside = beside_robot(rig, robot)
+    return bench.identify(read_beside(path, beside, robot, stated), beside)
+
+
+def test_the_joint_is_identified_among_its_links(arm, tmp_path):
+    """Without cogging, which is not in the equation that identify fits."""
+    hidden = replace(HIDDEN, cogging=0.0)
+    found = identified(write_log(tmp_path / "log.csv", log(hidden)), arm)
+    for name, true, share in (
+        ("armature", hidden.armature, 0.01),
+        ("viscous_friction_coefficient", hidden.viscous, 0.03),
+        ("coulomb_friction_torque", hidden.coulomb, 0.03),
+    ):
+        assert found[name].value == pytest.approx(true, rel=share)
+        assert found[name].ci95[0] < true < found[name].ci95[1]
+    assert found.residual.rms < 1.1 * found.residual.noise_floor
+
+
+def test_the_motors_side_of_a_gear(arm, tmp_path):
+    """The log has the motor's angle and torque; the armature is told on the joint's side all the same."""
+    ratio, hidden, columns = 8.0, replace(HIDDEN, cogging=0.0), log(replace(HIDDEN, cogging=0.0))
+    for name in ("elbow.position [rad]", "elbow.velocity [rad/s]"):
+        columns[name] = columns[name] * ratio
+    columns["elbow.torque [N*m]"] = columns["elbow.torque [N*m]"] / ratio
+    geared = Rig.of({"name": "elbow", "kind": "rotary", "load": {"gear_ratio": ratio}})
+    found = identified(write_log(tmp_path / "log.csv", columns), arm, geared)
+    assert found["armature"].value == pytest.approx(hidden.armature, rel=0.01)
+    assert found["coulomb_friction_torque"].value == pytest.approx(hidden.coulomb / ratio, rel=0.03)
+
+
+def test_a_joint_that_stands_may_be_stated(arm, tmp_path):
+    """The same log, of an arm whose shoulder was clamped at 0.3 rad; the links' share follows from that."""
+    columns = log(noise=0.0)
+    time, _, elbow = motion()
+    still = np.zeros_like(time)
+    columns["elbow.torque [N*m]"] = elbow_torque(still + 0.3, still, still, *elbow) + HIDDEN.torque(*elbow)
+    own = {name: values for name, values in columns.items() if not name.startswith("shoulder")}
+    robot, path = Robot.of(arm, "elbow"), write_log(tmp_path / "log.csv", own)
+    beside = beside_robot(ELBOW, robot)
+    trace = read_beside(path, beside, robot, {"shoulder": 0.3})
+    rest = less_known(trace, trace["torque"])
+    own_torque = HIDDEN.torque(*elbow) + robot.inertia * elbow[2]
+    np.testing.assert_allclose(rest[1:-1], own_torque[1:-1], atol=1e-4)
+    with pytest.raises(InputError, match="joint 'shoulder': is neither in the log nor stated"):
+        read_beside(path, beside, robot, {})
+
+
+SWIMS = MJCF.replace('<joint name="shoulder" axis="0 1 0"/>', '<freejoint name="shoulder"/>')
+WEIGHTLESS = '<mujoco><worldbody><body><joint name="elbow"/></body></worldbody></mujoco>'
+
+
+@pytest.mark.parametrize(
+    ("text", "joint", "says"),
+    [
+        (MJCF, "elbov", "found no joint 'elbov', did you mean 'elbow'"),
+        (SWIMS, "elbow", "free or ball"),
+        (WEIGHTLESS, "elbow", "MuJoCo refuses it"),
+    ],
+)
+def test_a_robot_that_cannot_be_had_is_told_in_one_line(tmp_path, text, joint, says):
+    path = tmp_path / "arm.xml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=says) as error:
+        Robot.of(path, joint)
+    assert "\n" not in str(error.value)
