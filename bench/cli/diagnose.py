@@ -9,6 +9,8 @@ import typer
 
 from bench.console import (
     AxisOption,
+    Figures,
+    FiguresOption,
     JsonOption,
     RigOption,
     TracesArgument,
@@ -30,6 +32,7 @@ def diagnose(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
     axis_name: AxisOption = None,
+    figures: FiguresOption = Figures.PNG,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
     from bench.checks.gate import spoken
@@ -49,7 +52,7 @@ def diagnose(
         recordings = [read(trace, axis.trace) for trace in traces]
         found = run_diagnosis(recordings, axis, other, excluded, done)
     basis = provenance(rig, traces, {"without": sorted(excluded)}, holdout)
-    files = write_diagnosis(out, found, f"{axis.name}: {names}", basis) if out is not None else []
+    files = write_diagnosis(out, found, f"{axis.name}: {names}", basis, figures.ending) if out is not None else []
     if json is not None:
         write_json(json, diagnosis_json(found, basis))
     if json != Path("-"):

@@ -12,6 +12,8 @@ import typer
 
 from bench.console import (
     AxisOption,
+    Figures,
+    FiguresOption,
     JsonOption,
     RigOption,
     TracesArgument,
@@ -50,6 +52,7 @@ def identify(
         float | None, typer.Option("--cutoff", help="Filter's half-power frequency in Hz.", min=1e-6)
     ] = None,
     axis_name: AxisOption = None,
+    figures: FiguresOption = Figures.PNG,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.checks.gate import spoken
@@ -75,7 +78,7 @@ def identify(
     if out is not None:
         from bench.report.identification import write_identification  # matplotlib: 0.35 s
 
-        files = write_identification(out, traces, axis, estimate, refinement, basis())
+        files = write_identification(out, traces, axis, estimate, refinement, basis(), figures.ending)
     if json is not None:
         write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):

@@ -29,6 +29,7 @@ from bench.report.page.numbers import number, sentence, share, unit_text, words
 from bench.report.pages.over_time import Measured, time_graph
 from bench.report.pages.tables import (
     checks_section,
+    coordinate_word,
     effort_word,
     noise_band,
     origin,
@@ -156,7 +157,12 @@ def _where(diagnosis: Diagnosis) -> Section:
         Column(heading="unit"),
     )
     rows = tuple(
-        (one.coordinate, share(one.share), f"{number(one.region[0])} and {number(one.region[1])}", unit_text(one.unit))
+        (
+            coordinate_word(one.coordinate, one.unit),
+            share(one.share),
+            f"{number(one.region[0])} and {number(one.region[1])}",
+            unit_text(one.unit),
+        )
         for one in diagnosis.where
     )
     table = Table(caption="Share of the gap's variance that each coordinate accounts for", columns=columns, rows=rows)
@@ -174,17 +180,17 @@ def _over(profile: Profile, diagnosis: Diagnosis, names: str) -> Axes:
         series.append(Series(name=f"what {names} makes of it", style="line", colour="model", x=x, y=explained))
         series.append(Series(name="left after", style="rings", colour="left", x=x, y=after))
     note = f"{share(profile.share)} of the gap"
-    return Axes(x_label=_coordinate(profile), x_unit=unit_text(profile.unit), note=note, series=tuple(series))
+    return Axes(
+        x_label=coordinate_word(profile.coordinate, profile.unit),
+        x_unit=unit_text(profile.unit),
+        note=note,
+        series=tuple(series),
+    )
 
 
 def _in_order(profile: Profile) -> tuple[Array, Array, Array]:
     order = np.argsort(profile.centres)
     return profile.centres[order], profile.before[order], profile.after[order]
-
-
-def _coordinate(profile: Profile) -> str:
-    """What a coordinate is called where its unit says that it is another signal: torque was recorded, no current."""
-    return effort_word(profile.unit) if profile.coordinate == "current" else profile.coordinate
 
 
 def _parameters(diagnosis: Diagnosis) -> Section:
