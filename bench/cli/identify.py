@@ -57,7 +57,7 @@ def identify(
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.checks.gate import spoken
     from bench.identify.estimate import RefusedEstimateError
-    from bench.report.estimate import SCHEMA, estimate_json, estimate_table, recordings_table, refinement_line
+    from bench.report.estimate import SCHEMA, estimate_json
     from bench.report.provenance import provenance
     from bench.rig.rig import load_rig
 
@@ -82,13 +82,19 @@ def identify(
     if json is not None:
         write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):
-        console().print(estimate_table(estimate, f"{axis.name}: {', '.join(trace.name for trace in traces)}"))
-        if estimate.recordings:
-            console().print(recordings_table(estimate))
-        if refinement is not None:
-            typer.echo(refinement_line(refinement, axis.axis_kind))
+        _tell(estimate, refinement, axis, ", ".join(trace.name for trace in traces))
         tell_files(files)
     tell_warnings([*estimate.warnings, *spoken(estimate.checks)])
+
+
+def _tell(estimate: Estimate, refinement: Refinement | None, axis: Rig, names: str) -> None:
+    from bench.report.estimate import estimate_table, recordings_table, refinement_line
+
+    console().print(estimate_table(estimate, f"{axis.name}: {names}"))
+    if estimate.recordings:
+        console().print(recordings_table(estimate))
+    if refinement is not None:
+        typer.echo(refinement_line(refinement, axis.axis_kind))
 
 
 def _require_consistent(traces: list[Path], estimator: Estimator, refine: bool, tuned: bool) -> None:
