@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from bench.diagnose.diagnosis import diagnose
     from bench.diagnose.replay import replay
     from bench.diagnose.show.show import Diagnosis
+    from bench.export.effects import Effects
     from bench.identify.estimate import Estimate
     from bench.identify.regression import identify
     from bench.plant.simulate import simulate
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BenchError",
     "Diagnosis",
+    "Effects",
     "Estimate",
     "InputError",
     "Rig",
@@ -42,6 +44,7 @@ __version__ = "0.1.0"
 #: Module that each name comes from; a test holds it against the imports above, which are what type checkers read.
 _HOMES = {
     "Diagnosis": "bench.diagnose.show.show",
+    "Effects": "bench.export.effects",
     "Estimate": "bench.identify.estimate",
     "Rig": "bench.rig.rig",
     "Trace": "bench.trace.trace",

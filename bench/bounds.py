@@ -59,7 +59,14 @@ def bounded(size: str | None) -> Iterator[None]:
     match = _SIZE.fullmatch(size.strip())
     if match is None:
         raise InputError("--max-size", f"found {size!r}", "allowed: a number of bytes, e.g. 8GB")
-    token = _BOUNDS.set(Bounds(float(match[1]) * 1024 ** _POWERS[match[2].lower()], float("inf")))
+    with within(Bounds(float(match[1]) * 1024 ** _POWERS[match[2].lower()], float("inf"))):
+        yield
+
+
+@contextmanager
+def within(given: Bounds) -> Iterator[None]:
+    """Within the block these are in force, e.g. those of the process that asked for the work."""
+    token = _BOUNDS.set(given)
     try:
         yield
     finally:

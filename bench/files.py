@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import secrets
 import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from io import BufferedReader
 from pathlib import Path
 
 from bench.bounds import require_size
@@ -29,15 +31,23 @@ def read_bytes(path: str | Path, kind: str) -> bytes:
     Raises:
         InputError: not there, not a regular file, not readable, or beyond the bound on size.
     """
-    path, give = Path(path), f"give the path of {kind}"
+    with _opened(Path(path), kind) as file:
+        require_size(path, os.fstat(file.fileno()).st_size)
+        return file.read()
+
+
+@contextmanager
+def _opened(path: Path, kind: str) -> Iterator[BufferedReader]:
+    """A regular file, open for reading; raises as `read_bytes`."""
+    give = f"give the path of {kind}"
     try:
         state = path.stat()
         if stat.S_ISDIR(state.st_mode):
             raise InputError(path, "found a folder", give)
         if not stat.S_ISREG(state.st_mode):  # a pipe may never end, a device has no end
             raise InputError(path, "found a pipe or a device", f"{give}, a regular file")
-        require_size(path, state.st_size)
-        return path.read_bytes()
+        with path.open("rb") as file:
+            yield file
     except FileNotFoundError as error:
         raise InputError(path, "no such file", give) from error
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
@@ -53,6 +63,12 @@ def read_text(path: str | Path, kind: str) -> str:
         line = content.count(b"\n", 0, error.start) + 1
         found = f"found byte 0x{content[error.start]:02x}, which is not UTF-8"
         raise InputError(f"{path}: line {line}", found, f"allowed: {kind}, in UTF-8") from error
+
+
+def sha256(path: Path) -> str:
+    """Of a regular file as it lies there, in hexadecimal digits; raises as `read_bytes`, but for its size."""
+    with _opened(path, "a file") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def reason(error: Exception) -> str:

@@ -13,9 +13,11 @@ from typing import TypeVar
 
 from bench.files import whole
 from bench.trace.trace import Trace
+from bench.validate import independent
 
 T = TypeVar("T")
-TESTS = Path(__file__).resolve().parent
+#: Files that decide on what the integrator makes of a case.
+INTEGRATOR = tuple(sorted(Path(independent.__file__).parent.rglob("*.py")))
 
 
 def kept(make: Callable[[], T], *made_by: str) -> T:
@@ -27,9 +29,8 @@ def kept(make: Callable[[], T], *made_by: str) -> T:
     """
     digest = hashlib.sha256()
     of_trace = Path(inspect.getfile(Trace))
-    for path in (of_trace, *map(Path, made_by), *sorted((TESTS / "independent").rglob("*.py"))):
-        if not path.name.startswith("test_") or str(path) in made_by:
-            digest.update(path.read_bytes())
+    for path in (of_trace, *map(Path, made_by), *INTEGRATOR):
+        digest.update(path.read_bytes())
     folder = Path(tempfile.gettempdir()) / f"servobench-tests-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
     path = folder / f"{Path(made_by[0]).stem}-{digest.hexdigest()[:16]}.pickle"

@@ -15,6 +15,7 @@ SOURCES = sorted((ROOT / "bench").rglob("*.py"))
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
     {"errors", "names", "bounds", "files", "structured", "assets"},
+    {"jobs"},
     {
         "units",
         "usual_units",
@@ -35,7 +36,7 @@ LAYERS = (
     {"identify"},
     {"friction_map"},
     {"diagnose"},
-    {"validate"},
+    {"check", "validate", "fleet", "export"},
     {"lab"},
     {"report"},
     {"demo"},
@@ -67,6 +68,13 @@ def test_no_import_goes_back(path):
     own = layer_of(module_of(path))
     back = [name for name in imports(path) if name != "bench.__version__" and layer_of(name) > own]
     assert not back, f"{module_of(path)} imports {back} from further down the way of the data"
+
+
+def test_the_truth_owes_nothing_to_what_it_judges():
+    folder = ROOT / "bench" / "validate" / "independent"
+    found = {name for path in sorted(folder.rglob("*.py")) for name in imports(path)}
+    others = {name for name in found if not name.startswith("bench.validate.independent")}
+    assert others == {"bench.trace.trace"}, "a recording is a Trace; nothing else of the bench has a part in making one"
 
 
 #: Names of the bench's own effects, each a word of its own in a text.

@@ -75,6 +75,15 @@ class Hypothesis:
         """This hypothesis with other terms."""
         return replace(self, terms=tuple(terms))
 
+    def admits(self, effect: Effect) -> bool:
+        """Whether an effect may come beside these: one coupling, one of what a recording confuses."""
+        present = [term.effect for term in self.terms]
+        if effect in present and not effect.repeatable:
+            return False
+        if effect.couples and any(other.couples for other in present):
+            return False
+        return not any(other.name in effect.not_beside for other in present)
+
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the effects."""

@@ -13,7 +13,7 @@ from bench.balance.friction_levels import with_friction, with_load
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.last_digit import cut_off
 from bench.balance.load_side import loads_of
-from bench.balance.rows import Rows
+from bench.balance.rows import Rows, known_of
 from bench.effects.effect import Load
 from bench.effects.signals import Signals
 from bench.trace.filter import Column
@@ -106,7 +106,19 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
         effort = rows.memory.get(
             ("effort", late, *made_of), lambda: seen.table(lambda s: [[(s.effort, 0)]], late)[:, 0]
         )
+    if moving or late:
+        effort = effort - rows.memory.get(("known", late, *made_of), lambda: _known(seen, moving, late))
     return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds)
+
+
+def _known(seen: Rows, moving: float, late: float) -> Array:
+    """What more is known to act (m,) - N*m (N): as the motion tells it, whose lag is undone; all of it of an effort
+    that was made anew.
+    """
+    if not seen.stretches[0].signals.known:
+        return np.zeros(seen.effort.size)
+    known = seen.table(known_of, moving)[:, 0]
+    return known if late else known - seen.table(known_of)[:, 0]
 
 
 def term_columns(rows: Rows, seen: Rows, hypothesis: Hypothesis, index: int) -> Array:

@@ -87,7 +87,8 @@ def white_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
         late = (1.0 + theta[MISALIGNMENT] * s) * (1.0 + effort_lag(hypothesis) * s)
         effort = left * conditioning.effort_noise**2 * np.abs(late) ** 2
-        return effort + conditioning.source_noise**2 * np.abs(kinetic) ** 2
+        known = conditioning.known_noise**2 * np.abs((1.0 + moving * s) * s) ** 2
+        return effort + known + conditioning.source_noise**2 * np.abs(kinetic) ** 2
 
     return power
 

@@ -17,6 +17,7 @@ from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
 from bench.trace.conditioning import Conditioning, condition, known_sign, raw_speed
 from bench.trace.filter import Column, GaussianFilter
+from bench.trace.known import known_column
 from bench.trace.trace import Trace
 
 #: Widest filter - s: shapes of friction live in the milliseconds around a reversal.
@@ -53,7 +54,7 @@ class Rows:
         conditioning: source, noises and filter.
         origin: of the recording.
         scope: what it is able to show.
-        effort: filtered motor torque at the used rows - N*m (N) - (m,).
+        effort: filtered motor torque at the used rows, less what is known to act - N*m (N) - (m,).
         motion: what tells its motion from that of the recording as reported; () as reported.
         memory: columns made before.
         still: whether what follows the motion behind a coupling is kept while the motion is corrected a little.
@@ -97,7 +98,7 @@ class Rows:
             InputError: a signal is missing, or rig and recording do not fit together.
             UndeterminedError: the recording is too short, or never moves clearly.
         """
-        effort, _ = rig.net_effort(trace)
+        effort, _ = rig.own_effort(trace)
         if conditioning is None:
             found = condition(trace, effort, cutoff)
             width = width or (found.filter.width if cutoff else min(WIDEST, found.filter.width))
@@ -117,8 +118,14 @@ class Rows:
             conditioning,
             trace.origin,
             _scope(trace, rig, stretches, conditioning),
-            _table(stretches, conditioning.filter, lambda s: [[(s.effort, 0)]], 0.0)[:, 0],
+            _explained(stretches, conditioning.filter),
         )
+
+    @property
+    def correlation(self) -> float:
+        """Variance of a sum of filtered noise over that of independent rows: 2*sqrt(pi)*width over their distance."""
+        smooth = self.conditioning.filter
+        return max(1.0, 2.0 * np.sqrt(np.pi) * smooth.width / (smooth.stride * smooth.sample_period))
 
     def with_signals(self, change: Callable[[Signals], Signals], made_by: Hashable = None) -> Rows:
         """The same rows over changed raw signals (a corrected angle, another friction level).
@@ -132,7 +139,7 @@ class Rows:
         moved = any(new.position is not old.position or new.velocity is not old.velocity for new, old in pairs)
         effort = self.effort
         if any(new.effort is not old.effort for new, old in pairs):
-            effort = _table(stretches, self.conditioning.filter, lambda s: [[(s.effort, 0)]], 0.0)[:, 0]
+            effort = _explained(stretches, self.conditioning.filter)
         memory = self.memory if made_by is not None else Memory()
         motion = (made_by if made_by is not None else object()) if moved and not self.still else self.motion
         return replace(self, stretches=stretches, effort=effort, motion=motion, memory=memory)
@@ -194,6 +201,19 @@ def clear_motion(conditioning: Conditioning, kind: AxisKind) -> str:
     )
 
 
+def known_of(signals: Signals) -> list[Column]:
+    """The torque that is known to act, as the one column of a table."""
+    return [signals.known]
+
+
+def _explained(stretches: Sequence[Stretch], smooth: GaussianFilter) -> Array:
+    """Filtered motor torque less what is known to act, at the used rows - N*m (N) - (m,)."""
+    effort = _table(stretches, smooth, lambda s: [[(s.effort, 0)]], 0.0)[:, 0]
+    if not stretches[0].signals.known:
+        return effort
+    return effort - _table(stretches, smooth, known_of, 0.0)[:, 0]
+
+
 def _table(
     stretches: Sequence[Stretch], smooth: GaussianFilter, columns: Callable[[Signals], Sequence[Column]], lag: float
 ) -> Array:
@@ -234,6 +254,7 @@ def _stretch(
         peak_effort=peak_effort,
         sample_period=period,
         source=conditioning.source,
+        known=known_column(trace, part),
     )
     return Stretch(signals, used, part.start)
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.checks.parts import speed_of, stretches
 from bench.rig.rig import Rig
+from bench.trace.known import less_known
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
@@ -62,7 +63,7 @@ def effort_of(trace: Trace, rig: Rig | None) -> tuple[Array, str] | None:
         return None
     if rig is None:
         return trace[names[0]], names[0]
-    effort, _ = rig.effort(trace)
+    effort = less_known(trace, rig.effort(trace)[0])
     direct = rig.axis_kind.effort
     return effort, direct if direct in trace else next(name for name in names if name not in ("torque", "force"))
 

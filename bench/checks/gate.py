@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from bench.axis_kind import INERTIA
-from bench.checks import effort, losses, signals, timing, velocity, wraps
+from bench.checks import constants, effort, losses, signals, timing, velocity, wraps
 from bench.checks.check import STATUSES, Check
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.rig.rig import Rig
@@ -26,12 +26,15 @@ CHECKS: Looks = (
     signals.clips,
     signals.resolution,
     effort.check,
+    constants.check,
 )
 #: Not of a recording at one steady speed: it may never change, say the same twice, and its effort follows no motion.
 UNSTEADY = (signals.moves, losses.check, timing.rate, signals.resolution, effort.check)
 STEADY = tuple(check for check in CHECKS if check not in UNSTEADY)
 #: Of a later part of a recording: what can go wrong there, not what holds for all of it.
-PARTS = tuple(check for check in CHECKS if check not in (timing.rate, signals.resolution, effort.check))
+PARTS = tuple(
+    check for check in CHECKS if check not in (timing.rate, signals.resolution, effort.check, constants.check)
+)
 
 
 class UnanswerableError(UndeterminedError):

@@ -17,10 +17,13 @@ import typer
 from typer.exceptions import TyperException
 
 from bench import __version__
+from bench.cli.check import check
 from bench.cli.common import guarded
 from bench.cli.demo import demo
 from bench.cli.diagnose import diagnose
 from bench.cli.effects import effects
+from bench.cli.export import export
+from bench.cli.fleet import fleet
 from bench.cli.friction import friction
 from bench.cli.identify import identify
 from bench.cli.inspect import inspect
@@ -30,6 +33,7 @@ from bench.cli.replay import replay
 from bench.cli.report import report
 from bench.cli.rigs import rigs
 from bench.cli.simulate import simulate
+from bench.cli.validate import validate
 from bench.errors import BenchError
 from bench.names import plain, short
 
@@ -48,7 +52,24 @@ def bench(
         typer.echo(context.get_help())
 
 
-COMMANDS = (demo, simulate, effects, inspect, identify, diagnose, replay, friction, report, lab, limits, rigs)
+COMMANDS = (
+    demo,
+    simulate,
+    effects,
+    inspect,
+    identify,
+    diagnose,
+    replay,
+    friction,
+    check,
+    validate,
+    fleet,
+    export,
+    lab,
+    limits,
+    rigs,
+    report,
+)
 for command in COMMANDS:
     app.command()(guarded(command))
 
@@ -98,6 +119,8 @@ def _failed(message: str, status: int) -> int:
     if "--debug" in sys.argv and sys.exc_info()[0] is not None:
         traceback.print_exc()
     line = plain(" ".join(message.replace("Value error, ", "").split()))
+    if "GITHUB_ACTIONS" in os.environ:
+        line = line.replace("##[", "## [")  # by which GitHub knows an old command wherever it stands in a line
     if line:
         typer.echo(f"bench: {short(line, LONGEST)}", err=True)
     return status

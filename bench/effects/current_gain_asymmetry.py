@@ -17,9 +17,12 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.effects.kinds import Axis, Number, Sensing, Values
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Base, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+#: Of what two shunts of 5 % make: more, such as what a torque of many waves imitates in one direction, is no sensor's.
+MOST = 0.1
 
 
 class CurrentGainAsymmetry(Sensing):
@@ -33,6 +36,10 @@ class CurrentGainAsymmetry(Sensing):
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """-|M|/2: what the readings of positive current lack, and those of negative have too much."""
         return [[(-0.5 * np.abs(signals.torque), 0)]]
+
+    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+        """No more than a sensor's tolerance."""
+        return all(abs(difference) <= MOST for (difference,) in strengths)
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> dict[str, float]:
         """The strength itself."""

@@ -231,8 +231,8 @@ class Effect:
         found = self.report(strengths, shape, base)
         return all(q.lower <= found[q.name] <= q.upper for q in self.quantities if q.name in found)
 
-    def plausible(self, shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
-        """Whether its shapes, several if it is repeatable, are credible in such a recording."""
+    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+        """Whether its terms, several if it is repeatable, are credible in such a recording."""
         return True
 
     def credible(self, shape: Sequence[float]) -> bool:

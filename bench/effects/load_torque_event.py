@@ -83,7 +83,7 @@ class LoadTorqueEvent(Mechanism):
         """It ends after it starts."""
         return shape[1] > shape[0]
 
-    def plausible(self, shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
         """Each lasts longer than the filter blurs; all of them for most of the recording would be how the axis is."""
         lasting = [stop - start for start, stop in shapes]
         return min(lasting) > RESOLVED * scope.width and sum(lasting) <= LONGEST * scope.duration

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
+from bench.trace.filter import Column
 from bench.units import Quantity
 
 
@@ -28,6 +29,7 @@ class Signals:
         source: signal that speed and acceleration are taken from, `velocity` or `position`.
         load: torque of the load as named effects make it - N*m (N).
         began: the recording, since the start of the first of several that are joined - s.
+        known: torque that is known to act beside - N*m (N) -, as a column; () where none is.
     """
 
     time: Array
@@ -42,6 +44,7 @@ class Signals:
     source: str = "velocity"
     load: Array | float = 0.0
     began: float = 0.0
+    known: Column = ()
 
 
 @dataclass(frozen=True)

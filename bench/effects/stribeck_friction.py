@@ -51,7 +51,7 @@ class StribeckFriction(Friction):
         """Friction rises towards standstill, and dry friction stays positive."""
         return strengths[0] > 0.0 and base.coulomb > 0.0
 
-    def plausible(self, shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
         """The rise ends within a share of the speeds."""
         return all(speed <= RISE * scope.top_speed for (speed,) in shapes)
 

@@ -23,6 +23,9 @@ from bench.units import Quantity
 #: Share of what stands above noise that it must explain: of what changes at once at half time, t takes
 #: (3*T**2/8)**2/(T**3/3)/(T/2) = 27/32 of the squares, and a compensation that is switched on is no drift.
 NEEDED = 0.85
+#: Relative change over a recording at most: ferrite magnets that warm by 150 K. Without a bound a rate that fades the
+#: torque out passes for what a torque of many waves, such as cogging at rising speed, has to do with time.
+MOST = 0.3
 
 
 class TorqueConstantDrift(Sensing):
@@ -40,6 +43,10 @@ class TorqueConstantDrift(Sensing):
     def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
         """More than a change at once gives it."""
         return NEEDED
+
+    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+        """No more than magnets can lose."""
+        return all(abs(rate) * scope.duration <= MOST for (rate,) in strengths)
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> dict[str, float]:
         """The strength itself."""

@@ -9,8 +9,17 @@ from bench.rig.rig import Rig
 
 
 def load_inertia(parameters: Mapping[str, Parameter], rig: Rig) -> dict[str, Parameter]:
-    """J_load = J - J_motor (- J_gear, times i**2 behind a gear), where the rig knows the motor and J is in kg*m**2."""
-    inertia = parameters.get("moment_of_inertia")
+    """J_load = J - J_motor (- J_gear, times i**2 behind a gear), where the rig knows the motor and J is in kg*m**2.
+
+    With the links of a robot known, what is not theirs instead: the armature of the joint, J*i**2 - J_links.
+    """
+    inertia = parameters.get(rig.axis_kind.inertia)
+    if inertia is not None and rig.load is not None and rig.load.link_inertia is not None:
+        square, links = rig.load.gear_ratio**2, rig.load.link_inertia
+        low, high = (bound * square - links for bound in inertia.ci95)
+        return {
+            "armature": Parameter(inertia.value * square - links, inertia.unit, inertia.std_error * square, (low, high))
+        }
     if inertia is None or rig.motor.rotor_inertia is None or inertia.unit != "kg*m**2":
         return {}
     value, square = _beyond(inertia.value, rig), _beyond(1.0, rig) - _beyond(0.0, rig)

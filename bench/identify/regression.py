@@ -25,7 +25,7 @@ from bench.identify.estimate import Estimate, RefusedEstimateError, Residual
 from bench.identify.load_inertia import load_inertia
 from bench.identify.parallel import in_parallel
 from bench.identify.solution import NOISE_ALONE, SURE, Left, Solved, equations_of, solved_with_shift
-from bench.identify.tolerance import by_tolerance
+from bench.identify.tolerance import by_hint, by_tolerance
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -41,6 +41,7 @@ class Gathered:
         effort_unit: N*m, N, or what the rig allows.
         samples_read: of all parts.
         doubt: how far J, K_w and K_0 may be off as they move with the filter's cut-off (3,).
+        hinted: how far a fault of a sensor that the recording hints at would move them (3,).
         tolerance: how far coefficients may be off by the rig's tolerances (p,).
         warnings: that they move.
         checks: of all parts.
@@ -52,6 +53,7 @@ class Gathered:
     effort_unit: str
     samples_read: int
     doubt: Array
+    hinted: Array
     tolerance: Array
     warnings: tuple[str, ...] = ()
     checks: tuple[Check, ...] = ()
@@ -104,7 +106,18 @@ def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Ga
     unit = rig.net_effort(first)[1]
     whole = join(equations).coarsened(BLOCKS)
     tolerance = by_tolerance(gated.trace, rig, chosen.tried)
-    return Gathered(whole, rows, hypothesis, unit, sum(read), chosen.doubt, tolerance, chosen.warnings, together)
+    return Gathered(
+        whole,
+        rows,
+        hypothesis,
+        unit,
+        sum(read),
+        chosen.doubt,
+        by_hint(chosen.tried),
+        tolerance,
+        chosen.warnings,
+        together,
+    )
 
 
 def solve(gathered: Gathered, rig: Rig) -> Estimate:
@@ -135,6 +148,9 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
     doubt = np.pad(gathered.doubt, (0, found.theta.size - gathered.doubt.size))
     more = np.sqrt(left.misfit(found) ** 2 + doubt**2 + gathered.tolerance**2)
     parameters = parameters_of(found, kind, unit, more)
+    for term, away in zip(TERMS, gathered.hinted, strict=True):
+        told = parameters[kind.parameter(term)]
+        parameters[kind.parameter(term)] = told.reaching(told.value + float(away))
     parameters |= load_inertia(parameters, rig)
     chosen = equations.select(found.columns)
     power, squares = max(chosen.residual_power(found.theta), 0.0), float(chosen.power.sum())
@@ -153,7 +169,6 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
         source=gathered.rows.conditioning.source,
         warnings=(
             *gathered.warnings,
-            *_of_rig(rig),
             *_shifted(found.shift, gathered.rows),
             *negative(parameters, kind),
         ),
@@ -190,11 +205,6 @@ def _remaining(estimate: Estimate) -> Iterator[str]:
             f"the model explains {estimate.explained:.2%} of the effort's variance and leaves "
             f"{residual.rms / residual.noise_floor:.3g} times what noise alone would: bench diagnose may tell why"
         )
-
-
-def _of_rig(rig: Rig) -> Iterator[str]:
-    if rig.motor.disagreement is not None:
-        yield f"{rig.source}: {rig.motor.disagreement}"
 
 
 def _shifted(shift: tuple[float, float], rows: Rows) -> Iterator[str]:

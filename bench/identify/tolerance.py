@@ -1,12 +1,15 @@
-"""What the rig's tolerances leave open of an estimate: it is formed again with each value at the end of its own."""
+"""What is left open of an estimate by the rig's tolerances, and by a sensor's fault too weak to be named."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from bench.arrays import Array
+from bench.balance.fit import fit
+from bench.balance.hint import hint
 from bench.balance.rows import Rows
-from bench.identify.cutoffs import Tried
+from bench.effects.catalogue import catalogue
+from bench.identify.cutoffs import TERMS, Tried
 from bench.identify.determined import only_direction
 from bench.identify.solution import equations_of, solved_with_shift
 from bench.rig.rig import Rig
@@ -29,3 +32,15 @@ def by_tolerance(first: Trace, rig: Rig, tried: Tried) -> Array:
         found = solved_with_shift(equations_of(rows, tried.hypothesis), rows, offset).theta
         moved = np.hypot(moved, found - theta)
     return moved
+
+
+def by_hint(tried: Tried) -> Array:
+    """How far J, K_w and K_0 would move with the sensor's fault that a recording hints at (3,); 0 without one.
+
+    Args:
+        tried: the estimate of the recording, or of its first part, at the cut-off taken.
+    """
+    found = fit(tried.rows, tried.hypothesis)
+    beside = hint(found, catalogue().values())
+    places = [*TERMS.values()]
+    return np.zeros(len(places)) if beside is None else beside.theta[places] - found.theta[places]

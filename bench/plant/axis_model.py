@@ -17,8 +17,10 @@ from bench.plant.model import AxisParameters, build_spec
 from bench.rig.load import Load
 from bench.rig.rig import Rig
 
-#: Hooks of electronics and sensing that the drive has to do with.
-IN_THE_LOOP = ("flowing", "acting", "delivered", "seen", "acted")
+#: Hooks of electronics and sensing between the effort that is asked for and the one that acts; and with what the drive
+#: sees of the motion, all that it has to do with.
+OF_TORQUE = ("flowing", "acting", "delivered", "acted")
+IN_THE_LOOP = (*OF_TORQUE, "seen")
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,17 @@ class AxisModel:
     def ticked(self) -> tuple[Present, ...]:
         """Mechanisms that have to act in every step."""
         return tuple(present for present in self.of_kind(Mechanism) if present not in self.native)
+
+    @property
+    def stepped(self) -> tuple[Present, ...]:
+        """Effects that change friction, inertia or torque of the axis in every step."""
+        drive = (*self.of_kind(Electronics), *self.of_kind(Sensing))
+        return *self.ticked, *(p for p in drive if any(p.effect.overrides(hook) for hook in OF_TORQUE))
+
+    @property
+    def coupled(self) -> bool:
+        """Whether an effect joins motor and load."""
+        return any(present.effect.couples for present in self.effects)
 
     @property
     def all_native(self) -> bool:

@@ -28,12 +28,18 @@ from bench.axis_kind import COULOMB, ROTARY, VISCOUS, AxisKind
 from bench.effects.mjcf import AXIS, LOAD, LOAD_TORQUE, MOTOR
 from bench.effects.mjcf import DRIVE as DRIVE
 from bench.errors import InputError
+from bench.plant.mounting import Mounting
 from bench.rig.load import Load
 from bench.rig.rig import Rig
 from bench.units import Quantity
 
 #: Share of the motion that dry friction takes away in one step while it sticks; MuJoCo's default of 0.9 creeps.
 STICKING_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+
+#: The ground that is drawn under an axis.
+FLOOR = "floor"
+#: Mass of a body whose mass nobody told - kg: MuJoCo wants one, and where the body is moved about it weighs nothing.
+NO_MASS = 1e-6
 
 #: The visible disk is drawn to size up to what clears the floor - m.
 LARGEST_VISIBLE_RADIUS = 0.13
@@ -141,9 +147,29 @@ def _set_inertia(spec: mujoco.MjSpec, parameters: AxisParameters) -> None:
     for name, inertia in parts.items():
         body = spec.body(name)
         if parameters.kind.turns:
-            body.inertia = [inertia] * 3
+            body.inertia = disk_inertia(inertia)
         else:
             body.mass = inertia
+
+
+def disk_inertia(inertia: float) -> list[float]:
+    """Inertia about the shaft and about two diameters of a flat disk - kg*m**2 - whose shaft is x."""
+    return [inertia, 0.5 * inertia, 0.5 * inertia]
+
+
+def set_masses(spec: mujoco.MjSpec, kind: AxisKind, mounting: Mounting) -> str:
+    """Give the bodies of an axis the masses that are known, and nobody's to the others; says which, in a sentence.
+
+    About the shaft no mass is felt; it is where the axis itself is moved. What moves along a slide has its mass.
+    """
+    if not kind.turns:
+        return "Masses are those of the model, parted between motor and load."
+    spec.body(MOTOR).mass = NO_MASS
+    known = mounting.load_mass
+    spec.body(LOAD).mass = NO_MASS if known is None else known
+    load = "the load's either" if known is None else f"the load's is the disk's, {known:.4g} kg"
+    nothing = f"{NO_MASS:g} kg stands in for what is not known"
+    return f"Inertias are those of flat disks. The motor's mass is not known, {load}; {nothing}."
 
 
 def _set_friction(joint: mujoco.MjsJoint, parameters: AxisParameters, timestep: float) -> None:

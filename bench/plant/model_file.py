@@ -26,13 +26,16 @@ from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.errors import InputError
 from bench.files import write_text
 from bench.plant.axis_model import AxisModel
-from bench.plant.model import AxisParameters, parameter_quantities
+from bench.plant.model import FLOOR, AxisParameters, parameter_quantities, set_masses
+from bench.plant.mounting import Mounting
 from bench.structured import read_toml
 from bench.units import nearest
 
 SCHEMA = "bench.model/1"
 #: Step that the exported MuJoCo model runs at - s.
 TIMESTEP = 250e-6
+#: Units of what a mounting holds.
+MOUNTED = {"gear_ratio": "dimensionless", "load_mass": "kg", "link_inertia": "kg*m**2"}
 
 
 @dataclass(frozen=True)
@@ -43,11 +46,13 @@ class StoredModel:
         name: of the axis.
         model: the axis with its effects.
         misalignment: by how much recordings of it report the effort late - s.
+        mounting: how the axis sits in its machine; the model itself is on the motor's side.
     """
 
     name: str
     model: AxisModel
     misalignment: float = 0.0
+    mounting: Mounting = Mounting()
 
 
 def write_model(folder: str | Path, stored: StoredModel, timestep: float = TIMESTEP) -> tuple[Path, Path]:
@@ -58,17 +63,25 @@ def write_model(folder: str | Path, stored: StoredModel, timestep: float = TIMES
     """
     toml, xml = Path(folder) / "model.toml", Path(folder) / "model.xml"
     write_text(toml, model_toml(stored))
-    write_text(xml, model_xml(stored.model, timestep))
+    write_text(xml, model_xml(stored, timestep))
     return toml, xml
 
 
-def model_xml(model: AxisModel, timestep: float = TIMESTEP) -> str:
-    """MJCF that MuJoCo opens alone; what is not native in it is named in a comment."""
+def model_xml(stored: StoredModel, timestep: float = TIMESTEP) -> str:
+    """MJCF that MuJoCo opens alone, and that attaches to any body; a comment tells what it lacks, and assumes."""
+    model, mounting = stored.model, stored.mounting
     spec = model.spec(timestep)
+    spec.delete(spec.geom(FLOOR))
+    mass = set_masses(spec, model.parameters.kind, mounting)
     spec.compile()
     missing = sorted({present.name for present in model.effects} - set(model.structure))
     rest = f"; not in it, but in model.toml: {', '.join(missing)}" if missing else ""
-    return f"<!-- Axis at steps of {timestep:g} s, torque as input{rest}. -->\n{spec.to_xml()}"
+    notes = [f"Axis at steps of {timestep:g} s, torque as input{rest}.", mass]
+    if mounting.gear_ratio != 1.0:
+        notes.append(
+            f"All of it is on the motor's side of a gear of {mounting.gear_ratio:g}: the joint is the motor's shaft."
+        )
+    return "".join(f"<!-- {note} -->\n" for note in notes if note) + spec.to_xml()
 
 
 def model_toml(stored: StoredModel, beside: Mapping[str, Any] | None = None) -> str:
@@ -91,6 +104,8 @@ def model_toml(stored: StoredModel, beside: Mapping[str, Any] | None = None) -> 
         content["winding"] = {key: _determined(getattr(model.winding, key), unit) for key, unit in units.items()}
     if model.effects:
         content["effects"] = [_effect_table(present, kind) for present in model.effects]
+    if stored.mounting.told:
+        content["mounting"] = {key: _determined(value, MOUNTED[key]) for key, value in stored.mounting.told.items()}
     return tables_toml(kind, {**content, **(beside or {})})
 
 
@@ -125,7 +140,9 @@ def load_model(path: str | Path) -> StoredModel:
     )
     effects = _effects(table.get("effects", []), kind, f"{path}: effects")
     misalignment = _number(table.get("misalignment", 0.0), "s", f"{path}: misalignment")
-    return StoredModel(str(table.get("name", "axis")), AxisModel(parameters, effects, peak, winding), misalignment)
+    model = AxisModel(parameters, effects, peak, winding)
+    mounting = _mounting(table.get("mounting", {}), f"{path}: mounting")
+    return StoredModel(str(table.get("name", "axis")), model, misalignment, mounting)
 
 
 def read_table(path: str | Path) -> dict[str, Any]:
@@ -144,6 +161,15 @@ def _values(table: object, units: Mapping[str, str], where: str) -> dict[str, fl
         if key not in table:
             raise InputError(f"{where}.{key}", "missing", "this key is required")
     return {key: _number(table[key], unit, f"{where}.{key}") for key, unit in units.items()}
+
+
+def _mounting(table: object, where: str) -> Mounting:
+    given = {key: unit for key, unit in MOUNTED.items() if not isinstance(table, dict) or key in table}
+    values = _values(table, given, where)
+    for key, value in values.items():
+        if value <= 0.0:
+            raise InputError(f"{where}.{key}", f"found {value:g}", "allowed: above zero")
+    return Mounting(**values)
 
 
 def _effect_table(present: Present, kind: AxisKind) -> dict[str, float | str]:

@@ -12,52 +12,42 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import mujoco
 import numpy as np
-from mujoco.batch import Batch
 
 from bench.arrays import Array
 from bench.effects.kinds import Electronics, Friction, Mechanism, Moment, Sensing
-from bench.effects.mjcf import AXIS, BRISTLES
 from bench.plant.axis_model import AxisModel
 from bench.plant.rows import Rows, gather
-
-#: Places of the two friction levels among the parameters of a passive motor with bristles.
-BRISTLE_LEVELS = slice(3, 5)
+from bench.plant.seat import Seat
 
 
 class TickedEffects:
     """Ticked effects of axes side by side.
 
     Args:
-        batch: that simulates them.
-        models: one for each axis of the batch.
+        seat: where MuJoCo has the axes.
+        models: one for each of them.
         velocity: they start with - rad/s (m/s) - (axes,).
     """
 
-    def __init__(self, batch: Batch, models: Sequence[AxisModel], velocity: Array) -> None:
-        self._step = float(batch.model.opt.timestep)
+    def __init__(self, seat: Seat, models: Sequence[AxisModel], velocity: Array) -> None:
+        self._seat, self._step = seat, seat.step
         self._mechanisms = gather(models, Mechanism, ticked=True)
         electronics = gather(models, Electronics)
         self._flowing = _through(electronics, "flowing")
         self._acting = _through(electronics, "acting")
         self._delivered = _through(electronics, "delivered")
         self._acted = _through(gather(models, Sensing), "acted")
-        self._friction = _FrictionLevels(batch, models)
-        dof = batch.model.joint(AXIS).dofadr[0]
+        self._friction = _FrictionLevels(seat, models)
         self._inertia = _through(self._mechanisms, "added_inertia")
         self._resisting = _through(self._mechanisms, "resisting_torque")
         self._factors = _through(self._mechanisms, "torque_factor")
-        if self._inertia:
-            self._armature = batch.expand("dof_armature")[:, dof]
-            self._bare_armature = self._armature.copy()
-        self._applied = batch.bind("qfrc_applied")[:, dof]
         self._before = velocity.copy()
 
     def act(
         self, time: float | Array, position: Array, velocity: Array, demand: Array, began: float | Array = 0.0
     ) -> tuple[Array, Array]:
-        """Set up the batch for the next step; returns the effort that is reported and the motor's torque, (axes,) each.
+        """Set up the next step; returns the effort that is reported and the motor's torque, (axes,) each.
 
         Args:
             time: at the start of the step, since the recording's start - s - one for all axes, or (axes,).
@@ -75,13 +65,15 @@ class TickedEffects:
             for rows in self._factors:
                 torque[rows.index] *= rows.effect.torque_factor(rows.values, rows.axis, rows.moment(at))
             at = Moment(at.time, position, middle, torque, began)
-        self._applied[:] = -self._friction.offset(at)
+        applied = np.zeros_like(velocity) - self._friction.offset(at)
         for rows in self._resisting:
-            self._applied[rows.index] -= rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))
+            applied[rows.index] -= rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))
+        self._seat.set_torque(applied)
         if self._inertia:
-            self._armature[:] = self._bare_armature
+            added = np.zeros_like(velocity)
             for rows in self._inertia:
-                self._armature[rows.index] += rows.effect.added_inertia(rows.values, rows.axis, rows.moment(at))
+                added[rows.index] += rows.effect.added_inertia(rows.values, rows.axis, rows.moment(at))
+            self._seat.set_added_inertia(added)
         return reported, torque
 
     def _driven(self, time: float | Array, velocity: Array, demand: Array) -> tuple[Array, Array]:
@@ -106,7 +98,7 @@ class TickedEffects:
 class _FrictionLevels:
     """The level of dry friction, where effects change it in every step."""
 
-    def __init__(self, batch: Batch, models: Sequence[AxisModel]) -> None:
+    def __init__(self, seat: Seat, models: Sequence[AxisModel]) -> None:
         mechanisms = gather(models, Friction, ticked=True)
         self._coulomb = np.array([model.parameters.coulomb_friction for model in models])
         self._excesses = _through(mechanisms, "friction_excess")
@@ -114,18 +106,12 @@ class _FrictionLevels:
         self._differences = _through(mechanisms, "friction_difference")
         self._under_load = _through(mechanisms, "friction_under_load")
         self._loads = _through(gather(models, Mechanism), "load_torque") if self._under_load else []
-        self._levels: Array | None = None
-        if self._excesses or self._factors or self._differences or self._under_load:
-            actuator = mujoco.mj_name2id(batch.model, mujoco.mjtObj.mjOBJ_ACTUATOR, BRISTLES)
-            if actuator >= 0:
-                self._levels = batch.expand("actuator_biasprm")[:, actuator, BRISTLE_LEVELS]
-            else:
-                dof = batch.model.joint(AXIS).dofadr
-                self._levels = batch.expand("dof_frictionloss")[:, dof[0] : dof[0] + 1]
+        self._seat = seat
+        self._changes = bool(self._excesses or self._factors or self._differences or self._under_load)
 
     def offset(self, at: Moment) -> Array | float:
         """Set the level; returns half the difference of the two directions' levels - N*m (N) - (axes,)."""
-        if self._levels is None:
+        if not self._changes:
             return 0.0
         level = self._coulomb.copy()
         for rows in self._excesses:
@@ -145,10 +131,10 @@ class _FrictionLevels:
             level[rows.index] *= factor
             half[rows.index] *= factor
         if not self._differences:
-            self._levels[:] = np.maximum(level, 0.0)[:, None]
+            self._seat.set_friction(np.maximum(level, 0.0))
             return 0.0
         forward, backward = np.maximum(level + half, 0.0), np.maximum(level - half, 0.0)
-        self._levels[:] = (0.5 * (forward + backward))[:, None]
+        self._seat.set_friction(0.5 * (forward + backward))
         return 0.5 * (forward - backward)
 
 

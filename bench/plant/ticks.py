@@ -16,6 +16,7 @@ from bench.plant.plant import Plant
 from bench.plant.quiet import quiet
 from bench.plant.references import References, side_by_side
 from bench.plant.rows import gather
+from bench.plant.seat import BatchSeat
 from bench.plant.sensing import seen_by_drive
 from bench.plant.states import DIVERGED, States
 from bench.plant.ticked import TickedEffects
@@ -43,7 +44,9 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
     position[:] = motion.position[0] + half * velocity
     models = [plant.model for plant in plants]
     encoders = [rows for rows in gather(models, Sensing) if rows.effect.overrides("seen")]
-    acting = TickedEffects(batch, models, velocity) if any(not model.all_native for model in models) else None
+    acting = (
+        TickedEffects(BatchSeat(batch), models, velocity) if any(not model.all_native for model in models) else None
+    )
     record = States(motion.time, *(np.zeros_like(motion.velocity) for _ in range(4)))
     with quiet():
         for k in range(len(motion.time)):

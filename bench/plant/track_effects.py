@@ -23,6 +23,7 @@ from bench.plant.axis_model import AxisModel
 from bench.plant.blocks import blocks
 from bench.plant.native import OpenLoop, run_blocks
 from bench.plant.quiet import quiet
+from bench.plant.seat import BatchSeat
 from bench.plant.states import DIVERGED
 from bench.plant.stretches import Held, Reported, Stretch, all_stretches, inputs_of
 from bench.plant.ticked import TickedEffects
@@ -107,7 +108,7 @@ def _run_ticked(simulated: Sequence[Array], stretches: Sequence[Stretch]) -> lis
     position[:] = starts[:, 0] + step / 2.0 * velocity
     since, began = (np.array([getattr(one, name) for one in stretches]) for name in ("since", "began"))
     mechanisms = [stretch.held.model.with_effects(stretch.held.model.of_kind(Mechanism)) for stretch in stretches]
-    acting = TickedEffects(batch, mechanisms, velocity)
+    acting = TickedEffects(BatchSeat(batch), mechanisms, velocity)
     reported = [Reported(stretch, simulated[stretch.row][stretch.part]) for stretch in stretches]
     sound = np.ones(count, dtype=np.bool_)
     for start, stop in blocks(max(stretch.steps for stretch in stretches), 8 * 5 * count):

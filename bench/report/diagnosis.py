@@ -220,7 +220,7 @@ def write_diagnosis(
     Returns:
         Paths written.
     """
-    toml, xml = _model_toml(diagnosis), None if diagnosis.model is None else model_xml(diagnosis.model.model)
+    toml, xml = _model_toml(diagnosis), None if diagnosis.model is None else model_xml(diagnosis.model)
     json = diagnosis_json(diagnosis, provenance) + "\n"
     files = [File(name="diagnosis.json", about="all of it as numbers", media="application/json", content=json)]
     if xml is not None:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from bench import __version__
-from bench.errors import InputError
+from bench.files import sha256
 
 
 def provenance(
@@ -32,16 +31,3 @@ def provenance(
         "options": dict(options),
     }
     return found if holdout is None else found | {"holdout": {"file": str(holdout), "sha256": sha256(holdout)}}
-
-
-def sha256(path: Path) -> str:
-    """Of a file as it lies there, in hexadecimal digits.
-
-    Raises:
-        InputError: it cannot be read.
-    """
-    try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError as error:
-        raise InputError(path, f"cannot be read ({error.strerror})", "give the path of a file") from error

@@ -25,6 +25,7 @@ class Load(Table):
         stroke: of a linear axis, from one end to the other; planned motions stay within it - m.
         eccentric_mass: of a pendulum on the load's shaft, known to pull by gravity - kg; with it `eccentric_radius`,
             of its centre from the shaft - m, and `hanging_position`, the load's angle at which it hangs - rad.
+        link_inertia: part of the inertia that a robot's own model has, on the load's side - kg*m**2.
     """
 
     outer_diameter: Length | None = None
@@ -38,6 +39,7 @@ class Load(Table):
     eccentric_mass: Mass | None = None
     eccentric_radius: Length | None = None
     hanging_position: Angle = 0.0
+    link_inertia: Inertia | None = None
 
     @model_validator(mode="after")
     def _one_disk(self) -> Load:

@@ -13,6 +13,7 @@ from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
 from bench.names import short
 from bench.rig.catalogue import catalogue_motor
+from bench.rig.check import Check
 from bench.rig.drive import Drive
 from bench.rig.load import Load
 from bench.rig.motor import Motor
@@ -20,6 +21,7 @@ from bench.rig.peak_curve import PeakCurve
 from bench.rig.simulation import Simulation
 from bench.rig.values import Table, Time, Wrap, tolerance_of
 from bench.structured import read_toml
+from bench.trace.known import less_known
 from bench.trace.possible import require_possible
 from bench.trace.trace import Trace
 from bench.units import nearest
@@ -59,6 +61,7 @@ class Rig(Table):
     drive: Drive | None = None
     trace: TraceNotes = TraceNotes()
     simulation: Simulation | None = None
+    check: Check | None = None
     source: Annotated[str, Field(exclude=True)] = "rig"
 
     @classmethod
@@ -123,6 +126,15 @@ class Rig(Table):
         raise InputError(trace.origin, "holds no current, torque, force or voltage", "identification needs one of them")
 
     def net_effort(self, trace: Trace) -> tuple[Array, str]:
+        """The effort less all that is known to act, and its unit: what inertia, friction and effects are to explain.
+
+        Raises:
+            InputError: as `own_effort`.
+        """
+        effort, unit = self.own_effort(trace)
+        return less_known(trace, effort), unit
+
+    def own_effort(self, trace: Trace) -> tuple[Array, str]:
         """The effort less the load torque that the rig knows (an eccentric mass under gravity), and its unit.
 
         Raises:
@@ -223,6 +235,7 @@ def _known_keys(keys: list[str]) -> list[str]:
         "drive": Drive,
         "trace": TraceNotes,
         "simulation": Simulation,
+        "check": Check,
         "peak_curves": PeakCurve,
     }
     for key in keys:

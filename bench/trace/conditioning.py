@@ -13,7 +13,9 @@ from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, GaussianFilter
+from bench.trace.known import less_known
 from bench.trace.noise import resolution, white_noise
+from bench.trace.signals import KNOWN_MOMENTUM
 from bench.trace.trace import Trace
 
 #: Where effort and acceleration share half of their power, signal and noise are equal.
@@ -43,6 +45,7 @@ class Conditioning:
         effort_step: between the values it takes; 0 where hardly one occurs twice - the effort's unit.
         speed_noise: of the raw speed whose sign is taken (central difference of a position) - rad/s (m/s).
         coherence: highest coherence of effort and acceleration over frequency.
+        known_noise: white noise of the momentum that is known - N*m*s (N*s); 0 where none is.
     """
 
     filter: GaussianFilter
@@ -52,6 +55,7 @@ class Conditioning:
     effort_step: float
     speed_noise: float
     coherence: float
+    known_noise: float = 0.0
 
     @property
     def order(self) -> int:
@@ -106,7 +110,8 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
     noise = {name: white_noise(*(trace[name][part] for part in parts)) for name in recorded}
     rank = {name: noise[name] * least.noise_gain(2 if name == "position" else 1) for name in noise}
     source = min(rank, key=lambda name: rank[name])
-    pairs = [(trace[source][part], effort[part]) for part in parts]
+    explained = less_known(trace, effort)
+    pairs = [(trace[source][part], explained[part]) for part in parts]
     frequency, coherence = _coherence(pairs, trace.sample_period, 2 - (source != "position"))
     peak = int(np.argmax(coherence))
     speed_noise = noise[source] / (np.sqrt(2.0) * trace.sample_period) if source == "position" else noise[source]
@@ -119,7 +124,8 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
     chosen = GaussianFilter.from_cutoff(cutoff, trace.sample_period)
     efforts = [effort[part] for part in parts]
     loud, step = white_noise(*efforts), resolution(np.concatenate(efforts))
-    return Conditioning(chosen, source, noise[source], loud, step, speed_noise, float(coherence[peak]))
+    known = white_noise(*(trace[KNOWN_MOMENTUM][part] for part in parts)) if KNOWN_MOMENTUM in trace else 0.0
+    return Conditioning(chosen, source, noise[source], loud, step, speed_noise, float(coherence[peak]), known)
 
 
 def moving(trace: Trace, source: str, least: int) -> list[slice]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from bench.errors import InputError
+from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_TORQUE
 from bench.trace.trace import Trace
 
 #: Largest magnitude of a signal - SI; of time it is 30,000 years, of position a spindle's turns in a year.
@@ -21,6 +22,8 @@ LARGEST = {
     "force": 1e12,
     "voltage": 1e8,
     "temperature": 1e8,
+    KNOWN_TORQUE: 1e12,
+    KNOWN_MOMENTUM: 1e12,
 }
 #: A signal that never exceeds this vanishes in its square - SI.
 SMALLEST = 1e-30

@@ -55,7 +55,7 @@ def stream(
     how = how_to_read(columns)
     if _is_parquet(Path(path)) and how.sample_period is None and not _counts_from_first_moment(str(path)):
         return _parquet(str(path), how, signals, chunk)
-    return _cut(read(path, columns), signals, chunk)
+    return cut(read(path, columns), signals, chunk)
 
 
 def _is_parquet(path: Path) -> bool:
@@ -91,7 +91,8 @@ def _continues(last: Trace | None, time: Array, period: float, origin: str) -> b
     return abs(step - period) <= JOINT * period
 
 
-def _cut(trace: Trace, signals: Collection[str] | None, chunk: int) -> Iterator[Trace]:
+def cut(trace: Trace, signals: Collection[str] | None = None, chunk: int = CHUNK) -> Iterator[Trace]:
+    """The same of a recording that is read already; arguments and what comes as of `stream`."""
     wanted = {name: values for name, values in trace.signals.items() if signals is None or name in signals}
     units = {name: trace.units[name] for name in wanted}
     start, last = 0, None

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from bench.validate.independent.effects import CATALOGUE, LATER, OUTSIDE
 from tests.blind.score import Score, twins
-from tests.independent.effects import CATALOGUE, LATER, OUTSIDE
 
 NOTHING, REMAINDER, REFUSED = "nothing", "remainder only", "refused"
 NONE_HIDDEN = "nothing hidden"

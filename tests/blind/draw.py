@@ -9,10 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tests.independent.case import Hidden
-from tests.independent.draw import any_effects, hidden
-from tests.independent.effects import CATALOGUE, OUTSIDE
-from tests.independent.sensors import Noise
+from bench.validate.independent.case import Hidden
+from bench.validate.independent.draw import any_effects, hidden
+from bench.validate.independent.effects import CATALOGUE, OUTSIDE
 
 #: Severity of an effect by strength; 1 is drastic.
 STRENGTHS = {"weak": (0.15, 0.3), "middle": (0.3, 0.5), "strong": (0.5, 0.8)}
@@ -86,8 +85,4 @@ def strength_of(severity: float) -> str:
 
 def noise_of(case: Hidden) -> str:
     """What kind of noise speed and current carry, as `white/hum`."""
-    return "/".join(map(_kind, (case.sensors.velocity, case.sensors.current)))
-
-
-def _kind(noise: Noise) -> str:
-    return "hum" if noise.hum else "coarse" if noise.resolution else "coloured" if noise.coloured else "white"
+    return f"{case.sensors.velocity.kind}/{case.sensors.current.kind}"

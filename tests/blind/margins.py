@@ -22,7 +22,7 @@ from bench.balance.rows import Rows
 from bench.diagnose.gap.gap import gap
 from bench.diagnose.name.candidates import candidates
 from bench.diagnose.name.policy import Policy
-from bench.diagnose.name.rules import row_correlation, worth
+from bench.diagnose.name.rules import worth
 from bench.diagnose.name.search import search
 from bench.effects.catalogue import catalogue
 from bench.rig.rig import load_rig
@@ -48,7 +48,7 @@ def of_nulls(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[fl
         fitted = bare(folder / case.name)
         best = candidates(fitted, catalogue().values())[0]
         numbers = max(len(best.term.shape), 1)
-        significance.append(best.gain / (numbers * row_correlation(fitted.rows) * fitted.floor**2))
+        significance.append(best.gain / (numbers * fitted.rows.correlation * fitted.floor**2))
         chi.append(fitted.chi)
     return significance, chi
 

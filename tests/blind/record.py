@@ -9,23 +9,23 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, as_completed
 from pathlib import Path
 
+from bench.validate.independent.case import record, write_case
 from tests.blind.draw import Drawn, noise_of, strength_of
-from tests.independent.case import record, write_case
+from tests.kept import INTEGRATOR
 
 #: Half of the shortest control period: coarser than the integrator's own choice, in two thirds of its time - s.
 LONGEST_STEP = 31.25e-6
 #: Cases simulated together at most: more cost no less each.
 TOGETHER = 120
 
-TESTS = Path(__file__).resolve().parents[1]
+HERE = Path(__file__).resolve().parent
 
 
 def home(seed: int, duration: float, control_period: float | None) -> Path:
     """Folder of the recordings; another one as soon as integrator or draw are changed."""
     digest = hashlib.sha256()
-    for path in (*sorted((TESTS / "independent").rglob("*.py")), TESTS / "blind/draw.py", TESTS / "blind/record.py"):
-        if not path.name.startswith("test_"):
-            digest.update(path.read_bytes())
+    for path in (*INTEGRATOR, HERE / "draw.py", HERE / "record.py"):
+        digest.update(path.read_bytes())
     period = "" if control_period is None else f"-{control_period * 1e6:g}us"
     return Path(tempfile.gettempdir()) / f"blind-{digest.hexdigest()[:10]}" / f"{seed}-{duration:g}s{period}"
 

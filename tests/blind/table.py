@@ -7,10 +7,10 @@ import io
 from collections.abc import Callable, Sequence
 from statistics import median
 
+from bench.validate.independent.effects import CATALOGUE
 from tests.blind.draw import STRENGTHS
 from tests.blind.parameters import ANGLES, WHOLE, Compared
 from tests.blind.score import Score, same, twins
-from tests.independent.effects import CATALOGUE
 
 #: Truth's residual over what sensor noise makes of it, below which no noise floor could show the effect.
 VISIBLE = 1.12

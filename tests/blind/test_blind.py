@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from bench.validate.independent.effects import CATALOGUE
 from tests.blind.confusion import REMAINDER, counted, given
 from tests.blind.draw import GROUPS, draw, one
 from tests.blind.parameters import compared, expected
 from tests.blind.run import Outcome
 from tests.blind.score import score
 from tests.blind.table import cases_csv, false_names, markdown
-from tests.independent.effects import CATALOGUE
 
 
 def truth(*effects, group="single", **parameters):

@@ -2,10 +2,10 @@
 
 import pytest
 
+from bench.validate.independent.effects import CATALOGUE, OUTSIDE
 from tests.blind.__main__ import scored
 from tests.blind.draw import STRENGTHS, one
 from tests.blind.table import false_names, headline, wrong
-from tests.independent.effects import CATALOGUE, OUTSIDE
 
 SEED, SECONDS, CONTROL_PERIOD = 2, 5.0, 250e-6
 #: Singles are drawn in rounds over the catalogue, one strength after the other: this is the middle one.

@@ -26,12 +26,12 @@ from bench.effects.catalogue import catalogue
 from bench.errors import BenchError
 from bench.rig.rig import load_rig
 from bench.trace.read import read
+from bench.validate.independent.effects import CATALOGUE
 from tests.blind.__main__ import workers
 from tests.blind.draw import GROUPS, Drawn, draw
 from tests.blind.record import home, recorded, truth_of
 from tests.blind.score import same
 from tests.blind.variants import FACTORS, Threshold, switched_off, thresholds
-from tests.independent.effects import CATALOGUE
 
 COUNTS = {"single": 252, "pair": 60, "null": 100, "outside": 32}
 AS_IS = "as is"

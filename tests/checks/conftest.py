@@ -1,10 +1,10 @@
 import pytest
 
 from bench.rig.rig import load_rig
+from bench.validate.independent.case import Hidden, record
+from bench.validate.independent.rig import write_rig
+from bench.validate.independent.sensors import Noise, Sensors
 from tests.independent.axes import PLAIN
-from tests.independent.case import Hidden, record
-from tests.independent.rig import write_rig
-from tests.independent.sensors import Noise, Sensors
 
 
 @pytest.fixture(scope="session")

@@ -14,8 +14,8 @@ from bench.diagnose.show.gaps import courses, shrinking
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected
 from bench.rig.rig import load_rig
-from tests.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
-from tests.independent.effects import KINDS
+from bench.validate.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
+from bench.validate.independent.effects import KINDS
 from tests.kept import kept
 
 AXIS = Axis(

@@ -11,8 +11,8 @@ import pytest
 from bench.diagnose.diagnosis import diagnose
 from bench.report.diagnosis import diagnosis_json
 from bench.rig.rig import load_rig
-from tests.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
-from tests.independent.effects import KINDS
+from bench.validate.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
+from bench.validate.independent.effects import KINDS
 from tests.kept import kept
 
 AXIS = Axis(

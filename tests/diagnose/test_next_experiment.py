@@ -11,9 +11,9 @@ from bench.diagnose.recordings import Recordings
 from bench.diagnose.show.next_experiment import motions
 from bench.plant.references import References
 from bench.rig.rig import load_rig
-from tests.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
-from tests.independent.effects import KINDS
-from tests.independent.references import Motion, Ramps
+from bench.validate.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
+from bench.validate.independent.effects import KINDS
+from bench.validate.independent.references import Motion, Ramps
 
 AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3

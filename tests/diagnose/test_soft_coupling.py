@@ -13,12 +13,12 @@ from bench.diagnose.name.search import search
 from bench.effects.catalogue import catalogue
 from bench.rig.rig import Rig, load_rig
 from bench.trace.trace import Trace
-from tests.independent.effects.friction import PreslidingFriction
-from tests.independent.effects.transmission import ElasticCoupling
-from tests.independent.references import random_motion
-from tests.independent.rig import Axis, write_rig
-from tests.independent.sensors import Noise, Sensors
-from tests.independent.simulate import simulate
+from bench.validate.independent.effects.friction import PreslidingFriction
+from bench.validate.independent.effects.transmission import ElasticCoupling
+from bench.validate.independent.references import random_motion
+from bench.validate.independent.rig import Axis, write_rig
+from bench.validate.independent.sensors import Noise, Sensors
+from bench.validate.independent.simulate import simulate
 from tests.kept import kept
 
 ELASTIC = catalogue()["elastic_coupling"]

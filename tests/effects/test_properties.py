@@ -12,6 +12,7 @@ from bench.effects.kinds import Electronics, Mechanism, Moment, Sensing
 from bench.plant.model import build_spec
 from bench.trace.known_names import SI_UNITS
 from bench.trace.trace import Trace
+from bench.validate.independent import KINDS
 from tests.effects.axes import PARAMETERS, PERIOD, model
 from tests.effects.recording import (
     BASE,
@@ -27,7 +28,6 @@ from tests.effects.recording import (
     shape_of,
     with_columns,
 )
-from tests.independent import KINDS
 
 AXIS = model().axis
 

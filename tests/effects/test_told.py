@@ -116,7 +116,7 @@ def test_shapes_that_are_tried_are_of_its_form_and_worth_a_share(effect):
         grid = effect.grid(scope)
         assert all(len(shape) == len(effect.shapes) for shape in grid)
         tried = grid if grid and all(map(len, grid)) else [shape_of(effect)]
-        assert any(effect.plausible([shape], scope) for shape in tried)
+        assert any(effect.plausible([], [shape], scope) for shape in tried)
         for shape in tried[:: max(1, len(tried) // 5)]:
             assert 0.0 < effect.needed_share(shape, scope) < 1.0
             errors = effect.shape_errors(shape, scope, RECORDED.time)

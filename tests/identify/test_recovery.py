@@ -6,8 +6,8 @@ import pytest
 from bench.identify.regression import identify
 from bench.plant.simulate import simulate
 from bench.rig.rig import Rig, load_rig
-from tests.independent import Axis, Noise, Sensors, random_motion, write_rig
-from tests.independent import simulate as integrate
+from bench.validate.independent import Axis, Noise, Sensors, random_motion, write_rig
+from bench.validate.independent import simulate as integrate
 
 LIMITS = np.array([1e-3, 1.5e-2, 5e-3])
 

@@ -16,13 +16,13 @@ from bench.statistics import NORMAL95
 from bench.trace.read import read
 from bench.trace.trace import Trace
 from bench.trace.write import write
+from bench.validate.independent import Motion, Noise, Sensors, write_rig
+from bench.validate.independent import simulate as integrate
+from bench.validate.independent.effects import TorqueOffset
+from bench.validate.independent.references import Ramps
 from tests.diagnose.command import started
 from tests.identify.motions import NAMES, RIG, UNITS, Truth, recording
 from tests.identify.test_recovery import AXES, STEP
-from tests.independent import Motion, Noise, Sensors, write_rig
-from tests.independent import simulate as integrate
-from tests.independent.effects import TorqueOffset
-from tests.independent.references import Ramps
 from tests.shared import SHARED, needs_shared
 
 #: About what is chosen for these motions, which takes a fifth of the time where it is given - Hz.

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tests.independent import Axis
-from tests.independent.plant import Plant
+from bench.validate.independent import Axis
+from bench.validate.independent.plant import Plant
 
 PLAIN = Axis(
     name="plain",

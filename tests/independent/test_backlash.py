@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from bench.validate.independent.effects import Backlash
+from bench.validate.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
-from tests.independent.effects import Backlash
-from tests.independent.plant import Plant
 
 ROTOR, LOAD = FREE.rotor_inertia, FREE.inertia - FREE.rotor_inertia
 

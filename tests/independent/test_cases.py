@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from bench.rig.rig import load_rig
-from tests.independent.case import record, residual_ratio, truth, write_cases
-from tests.independent.draw import any_effects, hidden
-from tests.independent.effects import CATALOGUE, OUTSIDE
-from tests.independent.sensors import Noise, Sensors
+from bench.validate.independent.case import record, residual_ratio, truth, write_cases
+from bench.validate.independent.draw import any_effects, hidden
+from bench.validate.independent.effects import CATALOGUE, OUTSIDE
+from bench.validate.independent.sensors import Noise, Sensors
 
 SHARED = Path(__file__).parents[3] / "shared" / "cases"
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from bench.validate.independent.drive import Drive
 from tests.independent.axes import PLAIN
-from tests.independent.drive import Drive
 
 
 def test_it_is_the_contract_s_cascade_with_its_limit_and_held_integrator():

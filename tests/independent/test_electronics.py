@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bench.validate.independent.effects import CurrentLoopLag, EncoderEccentricity, VelocityFilterLag, VoltageLimit
+from bench.validate.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
-from tests.independent.effects import CurrentLoopLag, EncoderEccentricity, VelocityFilterLag, VoltageLimit
-from tests.independent.plant import Plant
 
 
 def test_a_blocked_winding_charges_over_its_inductance():

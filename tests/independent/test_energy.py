@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.independent.axes import FREE, PLAIN, run
-from tests.independent.effects import (
+from bench.validate.independent.effects import (
     Backlash,
     DirectionDependentFriction,
     ElasticCoupling,
@@ -21,7 +20,8 @@ from tests.independent.effects import (
     TorsionSpring,
     Unbalance,
 )
-from tests.independent.plant import Plant
+from bench.validate.independent.plant import Plant
+from tests.independent.axes import FREE, PLAIN, run
 
 
 def test_a_spring_swings_for_ever_at_its_frequency():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from bench.validate.independent.effects import PreslidingFriction, StribeckFriction
+from bench.validate.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
-from tests.independent.effects import PreslidingFriction, StribeckFriction
-from tests.independent.plant import Plant
 
 
 def test_small_motion_swings_on_the_bristles():

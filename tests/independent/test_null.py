@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from tests.independent.axes import PLAIN, run
-from tests.independent.effects import (
+from bench.validate.independent.effects import (
     KINDS,
     CoggingTorque,
     CurrentFilterLag,
@@ -33,7 +32,8 @@ from tests.independent.effects import (
     Vibration,
     VoltageLimit,
 )
-from tests.independent.plant import Plant
+from bench.validate.independent.plant import Plant
+from tests.independent.axes import PLAIN, run
 
 NULL = [
     StribeckFriction(PLAIN.coulomb, 1.0),

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.independent.axes import PLAIN, run
-from tests.independent.effects import (
+from bench.validate.independent.effects import (
     CoggingTorque,
     ElasticCoupling,
     LoadDependentFriction,
@@ -15,7 +14,8 @@ from tests.independent.effects import (
     TorsionSpring,
     Unbalance,
 )
-from tests.independent.plant import Plant
+from bench.validate.independent.plant import Plant
+from tests.independent.axes import PLAIN, run
 
 SETS = {
     "spring and drag": [TorsionSpring(0.5), QuadraticDrag(2e-5)],

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.independent import random_motion, random_rig
-from tests.independent.references import Chirp, Multisine, Ramps, multisine, slow_reversals, staircase
+from bench.validate.independent import random_motion, random_rig
+from bench.validate.independent.references import Chirp, Multisine, Ramps, multisine, slow_reversals, staircase
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.independent import Motion, Noise, Sensors, simulate
+from bench.validate.independent import Motion, Noise, Sensors, simulate
+from bench.validate.independent.effects import CoggingTorque, CurrentLoopLag
+from bench.validate.independent.references import multisine, slow_reversals
+from bench.validate.independent.sensors import NoiseStream, rounded
 from tests.independent.axes import PLAIN
-from tests.independent.effects import CoggingTorque, CurrentLoopLag
-from tests.independent.references import multisine, slow_reversals
-from tests.independent.sensors import NoiseStream, rounded
 
 
 def _drawn(noise, period=1e-3, count=100_000):

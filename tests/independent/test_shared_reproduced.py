@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.independent import Axis, Sensors, simulate
-from tests.independent.effects import (
+from bench.validate.independent import Axis, Sensors, simulate
+from bench.validate.independent.effects import (
     DirectionDependentFriction,
     ElasticCoupling,
     FrictionWarmup,

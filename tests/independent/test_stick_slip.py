@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bench.validate.independent.plant import Plant
+from bench.validate.independent.stick_slip import distance_weight, move, speed_weight
 from tests.independent.axes import PLAIN, run
-from tests.independent.plant import Plant
-from tests.independent.stick_slip import distance_weight, move, speed_weight
 
 
 def _move(w, torque, step, *, forward=0.05, backward=0.08, inertia=1e-3, viscous=7e-4):

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.independent.axes import PLAIN, run
-from tests.independent.effects import (
+from bench.validate.independent.effects import (
     CoggingTorque,
     DirectionDependentFriction,
     FrictionWarmup,
@@ -22,7 +21,8 @@ from tests.independent.effects import (
     Unbalance,
     Vibration,
 )
-from tests.independent.plant import Plant
+from bench.validate.independent.plant import Plant
+from tests.independent.axes import PLAIN, run
 
 J, KW, K0, KT = PLAIN.inertia, PLAIN.viscous, PLAIN.coulomb, PLAIN.torque_constant
 STEP = 20e-6

@@ -19,14 +19,14 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress
 
+from bench.validate.independent.case import Hidden, record, write_case
+from bench.validate.independent.draw import any_effects
+from bench.validate.independent.effects import CATALOGUE
+from bench.validate.independent.rig import random_rig
+from bench.validate.independent.sensors import random_sensors
 from tests.blind.__main__ import workers
 from tests.blind.draw import Drawn
 from tests.blind.score import same, twins
-from tests.independent.case import Hidden, record, write_case
-from tests.independent.draw import any_effects
-from tests.independent.effects import CATALOGUE
-from tests.independent.rig import random_rig
-from tests.independent.sensors import random_sensors
 from tests.nuisance.answer import Answer, ask
 from tests.nuisance.record import LONGEST_STEP, TOGETHER
 

@@ -12,9 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.independent.rig import write_rig
-from tests.independent.sensors import Sensors
-from tests.independent.simulate import simulate
+from bench.validate.independent.rig import write_rig
+from bench.validate.independent.sensors import Sensors
+from bench.validate.independent.simulate import simulate
+from tests.kept import INTEGRATOR
 from tests.nuisance.draw import Case
 from tests.nuisance.signals import FINE, Signals, noisy, write_csv
 
@@ -24,15 +25,13 @@ LONGEST_STEP = FINE / 4.0
 TOGETHER = 60
 #: Electronics without a fault, as often as the drive itself samples.
 IDEAL = Sensors(sample_period=FINE, encoder_resolution=0.0)
-TESTS = Path(__file__).resolve().parents[1]
 
 
 def home() -> Path:
     """Folder of exact recordings; another one as soon as the integrator or its step is changed."""
     digest = hashlib.sha256(repr((FINE, LONGEST_STEP)).encode())
-    for path in sorted((TESTS / "independent").rglob("*.py")):
-        if not path.name.startswith("test_"):
-            digest.update(path.read_bytes())
+    for path in INTEGRATOR:
+        digest.update(path.read_bytes())
     return Path(tempfile.gettempdir()) / f"nuisance-{digest.hexdigest()[:10]}"
 
 

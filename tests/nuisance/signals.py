@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.independent.rig import Axis
-from tests.independent.sensors import rounded
+from bench.validate.independent.rig import Axis
+from bench.validate.independent.sensors import rounded
 
 Array = np.ndarray
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from bench.validate.independent.effects import CATALOGUE
+from bench.validate.independent.references import random_motion
+from bench.validate.independent.simulate import simulate
 from tests.independent.axes import PLAIN
-from tests.independent.effects import CATALOGUE
-from tests.independent.references import random_motion
-from tests.independent.simulate import simulate
 from tests.nuisance.record import IDEAL, LONGEST_STEP
 from tests.nuisance.signals import CURRENT_NOISE, SPEED_NOISE
 

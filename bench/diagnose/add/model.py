@@ -15,6 +15,7 @@ from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, winding_of
 from bench.plant.model import AxisParameters
 from bench.plant.model_file import StoredModel
+from bench.plant.mounting import Mounting
 from bench.rig.rig import Rig
 
 #: Bandwidth of the cascade that holds a model to a recording - rad/s - and the most that a model may need. On the
@@ -49,7 +50,7 @@ def stored_model(fitted: Fit, beside: Sequence[Present], rig: Rig) -> StoredMode
         for index, term in enumerate(fitted.terms)
     ]
     model = AxisModel(base, (*present, *beside), fitted.scope.peak_effort, winding_of(rig))
-    return StoredModel(rig.name, model, float(fitted.theta[MISALIGNMENT]))
+    return StoredModel(rig.name, model, float(fitted.theta[MISALIGNMENT]), Mounting.of(rig))
 
 
 def present_of(effect: Effect, values: Mapping[str, float]) -> Present:

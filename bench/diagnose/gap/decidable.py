@@ -11,7 +11,7 @@ from bench.axis_kind import COULOMB, OFFSET, AxisKind
 from bench.balance.fit import Fit, fit
 from bench.balance.last_digit import plain
 from bench.balance.rows import Rows, clear_motion
-from bench.diagnose.name.rules import Rules, row_correlation
+from bench.diagnose.name.rules import Rules
 from bench.errors import InputError, UndeterminedError
 from bench.identify.determined import require_friction, require_inertia
 from bench.identify.solution import equations_of
@@ -95,7 +95,7 @@ def impacts(fitted: Fit, unit: str) -> list[str]:
 
 def _require_length(trace: Trace, rows: Rows) -> None:
     smooth = rows.conditioning.filter
-    correlation = row_correlation(rows)
+    correlation = rows.correlation
     found = rows.effort.size / correlation
     if found >= INDEPENDENT:
         return

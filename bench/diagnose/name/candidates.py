@@ -27,20 +27,10 @@ def candidates(current: Fit, effects: Iterable[Effect]) -> list[Candidate]:
     """The best shape of every effect that may come beside what is fitted, best first."""
     found = []
     for effect in effects:
-        if not effect.sought(current.scope) or not joins(current, effect):
+        if not effect.sought(current.scope) or not current.hypothesis.admits(effect):
             continue
         tried = [Candidate(Term(effect, proposal.shape), proposal.gain) for proposal in effect.propose(current)]
         tried = [candidate for candidate in tried if not any(candidate.term.same(term) for term in current.terms)]
         if tried:
             found.append(max(tried, key=lambda candidate: candidate.gain))
     return sorted(found, key=lambda candidate: -candidate.gain)
-
-
-def joins(current: Fit, effect: Effect) -> bool:
-    """Whether an effect may come beside those that are fitted: one coupling, one of what a recording confuses."""
-    present = [term.effect for term in current.terms]
-    if effect in present and not effect.repeatable:
-        return False
-    if effect.couples and any(other.couples for other in present):
-        return False
-    return not any(other.name in effect.not_beside for other in present)

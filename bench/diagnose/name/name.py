@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from bench.balance.fit import Fit, fit
+from bench.balance.hint import hint
 from bench.balance.parameter import Parameter
 from bench.balance.quantities import uncertain
 from bench.diagnose.found import NamedEffect
@@ -66,8 +67,11 @@ def named(
     """Effects of a fitted balance and those beside it with their quantities, and J, K_w, K_0 beside them."""
     rig, unit = recordings.rig, recordings.unit
     numbers, others = uncertain(fitted), recordings.within_tolerance(fitted)
+    hinted = hint(fitted, catalogue().values()) or fitted
     parameters = {
-        name: found.widened(*(float(other.theta[k] - fitted.theta[k]) for other in others))
+        name: found.widened(*(float(other.theta[k] - fitted.theta[k]) for other in others)).reaching(
+            float(hinted.theta[k])
+        )
         for k, (name, found) in enumerate(numbers.base(recordings.base_units).items())
     }
     parameters |= load_inertia(parameters, rig)
@@ -81,8 +85,9 @@ def named(
         less = fit(fitted.rows, fitted.hypothesis.without(index))
         evidence = {"residual_without": less.rms, "residual_with": fitted.rms, "noise_floor": fitted.floor}
         reports = [term.effect.report(other.strengths(index), term.shape, other.base) for other in others]
+        by_hint = term.effect.report(hinted.strengths(index), term.shape, hinted.base)
         found = {
-            key: value.widened(*(report[key] - value.value for report in reports))
+            key: value.widened(*(report[key] - value.value for report in reports)).reaching(by_hint[key])
             for key, value in numbers.quantities(index, unit_of).items()
         }
         effects.append(NamedEffect(term.effect, found, term.effect.ambiguous(fitted.scope), evidence))

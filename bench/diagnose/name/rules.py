@@ -12,15 +12,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bench.balance.fit import Fit
-from bench.balance.rows import Rows
 from bench.balance.shapes import free_shapes
 from bench.diagnose.name.candidates import Candidate
-
-
-def row_correlation(rows: Rows) -> float:
-    """Variance of a sum of filtered noise over that of independent rows: 2*sqrt(pi)*width over the rows' distance."""
-    smooth = rows.conditioning.filter
-    return max(1.0, 2.0 * np.sqrt(np.pi) * smooth.width / (smooth.stride * smooth.sample_period))
+from bench.effects.effect import Effect
 
 
 def freedom(fitted: Fit) -> int:
@@ -70,7 +64,7 @@ class Significant:
             numbers: that are added.
             noise: its power in a row instead - (N*m)**2 (N**2).
         """
-        return self.least * numbers * row_correlation(fitted.rows) * (fitted.floor**2 if noise is None else noise)
+        return self.least * numbers * fitted.rows.correlation * (fitted.floor**2 if noise is None else noise)
 
 
 @dataclass(frozen=True)
@@ -110,11 +104,13 @@ class Physical:
         for index, term in enumerate(fitted.terms):
             if not term.effect.physical(fitted.strengths(index), term.shape, fitted.base):
                 return False
-        kinds = {term.effect.name: term.effect for term in fitted.terms}
-        return all(
-            effect.plausible([term.shape for term in fitted.terms if term.effect is effect], fitted.scope)
-            for effect in kinds.values()
-        )
+        return all(self._plausible(effect, fitted) for effect in {term.effect for term in fitted.terms})
+
+    @staticmethod
+    def _plausible(effect: Effect, fitted: Fit) -> bool:
+        own = [index for index, term in enumerate(fitted.terms) if term.effect is effect]
+        strengths, shapes = [fitted.strengths(index) for index in own], [fitted.terms[index].shape for index in own]
+        return effect.plausible(strengths, shapes, fitted.scope)
 
 
 @dataclass(frozen=True)

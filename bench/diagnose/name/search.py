@@ -15,7 +15,7 @@ from bench.balance.hum import with_hum
 from bench.balance.hypothesis import Term
 from bench.balance.load_side import on_other_side, outer_loads
 from bench.balance.shapes import shaped
-from bench.diagnose.name.candidates import Candidate, candidates, joins
+from bench.diagnose.name.candidates import Candidate, candidates
 from bench.diagnose.name.rules import Rules, worth
 from bench.effects.effect import Effect
 
@@ -107,7 +107,7 @@ def replacement(fitted: Fit, effect: Effect, rules: Rules) -> Fit | None:
     """The hypothesis with an effect in the place of those it replaces, if that explains clearly more."""
     kept = [term for term in fitted.terms if term.effect.name not in effect.replaces]
     current = fit(fitted.rows, fitted.hypothesis.with_terms(kept))
-    shape = effect.in_place_of(current) if joins(current, effect) else None
+    shape = effect.in_place_of(current) if current.hypothesis.admits(effect) else None
     if shape is None:
         return None
     first = fit(fitted.rows, current.hypothesis.plus(Term(effect, shape)))

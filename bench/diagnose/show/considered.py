@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from bench.balance.fit import Fit
 from bench.diagnose.add.add import Added
 from bench.diagnose.found import Considered, NamedEffect
-from bench.diagnose.name.candidates import Candidate, joins
+from bench.diagnose.name.candidates import Candidate
 from bench.diagnose.name.name import Suspects
 from bench.diagnose.name.search import Searched
 from bench.diagnose.recordings import Recordings
@@ -61,7 +61,7 @@ def _against(effect: Effect, recordings: Recordings, suspects: Suspects, added: 
         last = trials[-1].beside
         chance = left * last.squares < suspects.policy.significant.threshold(last, 1)
         return "no more than chance" if chance else "too little, or with values that physics forbids"
-    if not joins(suspects.searched.last, effect):
+    if not suspects.searched.last.hypothesis.admits(effect):
         return "the recording tells but one of it and what was taken"
     return "nothing in the recording points to it"
 

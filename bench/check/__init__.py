@@ -1,0 +1,1 @@
+"""Whether an axis, or the model of one, has changed since a baseline."""

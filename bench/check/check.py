@@ -1,0 +1,55 @@
+"""Check an axis, or the model of one, against what it was."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from bench.check.allowed import Allowed
+from bench.check.baseline import require_source
+from bench.check.compare import Checked, compare
+from bench.check.observe import Observed, diagnosed, identified
+from bench.check.state import State
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+#: Rate at which an axis that has not changed raises an alarm, of all comparisons together.
+FALSE_ALARM_RATE = 0.01
+
+
+def check(
+    trace: Trace | Sequence[Trace],
+    rig: Rig,
+    baseline: State,
+    false_alarm_rate: float = FALSE_ALARM_RATE,
+    progress: Callable[[float], None] = lambda share: None,
+) -> Checked:
+    """Whether an axis is what it was; effects are looked for where the baseline has looked for them.
+
+    Args:
+        trace: a recording of the axis now, or a list of several.
+        rig: of the axis.
+        baseline: what it was (`bench.check.baseline.read_baseline`).
+        false_alarm_rate: at which an axis that differs by no margin is called changed, of all comparisons together.
+        progress: called with the share done.
+
+    Raises:
+        UndeterminedError: the recording does not tell what the baseline knows.
+        InputError: rig and recording do not fit together, or the baseline is that of a model.
+    """
+    require_source(baseline, "recordings")
+    return compare(baseline, observe(trace, rig, baseline.names, progress), Allowed.of(rig), false_alarm_rate)
+
+
+def observe(
+    trace: Trace | Sequence[Trace], rig: Rig, names: bool = True, progress: Callable[[float], None] = lambda share: None
+) -> Observed:
+    """The state of an axis now.
+
+    Args:
+        trace: a recording, or a list of several.
+        rig: of the axis.
+        names: whether effects are looked for, which takes seconds; else parameters and residual alone.
+        progress: called with the share done.
+    """
+    traces = [trace] if isinstance(trace, Trace) else list(trace)
+    return diagnosed(traces, rig, progress) if names else identified(traces, rig)

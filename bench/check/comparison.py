@@ -1,0 +1,78 @@
+"""One comparison of two states, and the answer to it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from bench.check.difference import Difference
+
+SAME, CHANGED, UNDECIDED = "same", "changed", "undecided"
+#: From the worst to the best.
+RESULTS = (CHANGED, UNDECIDED, SAME)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A quantity in two states.
+
+    Attributes:
+        name: of the quantity, or of the effect whose torque it is.
+        unit: of all numbers.
+        baseline, now: its values; None of an effect that is not there.
+        differences: now less baseline: one, or as each state's own effects have it where these differ; () where nobody
+            can tell.
+        margin: below which a difference does not matter.
+        effect: whose presence it tells: `appeared` or `gone`; empty of a quantity that both states have.
+        held_back: why it raises no alarm whatever it shows; empty where it may.
+        chance: of such a difference where none is larger than the margin, before the family is counted.
+        result: `same`, `changed` or `undecided`.
+    """
+
+    name: str
+    unit: str
+    baseline: float | None
+    now: float | None
+    differences: tuple[Difference, ...]
+    margin: float
+    effect: str = ""
+    held_back: str = ""
+    chance: float = 1.0
+    result: str = UNDECIDED
+
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        unit: str,
+        values: tuple[float | None, float | None],
+        differences: Sequence[Difference],
+        margin: float,
+        effect: str = "",
+        held_back: str = "",
+    ) -> Comparison:
+        """A comparison with its chance: the largest of those of its differences, all of one sign."""
+        found = cls(name, unit, *values, tuple(differences), margin, effect, held_back)
+        signs = {difference.value > 0.0 for difference in differences}
+        if held_back or len(signs) != 1:
+            return found
+        return replace(found, chance=max(difference.chance(margin) for difference in differences))
+
+    def answered(self, rejected: frozenset[str]) -> Comparison:
+        """With its result, given those of the family that are rejected."""
+        if self.name in rejected:
+            return replace(self, result=CHANGED)
+        may = self.differences and not self.held_back and self.effect != "appeared"
+        shown = may and all(one.within(self.margin) for one in self.differences)
+        return replace(self, result=SAME if shown else UNDECIDED)
+
+    @property
+    def difference(self) -> Difference | None:
+        """The one that says least: the nearest to nothing of those that there are."""
+        return min(self.differences, key=lambda one: abs(one.value), default=None)
+
+    @property
+    def difference95(self) -> tuple[float, float] | None:
+        """Interval of 95 % that holds all differences - unit."""
+        bounds = [one.interval(0.95) for one in self.differences]
+        return (min(low for low, _ in bounds), max(high for _, high in bounds)) if bounds else None

@@ -1,0 +1,104 @@
+"""A check in sentences of the field: what changed, by how much, and how sure that is."""
+
+from __future__ import annotations
+
+import math
+
+from bench.check.compare import Checked
+from bench.check.comparison import CHANGED, SAME, Comparison
+from bench.check.measured import Measured
+from bench.check.state import GAPS, NamedHere
+
+#: Units that people read otherwise, with the factor.
+READ = {"rad": ("deg", 180.0 / math.pi)}
+
+
+def headline(checked: Checked) -> str:
+    """What changed, in one line; that nothing did, or why nobody can tell."""
+    if checked.result == CHANGED:
+        return _sentence(_changes(checked))
+    if checked.result == SAME:
+        return "The same: no quantity differs by more than its margin"
+    if checked.rig:
+        return f"Undecided, as the rig differs: {'; '.join(checked.rig)}"
+    open_ = [told(one, checked) for one in checked.comparisons if one.result != SAME]
+    if checked.baseline.verdict != checked.now.verdict:
+        verdicts = (one.replace("_", " ") for one in (checked.baseline.verdict, checked.now.verdict))
+        open_.append(f"the verdict is {' -> '.join(verdicts)}")
+    motion = [f"motion or sampling differ ({', '.join(checked.conditions)})"] if checked.conditions else []
+    return f"Undecided: {'; '.join([*motion, *open_])}"
+
+
+def _changes(checked: Checked) -> list[str]:
+    """What changed: names, then parameters; gaps where nothing else says why they did."""
+    changed = [one for one in checked.comparisons if one.result == CHANGED]
+    changed.sort(key=lambda one: (not one.effect, one.name in GAPS))
+    parts = [one for one in changed if one.name not in GAPS] or changed
+    return [told(one, checked) for one in parts]
+
+
+def _sentence(parts: list[str]) -> str:
+    joined = parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])}, and {parts[-1]}"
+    return f"{joined[:1].upper()}{joined[1:]}"
+
+
+def told(one: Comparison, checked: Checked) -> str:
+    """One comparison in words."""
+    label = one.name.replace("_", " ").replace(".", " ")
+    effect = next((effect for effect, found in (*checked.appeared, *checked.gone) if found is one), None)
+    if effect is not None:
+        return f"{label} {_came_or_went(one)}: {_values(effect)}{_why(one)}"
+    if one.baseline is None or one.now is None:
+        return f"{label} cannot be compared{_why(one)}"
+    before, after = read(one.baseline, one.unit), read(one.now, one.unit)
+    unit = unit_of(one.unit)
+    share = f" ({100.0 * (one.now / one.baseline - 1.0):+.3g} %)" if one.baseline else ""
+    if one.result == CHANGED:
+        verb = "rose" if one.now > one.baseline else "fell"
+        return f"{label} {verb} from {before} to {after}{unit}{share}"
+    how = "is the same:" if one.result == SAME else "may have changed:"
+    return f"{label} {how} {before} and now {after}{unit}{share}{_why(one)}"
+
+
+def _came_or_went(one: Comparison) -> str:
+    if one.effect == "appeared":
+        return "appeared" if one.result == CHANGED else "is named now"
+    return "is gone, which had" if one.result == CHANGED else "is named no more, which had"
+
+
+def _why(one: Comparison) -> str:
+    """Why a comparison is not decided, or how sure it is that an effect appeared."""
+    unit = unit_of(one.unit)
+    if one.held_back:
+        return f", but {one.held_back}"
+    if one.effect == "appeared":
+        makes, least = read(one.now or 0.0, one.unit), read(one.margin, one.unit)
+        seen = "would have shown" if one.result == CHANGED else "may have hidden"
+        return f" ({makes}{unit} RMS, where the baseline {seen} {least}{unit})"
+    bounds = one.difference95
+    if one.result != CHANGED and one.result != SAME and bounds is not None:
+        reach = 0.5 * (bounds[1] - bounds[0])
+        return f", known to ± {read(reach, one.unit)}{unit} against a margin of {read(one.margin, one.unit)}{unit}"
+    return ""
+
+
+def _values(effect: NamedHere) -> str:
+    """Quantities of an effect, but for angles, whose zero means nothing, and what its label says."""
+    counted = {slot.quantity.name for slot, _ in effect.whole}
+    told = [q.name for q in effect.effect.quantities if not q.angle and q.name not in counted]
+    return ", ".join(f"{name.replace('_', ' ')} {with_unit(effect.quantities[name])}" for name in told)
+
+
+def with_unit(found: Measured) -> str:
+    """A value as people read it."""
+    return f"{read(found.value, found.unit)}{unit_of(found.unit)}"
+
+
+def unit_of(unit: str) -> str:
+    """The unit behind a number, as people read it."""
+    return "" if unit == "dimensionless" else f" {READ[unit][0] if unit in READ else unit}"
+
+
+def read(value: float, unit: str) -> str:
+    """A number in the unit that people read."""
+    return f"{value * (READ[unit][1] if unit in READ else 1.0):.4g}"

@@ -1,0 +1,58 @@
+"""`bench export`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from bench.console import tell_files
+from bench.errors import InputError
+from bench.files import write_text
+from bench.names import plain
+
+if TYPE_CHECKING:
+    from bench.export.joint import Carried
+    from bench.plant.model_file import StoredModel
+
+#: Name of the joint of a file that holds the joint alone, unless another is given.
+ALONE = "axis"
+
+
+def export(
+    model: Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")],
+    out: Annotated[Path, typer.Option("--out", help="File to write.")],
+    mjcf: Annotated[Path | None, typer.Option("--mjcf", help="MJCF of the robot that has the joint.")] = None,
+    joint: Annotated[str | None, typer.Option("--joint", help="Joint that the model goes onto.")] = None,
+    snippet: Annotated[bool, typer.Option("--snippet", help="A default class and a body on this joint alone.")] = False,
+    armature: Annotated[
+        str | None, typer.Option("--armature", help="Inertia that becomes the joint's armature: motor, or all.")
+    ] = None,
+) -> None:
+    """Put a diagnosed model into a robot's MJCF, or write its joint as an MJCF of its own."""
+    from bench.plant.model_file import load_model
+
+    if snippet == (mjcf is not None):
+        raise InputError("bench export", "found neither or both of --mjcf and --snippet", "allowed: one of them")
+    text, carried = _text(load_model(model), out, mjcf, joint, armature)
+    write_text(out, text)
+    for line in carried.lines:
+        typer.echo(plain(line))
+    tell_files([out])
+
+
+def _text(
+    stored: StoredModel, out: Path, mjcf: Path | None, joint: str | None, armature: str | None
+) -> tuple[str, Carried]:
+    from bench.export.joint import Share
+    from bench.export.mjcf import joint_alone, robot_with
+
+    if mjcf is None:
+        return joint_alone(stored, joint or ALONE)
+    if joint is None:
+        raise InputError("--joint", "missing", "allowed: a joint of the MJCF")
+    shares = {share.value: share for share in Share}
+    if armature is not None and armature not in shares:
+        raise InputError("--armature", f"found '{armature}'", f"allowed: {', '.join(shares)}")
+    return robot_with(mjcf, joint, stored, out, shares.get(armature or ""))

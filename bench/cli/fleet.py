@@ -1,0 +1,49 @@
+"""`bench fleet`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from bench import __version__
+from bench.console import JsonOption, console, tell_files, write_json
+from bench.errors import UndeterminedError
+
+
+def fleet(
+    manifest: Annotated[Path, typer.Argument(metavar="MANIFEST", help="CSV or Parquet: file, rig, axis, time, ...")],
+    out: Annotated[Path, typer.Option("--out", help="Folder for results, table and summary.")],
+    diagnose: Annotated[bool, typer.Option("--diagnose", help="Name missing effects too.")] = False,
+    retry: Annotated[bool, typer.Option("--retry", help="Do again what failed or timed out.")] = False,
+    deadline: Annotated[float, typer.Option("--deadline", help="Of one recording, in s.", min=0.1)] = 120.0,
+    memory: Annotated[float, typer.Option("--memory", help="Of one recording, in GB.", min=0.25)] = 4.0,
+    workers: Annotated[int | None, typer.Option("--workers", help="Processes (preset: one a core).", min=1)] = None,
+    scheduler: Annotated[str | None, typer.Option("--scheduler", help="Dask's, e.g. tcp://host:8786.")] = None,
+    json: JsonOption = None,
+) -> None:
+    """Evaluate many recordings of many axes: one row each, which axes changed since when, and which need a person."""
+    from bench.files import sha256, write_text
+    from bench.fleet.fleet import TABLE
+    from bench.fleet.fleet import fleet as run_fleet
+    from bench.jobs.limits import Limits
+    from bench.report.fleet import fleet_json, fleet_tables
+    from bench.report.progress import progress
+
+    limits = Limits(deadline, memory * 1024**3)
+    with progress(f"evaluating {manifest.name}") as done:
+        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done)
+    text = fleet_json(
+        found, {"version": __version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
+    )
+    write_text(out / "summary.json", text + "\n")
+    if json is not None:
+        write_json(json, text)
+    if json != Path("-"):
+        for part in fleet_tables(found):
+            console().print(part)
+        tell_files([out / TABLE, out / "summary.json"])
+    if not found.summary.counts["done"]:
+        reason = f"none of {len(found.manifest)} recordings gave a result"
+        raise UndeterminedError("the fleet", reason, f"what the column `reason` of {out / TABLE} asks for")

@@ -1,0 +1,155 @@
+"""A process beside this one that does one piece of work after the other, and can be stopped in the middle of one.
+
+A thread cannot be stopped, and a signal does not interrupt compiled code that hangs: only a process can be ended, with
+what it holds. It is kept from one piece to the next, for loading numerics costs it a second. Dask has no deadline for a
+task (a future that is cancelled runs on), and its workers may have no child of `multiprocessing`, hence `subprocess`.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import time
+import traceback
+from collections.abc import Callable
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import psutil
+
+from bench.bounds import shown
+from bench.jobs.limits import Failure, Limits
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+#: Seconds between looks at a process' memory, as Dask's nanny has them.
+LOOK = 0.2
+#: Seconds after the deadline at which the process ends itself, should nobody be left to end it.
+GRACE = 10.0
+_SERVE = "import sys; from bench.jobs.beside import serve; serve(int(sys.argv[1]))"
+
+
+class Beside(Generic[Item, Result]):
+    """The process, started with the first piece of work and again after it had to be stopped.
+
+    Args:
+        work: a picklable function of one item; neither prints nor writes.
+        limits: of one piece of work.
+    """
+
+    def __init__(self, work: Callable[[Item], Result], limits: Limits) -> None:
+        self._work, self._limits = work, limits
+        self._running: tuple[subprocess.Popen[bytes], Connection] | None = None
+
+    def __enter__(self) -> Beside[Item, Result]:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def do(self, item: Item) -> Result | Failure:
+        """The work's result, or why there is none."""
+        fresh = self._running is None
+        process, calls = self._running = self._running or _process()
+        try:
+            if fresh:
+                calls.send((self._work, self._limits.deadline))
+            failure = calls.recv() if fresh else None  # once it has loaded what the work needs, the deadline counts
+            if failure is None:
+                calls.send(item)
+                failure = self._waited(process, calls)
+            if failure is None:
+                return pickle.loads(calls.recv_bytes())
+        except (EOFError, ConnectionError):
+            failure = Failure("failed", f"its worker was killed ({_how(process.wait())})")
+        self.close()
+        return failure
+
+    def close(self) -> None:
+        """End the process; the next piece of work starts another."""
+        if self._running is not None:
+            process, calls = self._running
+            self._running = None
+            calls.close()
+            process.kill()
+            process.wait()
+
+    def _waited(self, process: subprocess.Popen[bytes], calls: Connection) -> Failure | None:
+        """None once there is an answer, or the process has died; else what it exceeded."""
+        end = time.monotonic() + self._limits.deadline
+        while not calls.poll(min(LOOK, max(0.0, end - time.monotonic()))):
+            if time.monotonic() >= end:
+                return Failure("timed_out", f"no result within {self._limits.deadline:g} s")
+            if _memory(process.pid) > self._limits.memory:
+                return Failure("failed", f"its worker was killed (it took more than {shown(self._limits.memory)})")
+        return None
+
+
+def _process() -> tuple[subprocess.Popen[bytes], Connection]:
+    """A process that serves, and the pipe to it."""
+    calls, other = Pipe()
+    with other:
+        command = [sys.executable, "-c", _SERVE, str(other.fileno())]
+        path = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+        nowhere = subprocess.DEVNULL
+        return subprocess.Popen(command, pass_fds=[other.fileno()], env=path, stdin=nowhere, stdout=nowhere), calls
+
+
+def _memory(number: int) -> int:
+    """Resident memory of a process - bytes; 0 of one that has died."""
+    try:
+        return psutil.Process(number).memory_info().rss
+    except psutil.NoSuchProcess:
+        return 0
+
+
+def _how(status: int) -> str:
+    """How a process ended."""
+    return signal.Signals(-status).name if status < 0 else f"exit status {status}"
+
+
+def serve(handle: int) -> None:
+    """Do what comes through a pipe, in the process beside, until the other end is closed.
+
+    Args:
+        handle: of the pipe.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of the terminal: whoever waits for the result decides
+    with Connection(handle) as calls, Path(os.devnull).open("w") as nowhere:
+        try:
+            work, deadline = calls.recv()
+        except Exception as error:  # what it is made of cannot be imported here
+            calls.send(raised(error))
+            return
+        calls.send(None)
+        while True:
+            try:
+                item = calls.recv()
+            except EOFError:
+                return
+            faulthandler.dump_traceback_later(deadline + GRACE, exit=True, file=nowhere)
+            answer = _answer(work, item)
+            faulthandler.cancel_dump_traceback_later()
+            calls.send_bytes(answer)
+
+
+def _answer(work: Callable[[Any], Any], item: object) -> bytes:
+    """Result or failure, pickled; what a result refuses to be pickled for is a failure too."""
+    try:
+        return pickle.dumps(work(item))
+    except Exception as error:
+        return pickle.dumps(raised(error))
+
+
+def raised(error: Exception) -> Failure:
+    """What to say of an exception that the work did not foresee."""
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    told = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    return Failure("failed", f"{told} (at {Path(last.filename).name}:{last.lineno})")

@@ -1,0 +1,64 @@
+"""Do the same work on many items: beside this process where that is soonest done, else on Dask."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from statistics import median
+from typing import TypeVar
+
+from bench.jobs.beside import Beside
+from bench.jobs.limits import Failure, Limits
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+#: Seconds until Dask's first result on this machine, and until it has ended (5 to 8 s measured on two cores).
+DASK_STARTS = 7.0
+
+
+def each(
+    work: Callable[[Item], Result],
+    items: Iterable[Item],
+    limits: Limits | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+) -> Iterator[tuple[int, Result | Failure]]:
+    """Place of each item with its result, or why there is none, in the order in which they come.
+
+    An item that raises, hangs or ends its process is a `Failure` and nothing else: the others go on. What is returned
+    for an item depends on neither the number of workers nor where they are.
+
+    Args:
+        work: a picklable function of one item.
+        items: picklable.
+        limits: of one item.
+        workers: processes on this machine; None: one a core.
+        scheduler: address of a Dask cluster that does the work instead.
+
+    Raises:
+        InputError: no Dask scheduler answers at the address.
+    """
+    limits = limits or Limits()
+    waiting = deque(enumerate(items))
+    workers = workers or os.cpu_count() or 1
+    if scheduler is None:
+        seconds: list[float] = []
+        with Beside(work, limits) as beside:
+            while waiting and not _worth_dask(seconds, len(waiting), workers):
+                place, item = waiting.popleft()
+                began = time.monotonic()
+                outcome = beside.do(item)
+                seconds.append(time.monotonic() - began)
+                yield place, outcome
+    if waiting:
+        from bench.jobs.on_dask import on_dask  # Dask: a second
+
+        yield from on_dask(work, waiting, limits, workers, scheduler)
+
+
+def _worth_dask(seconds: list[float], left: int, workers: int) -> bool:
+    """Whether several workers save more than Dask's start costs, as items took so far."""
+    return bool(seconds) and left * median(seconds) * (1.0 - 1.0 / workers) > DASK_STARTS

@@ -1,0 +1,134 @@
+"""Pieces of work on Dask: workers of this machine, or a cluster that is there.
+
+Dask has the queue, the balance between workers, and the retries where a worker or its machine is lost; each thread of a
+worker has one process beside it (`beside.py`), so that no piece of work can hold up or end the worker itself.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from functools import partial
+from typing import Any, TypeVar, cast
+from uuid import uuid4
+
+from distributed import Client, Future, KilledWorker, LocalCluster, Worker, WorkerPlugin, as_completed, get_worker
+
+from bench import __version__
+from bench.errors import InputError
+from bench.jobs.beside import Beside, raised
+from bench.jobs.limits import Failure, Limits
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+#: Seconds within which a scheduler has to answer.
+ANSWERS = 15
+#: Items sent to the scheduler at a time.
+BATCH = 1000
+
+
+def on_dask(
+    work: Callable[[Item], Result],
+    numbered: Sequence[tuple[int, Item]],
+    limits: Limits,
+    workers: int,
+    scheduler: str | None,
+) -> Iterator[tuple[int, Result | Failure]]:
+    """Results by the items' numbers, in the order in which they come.
+
+    Args:
+        work: a picklable function of one item.
+        numbered: items, each with its number.
+        limits: of one piece of work.
+        workers: processes on this machine, where no scheduler is given.
+        scheduler: address of a cluster's.
+
+    Raises:
+        InputError: there is no such cluster, or its workers have no servobench of this version.
+    """
+    with ExitStack() as stack:
+        client = stack.enter_context(_client(workers, limits, scheduler))
+        name = f"bench-{uuid4().hex}"
+        stack.enter_context(_equipped(client, Besides(name, work, limits), scheduler))
+        keys = [(name, number) for number, _ in numbered]  # one group, which the scheduler hands out as workers ask
+        items = [item for _, item in numbered]
+        for future in as_completed(client.map(partial(_beside, name), items, key=keys, batch_size=BATCH)):
+            yield future.key[1], _outcome(future)
+
+
+@contextmanager
+def _client(workers: int, limits: Limits, scheduler: str | None) -> Iterator[Client]:
+    if scheduler is None:
+        memory, quiet = int(limits.memory), logging.CRITICAL
+        with (
+            LocalCluster(
+                workers, threads_per_worker=1, memory_limit=memory, dashboard_address="127.0.0.1:0", silence_logs=quiet
+            ) as cluster,
+            Client(cluster) as client,
+        ):
+            yield client
+        return
+    try:
+        client = Client(scheduler, timeout=ANSWERS)
+    except (OSError, ValueError, TypeError) as error:
+        found = f"no Dask scheduler answers ({' '.join(str(error).split())})"
+        raise InputError(
+            f"--scheduler {scheduler}", found, "allowed: the address of one, e.g. tcp://host:8786"
+        ) from error
+    with client:
+        yield client
+
+
+@contextmanager
+def _equipped(client: Client, plugin: Besides, scheduler: str | None) -> Iterator[None]:
+    """Within the block each worker, also one that comes later, has the plugin."""
+    try:
+        client.register_plugin(plugin)
+    except ImportError as error:
+        allowed = f"install servobench {__version__} where they run"
+        raise InputError(f"--scheduler {scheduler}", f"its workers cannot load the bench ({error})", allowed) from error
+    try:
+        yield
+    finally:
+        client.unregister_worker_plugin(plugin.name)
+
+
+class Besides(WorkerPlugin):
+    """The processes beside a worker, one for each of its threads that works.
+
+    Args:
+        name: by which tasks find it.
+        work, limits: see `Beside`.
+    """
+
+    def __init__(self, name: str, work: Callable[..., object], limits: Limits) -> None:
+        self.name, self._work, self._limits = name, work, limits
+        self._besides: dict[int, Beside] = {}
+
+    def teardown(self, worker: Worker) -> None:
+        """End the processes."""
+        for beside in list(self._besides.values()):
+            beside.close()
+
+    def do(self, item: object) -> object:
+        """The work's result or failure, by the process of the thread that asks."""
+        beside = self._besides.setdefault(threading.get_ident(), Beside(self._work, self._limits))
+        return beside.do(item)
+
+
+def _beside(name: str, item: object) -> object:
+    """One task."""
+    return cast("Besides", get_worker().plugins[name]).do(item)
+
+
+def _outcome(future: Future) -> Any:  # noqa: ANN401
+    """What a task returned, or that its worker was lost as often as Dask allows."""
+    if future.status == "finished":
+        return future.result()
+    error = future.exception() if future.status == "error" else None
+    if isinstance(error, KilledWorker):
+        return Failure("failed", "its worker was killed (Dask tried it as often as it is allowed to)")
+    return raised(error) if isinstance(error, Exception) else Failure("failed", "the cluster gave it up")

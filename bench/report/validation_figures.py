@@ -1,0 +1,66 @@
+"""Figures of a validation: coverage with its bounds, and which names are given for what is hidden."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from bench.report.figures import MEASURED, MODELLED, REST, title_figure
+from bench.validate.coverage import LEVELS, Coverage
+from bench.validate.naming import NOTHING, Naming
+
+COLOURS = {"inertia": MEASURED, "viscous": MODELLED, "coulomb": REST}
+SYMBOLS = {"inertia": "J", "viscous": "$K_\\omega$", "coulomb": "$K_0$"}
+
+
+def coverage_figure(found: Sequence[Coverage]) -> Figure:
+    """Share of intervals that hold the truth, of J, K_w and K_0 by groups of runs, with bounds of 95 %."""
+    shown = [each for each in found if each.quantity in COLOURS and each.told]
+    groups = list(dict.fromkeys((each.by, each.group) for each in shown))
+    figure = Figure(figsize=(11.0, 1.8 + 0.36 * max(len(groups), 1)), layout="constrained")
+    title_figure(figure, "How often an interval holds the truth")
+    axes = figure.subplots(1, len(LEVELS), sharey=True)
+    for place, (axis, level) in enumerate(zip(axes, LEVELS, strict=True)):
+        for step, quantity in enumerate(COLOURS):
+            those = [each for each in shown if each.quantity == quantity]
+            rows = np.array([groups.index((each.by, each.group)) for each in those]) + 0.22 * (step - 1)
+            shares = [each.inside[place] for each in those]
+            value = np.array([share.value for share in shares])
+            bounds = np.array([share.bounds for share in shares]).reshape(-1, 2)
+            reach = np.abs(bounds.T - value)
+            axis.errorbar(
+                value, rows, xerr=reach, fmt="o", ms=3.5, lw=1.0, color=COLOURS[quantity], label=SYMBOLS[quantity]
+            )
+        axis.axvline(level, color="0.3", lw=0.8)
+        axis.set_xlabel(f"in its {level:.0%} interval")
+        axis.grid(alpha=0.25)
+    axes[0].set_yticks(range(len(groups)), [f"{by}: {group}" for by, group in groups])
+    axes[0].invert_yaxis()
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=3, frameon=False)
+    return figure
+
+
+def confusion_figure(found: Naming) -> Figure:
+    """Names given for each effect that is hidden alone, and where nothing is; coloured by share of the row's runs."""
+    rows = list(found.confusion)
+    said = {name for counts in found.confusion.values() for name in counts}
+    columns = [name for name in rows if name in said] + sorted(said - set(rows))
+    counts = np.array([[found.confusion[row].get(column, 0) for column in columns] for row in rows]).reshape(
+        len(rows), -1
+    )
+    figure = Figure(figsize=(3.4 + 0.42 * len(columns), 2.6 + 0.34 * len(rows)), layout="constrained")
+    title_figure(figure, "Named, by what is hidden")
+    axis = figure.subplots()
+    share = counts / np.maximum(counts.max(axis=1, initial=1, keepdims=True), 1)
+    axis.imshow(share, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
+    for row, column in zip(*np.nonzero(counts), strict=True):
+        colour = "white" if share[row, column] > 0.6 else "black"
+        axis.text(column, row, str(counts[row, column]), ha="center", va="center", color=colour, fontsize=8)
+    axis.set_xticks(range(len(columns)), [name.replace("_", " ") for name in columns], rotation=55, ha="left")
+    axis.set_yticks(range(len(rows)), [name.replace("_", " ") for name in rows])
+    axis.xaxis.tick_top()
+    axis.set_ylabel(f"hidden ({NOTHING}: a null)")
+    axis.tick_params(length=0)
+    return figure

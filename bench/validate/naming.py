@@ -1,0 +1,69 @@
+"""How often what is hidden is named, and what is not."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from bench.validate.coverage import Share
+from bench.validate.run import Run
+from bench.validate.told import Named
+
+#: What is hidden in a null; what is said instead of a name.
+NOTHING, NOTHING_MISSING, REMAINDER, REFUSED = "nothing", "nothing missing", "only a remainder", "refused"
+
+
+@dataclass(frozen=True)
+class Naming:
+    """Names over all runs that were diagnosed.
+
+    Attributes:
+        nulls: those of them with a false name, of runs with nothing hidden that were not refused.
+        false: the same of all runs.
+        exact: runs whose names are those of what is hidden, of all, refused ones too.
+        refused: runs without a diagnosis.
+        named: by effect, how often it is named where it is hidden.
+        falsely: by effect, how often it is named where it is not.
+        confusion: of runs with one effect or none, by what is hidden, how often each name is given, or what instead.
+    """
+
+    nulls: Share
+    false: Share
+    exact: Share
+    refused: Share
+    named: Mapping[str, Share]
+    falsely: Mapping[str, int]
+    confusion: Mapping[str, Mapping[str, int]]
+
+
+def naming(runs: Sequence[Run]) -> Naming | None:
+    """Names of the runs that were diagnosed; None if none was."""
+    pairs = [(run, run.named) for run in runs if run.named is not None]
+    if not pairs:
+        return None
+    told = [(run, named) for run, named in pairs if named.verdict]
+    nulls = [named for run, named in told if not run.hidden]
+    hidden = Counter(name for run, _ in pairs for name in run.hidden)
+    missed = Counter(name for _, named in pairs for name in named.missed)
+    confusion: dict[str, Counter[str]] = {}
+    for run, named in pairs:
+        if len(run.hidden) < 2:
+            confusion.setdefault(next(iter(run.hidden), NOTHING), Counter()).update(given(named))
+    return Naming(
+        nulls=Share(sum(bool(named.false) for named in nulls), len(nulls)),
+        false=Share(sum(bool(named.false) for _, named in told), len(told)),
+        exact=Share(sum(named.exact for _, named in pairs), len(pairs)),
+        refused=Share(len(pairs) - len(told), len(pairs)),
+        named={name: Share(hidden[name] - missed[name], hidden[name]) for name in sorted(hidden)},
+        falsely=dict(Counter(name for _, named in told for name in named.false)),
+        confusion={name: dict(confusion[name]) for name in sorted(confusion, key=lambda name: (name == NOTHING, name))},
+    )
+
+
+def given(named: Named) -> tuple[str, ...]:
+    """Names, or what was said instead."""
+    if not named.verdict:
+        return (REFUSED,)
+    instead = REMAINDER if named.verdict == "unexplained_remainder" else NOTHING_MISSING
+    return named.names or (instead,)

@@ -1,0 +1,172 @@
+"""A model on a joint of somebody's MJCF moves it as the axis of its own; what is not carried is told."""
+
+import mujoco
+import numpy as np
+import pytest
+
+from bench.effects.mjcf import AXIS, DRIVE
+from bench.errors import InputError
+from bench.export.joint import Share, onto
+from bench.export.mjcf import commented, joint_alone, read_mjcf, robot_with
+from bench.plant.model_file import model_xml
+from tests.export.arms import ARM, PARAMETERS, stored
+
+COGGING = ("cogging_torque", {"amplitude": 0.05, "harmonic": 6.0, "phase": 0.3})
+OFFSET = ("torque_offset", {"torque": 0.02})
+DRAG = ("quadratic_drag", {"quadratic_drag": 2e-5})
+SPRING = ("torsion_spring", {"stiffness": 0.03})
+BRISTLES = ("presliding_friction", {"bristle_stiffness": 20.0})
+COUPLING = ("elastic_coupling", {"stiffness": 30.0, "damping": 2e-3})
+BACKLASH = ("backlash", {"gap": 0.02})
+STRIBECK = ("stribeck_friction", {"static_friction": 0.12, "stribeck_velocity": 2.0})
+TIMESTEP = 1e-4
+
+
+def moved(spec, joint, actuator, scale=1.0, count=6000):
+    """Angle of a joint's link under a swinging torque of its motor, and of the joint itself - (n,) each."""
+    spec.option.timestep, spec.option.gravity = TIMESTEP, [0.0, 0.0, 0.0]
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    motor, control = model.joint(joint).qposadr[0], model.actuator_ctrladr[model.actuator(actuator).id]
+    found = np.empty((2, count))
+    for k in range(count):
+        data.ctrl[control] = 0.4 * np.sin(k * TIMESTEP * 25.0)
+        mujoco.mj_step(model, data)
+        found[:, k] = data.qpos[motor] * scale, data.qpos.sum() * scale
+    return found
+
+
+@pytest.mark.parametrize("ratio", [1.0, 5.0])
+@pytest.mark.parametrize(
+    "effects",
+    [(), (COGGING, OFFSET), (DRAG, SPRING), (BRISTLES,), (COUPLING, COGGING), (BACKLASH,)],
+    ids=lambda effects: "+".join(name for name, _ in effects) or "bare",
+)
+def test_it_moves_as_the_axis_alone(effects, ratio):
+    """The link has the load's inertia, so that the robot is the axis; the gear turns angles and torques into its own."""
+    model = stored(*effects, gear_ratio=ratio)
+    load = (PARAMETERS.inertia - PARAMETERS.motor_inertia) * ratio**2
+    xml = f"""<mujoco><worldbody><body name="base"><body name="link"><joint name="joint" axis="0 0 1" armature="9"/>
+      <inertial pos="0 0 0" mass="1" diaginertia="{load} {load} {load}"/></body></body></worldbody></mujoco>"""
+    spec = mujoco.MjSpec.from_string(xml)
+    spec.option.timestep = TIMESTEP
+    carried = onto(spec, "joint", model, Share.MOTOR)
+    assert set(carried.native) == {name for name, _ in effects}
+    robot = moved(spec, "joint", "joint motor", ratio)
+    alone = model.model.spec(TIMESTEP)
+    alone.option.disableflags = 0  # a user's model takes damping as it comes
+    alone.joint(AXIS).armature = 0.0
+    axis = moved(alone, AXIS, DRIVE)
+    np.testing.assert_allclose(robot, axis, atol=2e-5 * np.ptp(axis))
+
+
+def test_what_the_joint_had_is_replaced_and_the_rest_kept():
+    spec = mujoco.MjSpec.from_string(ARM)
+    carried = onto(spec, "elbow", stored(COGGING, STRIBECK, gear_ratio=10.0))
+    elbow, model = spec.joint("elbow"), spec.compile()
+    assert elbow.armature == pytest.approx(1e-4 * 100.0)
+    assert elbow.damping[0] == pytest.approx(0.11)
+    assert elbow.frictionloss == pytest.approx(0.8)
+    assert spec.joint("shoulder").damping[0] == 0.2
+    assert [model.actuator(k).name for k in range(model.nu)][0] == "lift"
+    assert carried.native == ("cogging_torque",)
+    assert carried.left == (("stribeck_friction", "bench.Effects steps it"),)
+
+
+def test_a_measurement_fault_is_said_to_be_none_of_the_motion():
+    lag = ("velocity_filter_lag", {"time_constant": 2e-3})
+    carried = onto(mujoco.MjSpec.from_string(ARM), "elbow", stored(lag))
+    assert carried.left == (("velocity_filter_lag", "it is in what sensors report, not in the motion"),)
+
+
+def test_the_links_of_a_robot_are_not_counted_twice():
+    spec = mujoco.MjSpec.from_string(ARM)
+    onto(spec, "elbow", stored(gear_ratio=10.0, link_inertia=0.03))
+    assert spec.joint("elbow").armature == pytest.approx(1e-3 * 100.0 - 0.03)
+    with pytest.raises(InputError, match="more than the links have"):
+        onto(spec, "elbow", stored(link_inertia=0.03))
+
+
+@pytest.mark.parametrize(
+    ("joint", "says"), [("elbo", "did you mean 'elbow'"), ("slide", "type slide; allowed: .* rotary")]
+)
+def test_a_joint_that_cannot_have_it_is_told(joint, says):
+    with pytest.raises(InputError, match=says):
+        onto(mujoco.MjSpec.from_string(ARM), joint, stored())
+
+
+def test_a_coupling_needs_a_body_of_one_joint():
+    xml = ARM.replace('<geom size=".03" mass=".1"/>', '<joint name="wrist"/><geom size=".03" mass=".1"/>')
+    with pytest.raises(InputError, match="body of several joints"):
+        onto(mujoco.MjSpec.from_string(xml), "wrist", stored(COUPLING))
+
+
+FLYING = """<mujoco><worldbody><body name="drone"><freejoint/><geom size=".1"/>
+  <body name="boom" pos="0 0 .2"><joint name="tilt"/><geom size=".05"/></body></body></worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize("text", [model_xml, lambda model: joint_alone(model, "axis")[0]], ids=["model.xml", "snippet"])
+@pytest.mark.filterwarnings("ignore:Attach conflict")
+def test_files_attach_to_a_moving_body(text):
+    """The child's timestep is not the parent's, which MuJoCo says and keeps."""
+    parent = mujoco.MjSpec.from_string(FLYING)
+    child = mujoco.MjSpec.from_string(text(stored(COGGING, gear_ratio=3.0, load_mass=0.9)))
+    parent.attach(child, prefix="servo ", frame=parent.body("boom").add_frame(pos=[0.0, 0.0, 0.1]))
+    model = parent.compile()
+    assert "servo axis" in [model.joint(k).name for k in range(model.njnt)]
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, nstep=50)
+    assert np.isfinite(data.qpos).all()
+
+
+def test_masses_are_known_or_said_to_be_invented():
+    known = mujoco.MjModel.from_xml_string(model_xml(stored(load_mass=0.9)))
+    assert known.body("load").mass[0] == 0.9
+    np.testing.assert_allclose(known.body("load").inertia, [9e-4, 4.5e-4, 4.5e-4])
+    assert "the load's either; 1e-06 kg stands in" in model_xml(stored())
+    assert "motor's side of a gear of 7" in model_xml(stored(gear_ratio=7.0))
+    assert "gear" not in model_xml(stored()).partition("<mujoco")[0]
+
+
+def test_the_snippet_has_its_values_in_a_class():
+    text, _ = joint_alone(stored(COGGING, gear_ratio=2.0, load_mass=0.9), "axis")
+    assert '<default class="the_axis">' in text
+    assert '<joint name="axis" class="the_axis"' in text
+    model = mujoco.MjModel.from_xml_string(text)
+    assert model.dof_armature[0] == pytest.approx(4e-4)
+    np.testing.assert_allclose(model.body("load").inertia, [3.6e-3, 1.8e-3, 1.8e-3])
+    assert model.body("load").mass[0] == 0.9
+    assert "stands in for one that is not known" in joint_alone(stored(), "axis")[0]
+
+
+def test_a_robot_in_a_file_keeps_its_meshes(tmp_path):
+    cube = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    (tmp_path / "robot" / "meshes").mkdir(parents=True)
+    (tmp_path / "robot" / "meshes" / "cube.obj").write_text(cube)
+    robot = tmp_path / "robot" / "robot.xml"
+    robot.write_text(
+        '<mujoco><compiler meshdir="meshes"/><asset><mesh name="cube" file="cube.obj"/></asset><worldbody><body>'
+        '<joint name="elbow"/><geom type="mesh" mesh="cube"/></body></worldbody></mujoco>'
+    )
+    out = tmp_path / "elsewhere" / "out.xml"
+    out.parent.mkdir()
+    text, _ = robot_with(robot, "elbow", stored(), out, None)
+    out.write_text(text)
+    assert mujoco.MjModel.from_xml_path(str(out)).dof_frictionloss[0] == pytest.approx(0.08)
+
+
+@pytest.mark.parametrize(
+    ("content", "says"), [("<mujoco>", "does not read"), ("", "does not read"), (None, "no such file")]
+)
+def test_a_robot_that_is_none_is_told_in_one_line(tmp_path, content, says):
+    path = tmp_path / "robot.xml"
+    if content is not None:
+        path.write_text(content)
+    with pytest.raises(InputError, match=says) as error:
+        read_mjcf(path)
+    assert "\n" not in str(error.value)
+
+
+def test_nothing_ends_the_comment():
+    text = commented(mujoco.MjSpec(), ("of a joint named --><body/>",))
+    assert text.count("-->") == 1

@@ -1,0 +1,117 @@
+"""Whatever one item does, it gets its row and the others theirs: beside this process and on Dask alike."""
+
+import os
+import time
+
+import pytest
+
+from bench.errors import InputError
+from bench.jobs.beside import Beside
+from bench.jobs.each import each
+from bench.jobs.limits import Failure, Limits
+from tests.jobs.pieces import work
+
+LIMITS = Limits(deadline=2.0, memory=400 * 2**20)
+ITEMS = [
+    ("square", 3),
+    ("refuse", 7),
+    ("hang", 0),
+    ("crash", 0),
+    ("killed", 0),
+    ("fill", 700),
+    ("leave", 3),
+    ("unpicklable", 1),
+    ("square", 5),
+]
+OUTCOMES = {
+    0: 9,
+    1: Failure("failed", "ValueError: 7 is not for me (at pieces.py:23)"),
+    2: Failure("timed_out", "no result within 2 s"),
+    3: Failure("failed", "its worker was killed (SIGSEGV)"),
+    4: Failure("failed", "its worker was killed (SIGKILL)"),
+    5: Failure("failed", "its worker was killed (it took more than 400 MB)"),
+    6: Failure("failed", "its worker was killed (exit status 3)"),
+    8: 25,
+}
+
+
+def compared(outcomes):
+    found = dict(outcomes)
+    unpicklable = found.pop(7)
+    assert unpicklable.status == "failed"
+    assert "pickle" in unpicklable.reason
+    return found
+
+
+def test_every_item_has_its_outcome_beside_this_process():
+    assert compared(each(work, ITEMS, LIMITS, workers=1)) == OUTCOMES
+
+
+def test_the_same_on_dask(cluster):
+    assert compared(each(work, ITEMS, LIMITS, scheduler=cluster.scheduler_address)) == OUTCOMES
+
+
+def test_a_long_job_goes_to_dask_and_a_short_one_does_not(monkeypatch):
+    asked = []
+
+    def on_dask(work, rest, *how):
+        asked.append((list(rest), *how))
+        return iter(())
+
+    monkeypatch.setattr("bench.jobs.on_dask.on_dask", on_dask)
+    assert len(list(each(work, [("wait", 1)] * 5, LIMITS, workers=2))) == 5
+    assert not asked
+    done = list(each(work, [("wait", 20)] * 100, LIMITS, workers=2))
+    assert done == [(0, 20)]
+    (rest, limits, workers, scheduler) = asked[0]
+    assert [place for place, _ in rest] == list(range(1, 100))
+    assert (limits, workers, scheduler) == (LIMITS, 2, None)
+
+
+def test_workers_of_this_machine_are_started_and_ended(monkeypatch):
+    monkeypatch.setattr("bench.jobs.each.DASK_STARTS", 0.0)
+    found = dict(each(work, [("process", 0)] * 40, LIMITS, workers=2))
+    assert sorted(found) == list(range(40))
+    assert len(set(found.values())) > 1
+    for process in found.values():
+        with pytest.raises(ProcessLookupError):
+            os.kill(process, 0)
+
+
+def test_one_process_does_all_items_that_go_well():
+    with Beside(work, LIMITS) as beside:
+        processes = {beside.do(("process", 0)) for _ in range(3)}
+        beside.do(("killed", 0))
+        after = beside.do(("process", 0))
+    assert len(processes) == 1
+    assert after not in {*processes, os.getpid()}
+
+
+def test_what_is_stopped_is_gone():
+    with Beside(work, Limits(deadline=0.3)) as beside:
+        process = beside.do(("process", 0))
+        assert beside.do(("sleep", 0)).status == "timed_out"
+    with pytest.raises(ProcessLookupError):
+        os.kill(process, 0)
+
+
+def test_work_that_cannot_be_loaded_says_so(tmp_path, monkeypatch):
+    (tmp_path / "passing.py").write_text("def work(item):\n    return item\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    import passing
+
+    (tmp_path / "passing.py").unlink()
+    with Beside(passing.work, LIMITS) as beside:
+        assert "No module named 'passing'" in beside.do(1).reason
+
+
+def test_a_scheduler_that_is_not_there_is_named(monkeypatch):
+    monkeypatch.setattr("bench.jobs.on_dask.ANSWERS", 0.5)
+    with pytest.raises(InputError, match=r"--scheduler tcp://127.0.0.1:9: no Dask scheduler answers"):
+        list(each(work, ITEMS, LIMITS, scheduler="tcp://127.0.0.1:9"))
+
+
+def test_no_item_is_no_work():
+    began = time.monotonic()
+    assert list(each(work, [])) == []
+    assert time.monotonic() - began < 1.0
