@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.checks.parts import speed_of, stretches
 from bench.rig.rig import Rig
-from bench.trace.known import less_known
 from bench.trace.noise import white_noise
+from bench.trace.known import less_known
 from bench.trace.trace import Trace
 
 #: Samples a window: motions and noises differ, the length that explains most is taken.

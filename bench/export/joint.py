@@ -26,26 +26,10 @@ from bench.plant.model_file import StoredModel
 from bench.units import nearest
 
 #: What makes an actuator what it is, but for its name, its joint and its gear.
-ACTUATOR = [
-    "gaintype",
-    "biastype",
-    "dyntype",
-    "gainprm",
-    "biasprm",
-    "dynprm",
-    "actdim",
-    "actearly",
-    "actlimited",
-    "actrange",
-    "ctrllimited",
-    "ctrlrange",
-    "ctrlspec",
-    "forcelimited",
-    "forcerange",
-    "nsample",
-    "interp",
-    "delay",
-]
+ACTUATOR = (
+    "gaintype biastype dyntype gainprm biasprm dynprm actdim actearly actlimited actrange ctrllimited ctrlrange "
+    "ctrlspec forcelimited forcerange nsample interp delay"
+).split()
 TRANSMISSION = mujoco.mjtTrn.mjTRN_JOINT
 #: Whether a joint of a type turns.
 TURNS = {mujoco.mjtJoint.mjJNT_HINGE: True, mujoco.mjtJoint.mjJNT_SLIDE: False}
@@ -79,9 +63,7 @@ class Carried:
     @property
     def lines(self) -> tuple[str, ...]:
         """All of it in sentences."""
-        native = (
-            f"native: {', '.join(self.native)}" if self.native else "no effect beyond friction and inertia is native"
-        )
+        native = f"native: {', '.join(self.native)}" if self.native else "no effect beyond friction and inertia is native"
         left = [f"not carried: {name} ({instead})" for name, instead in self.left]
         return f"{self.joint}: {native}", *left, *self.notes
 
@@ -117,18 +99,14 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, share: Share | Non
     driven = f"driven by {', '.join(moving)} as before"
     if not moving:
         spec.add_actuator(name=f"{name} motor", target=name, trntype=TRANSMISSION, gear=[ratio, 0, 0, 0, 0, 0])
-        driven = (
-            f"the joint had no actuator: '{name} motor' takes the motor's {model.parameters.kind.effort} as control"
-        )
+        driven = f"the joint had no actuator: '{name} motor' takes the motor's {model.parameters.kind.effort} as control"
     unit = model.parameters.kind.inertia_unit
     geared = f", behind a gear of {ratio:g}: all values are those of the joint" if ratio != 1.0 else ""
     inertia = (
         f"armature {armature:.4g} {unit}, {because}; the links beyond the joint have {links:.4g} {unit} where the MJCF "
         f"stands{geared}"
     )
-    between = [
-        f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in joint.parent.joints[1:]
-    ]
+    between = [f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in joint.parent.joints[1:]]
     return Carried(name, model.structure, _left(model), (inertia, driven, *(between if model.coupled else [])))
 
 
@@ -144,9 +122,7 @@ def joint_of(spec: mujoco.MjSpec, name: str, model: AxisModel) -> mujoco.MjsJoin
         raise InputError(f"--joint {name}", found, f"allowed: {', '.join(names) or 'an MJCF with a named joint'}")
     if TURNS.get(joint.type) is not model.parameters.kind.turns:
         found = f"found a joint of type {joint.type.name.removeprefix('mjJNT_').lower()}"
-        raise InputError(
-            f"--joint {name}", found, f"allowed: one that moves as the model does, {model.parameters.kind.name}"
-        )
+        raise InputError(f"--joint {name}", found, f"allowed: one that moves as the model does, {model.parameters.kind.name}")
     return joint
 
 
@@ -203,10 +179,7 @@ def _scaled(values: np.ndarray, ratio: float) -> np.ndarray:
 def _couple(joint: mujoco.MjsJoint, axis: mujoco.MjSpec, name: str, ratio: float) -> None:
     """Join motor and link by a second joint of the link, along the first: the sum of both is the link's position."""
     if len(joint.parent.joints) > 1:
-        found, allowed = (
-            "found a body of several joints",
-            "allowed: one that has its body alone, as motor and load part",
-        )
+        found, allowed = "found a body of several joints", "allowed: one that has its body alone, as motor and load part"
         raise InputError(f"--joint {name}", found, allowed)
     for between in axis.body(LOAD).joints:
         added = joint.parent.add_joint(name=f"{name} {between.name}", type=joint.type, axis=joint.axis, pos=joint.pos)

@@ -17,9 +17,7 @@ def load_inertia(parameters: Mapping[str, Parameter], rig: Rig) -> dict[str, Par
     if inertia is not None and rig.load is not None and rig.load.link_inertia is not None:
         square, links = rig.load.gear_ratio**2, rig.load.link_inertia
         low, high = (bound * square - links for bound in inertia.ci95)
-        return {
-            "armature": Parameter(inertia.value * square - links, inertia.unit, inertia.std_error * square, (low, high))
-        }
+        return {"armature": Parameter(inertia.value * square - links, inertia.unit, inertia.std_error * square, (low, high))}
     if inertia is None or rig.motor.rotor_inertia is None or inertia.unit != "kg*m**2":
         return {}
     value, square = _beyond(inertia.value, rig), _beyond(1.0, rig) - _beyond(0.0, rig)

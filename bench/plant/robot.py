@@ -168,9 +168,7 @@ def read_beside(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float])
     """
     unknown = sorted(set(stated) - set(robot.others))
     if unknown:
-        raise InputError(
-            f"--at {unknown[0]}", f"found no such joint{nearest(unknown[0], robot.others)}", _allowed(robot)
-        )
+        raise InputError(f"--at {unknown[0]}", f"found no such joint{nearest(unknown[0], robot.others)}", _allowed(robot))
     recording = read_recording(path)
     own = rig.on_axis(robot.joint) if _holds(recording, robot.joint) and rig.trace.axis is None else rig
     trace, ratio = assemble(recording, own.trace), (rig.load or Load()).gear_ratio
@@ -185,18 +183,14 @@ def read_beside(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float])
             position[:, k], velocity[:, k] = stated[name], 0.0
         else:
             found = "is neither in the log nor stated"
-            raise InputError(
-                f"{path}: joint '{name}'", found, f"allowed: a column '{name}.position [rad]', or --at {name}=0"
-            )
+            raise InputError(f"{path}: joint '{name}'", found, f"allowed: a column '{name}.position [rad]', or --at {name}=0")
     torque, momentum = robot.rest(position, velocity)
     return with_known(trace, torque / ratio, momentum / ratio, rig.effort_unit)
 
 
 def _holds(recording: Recording, name: str) -> bool:
     """Whether a log has signals of a joint."""
-    return any(
-        name == channel.axis or name.lower() in channel.name.lower().split(".") for channel in recording.channels
-    )
+    return any(name == channel.axis or name.lower() in channel.name.lower().split(".") for channel in recording.channels)
 
 
 def _motion(trace: Trace, at: Trace) -> tuple[Array, Array]:
@@ -215,3 +209,4 @@ def _motion(trace: Trace, at: Trace) -> tuple[Array, Array]:
 
 def _allowed(robot: Robot) -> str:
     return f"allowed: {', '.join(robot.others) or 'none, as the robot has one joint'}"
+

@@ -44,9 +44,7 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
     position[:] = motion.position[0] + half * velocity
     models = [plant.model for plant in plants]
     encoders = [rows for rows in gather(models, Sensing) if rows.effect.overrides("seen")]
-    acting = (
-        TickedEffects(BatchSeat(batch), models, velocity) if any(not model.all_native for model in models) else None
-    )
+    acting = TickedEffects(BatchSeat(batch), models, velocity) if any(not model.all_native for model in models) else None
     record = States(motion.time, *(np.zeros_like(motion.velocity) for _ in range(4)))
     with quiet():
         for k in range(len(motion.time)):

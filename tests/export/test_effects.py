@@ -79,8 +79,7 @@ def test_many_copies_move_as_each_alone():
     """Copies with models of their own: each as in a loop of its own, to the last bit."""
     values = [0.1, 0.14, 0.3]
     models = [
-        stored(("stribeck_friction", {"static_friction": value, "stribeck_velocity": 5.0}), *RIPPLED)
-        for value in values
+        stored(("stribeck_friction", {"static_friction": value, "stribeck_velocity": 5.0}), *RIPPLED) for value in values
     ]
     simulation = models[0].model.spec(PERIOD).compile()
     batch = Batch(simulation, len(models))

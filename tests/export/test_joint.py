@@ -155,9 +155,7 @@ def test_a_robot_in_a_file_keeps_its_meshes(tmp_path):
     assert mujoco.MjModel.from_xml_path(str(out)).dof_frictionloss[0] == pytest.approx(0.08)
 
 
-@pytest.mark.parametrize(
-    ("content", "says"), [("<mujoco>", "does not read"), ("", "does not read"), (None, "no such file")]
-)
+@pytest.mark.parametrize(("content", "says"), [("<mujoco>", "does not read"), ("", "does not read"), (None, "no such file")])
 def test_a_robot_that_is_none_is_told_in_one_line(tmp_path, content, says):
     path = tmp_path / "robot.xml"
     if content is not None:

@@ -13,13 +13,7 @@ from tests.export.arms import ARM, stored
 
 NATIVE = ("cogging_torque",)
 ONE = ("stribeck_friction",)
-FIVE = (
-    "direction_dependent_friction",
-    "friction_warmup",
-    "position_dependent_inertia",
-    "stribeck_friction",
-    "torque_ripple",
-)
+FIVE = ("direction_dependent_friction", "friction_warmup", "position_dependent_inertia", "stribeck_friction", "torque_ripple")
 STEPS, COPIES = 20_000, 200
 
 

@@ -46,11 +46,7 @@ def waves(time, amplitudes, frequencies, phases):
     omega = 2.0 * np.pi * np.asarray(frequencies)[:, None]
     angle = omega * time + np.asarray(phases)[:, None]
     size = np.asarray(amplitudes)[:, None]
-    return (
-        (size * np.sin(angle)).sum(0),
-        (size * omega * np.cos(angle)).sum(0),
-        -(size * omega**2 * np.sin(angle)).sum(0),
-    )
+    return (size * np.sin(angle)).sum(0), (size * omega * np.cos(angle)).sum(0), -(size * omega**2 * np.sin(angle)).sum(0)
 
 
 def shoulder_torque(q1, w1, a1, q2, w2, a2):
