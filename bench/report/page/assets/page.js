@@ -89,7 +89,7 @@
         width: this.place.clientWidth || 600,
         height: (k === 0 ? HEIGHT.first : HEIGHT.other) + (last ? 38 : 0),
         legend: { show: false },
-        padding: [6, 8, 0, 0],
+        padding: [6, 20, 0, 0],
         scales: { x: { time: false } },
         axes: [
           { ...axis, size: last ? 42 : 4, label: last ? "time / s" : undefined, labelSize: 18, labelFont: axis.font, values: last ? undefined : (u, splits) => splits.map(() => "") },
