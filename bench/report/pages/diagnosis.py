@@ -94,7 +94,7 @@ def _labels(diagnosis: Diagnosis) -> list[str]:
 def _steps(diagnosis: Diagnosis) -> Table:
     columns = [Column(heading="model")]
     names = [course.name for course in diagnosis.courses]
-    gaps = ("torque", diagnosis.torque), ("velocity", diagnosis.velocity)
+    gaps = (effort_word(diagnosis.torque.unit), diagnosis.torque), ("speed", diagnosis.velocity)
     for what, gap in gaps:
         columns += [Column(heading=f"{what} gap, {name} / {unit_text(gap.unit)}", number=True) for name in names]
     rows = [
@@ -110,6 +110,7 @@ def _over_time(diagnosis: Diagnosis, course: Course) -> TimeGraph:
     labels = [_labels(diagnosis)[k] for k in shown]
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
     place = [one.name for one in diagnosis.courses].index(course.name)
+    effort = effort_word(diagnosis.torque.unit)
     speed = Measured(
         "speed", diagnosis.velocity.unit, course.time, course.velocity, [course.velocity_left[k] for k in shown]
     )
@@ -122,10 +123,10 @@ def _over_time(diagnosis: Diagnosis, course: Course) -> TimeGraph:
         "modelled",
     )
     told = (
-        f"Speed and torque of {Path(course.origin).name} as measured and as the model has them. RMS of what is left "
+        f"Speed and {effort} of {Path(course.origin).name} as measured and as the model has them. RMS of what is left "
         f"with inertia and friction alone, then with all that was found: speed "
         f"{number(first.velocity[place], digits=3)}, "
-        f"{number(last.velocity[place], diagnosis.velocity.unit, 3)}; torque {number(first.torque[place], digits=3)}, "
+        f"{number(last.velocity[place], diagnosis.velocity.unit, 3)}; {effort} {number(first.torque[place], digits=3)}, "
         f"{number(last.torque[place], diagnosis.torque.unit, 3)}."
     )
     title = {"recording": "The recording.", "holdout": "The holdout, which was not fitted."}[course.name]
@@ -147,7 +148,6 @@ def _where(diagnosis: Diagnosis) -> Section:
         alternative=told,
         y_label="gap",
         y_unit=unit_text(diagnosis.torque.unit),
-        symmetric=True,
         panels=tuple(_over(found[name], diagnosis, names) for name in DRAWN if name in found),
     )
     columns = (
@@ -230,12 +230,12 @@ def _next(diagnosis: Diagnosis) -> Section:
     ]
     if diagnosis.because:
         blocks.append(Paragraph(text="What speaks against this being all:"))
-        blocks.append(Points(items=tuple(diagnosis.because)))
+        blocks.append(Points(items=tuple(map(words, diagnosis.because))))
     if diagnosis.unexplained_where:
         blocks.append(
             Points(
                 items=tuple(
-                    f"{share(one.share)} of what is left hangs on {one.coordinate}, most of it between "
+                    f"{share(one.share)} of what is left hangs on {coordinate_word(one.coordinate, one.unit)}, most of it between "
                     f"{number(one.region[0])} and {number(one.region[1], one.unit)}"
                     for one in diagnosis.unexplained_where
                 )

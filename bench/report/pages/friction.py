@@ -106,7 +106,7 @@ def _left(found: FrictionMap) -> Chart:
     )
     axes = Axes(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=series)
     told, unit = "What each curve leaves of the recordings.", unit_text(found.effort_unit)
-    return Chart(title="What is left.", alternative=told, y_label="left", y_unit=unit, symmetric=True, panels=(axes,))
+    return Chart(title="What is left.", alternative=told, y_label="left", y_unit=unit, panels=(axes,))
 
 
 def _series(

@@ -165,7 +165,8 @@
         plot.batch(() => { plot.setData([x, ...columns], false); plot.setScale("x", scale); });
         plot.tell();
       }
-      const [first, last] = [Math.max(a, 0), Math.min(b, this.data.count - 1)].map((k) => shown(start + step * k));
+      const digits = Math.min(9, Math.max(0, Math.ceil(-Math.log10(step))));
+      const [first, last] = [Math.max(a, 0), Math.min(b, this.data.count - 1)].map((k) => Number((start + step * k).toFixed(digits)));
       this.range.value = `${first} to ${last} s`;
     }
 
