@@ -11,6 +11,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Course, Profile
+from bench.diagnose.where.where import Where
 from bench.report.page.blocks import (
     Axes,
     Chart,
@@ -126,7 +127,8 @@ def _over_time(diagnosis: Diagnosis, course: Course) -> TimeGraph:
         f"Speed and {effort} of {Path(course.origin).name} as measured and as the model has them. RMS of what is left "
         f"with inertia and friction alone, then with all that was found: speed "
         f"{number(first.velocity[place], digits=3)}, "
-        f"{number(last.velocity[place], diagnosis.velocity.unit, 3)}; {effort} {number(first.torque[place], digits=3)}, "
+        f"{number(last.velocity[place], diagnosis.velocity.unit, 3)}; {effort} "
+        f"{number(first.torque[place], digits=3)}, "
         f"{number(last.torque[place], diagnosis.torque.unit, 3)}."
     )
     title = {"recording": "The recording.", "holdout": "The holdout, which was not fitted."}[course.name]
@@ -232,13 +234,13 @@ def _next(diagnosis: Diagnosis) -> Section:
         blocks.append(Paragraph(text="What speaks against this being all:"))
         blocks.append(Points(items=tuple(map(words, diagnosis.because))))
     if diagnosis.unexplained_where:
-        blocks.append(
-            Points(
-                items=tuple(
-                    f"{share(one.share)} of what is left hangs on {coordinate_word(one.coordinate, one.unit)}, most of it between "
-                    f"{number(one.region[0])} and {number(one.region[1], one.unit)}"
-                    for one in diagnosis.unexplained_where
-                )
-            )
-        )
+        blocks.append(Points(items=tuple(map(_sits, diagnosis.unexplained_where))))
     return Section(key="next", heading="What to record next", blocks=tuple(blocks))
+
+
+def _sits(account: Where) -> str:
+    """Where a part of what is left is."""
+    return (
+        f"{share(account.share)} of what is left hangs on {coordinate_word(account.coordinate, account.unit)}, most of "
+        f"it between {number(account.region[0])} and {number(account.region[1], account.unit)}"
+    )
