@@ -187,5 +187,5 @@ def test_numbers_on_the_page_are_those_of_the_json(opened, found):
     text = page.locator("dl").inner_text().replace("\N{NO-BREAK SPACE}", " ")
     for asked in ("Moment of inertia?", "What was missing?", "How sure?", "Does it move like the axis now?"):
         assert asked in text
-    assert f"{1e3 * told['parameters']['moment_of_inertia']['value']:.3f}" in text
+    assert f"{1e3 * told['parameters']['moment_of_inertia']['value']:.5f}" in text
     assert f"{told['gap']['velocity']['holdout']['after']:.3g}" in text
