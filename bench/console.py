@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,6 +21,22 @@ TracesArgument = Annotated[
 ]
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
 AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
+
+
+class Figures(StrEnum):
+    """Formats of figures."""
+
+    PNG = "png"
+    PDF = "pdf"
+    SVG = "svg"
+
+    @property
+    def ending(self) -> str:
+        """Of a file."""
+        return f".{self.value}"
+
+
+FiguresOption = Annotated[Figures, typer.Option("--figures", help="Format of the figures that --out writes.")]
 ReportOption = Annotated[Path | None, typer.Option("--report", help="Page to write: .html, all in one file.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 

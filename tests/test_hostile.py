@@ -30,7 +30,8 @@ from bench.plant.model_file import StoredModel, load_model, model_toml, read_tab
 from bench.plant.plant import Plant
 from bench.plant.s_curve import s_curve
 from bench.report.estimate import estimate_table
-from bench.report.figures import identification_figure, save
+from bench.report.figures import save
+from bench.report.identification_figure import identification_figure
 from bench.report.lab import lab_html
 from bench.rig.rig import Rig, load_rig
 from bench.structured import json_text, parse_json

@@ -10,6 +10,8 @@ import typer
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
 from bench.console import (
     AxisOption,
+    Figures,
+    FiguresOption,
     JsonOption,
     TracesArgument,
     console,
@@ -33,6 +35,7 @@ def diagnose(
     mjcf: MjcfOption = None,
     joint: JointOption = None,
     at: AtOption = None,
+    figures: FiguresOption = Figures.PNG,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
     from bench.checks.gate import spoken
@@ -52,7 +55,7 @@ def diagnose(
         found = run_diagnosis(recordings, axis, other, excluded, done)
     options = {"without": sorted(excluded)} | ({"joint": joint, "at": at or []} if of.robot else {})
     basis = provenance(rig, traces, options, holdout, mjcf)
-    files = write_diagnosis(out, found, f"{axis.name}: {names}", basis) if out is not None else []
+    files = write_diagnosis(out, found, f"{axis.name}: {names}", basis, figures.ending) if out is not None else []
     if json is not None:
         write_json(json, diagnosis_json(found, basis))
     if json != Path("-"):

@@ -13,6 +13,8 @@ import typer
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
 from bench.console import (
     AxisOption,
+    Figures,
+    FiguresOption,
     JsonOption,
     TracesArgument,
     console,
@@ -54,6 +56,7 @@ def identify(
     mjcf: MjcfOption = None,
     joint: JointOption = None,
     at: AtOption = None,
+    figures: FiguresOption = Figures.PNG,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.checks.gate import spoken
@@ -79,20 +82,21 @@ def identify(
     if out is not None:
         from bench.report.identification import write_identification  # matplotlib: 0.35 s
 
-        files = write_identification(out, traces, axis, estimate, refinement, basis(), of.read if of.robot else None)
+        parts = of.read if of.robot else None
+        files = write_identification(out, traces, axis, estimate, refinement, basis(), parts, figures.ending)
     if json is not None:
         write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):
-        _tell(estimate, refinement, axis, traces)
+        _tell(estimate, refinement, axis, ", ".join(trace.name for trace in traces))
         tell_files(files)
     tell_warnings([*estimate.warnings, *spoken(estimate.checks)])
 
 
-def _tell(estimate: Estimate, refinement: Refinement | None, axis: Rig, traces: list[Path]) -> None:
+def _tell(estimate: Estimate, refinement: Refinement | None, axis: Rig, names: str) -> None:
     """Tables for a person."""
     from bench.report.estimate import estimate_table, recordings_table, refinement_line
 
-    console().print(estimate_table(estimate, f"{axis.name}: {', '.join(trace.name for trace in traces)}"))
+    console().print(estimate_table(estimate, f"{axis.name}: {names}"))
     if estimate.recordings:
         console().print(recordings_table(estimate))
     if refinement is not None:

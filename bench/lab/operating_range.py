@@ -95,7 +95,16 @@ def _motion(speed: Array, torque: Array, limit: OperatingRange) -> list[Curve]:
     return [
         Curve(np.abs(speed) * RPM, np.sign(speed * torque) * np.abs(torque), "motion, braking below 0", "dots"),
         Curve(np.array([left.mean_speed * RPM]), np.array([effective]), "RMS current at mean speed", "bold dots"),
+        _least(speed, torque, left),
     ]
+
+
+def _least(speed: Array, torque: Array, left: Reserve) -> Curve:
+    """The sample with the least reserve, and how far it is from the limit."""
+    at, size = abs(float(speed[left.at])) * RPM, abs(float(torque[left.at]))
+    side = -1.0 if speed[left.at] * torque[left.at] < 0.0 else 1.0
+    label = f"least reserve to the peak, {left.peak:.3g} N·m"
+    return Curve(np.array([at, at]), side * np.array([size, size + left.peak]), label, "reach")
 
 
 def _limit_curves(limit: OperatingRange, volts: str) -> list[Curve]:

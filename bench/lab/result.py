@@ -38,7 +38,7 @@ class Curve:
     x: Array
     y: Array
     label: str = ""
-    style: Literal["line", "thin", "wide", "dashes", "dots", "bold dots"] = "line"
+    style: Literal["line", "thin", "wide", "dashes", "dots", "bold dots", "reach"] = "line"
 
 
 @dataclass(frozen=True)

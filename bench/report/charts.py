@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from matplotlib import colormaps
+from matplotlib import colormaps, rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from bench.lab.result import Chart, Curve, Panel
 from bench.names import plain
-from bench.report.figures import title_figure
+from bench.report.figures import MEASURED, MODELLED, REST, STYLE, title_figure
 
 #: Size of a figure - inch: width, and height by the number of panels.
 WIDTH, HEIGHTS = 8.0, (3.3, 4.6, 5.4, 6.4)
@@ -19,7 +19,7 @@ LEGEND_ROW, LEGEND_COLUMNS = 0.2, 4
 #: Curves of fewer points have larger dots.
 FEW = 200
 #: First measured, then what is made of it.
-COLOURS = ("#4c5c6e", "#d9560b", "#3b7a57", "#7a4a8c", "#b0892b", "#2f7fb5")
+COLOURS = (MEASURED, MODELLED, REST, "#7a4a8c", "#a07a1e", "#2f7fb5", "#9c2626", "#7d8894")
 
 
 def chart_height(chart: Chart) -> float:
@@ -37,6 +37,11 @@ def chart_figure(chart: Chart) -> Figure:
 
 def draw_chart(figure: Figure | SubFigure, chart: Chart) -> None:
     """Draw a chart: its panels one above the other, those with the first one's x label on its x axis."""
+    with rc_context(STYLE):
+        _draw_panels(figure, chart)
+
+
+def _draw_panels(figure: Figure | SubFigure, chart: Chart) -> None:
     title_figure(figure, chart.title, x=0.02, size="medium")
     axes: list[Axes] = []
     for k, panel in enumerate(chart.panels):
@@ -60,7 +65,6 @@ def _draw(axes: Axes, panel: Panel, label_x: bool, label_size: str) -> None:
     axes.tick_params(labelbottom=label_x)
     if label_x:
         axes.set_xlabel(panel.x_label)
-    axes.grid(alpha=0.25)
     if _legend_rows(panel):
         # above the axes, where it covers no data
         above = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.1}
@@ -79,6 +83,8 @@ def _draw_curve(axes: Axes, curve: Curve, colour: object) -> None:
         axes.plot(curve.x, curve.y, ".", ms=2.5 if curve.x.size > FEW else 5.0, color=colour, label=label)
     elif curve.style == "bold dots":
         axes.plot(curve.x, curve.y, "o", ms=7.0, color=colour, label=label)
+    elif curve.style == "reach":
+        axes.plot(curve.x, curve.y, "o-", ms=6.0, lw=1.4, markevery=[0], color=colour, label=label)
     elif curve.style == "wide":
         axes.plot(curve.x, curve.y, "-", lw=4.0, alpha=0.4, color=colour, label=label)
     else:

@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from matplotlib.figure import Figure
 from rich import box
 from rich.table import Table
 
@@ -20,8 +18,9 @@ from bench.diagnose.where.where import Where
 from bench.files import held, write_text
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report.checks import checks_json
+from bench.report.diagnosis_figures import gaps_figure, where_figure
 from bench.report.estimate import between_json, parameters_json, recordings_json
-from bench.report.figures import MEASURED, MODELLED, save, title_figure
+from bench.report.figures import save
 from bench.report.page.blocks import File
 from bench.report.page.folder import write_page
 from bench.report.pages.diagnosis import diagnosis_page
@@ -30,8 +29,6 @@ from bench.structured import json_text
 SCHEMA = "bench.diagnose/1"
 #: Between rows of the motion to record next - s.
 PERIOD = 1e-3
-#: Share of the gap above which the region that holds most of it is shaded.
-SHADED = 0.1
 
 
 def diagnosis_json(diagnosis: Diagnosis, provenance: Mapping[str, Any] | None = None) -> str:
@@ -210,60 +207,21 @@ def _at_fault(diagnosis: Diagnosis) -> list[str]:
     return [f"at fault is the sensor, not the axis: {', '.join(sensors)}"] if sensors else []
 
 
-def where_figure(diagnosis: Diagnosis, title: str) -> Figure:
-    """The gap against each coordinate, before any effect was added and, where something remains, after."""
-    figure = Figure(figsize=(12.0, 6.5), layout="constrained")
-    title_figure(figure, title)
-    after = {account.coordinate: account for account in diagnosis.unexplained_where}
-    for axis, account in zip(figure.subplots(2, 4).ravel(), diagnosis.where, strict=False):
-        order = np.argsort(account.centres)
-        axis.plot(account.centres[order], account.means[order], ".-", ms=3, lw=0.8, color=MEASURED, label="before")
-        if account.coordinate in after:
-            rest = after[account.coordinate]
-            order = np.argsort(rest.centres)
-            axis.plot(rest.centres[order], rest.means[order], ".-", ms=3, lw=0.8, color=MODELLED, label="after")
-            axis.legend(frameon=False, fontsize=7)
-        if account.share > SHADED:
-            axis.axvspan(*account.region, color=MEASURED, alpha=0.08, lw=0.0)
-        axis.set_title(f"{account.coordinate}: {account.share:.0%}", fontsize=9)
-        axis.set_xlabel(account.unit, fontsize=8)
-        axis.set_ylabel(f"gap / {diagnosis.torque.unit}", fontsize=8)
-        axis.tick_params(labelsize=7)
-        axis.grid(alpha=0.25)
-    return figure
-
-
-def gaps_figure(diagnosis: Diagnosis, title: str) -> Figure:
-    """Torque and velocity gap of the bare axis and after each addition, on both recordings, against the noise floor."""
-    figure = Figure(figsize=(12.0, 4.5), layout="constrained")
-    title_figure(figure, title)
-    labels = [step.effect.replace("_", " ") or "J, friction" for step in diagnosis.steps]
-    labels = [label if k == 0 else f"+ {label}" for k, label in enumerate(labels)]
-    for axis, name, gap in zip(
-        figure.subplots(1, 2), ("torque", "velocity"), (diagnosis.torque, diagnosis.velocity), strict=True
-    ):
-        values = np.array([getattr(step, name) for step in diagnosis.steps])
-        places, count = np.arange(len(labels)), values.shape[1]
-        for k, (recording, colour) in enumerate(zip(("recording", "holdout"), (MEASURED, MODELLED), strict=True)):
-            if k < count:
-                offset = (k - 0.5 * (count - 1)) * 0.4
-                bars = axis.bar(places + offset, values[:, k], 0.38, color=colour, label=recording)
-                axis.bar_label(bars, fmt="%.3g", fontsize=7, padding=1)
-        axis.axhline(gap.noise_floor, color="0.3", lw=1.0, ls="--", label="noise floor")
-        axis.set_yscale("log")
-        axis.margins(y=0.15)
-        axis.set_xticks(places, labels, fontsize=8, rotation=20 if len(labels) > 2 else 0)
-        axis.set_ylabel(f"RMS {name} gap / {gap.unit}")
-        axis.grid(axis="y", alpha=0.25)
-        axis.set_axisbelow(True)
-        axis.legend(frameon=False, fontsize=8)
-    return figure
-
-
 def write_diagnosis(
-    out: Path, diagnosis: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None
+    out: Path, diagnosis: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, ending: str = ".png"
 ) -> list[Path]:
-    """Write the page, `diagnosis.json`, two figures, `model.toml` and, where MuJoCo has all of it, `model.xml`."""
+    """Write the page, `diagnosis.json`, two figures, `model.toml` and, where MuJoCo has all of it, `model.xml`.
+
+    Args:
+        out: folder, made if it is not there.
+        diagnosis: what was found.
+        title: rig and recordings.
+        provenance: of the files it came from.
+        ending: of the figures' files, one of `bench.report.figures.FORMATS`.
+
+    Returns:
+        Paths written.
+    """
     toml, xml = _model_toml(diagnosis), None if diagnosis.model is None else model_xml(diagnosis.model)
     json = diagnosis_json(diagnosis, provenance) + "\n"
     files = [File(name="diagnosis.json", about="all of it as numbers", media="application/json", content=json)]
@@ -272,7 +230,7 @@ def write_diagnosis(
         files.insert(0, File(name="model.xml", about=about, media="application/xml", content=xml))
     about = "the model with all that was found, for bench replay"
     files.insert(0, File(name="model.toml", about=about, media="application/toml", content=toml))
-    written = [out / "diagnosis.json", out / "where.png", out / "gaps.png", out / "model.toml"]
+    written = [out / "diagnosis.json", out / f"where{ending}", out / f"gaps{ending}", out / "model.toml"]
     with held(out):
         write_text(written[0], json)
         save(where_figure(diagnosis, title), written[1])

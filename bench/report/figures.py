@@ -1,35 +1,75 @@
-"""Figures of an identification, drawn without a display."""
+"""The one style of all figures, and how they are written; drawn without a display, for a screen or for paper."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, ParamSpec
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from bench.arrays import Array
-from bench.axis_kind import AxisKind
 from bench.errors import InputError
 from bench.files import whole
-from bench.identify.estimate import Estimate
-from bench.identify.modelled import modelled_effort
 from bench.names import plain
-from bench.trace.motion import Motion
+
+P = ParamSpec("P")
 
 #: More points than this do not show in a figure; the extremes of each stretch stand for it.
 POINTS = 8000
-MEASURED, MODELLED, REST = "#4c5c6e", "#d9560b", "#3b7a57"
+#: What is measured, what a model makes, what is left, and noise: the same everywhere, and told apart in grey too.
+MEASURED, MODELLED, REST, NOISE = "#4c5c6e", "#c0480a", "#25704e", "#d6e0e8"
+#: How every figure is set: text stays text in SVG and PDF, no box around the axes, a grid that recedes.
+STYLE: dict[Any, Any] = {
+    "font.size": 9.0,
+    "axes.titlesize": 9.0,
+    "axes.labelsize": 9.0,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#8a94a0",
+    "axes.linewidth": 0.8,
+    "xtick.color": "#55616d",
+    "ytick.color": "#55616d",
+    "xtick.labelcolor": "#1c232b",
+    "ytick.labelcolor": "#1c232b",
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#dfe4e9",
+    "grid.linewidth": 0.7,
+    "lines.linewidth": 1.0,
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+    "savefig.dpi": 140,
+}
+#: Endings of a figure's file.
+FORMATS = (".png", ".pdf", ".svg")
+
+
+def in_style(draw: Callable[P, Figure]) -> Callable[P, Figure]:
+    """A function that draws a figure, in the style of all."""
+
+    @wraps(draw)
+    def drawn(*args: P.args, **named: P.kwargs) -> Figure:
+        with rc_context(STYLE):
+            return draw(*args, **named)
+
+    return drawn
 
 
 def save(figure: Figure, path: str | Path) -> None:
     """Write a figure whole or not at all; the ending decides the format."""
-    with whole(path) as temporary, quiet_about_glyphs():
-        figure.savefig(temporary, dpi=120)
+    with whole(path) as temporary, quiet_about_glyphs(), rc_context(STYLE):
+        figure.savefig(temporary)
 
 
 @contextmanager
@@ -46,14 +86,21 @@ def title_figure(figure: Figure | SubFigure, title: str, **style: Any) -> None: 
     figure.suptitle(plain(title), **{"x": 0.01, "ha": "left", "weight": "bold", "parse_math": False, **style})
 
 
+def legend_above(axes: Axes, columns: int = 4) -> None:
+    """A legend over the axes, where it covers no data; its names are text."""
+    legend = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1, ncols=columns)
+    for text in legend.get_texts():
+        text.set_parse_math(False)
+
+
 def save_as_named(figure: Figure, path: Path) -> None:
     """Write a figure to the file a person named.
 
     Raises:
         InputError: another ending than .png, .pdf or .svg, or a place that cannot be written to.
     """
-    if path.suffix.lower() not in (".png", ".pdf", ".svg"):
-        raise InputError(path, f"found the ending '{path.suffix}'", "allowed: .png, .pdf, .svg")
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(path, f"found the ending '{path.suffix}'", f"allowed: {', '.join(FORMATS)}")
     save(figure, path)
 
 
@@ -67,53 +114,3 @@ def thinned(*columns: Array) -> list[Array]:
     kept = [np.sort([part[np.argmin(last[part])], part[np.argmax(last[part])]]) for part in stretches]
     index = np.unique(np.concatenate(kept))
     return [column[index] for column in columns]
-
-
-def identification_figure(motion: Motion, estimate: Estimate, kind: AxisKind, title: str) -> Figure:
-    """Speed, acceleration, torque measured and modelled, and the residual over speed and time.
-
-    Args:
-        motion: filtered recording.
-        estimate: what was identified from it.
-        kind: of the axis.
-        title: of the figure.
-    """
-    unit, length = estimate.residual.unit, kind.length_unit
-    effort = {"N*m": "torque", "N": "force", "A": "current", "V": "voltage"}.get(unit, "effort")
-    modelled = modelled_effort(motion, estimate, kind)
-    residual = motion.effort - modelled
-    figure = Figure(figsize=(11.0, 8.5), layout="constrained")
-    title_figure(figure, title)
-    grid = figure.add_gridspec(4, 2, width_ratios=(3.0, 1.0), height_ratios=(1.0, 1.0, 1.4, 1.0))
-    axes = [figure.add_subplot(grid[0, 0])]
-    axes += [figure.add_subplot(grid[row, 0], sharex=axes[0]) for row in (1, 2, 3)]
-    over = [figure.add_subplot(grid[:2, 1]), figure.add_subplot(grid[2:, 1])]
-    _draw(axes[0], motion.time, motion.velocity, f"speed\n{length}/s")
-    _draw(axes[1], motion.time, motion.acceleration, f"acceleration\n{length}/s²")
-    _draw(axes[2], motion.time, motion.effort, f"{effort}\n{unit}", label="measured")
-    time, shown = thinned(motion.time, modelled)
-    axes[2].plot(time, shown, color=MODELLED, lw=0.9, label="modelled")
-    axes[2].legend(loc="upper right", ncols=2, frameon=False)
-    _draw(axes[3], motion.time, residual, f"residual\n{unit}", color=REST)
-    axes[3].set_xlabel("time / s")
-    speed, rest = thinned(motion.velocity, residual)
-    over[0].plot(speed, rest, ".", ms=1.0, color=REST, alpha=0.4)
-    over[0].set(xlabel=f"speed / ({length}/s)", ylabel=f"residual / {unit}")
-    over[1].hist(residual[np.isfinite(residual)], bins=80, color=REST)
-    over[1].set(xlabel=f"residual / {unit}", ylabel="samples")
-    for axis in (*axes, *over):
-        axis.grid(alpha=0.25)
-    return figure
-
-
-def _draw(
-    axis: Axes,
-    time: Array,
-    values: Array,
-    label_y: str,
-    color: str = MEASURED,
-    label: str | None = None,
-) -> None:
-    shown_time, shown = thinned(time, values)
-    axis.plot(shown_time, shown, color=color, lw=0.9, label=label)
-    axis.set_ylabel(label_y)

@@ -14,7 +14,9 @@ from bench.axis_kind import COULOMB, OFFSET, VISCOUS
 from bench.effects.catalogue import catalogue
 from bench.friction_map.map import CHANCE, FrictionMap
 from bench.report.checks import checks_json
-from bench.report.figures import MEASURED, MODELLED, REST, save_as_named, title_figure
+from bench.report.figures import MEASURED, MODELLED, REST, in_style, legend_above, save_as_named, title_figure
+from bench.report.page.numbers import unit_text
+from bench.report.pages.tables import effort_word
 from bench.structured import json_text
 
 SCHEMA = "bench.friction/1"
@@ -78,7 +80,12 @@ def draw_friction(found: FrictionMap, title: str, path: Path) -> None:
     Raises:
         InputError: an ending that is no figure's, or a place that cannot be written to.
     """
-    effort = {"N*m": "torque", "N": "force", "A": "current", "V": "voltage"}.get(found.effort_unit, "effort")
+    save_as_named(friction_figure(found, title), path)
+
+
+@in_style
+def friction_figure(found: FrictionMap, title: str) -> Figure:
+    """Effort over speed, and what each curve leaves of it."""
     figure = Figure(figsize=(9.0, 7.0), layout="constrained")
     title_figure(figure, title)
     over, rest = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
@@ -93,14 +100,13 @@ def draw_friction(found: FrictionMap, title: str, path: Path) -> None:
             over.plot(drawn, curve.effort(drawn), lw=1.3, color=colour, label=label if direction > 0.0 else None)
         left = found.effort - curve.effort(found.velocity)
         rest.plot(found.velocity, left, marker, ms=4.0, color=colour, label=label)
-    rest.axhline(0.0, color="0.3", lw=0.8)
-    over.set_ylabel(f"{effort} / {found.effort_unit}")
-    rest.set_ylabel(f"left / {found.effort_unit}")
-    rest.set_xlabel(f"speed / ({found.kind.speed_unit})")
-    for axis in (over, rest):
-        axis.grid(alpha=0.25)
-        axis.legend(frameon=False, fontsize=8)
-    save_as_named(figure, path)
+    rest.axhline(0.0, color="#8a94a0", lw=0.8)
+    over.set_ylabel(f"{effort_word(found.effort_unit)} / {unit_text(found.effort_unit)}")
+    rest.set_ylabel(f"left / {unit_text(found.effort_unit)}")
+    rest.set_xlabel(f"speed / ({unit_text(found.kind.speed_unit)})")
+    for axes in (over, rest):
+        legend_above(axes)
+    return figure
 
 
 def base_values(found: FrictionMap) -> dict[str, tuple[float, str]]:

@@ -12,7 +12,8 @@ from bench.checks.gate import gate
 from bench.files import held, write_text
 from bench.identify.estimate import Estimate
 from bench.report.estimate import estimate_json
-from bench.report.figures import identification_figure, save
+from bench.report.figures import save
+from bench.report.identification_figure import identification_figure
 from bench.report.page.blocks import File
 from bench.report.page.folder import write_page
 from bench.report.pages.identification import identification_page
@@ -34,6 +35,7 @@ def write_identification(
     refinement: Refinement | None = None,
     provenance: Mapping[str, Any] | None = None,
     read: Callable[[Path], Trace] | None = None,
+    ending: str = ".png",
 ) -> list[Path]:
     """Write the page, `identification.png` (`identification-2.png`, ... of further recordings) and `identify.json`.
 
@@ -45,6 +47,7 @@ def write_identification(
         refinement: what polishing did, where it was asked for.
         provenance: of the estimate.
         read: how its files are read, unless part by part as the rig says.
+        ending: of the figures' files, one of `bench.report.figures.FORMATS`.
 
     Returns:
         Paths written.
@@ -56,7 +59,7 @@ def write_identification(
         for number, trace in enumerate(traces, 1):
             moved, along = _motion(trace, rig, estimate, read), _along(estimate, number - 1, rig)
             motions.append((trace.name, moved, along))
-            figures.append(out / ("identification.png" if number == 1 else f"identification-{number}.png"))
+            figures.append(out / f"identification{'' if number == 1 else f'-{number}'}{ending}")
             save(identification_figure(moved, along, rig.axis_kind, f"{rig.name}: {trace.name}"), figures[-1])
         write_text(text, json)
         file = File(name=text.name, about="all of it as numbers", media="application/json", content=json)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from bench.arrays import Array
 from bench.errors import InputError
-from bench.report.figures import MEASURED, save_as_named, thinned
+from bench.report.figures import MEASURED, in_style, save_as_named, thinned, title_figure
 from bench.trace.assemble import assemble
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import of_axis
@@ -50,15 +50,15 @@ def _moves(channel: Channel) -> bool:
     return channel.defect is None and numbers.size > 1 and bool(np.ptp(numbers))
 
 
+@in_style
 def _figure(rows: Sequence[tuple[Array, Array, str]], label: str, title: str, more: int) -> Figure:
     figure = Figure(figsize=(11.0, 1.0 + 1.5 * max(len(rows), 1)), layout="constrained")
     beyond = f" and {more} columns more" if more > 0 else ""
-    figure.suptitle(title + beyond, x=0.01, ha="left", weight="bold")
+    title_figure(figure, title + beyond)
     grid = figure.subplots(max(len(rows), 1), 1, sharex=True, squeeze=False)
     for axes, (time, values, name) in zip(grid[:, 0], rows, strict=False):
         shown_time, shown = thinned(time, values)
         axes.plot(shown_time, shown, color=MEASURED, lw=0.8)
         axes.set_ylabel(name, rotation=0, ha="right", va="center")
-        axes.grid(alpha=0.25)
     grid[-1, 0].set_xlabel(label)
     return figure

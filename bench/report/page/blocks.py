@@ -161,7 +161,6 @@ class Chart(Block):
         title: of the chart.
         alternative: what it shows, in words.
         y_label, y_unit: of all panels.
-        symmetric: whether zero is in the middle of the scale.
         panels: of it.
     """
 
@@ -170,7 +169,6 @@ class Chart(Block):
     alternative: str
     y_label: str
     y_unit: str = ""
-    symmetric: bool = False
     panels: tuple[Axes, ...]
 
 

@@ -61,10 +61,10 @@ class Scale:
         return round(self.start + (value - self.low) / (self.high - self.low) * (self.stop - self.start), 1)
 
     @classmethod
-    def around(cls, values: Sequence[float], start: float, stop: float, symmetric: bool = False) -> Scale:
+    def around(cls, values: Sequence[float], start: float, stop: float) -> Scale:
         """A scale that holds all values with a margin."""
         known = [value for value in values if np.isfinite(value)] or [0.0]
-        low, high = (-max(map(abs, known)), max(map(abs, known))) if symmetric else (min(known), max(known))
+        low, high = min(known), max(known)
         margin = MARGIN * (high - low) or 0.5 * abs(high) or 0.5
         return cls(low - margin, high + margin, start, stop)
 
@@ -73,7 +73,7 @@ def drawn(chart: Chart) -> list[Panel]:
     """All panels, on one scale."""
     every = [series for axes in chart.panels for series in axes.series]
     heights = [value for series in every for value in (*series.y, *series.low, *series.high)]
-    down = Scale.around(heights, HEIGHT - BOTTOM, TOP, chart.symmetric)
+    down = Scale.around(heights, HEIGHT - BOTTOM, TOP)
     width = ALONE if len(chart.panels) == 1 else WIDTH
     return [_panel(axes, down, width) for axes in chart.panels]
 

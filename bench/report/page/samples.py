@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,18 +72,18 @@ class Grid:
             low[places[first]] = np.minimum.reduceat(values, first)
             high[places[first]] = np.maximum.reduceat(values, first)
         least, most = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
-        scale = (most - least) / STEPS or 1.0
+        middle, scale = 0.5 * (least + most), (most - least) / STEPS or 1.0
         return Samples(
-            offset=0.5 * (least + most),
+            offset=middle,
             scale=scale,
-            low=_packed(low if not self.single else 0.5 * (low + high), least, scale),
-            high=None if self.single else _packed(high, least, scale),
+            low=_packed(low if not self.single else 0.5 * (low + high), middle, scale),
+            high=None if self.single else _packed(high, middle, scale),
         )
 
 
-def _packed(values: Array, least: float, scale: float) -> str:
+def _packed(values: Array, middle: float, scale: float) -> str:
     """16-bit steps from the middle of the range, little endian, in base 64."""
-    steps = np.rint((values - least) / scale) - STEPS // 2
+    steps = np.clip(np.rint((values - middle) / scale), -STEPS // 2, STEPS // 2)
     return base64.b64encode(np.where(np.isnan(steps), NOTHING, steps).astype("<i2").tobytes()).decode("ascii")
 
 
@@ -95,13 +94,3 @@ def unpacked(samples: Samples) -> tuple[Array, Array]:
         steps = np.frombuffer(base64.b64decode(text), dtype="<i2").astype(np.float64)
         found.append(np.where(steps == NOTHING, math.nan, samples.offset + samples.scale * steps))
     return found[0], found[1]
-
-
-def spans(samples: Sequence[Samples]) -> list[tuple[float, float]]:
-    """Lowest and highest value of each curve, (nan, nan) of an empty one."""
-    found = []
-    for one in samples:
-        low, high = unpacked(one)
-        known = np.isfinite(low)
-        found.append((float(low[known].min()), float(high[known].max())) if known.any() else (math.nan, math.nan))
-    return found

@@ -11,6 +11,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Course, Profile
+from bench.diagnose.where.where import Where
 from bench.report.page.blocks import (
     Axes,
     Chart,
@@ -29,6 +30,7 @@ from bench.report.page.numbers import number, sentence, share, unit_text, words
 from bench.report.pages.over_time import Measured, time_graph
 from bench.report.pages.tables import (
     checks_section,
+    coordinate_word,
     effort_word,
     noise_band,
     origin,
@@ -93,7 +95,7 @@ def _labels(diagnosis: Diagnosis) -> list[str]:
 def _steps(diagnosis: Diagnosis) -> Table:
     columns = [Column(heading="model")]
     names = [course.name for course in diagnosis.courses]
-    gaps = ("torque", diagnosis.torque), ("velocity", diagnosis.velocity)
+    gaps = (effort_word(diagnosis.torque.unit), diagnosis.torque), ("speed", diagnosis.velocity)
     for what, gap in gaps:
         columns += [Column(heading=f"{what} gap, {name} / {unit_text(gap.unit)}", number=True) for name in names]
     rows = [
@@ -109,6 +111,7 @@ def _over_time(diagnosis: Diagnosis, course: Course) -> TimeGraph:
     labels = [_labels(diagnosis)[k] for k in shown]
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
     place = [one.name for one in diagnosis.courses].index(course.name)
+    effort = effort_word(diagnosis.torque.unit)
     speed = Measured(
         "speed", diagnosis.velocity.unit, course.time, course.velocity, [course.velocity_left[k] for k in shown]
     )
@@ -121,10 +124,11 @@ def _over_time(diagnosis: Diagnosis, course: Course) -> TimeGraph:
         "modelled",
     )
     told = (
-        f"Speed and torque of {Path(course.origin).name} as measured and as the model has them. RMS of what is left "
+        f"Speed and {effort} of {Path(course.origin).name} as measured and as the model has them. RMS of what is left "
         f"with inertia and friction alone, then with all that was found: speed "
         f"{number(first.velocity[place], digits=3)}, "
-        f"{number(last.velocity[place], diagnosis.velocity.unit, 3)}; torque {number(first.torque[place], digits=3)}, "
+        f"{number(last.velocity[place], diagnosis.velocity.unit, 3)}; {effort} "
+        f"{number(first.torque[place], digits=3)}, "
         f"{number(last.torque[place], diagnosis.torque.unit, 3)}."
     )
     title = {"recording": "The recording.", "holdout": "The holdout, which was not fitted."}[course.name]
@@ -146,7 +150,6 @@ def _where(diagnosis: Diagnosis) -> Section:
         alternative=told,
         y_label="gap",
         y_unit=unit_text(diagnosis.torque.unit),
-        symmetric=True,
         panels=tuple(_over(found[name], diagnosis, names) for name in DRAWN if name in found),
     )
     columns = (
@@ -156,7 +159,12 @@ def _where(diagnosis: Diagnosis) -> Section:
         Column(heading="unit"),
     )
     rows = tuple(
-        (one.coordinate, share(one.share), f"{number(one.region[0])} and {number(one.region[1])}", unit_text(one.unit))
+        (
+            coordinate_word(one.coordinate, one.unit),
+            share(one.share),
+            f"{number(one.region[0])} and {number(one.region[1])}",
+            unit_text(one.unit),
+        )
         for one in diagnosis.where
     )
     table = Table(caption="Share of the gap's variance that each coordinate accounts for", columns=columns, rows=rows)
@@ -174,17 +182,17 @@ def _over(profile: Profile, diagnosis: Diagnosis, names: str) -> Axes:
         series.append(Series(name=f"what {names} makes of it", style="line", colour="model", x=x, y=explained))
         series.append(Series(name="left after", style="rings", colour="left", x=x, y=after))
     note = f"{share(profile.share)} of the gap"
-    return Axes(x_label=_coordinate(profile), x_unit=unit_text(profile.unit), note=note, series=tuple(series))
+    return Axes(
+        x_label=coordinate_word(profile.coordinate, profile.unit),
+        x_unit=unit_text(profile.unit),
+        note=note,
+        series=tuple(series),
+    )
 
 
 def _in_order(profile: Profile) -> tuple[Array, Array, Array]:
     order = np.argsort(profile.centres)
     return profile.centres[order], profile.before[order], profile.after[order]
-
-
-def _coordinate(profile: Profile) -> str:
-    """What a coordinate is called where its unit says that it is another signal: torque was recorded, no current."""
-    return effort_word(profile.unit) if profile.coordinate == "current" else profile.coordinate
 
 
 def _parameters(diagnosis: Diagnosis) -> Section:
@@ -224,15 +232,15 @@ def _next(diagnosis: Diagnosis) -> Section:
     ]
     if diagnosis.because:
         blocks.append(Paragraph(text="What speaks against this being all:"))
-        blocks.append(Points(items=tuple(diagnosis.because)))
+        blocks.append(Points(items=tuple(map(words, diagnosis.because))))
     if diagnosis.unexplained_where:
-        blocks.append(
-            Points(
-                items=tuple(
-                    f"{share(one.share)} of what is left hangs on {one.coordinate}, most of it between "
-                    f"{number(one.region[0])} and {number(one.region[1], one.unit)}"
-                    for one in diagnosis.unexplained_where
-                )
-            )
-        )
+        blocks.append(Points(items=tuple(map(_sits, diagnosis.unexplained_where))))
     return Section(key="next", heading="What to record next", blocks=tuple(blocks))
+
+
+def _sits(account: Where) -> str:
+    """Where a part of what is left is."""
+    return (
+        f"{share(account.share)} of what is left hangs on {coordinate_word(account.coordinate, account.unit)}, most of "
+        f"it between {number(account.region[0])} and {number(account.region[1], account.unit)}"
+    )

@@ -45,9 +45,9 @@ def friction_page(found: FrictionMap, title: str) -> Page:
 def _verdict(found: FrictionMap) -> str:
     before, after = found.unexplained
     if found.name is None:
-        return f"Friction is a straight line of speed: no effect bends it, and {share(before)} is left unexplained."
+        return f"Friction is a straight line over speed: no effect bends it, and {share(before)} is left unexplained."
     told = ", ".join(f"{words(name)} {number(value, unit)}" for name, (value, unit) in effect_values(found).items())
-    bent = f"{sentence(words(found.name))} bends it ({told})"
+    bent = f"{sentence(words(found.name))} ({told}) bends the curve"
     return f"{bent}: {share(before)} was unexplained without, {share(after)} with it."
 
 
@@ -106,7 +106,7 @@ def _left(found: FrictionMap) -> Chart:
     )
     axes = Axes(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=series)
     told, unit = "What each curve leaves of the recordings.", unit_text(found.effort_unit)
-    return Chart(title="What is left.", alternative=told, y_label="left", y_unit=unit, symmetric=True, panels=(axes,))
+    return Chart(title="What is left.", alternative=told, y_label="left", y_unit=unit, panels=(axes,))
 
 
 def _series(

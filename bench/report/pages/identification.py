@@ -156,7 +156,6 @@ def _rest(estimate: Estimate, motions: Sequence[tuple[str, Motion, Estimate]], k
         "has a cause beside inertia and friction.",
         y_label="left",
         y_unit=unit_text(unit),
-        symmetric=True,
         panels=tuple(panels),
     )
 

@@ -19,6 +19,12 @@ def effort_word(unit: str) -> str:
     return {"N*m": "torque", "N": "force", "A": "current", "V": "voltage"}.get(unit, "effort")
 
 
+def coordinate_word(coordinate: str, unit: str) -> str:
+    """What a coordinate of the gap is called on an axis; the current is the torque where no current was recorded."""
+    told = {"current": effort_word(unit), "reversal": "time since reversal"}
+    return told.get(coordinate, coordinate)
+
+
 def parameters_table(caption: str, parameters: Mapping[str, Parameter]) -> Table:
     """Parameters with their intervals of 95 %."""
     columns = (

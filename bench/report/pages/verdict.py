@@ -10,26 +10,28 @@ from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.show.show import Diagnosis
 from bench.report.page.blocks import Answer
 from bench.report.page.numbers import interval, number, sentence, share, unit_text, words
+from bench.report.pages.tables import coordinate_word, effort_word
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
     """What was missing and how much of the gap it accounts for, in a sentence."""
     gap, unit = diagnosis.torque, unit_text(diagnosis.torque.unit)
+    effort = effort_word(diagnosis.torque.unit)
     before, after = gap.identify or (math.nan, math.nan)
     noise = f"the noise floor is {number(gap.noise_floor, digits=3)} {unit}"
     if not diagnosis.effects:
         if diagnosis.verdict == "nothing_missing":
-            left = f"inertia and friction leave {number(after, digits=3)} {unit} of the torque"
+            left = f"inertia and friction leave {number(after, digits=3)} {unit} of the {effort}"
             return f"Nothing is missing: {left}, {noise}."
         return (
             f"Something is missing that no effect of the catalogue explains: {number(after, digits=3)} {unit} "
-            f"of the torque are left, {noise}."
+            f"of the {effort} are left, {noise}."
         )
     several = len(diagnosis.effects) > 1
     named = "; ".join(_named(effect) for effect in diagnosis.effects)
     sensors = all(effect.effect.kind == "measurement" for effect in diagnosis.effects)
     what = f"{'were' if several else 'was'} {'wrong in the measurement' if sensors else 'missing'}"
-    gone = f"with {'them' if several else 'it'} {share(1.0 - after / before)} of the torque gap is gone"
+    gone = f"with {'them' if several else 'it'} {share(1.0 - after / before)} of the {effort} gap is gone"
     if diagnosis.verdict == "explained":
         return f"{sentence(named)} {what}; {gone}, and what is left is noise."
     return f"{sentence(named)} {what}; {gone}, but {number(_chi(gap), digits=2)} times the noise is left."
@@ -59,13 +61,13 @@ def answers(diagnosis: Diagnosis) -> tuple[Answer, ...]:
 
 def _sure(diagnosis: Diagnosis) -> str:
     """What bears the verdict out, and what speaks against it."""
-    gap, said = diagnosis.torque, []
+    gap, said, effort = diagnosis.torque, [], effort_word(diagnosis.torque.unit)
     if diagnosis.because:
-        said.append(f"Not wholly: {'; '.join(diagnosis.because)}.")
+        said.append(f"Not wholly: {'; '.join(map(words, diagnosis.because))}.")
     if gap.holdout is not None:
         before, after = gap.holdout
         said.append(
-            f"On the recording that was not fitted the torque gap goes from {number(before, digits=3)} to "
+            f"On the recording that was not fitted the {effort} gap goes from {number(before, digits=3)} to "
             f"{number(after, gap.unit, 3)}, where noise alone leaves {number(gap.noise_floor, digits=3)}."
         )
     elif diagnosis.effects:
@@ -78,7 +80,7 @@ def _sure(diagnosis: Diagnosis) -> str:
         if effect.ambiguous_with
     ]
     if not said:
-        said.append(f"What is left of the torque is {number(_chi(gap), digits=3)} times what noise alone leaves.")
+        said.append(f"What is left of the {effort} is {number(_chi(gap), digits=3)} times what noise alone leaves.")
     return " ".join(said)
 
 
@@ -101,13 +103,20 @@ def _moves(gap: Gap, added: bool) -> str:
 
 
 def following(diagnosis: Diagnosis) -> str:
-    """What to record next; empty where nothing is open."""
+    """What to record or look at next; empty where nothing is open."""
     found = diagnosis.next_experiment
-    if found is None:
-        return ""
-    times = number(found.separation, digits=2)
-    return (
-        f"Record {words(found.profile)} up to {number(found.speed, diagnosis.velocity.unit, 3)}, "
-        f"{found.repetitions} times: it tells {' from '.join(map(words, found.tells_apart))} "
-        f"({times} times the noise); {found.reason}."
-    )
+    if found is not None:
+        times = number(found.separation, digits=2)
+        return (
+            f"Record {words(found.profile)} up to {number(found.speed, diagnosis.velocity.unit, 3)}, "
+            f"{found.repetitions} times: it tells {' from '.join(map(words, found.tells_apart))} "
+            f"({times} times the noise); {found.reason}."
+        )
+    if diagnosis.unexplained_where:
+        most = diagnosis.unexplained_where[0]
+        return (
+            f"Look at what is left: {share(most.share)} of it hangs on {coordinate_word(most.coordinate, most.unit)}, "
+            f"most between {number(most.region[0], digits=3)} and {number(most.region[1], most.unit, 3)}; "
+            "what the catalogue holds is not it."
+        )
+    return ""

@@ -89,7 +89,7 @@
         width: this.place.clientWidth || 600,
         height: (k === 0 ? HEIGHT.first : HEIGHT.other) + (last ? 38 : 0),
         legend: { show: false },
-        padding: [6, 8, 0, 0],
+        padding: [6, 20, 0, 0],
         scales: { x: { time: false } },
         axes: [
           { ...axis, size: last ? 42 : 4, label: last ? "time / s" : undefined, labelSize: 18, labelFont: axis.font, values: last ? undefined : (u, splits) => splits.map(() => "") },
@@ -165,7 +165,8 @@
         plot.batch(() => { plot.setData([x, ...columns], false); plot.setScale("x", scale); });
         plot.tell();
       }
-      const [first, last] = [Math.max(a, 0), Math.min(b, this.data.count - 1)].map((k) => shown(start + step * k));
+      const digits = Math.min(9, Math.max(0, Math.ceil(-Math.log10(step))));
+      const [first, last] = [Math.max(a, 0), Math.min(b, this.data.count - 1)].map((k) => Number((start + step * k).toFixed(digits)));
       this.range.value = `${first} to ${last} s`;
     }
 

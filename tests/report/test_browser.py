@@ -1,0 +1,191 @@
+"""Pages in a browser, opened from a file without a network: they zoom, tell, are heard, and run nothing of a name."""
+
+import json
+
+import pytest
+
+from tests.report.conftest import RIG_NAME, TRACE_NAME
+
+WIDE, PHONE = 1280, 390
+
+
+def range_of(page, graph=0):
+    """First and last time in sight - s."""
+    first, last = page.locator(".range").nth(graph).inner_text().removesuffix(" s").split(" to ")
+    return float(first), float(last)
+
+
+def settled(page):
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [WIDE, PHONE])
+def test_a_page_opens_without_a_complaint_and_as_wide_as_the_window(opened, found, width, scheme):
+    page = opened(found / "report.html", width, color_scheme=scheme)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.locator(".graph canvas").count() == 8
+    light = page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    assert light is (scheme == "light")
+
+
+def test_names_are_text_everywhere(opened, found):
+    page = opened(found / "report.html")
+    text = page.locator("body").inner_text()
+    assert RIG_NAME in text
+    assert TRACE_NAME in text
+    assert page.title().startswith(RIG_NAME)
+    assert page.locator("img").count() == 0
+    assert page.locator("script:not([type])").count() == 1
+
+
+def test_buttons_zoom_and_move_all_panels_together(opened, found):
+    page = opened(found / "report.html")
+    whole = range_of(page)
+    assert whole == (0.0, pytest.approx(3.999))
+    page.get_by_role("button", name="Zoom in").first.click()
+    settled(page)
+    inside = range_of(page)
+    assert inside[1] - inside[0] == pytest.approx(2.0, abs=0.01)
+    page.get_by_role("button", name="Later").first.click()
+    settled(page)
+    assert range_of(page)[0] == pytest.approx(inside[0] + 0.2 * 2.0, abs=0.01)
+    assert range_of(page, 1) == pytest.approx((0.0, 3.999))
+    page.get_by_role("button", name="whole").first.click()
+    settled(page)
+    assert range_of(page) == whole
+
+
+def test_keys_do_what_buttons_do_and_tab_reaches_the_graph(opened, found):
+    page = opened(found / "report.html")
+    reached = []
+    for _ in range(40):
+        page.keyboard.press("Tab")
+        reached.append(page.evaluate("document.activeElement.className || document.activeElement.tagName"))
+        if reached[-1] == "graph":
+            break
+    assert reached[0] == "skip"
+    assert reached[-1] == "graph"
+    assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle") == "solid"
+    for key, width in (("+", 2.0), ("+", 1.0), ("-", 2.0)):
+        page.keyboard.press(key)
+        settled(page)
+        first, last = range_of(page)
+        assert last - first == pytest.approx(width, abs=0.01)
+    page.keyboard.press("ArrowRight")
+    settled(page)
+    assert range_of(page)[0] > first
+    page.keyboard.press("0")
+    settled(page)
+    assert range_of(page) == (0.0, pytest.approx(3.999))
+
+
+def test_the_mouse_zooms_moves_and_tells(opened, found):
+    page = opened(found / "report.html")
+    plot = page.locator(".u-over").first
+    plot.scroll_into_view_if_needed()
+    box = plot.bounding_box()
+    x, y, wide = box["x"], box["y"] + 40, box["width"]
+    page.mouse.move(x + 0.5 * wide, y)
+    readouts = [page.locator(".readout").nth(k).inner_text() for k in range(4)]
+    assert all("at 2.0" in told or "at 1.99" in told for told in readouts)
+    assert "simulated" in readouts[0]
+    page.mouse.move(x + 0.25 * wide, y)
+    page.mouse.down()
+    page.mouse.move(x + 0.5 * wide, y, steps=4)
+    page.mouse.up()
+    settled(page)
+    first, last = range_of(page)
+    assert (first, last) == pytest.approx((1.0, 2.0), abs=0.02)
+    page.keyboard.down("Shift")
+    page.mouse.move(x + 0.5 * wide, y)
+    page.mouse.down()
+    page.mouse.move(x + 0.25 * wide, y, steps=4)
+    page.mouse.up()
+    page.keyboard.up("Shift")
+    settled(page)
+    assert range_of(page) == pytest.approx((1.25, 2.25), abs=0.02)
+    page.mouse.wheel(0, -100)  # the graph has the focus, so that the page does not scroll
+    settled(page)
+    assert range_of(page)[1] - range_of(page)[0] == pytest.approx(0.8, abs=0.02)
+    plot.dblclick()
+    settled(page)
+    assert range_of(page) == (0.0, pytest.approx(3.999))
+
+
+def test_another_model_can_be_chosen(opened, found):
+    page = opened(found / "report.html")
+    left = page.locator(".readout").nth(1)
+    assert left.inner_text().count("+ unbalance") == 1
+    page.get_by_label("inertia and friction").first.check()
+    assert "+ unbalance" not in left.inner_text()
+    assert "inertia and friction" in left.inner_text()
+
+
+def test_the_model_is_downloaded_as_it_was_written(opened, found):
+    page = opened(found / "report.html", accept_downloads=True)
+    for name in ("model.toml", "model.xml", "diagnosis.json"):
+        with page.expect_download() as download:
+            page.get_by_role("link", name=name).click()
+        assert download.value.suggested_filename == name
+        assert download.value.path().read_bytes() == (found / name).read_bytes()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing(opened, found, scheme):
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs axe-playwright-python")
+    page = opened(found / "report.html", color_scheme=scheme, bypass_csp=True)
+    violations = axe.Axe().run(page).response["violations"]
+    serious = [(one["id"], [node["html"] for node in one["nodes"]][:3]) for one in violations]
+    assert serious == []
+
+
+def test_every_picture_has_words_and_headings_are_in_order(opened, found):
+    page = opened(found / "report.html")
+    assert page.get_by_role("application").count() == 2
+    for graph in page.get_by_role("application").all():
+        assert "RMS" in graph.get_attribute("aria-label")
+    for panel in page.locator(".panels svg").all():
+        assert "% of the gap" in panel.get_attribute("aria-label").replace("\N{NO-BREAK SPACE}", " ")
+    levels = page.eval_on_selector_all("h1, h2, h3", "all => all.map(one => Number(one.tagName[1]))")
+    assert levels[0] == 1
+    assert set(levels[1:]) == {2}
+    assert page.locator("table").count() == page.locator("table > caption").count()
+
+
+def test_a_printed_page_is_light_with_its_graphs_on_paper(opened, found):
+    page = opened(found / "report.html", color_scheme="dark")
+    page.emulate_media(media="print", color_scheme="dark")
+    settled(page)
+    assert page.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--paper').trim()") == "#ffffff"
+    assert not page.locator(".buttons").first.is_visible()
+    assert page.locator(".graph canvas").first.is_visible()
+    assert page.pdf(format="A4")[:4] == b"%PDF"
+
+
+def test_pages_that_share_a_script_work_beside_it(opened, found, bench, tmp_path):
+    for name in ("one", "other"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "report.json").write_bytes((found / "report.json").read_bytes())
+    status, out, err = bench("report", "one", "other", "--script", "shared.js")
+    assert (status, err) == (0, "")
+    assert out.splitlines() == ["wrote shared.js", "wrote one/report.html", "wrote other/report.html"]
+    page = opened(tmp_path / "one" / "report.html")
+    assert page.locator(".graph canvas").count() == 8
+    alone = (found / "report.html").stat().st_size
+    assert (tmp_path / "one" / "report.html").stat().st_size < alone - 50_000
+
+
+def test_numbers_on_the_page_are_those_of_the_json(opened, found):
+    told = json.loads((found / "diagnosis.json").read_text(encoding="utf-8"))
+    page = opened(found / "report.html")
+    heading = page.get_by_role("heading", level=1).inner_text().replace("\N{NO-BREAK SPACE}", " ")
+    amplitude = told["effects"][0]["parameters"]["amplitude"]["value"]
+    assert f"{amplitude:.5f} ±" in heading
+    before, after = told["gap"]["torque"]["identify"]["before"], told["gap"]["torque"]["identify"]["after"]
+    assert f"{100 * (1 - after / before):.0f} % of the torque gap is gone" in heading
+    text = page.locator("dl").inner_text().replace("\N{NO-BREAK SPACE}", " ")
+    for asked in ("Moment of inertia?", "What was missing?", "How sure?", "Does it move like the axis now?"):
+        assert asked in text
+    assert f"{1e3 * told['parameters']['moment_of_inertia']['value']:.5f}" in text
+    assert f"{told['gap']['velocity']['holdout']['after']:.3g}" in text

@@ -1,0 +1,92 @@
+"""Pages and figures of commands, as a user gets them."""
+
+import re
+import xml.etree.ElementTree
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from bench.report.page.blocks import Chart, TimeGraph
+from bench.report.page.folder import read_page
+from bench.trace.write import write
+from tests.diagnose.test_commands import run_of
+
+
+def told(page):
+    return page.read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ")
+
+
+def test_identify_leaves_a_page(bench, tmp_path):
+    for k in (1, 2):
+        write(run_of(seed=k), f"run{k}.csv")
+    status, out, _ = bench("identify", "run1.csv", "run2.csv", "--rig", "rig.toml", "--out", "result")
+    assert status == 0
+    assert "wrote result/report.html" in out
+    page = read_page(tmp_path / "result" / "report.json")
+    assert page.verdict.startswith("The moment of inertia is")
+    graphs = [block for section in page.sections for block in section.blocks if isinstance(block, TimeGraph)]
+    assert len(graphs) == 2
+    assert "run2.csv" in told(tmp_path / "result" / "report.html")
+
+
+@pytest.mark.parametrize(("ending", "head"), [("pdf", b"%PDF"), ("svg", b"<?xml"), ("png", b"\x89PNG")])
+def test_figures_come_in_the_format_asked_for(bench, tmp_path, ending, head):
+    write(run_of(), "run.csv")
+    status, out, _ = bench("identify", "run.csv", "--rig", "rig.toml", "--out", "result", "--figures", ending)
+    assert status == 0
+    assert f"wrote result/identification.{ending}" in out
+    assert (tmp_path / "result" / f"identification.{ending}").read_bytes()[: len(head)] == head
+
+
+def test_figures_say_the_estimates_the_floor_and_what_was_found(found, bench, tmp_path):
+    for name in ("run.csv",):
+        write(run_of(), name)
+    bench("identify", "run.csv", "--rig", "rig.toml", "--out", "result", "--figures", "svg")
+    root = xml.etree.ElementTree.parse(tmp_path / "result" / "identification.svg").getroot()
+    text = " ".join(" ".join(root.itertext()).split())
+    assert "moment of inertia" in text
+    assert "±" in text
+    for name in ("where.png", "gaps.png"):
+        with Image.open(found / name) as picture:
+            assert picture.width > 1000
+            assert np.asarray(picture.convert("L")).std() > 10.0
+
+
+def test_replay_writes_a_page_where_asked(bench, found, tmp_path):
+    model, trace = found / "model.toml", found.parent / "holdout.csv"
+    asked = ("replay", model, trace, "--rig", "rig.toml", "--out", "replay.csv")
+    status, out, _ = bench(*asked, "--report", "replay.html")
+    assert status == 0
+    assert out.splitlines()[-2:] == ["wrote replay.csv", "wrote replay.html"]
+    text = told(tmp_path / "replay.html")
+    (left,) = re.findall(r"velocity gap ([\d.]+) of", out)
+    assert f"off by {float(left):.3g} rad/s" in text
+    status, _, err = bench(*asked, "--report", "replay.txt")
+    assert (status, err.count("\n")) == (2, 1)
+    assert "allowed: .html" in err
+    status, _, err = bench(*asked, "--report", trace)
+    assert status == 2
+    assert "is an input of this command" in err
+
+
+def test_friction_writes_a_page_where_asked(bench, tmp_path):
+    from tests.friction_map.test_friction_command import STATIC, STRIBECK, steady
+
+    names = steady(rise=STATIC - 0.06)
+    status, out, _ = bench("friction", *names, "--rig", "rig.toml", "--report", "friction.html")
+    assert status == 0
+    assert "wrote friction.html" in out
+    text = told(tmp_path / "friction.html")
+    assert "Stribeck friction (static friction 0.07" in text
+    (speed,) = re.findall(r"stribeck velocity ([\d.]+) rad/s\)", text)[:1]
+    assert float(speed) == pytest.approx(STRIBECK, rel=0.1)
+
+
+def test_a_chart_of_identify_has_one_scale_and_a_floor(bench, tmp_path):
+    write(run_of(), "run.csv")
+    bench("identify", "run.csv", "--rig", "rig.toml", "--out", "result")
+    page = read_page(tmp_path / "result" / "report.json")
+    (chart,) = [block for section in page.sections for block in section.blocks if isinstance(block, Chart)]
+    assert {one.style for panel in chart.panels for one in panel.series} == {"band", "dots"}
+    assert len({panel.series[0].high for panel in chart.panels}) == 1

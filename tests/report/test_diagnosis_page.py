@@ -1,0 +1,130 @@
+"""The page of a diagnosis says what the diagnosis found, and draws the signals whose gaps it states."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bench.diagnose.diagnosis import diagnose
+from bench.diagnose.found import NamedEffect
+from bench.effects.catalogue import catalogue
+from bench.report.page.blocks import Chart, Table, TimeGraph
+from bench.report.page.folder import read_page
+from bench.report.page.samples import unpacked
+from bench.report.pages.diagnosis import diagnosis_page
+from bench.report.pages.verdict import verdict_sentence
+from bench.rig.rig import Rig
+from tests.diagnose.test_commands import run_of, with_unbalance
+
+RIG = {"name": "axis", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A", "rotor_inertia": "2 kg*cm**2"}}
+
+
+@pytest.fixture(scope="module")
+def diagnosed():
+    return diagnose(with_unbalance(run_of(duration=4.0)), Rig.of(RIG), excluded=frozenset({"torsion_spring"}))
+
+
+@pytest.fixture(scope="module")
+def page(found):
+    return read_page(found / "report.json")
+
+
+def blocks(page, kind):
+    return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
+
+
+def rms(values):
+    return np.sqrt(np.nanmean(values**2))
+
+
+def test_what_is_drawn_over_time_has_the_gaps_that_are_told(found, page):
+    gap = json.loads((found / "diagnosis.json").read_text(encoding="utf-8"))["gap"]
+    graphs = blocks(page, TimeGraph)
+    assert [graph.choices for graph in graphs] == [("inertia and friction", "+ unbalance")] * 2
+    for graph, name in zip(graphs, ("identify", "holdout"), strict=True):
+        assert graph.step == pytest.approx(1e-3)
+        for panel, what in ((graph.panels[1], "velocity"), (graph.panels[3], "torque")):
+            before, after = (unpacked(curve.samples)[0] for curve in panel.curves)
+            assert rms(before) == pytest.approx(gap[what][name]["before"], rel=5e-3)
+            # torque is told over the rows of the balance, every one of which is drawn
+            assert rms(after) == pytest.approx(gap[what][name]["after"], rel=0.01)
+
+
+def test_the_measured_speed_is_that_of_the_recording(page):
+    graph = blocks(page, TimeGraph)[0]
+    measured, spread = unpacked(graph.panels[0].curves[0].samples)[0], graph.panels[0].curves[0].samples.scale
+    np.testing.assert_allclose(measured, with_unbalance(run_of(duration=4.0))["velocity"], atol=spread)
+
+
+def test_the_found_effect_is_drawn_into_the_gap(page):
+    (chart,) = blocks(page, Chart)
+    over = chart.panels[0]
+    assert [panel.x_label for panel in chart.panels] == ["position", "velocity", "current", "time"]
+    assert [panel.x_unit for panel in chart.panels] == ["rad", "rad/s", "A", "s"]
+    series = {one.name: one for one in over.series}
+    line, floor = series["what unbalance makes of it"], series["noise floor"]
+    # an eccentric mass: 0.12 N*m times the sine of the angle, less what inertia and friction took up of it
+    wave = 0.12 * np.sin(np.array(line.x))
+    assert np.corrcoef(wave, np.array(line.y))[0, 1] > 0.95
+    assert np.max(np.abs(series["left after"].y)) < floor.high[0] < np.max(np.abs(line.y))
+
+
+def test_every_effect_is_told_with_a_reason(diagnosed):
+    assert {one.effect.name for one in diagnosed.considered} == set(catalogue())
+    assert all(one.reason for one in diagnosed.considered)
+    taken = [one.effect.name for one in diagnosed.considered if one.taken]
+    assert taken == [effect.name for effect in diagnosed.effects] == ["unbalance"]
+    reasons = {one.effect.name: one for one in diagnosed.considered}
+    assert reasons["torsion_spring"].reason == "was not to be tried"
+    assert reasons["unbalance"].alone > 0.9
+    assert reasons["quadratic_drag"].alone < 0.2
+    assert all(0.0 <= one.alone <= 1.0 for one in diagnosed.considered if one.alone is not None)
+
+
+def test_profiles_and_courses_agree_with_the_steps(diagnosed):
+    (course,) = diagnosed.courses
+    assert len(course.velocity_left) == len(course.torque_left) == len(diagnosed.steps) == 2
+    for k, step in enumerate(diagnosed.steps):
+        assert rms(course.torque_left[k]) == pytest.approx(step.torque[0])
+        assert rms(course.velocity_left[k].astype(float)) == pytest.approx(step.velocity[0])
+    for profile in diagnosed.profiles:
+        assert profile.centres.size == profile.before.size == profile.after.size
+    shares = [profile.share for profile in diagnosed.profiles]
+    assert shares == sorted(shares, reverse=True)
+
+
+def test_the_verdict_fits_what_was_found(diagnosed):
+    assert "was missing" in verdict_sentence(diagnosed)
+    assert "what is left is noise" in verdict_sentence(diagnosed)
+    unsure = replace(diagnosed, verdict="unexplained_remainder", because=["something is left"])
+    assert "times the noise is left" in verdict_sentence(unsure)
+    page = diagnosis_page(unsure, "t", [])
+    assert page.tone == "open"
+    assert "something is left" in page.answers[2].answer
+    nothing = replace(diagnosed, effects=[], verdict="nothing_missing")
+    assert verdict_sentence(nothing).startswith("Nothing is missing")
+    assert "no effect of the catalogue explains" in verdict_sentence(replace(nothing, verdict="unexplained_remainder"))
+
+
+def test_a_fault_of_a_sensor_is_no_missing_physics(diagnosed):
+    sensor = next(effect for effect in catalogue().values() if effect.kind == "measurement")
+    wrong = NamedEffect(sensor, {}, (), {})
+    assert "was wrong in the measurement" in verdict_sentence(replace(diagnosed, effects=[wrong]))
+
+
+def test_a_page_says_where_no_model_could_be_had(diagnosed):
+    unknown = replace(
+        diagnosed,
+        velocity=replace(diagnosed.velocity, identify=None),
+        courses=tuple(replace(course, velocity_left=(None, None)) for course in diagnosed.courses),
+    )
+    page = diagnosis_page(unknown, "t", [])
+    assert page.answers[3].answer.startswith("Not known")
+    (graph,) = blocks(page, TimeGraph)
+    assert [panel.label for panel in graph.panels] == ["speed", "torque", "torque, measured less modelled"]
+
+
+def test_tables_have_a_cell_for_each_heading(page):
+    for table in blocks(page, Table):
+        assert {len(row) for row in table.rows} == {len(table.columns)}

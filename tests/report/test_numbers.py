@@ -1,0 +1,62 @@
+"""Numbers and units as a person reads them."""
+
+import pytest
+
+from bench.balance.parameter import Parameter
+from bench.report.page.chart import ticks
+from bench.report.page.numbers import interval, number, share, unit_text
+
+
+def told(text):
+    return text.replace("\N{NO-BREAK SPACE}", " ")
+
+
+@pytest.mark.parametrize(
+    ("value", "half", "unit", "text"),
+    [
+        (0.0501, 0.00022, "N*m", "0.05010 ± 0.00022 N·m"),
+        (0.00131, 1.2e-6, "kg*m**2", "(1.3100 ± 0.0012)·10⁻³ kg·m²"),
+        (-3.1648, 0.05, "N", "−3.165 ± 0.050 N"),
+        (95.1089, 0.4, "kg", "95.11 ± 0.40 kg"),
+        (6.0, 0.0, "dimensionless", "6"),
+        (123456.0, 789.0, "N", "(123.46 ± 0.79)·10³ N"),
+        (2.0, 150.0, "rad/s**2", "2 ± 150 rad/s²"),
+        (0.0, 0.1, "N", "0.00 ± 0.10 N"),
+    ],
+)
+def test_a_value_has_as_many_digits_as_its_interval(value, half, unit, text):
+    parameter = Parameter(value, unit, half / 1.96, (value - half, value + half))
+    assert told(interval(parameter)) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0278, "0.0278 rad/s"), (-1.5, "−1.5 rad/s"), (1.9e-33, "1.9·10⁻³³ rad/s"), (float("nan"), "not known")],
+)
+def test_a_number_and_its_unit(value, text):
+    assert told(number(value, "rad/s", 3)) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.87, "87 %"), (0.0123, "1.2 %"), (1e-6, "< 0.1 %"), (0.0, "0 %"), (-0.2, "-20 %")]
+)
+def test_a_share(value, text):
+    assert told(share(value)) == text
+
+
+@pytest.mark.parametrize(
+    ("unit", "text"),
+    [("kg*m**2", "kg·m²"), ("N*m*s/rad", "N·m·s/rad"), ("1/s", "1/s"), ("dimensionless", ""), ("V*s**-1", "V·s⁻¹")],
+)
+def test_a_unit(unit, text):
+    assert unit_text(unit) == text
+
+
+def test_labels_of_an_axis_say_their_value():
+    for low, high in ((-0.05, 0.05), (0.0, 6.28), (-160.0, 160.0), (3.0, 3.01), (-2e-5, 3e-5), (0.0, 4e6)):
+        found = ticks(low, high, 5)
+        assert 2 <= len(found) <= 7
+        step = found[1][0] - found[0][0]
+        for value, label in found:
+            assert low <= value <= high
+            assert float(label.replace("−", "-")) == pytest.approx(value, abs=0.01 * step)
