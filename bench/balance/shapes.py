@@ -12,6 +12,10 @@ from bench.balance.rows import Rows
 from bench.effects.grids import is_pitch
 from bench.effects.signals import Scope
 
+#: How far a search of several shapes may wander, in units of how far a grid's shape reaches: along a valley without an
+#: end, as of a coupling that damps everything, it went on until numbers overflowed.
+FURTHEST = 10.0
+
 
 def free_shapes(term: Term, scope: Scope) -> list[int]:
     """Places of the shape quantities that vary continuously and are searched so."""
@@ -48,6 +52,7 @@ def shaped(rows: Rows, hypothesis: Hypothesis, index: int) -> Fit:
         misfit,
         np.zeros(len(free)),
         method="Nelder-Mead",
+        bounds=[(-FURTHEST, FURTHEST)] * len(free),
         options={"initial_simplex": simplex, "xatol": 3e-3, "fatol": 1e-4, "maxfev": 120},
     )
     return fit(rows, at(np.asarray(best.x)))
