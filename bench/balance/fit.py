@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.balance.friction_levels import follows_load, multiply, with_friction, with_levels, with_load, with_pulls
+from bench.balance.gains import gains
 from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.last_digit import rounding
 from bench.balance.layout import COULOMB, DIGIT, INERTIA, VISCOUS, Layout, delays, lay_out, seen_by
@@ -276,24 +277,10 @@ def least_squares(columns: Array, effort: Array, noise: Array) -> Array:
     return solved(columns.T @ columns, columns.T @ effort, columns.shape[0] * noise)[0]
 
 
-def gains(columns: Array, width: int, residual: Array, basis: Array) -> Array:
-    """Squares that groups of columns take from a residual (m,) beyond what an orthonormal basis (m, p) spans.
+def explained(before: Fit, after: Fit) -> float:
+    """Squares that a fit saves, less the noise that it damps - (N*m)**2 (N**2).
 
-    Args:
-        columns: (m, groups*width), group by group.
-        width: columns of a group.
-        residual: (m,).
-        basis: (m, p).
-
-    Returns:
-        (groups,) - the residual's unit squared.
+    An effect that filters speed or copies torque lowers its own noise, and what it damps of noise it does not explain.
     """
-    rows = np.ascontiguousarray(columns.T)
-    full = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-    rows = rows - (rows @ basis) @ basis.T
-    scale = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-    rows *= np.where(scale > 1e-4 * np.maximum(full, 1e-300), 1.0 / np.maximum(scale, 1e-300), 0.0)[:, None]
-    shared = (rows @ residual).reshape(-1, width)
-    groups = rows.reshape(-1, width, rows.shape[1])
-    inverse = np.linalg.pinv(groups @ groups.transpose(0, 2, 1), rcond=1e-8, hermitian=True)
-    return np.einsum("gi,gij,gj->g", shared, inverse, shared)
+    damped = before.count * max(before.noise.white**2 - after.noise.white**2, 0.0)
+    return before.squares - after.squares - damped

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from bench.balance.fit import Fit, fit
+from bench.balance.fit import Fit, explained, fit
 from bench.balance.hypothesis import Term
 from bench.effects.effect import Effect
 
@@ -31,11 +31,11 @@ def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
         if effect.sought(fitted.scope) and fitted.hypothesis.admits(effect)
     ]
     gains = {effect: fitted.tried(effect, [()])[0].gain for effect in linear}
-    for effect in sorted(gains, key=lambda effect: -gains[effect]):
-        if gains[effect] <= SURE**2 * fitted.rows.correlation * fitted.floor**2:
-            return None
+    least = SURE**2 * fitted.rows.correlation * fitted.floor**2
+    for effect in sorted((effect for effect in linear if gains[effect] > least), key=lambda effect: -gains[effect]):
         beside = fit(fitted.rows, fitted.hypothesis.plus(Term(effect)))
         strengths = beside.strengths(len(fitted.terms))
-        if effect.physical(strengths, (), beside.base) and effect.plausible([strengths], [()], fitted.scope):
+        physical = effect.physical(strengths, (), beside.base) and effect.plausible([strengths], [()], fitted.scope)
+        if physical and beside.base.inertia > 0.0 and explained(fitted, beside) > least:
             return beside
     return None

@@ -82,8 +82,7 @@ def identify(
     if out is not None:
         from bench.report.identification import write_identification  # matplotlib: 0.35 s
 
-        parts = of.read if of.robot else None
-        files = write_identification(out, traces, axis, estimate, refinement, basis(), parts, figures.ending)
+        files = write_identification(out, traces, axis, estimate, refinement, basis(), of.whole, figures.ending)
     if json is not None:
         write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):

@@ -42,6 +42,11 @@ class Subject:
     read: Callable[[Path], Trace]
     robot: bool
 
+    @property
+    def whole(self) -> Callable[[Path], Trace] | None:
+        """How a recording has to be read at once, beside its robot; None where parts do."""
+        return self.read if self.robot else None
+
 
 def subject(
     rig: Path | None, axis: str | None, mjcf: Path | None, joint: str | None, at: Sequence[str] | None

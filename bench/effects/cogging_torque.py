@@ -9,8 +9,8 @@ Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003,
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
 from bench.effects.kinds import Axis, Mechanism
@@ -19,6 +19,9 @@ from bench.effects.signals import Base, Shape, Signals
 from bench.effects.waves import amplitude_and_phase, followed
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
 
 
 class CoggingTorque(Mechanism):

@@ -10,8 +10,8 @@ Source: A. Janot, M. Gautier, M. Brunot, NSIB workshop 2019 (EMPS, asymmetric fr
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
 from bench.effects.kinds import Axis, Friction, Moment, Number, Values
@@ -19,6 +19,9 @@ from bench.effects.mjcf import AXIS, add_resisting_torque
 from bench.effects.signals import Base, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
 
 
 class DirectionDependentFriction(Friction):

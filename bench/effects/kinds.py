@@ -13,12 +13,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-
-import mujoco
+from typing import TYPE_CHECKING
 
 from bench.arrays import Array
 from bench.effects.effect import Effect
 from bench.effects.signals import Scope
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
 
 Number = float | Array
 Values = Mapping[str, Number]

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-import mujoco
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
+
 
 AXIS, MOTOR, LOAD, DRIVE, LOAD_TORQUE = "axis", "motor", "load", "drive", "load torque"
 #: The actuator whose bristles are the axis' friction, where it has some.
@@ -37,6 +41,8 @@ def passive_motor(
     lugre: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0),
 ) -> None:
     """A DC motor without input on the axis, of which only cogging or bristle friction is left."""
+    import mujoco
+
     actuator = spec.add_actuator(name=name, target=AXIS, trntype=mujoco.mjtTrn.mjTRN_JOINT)
     actuator.set_to_dcmotor(
         motorconst=[PASSIVE_MOTOR_CONSTANT, PASSIVE_MOTOR_CONSTANT],

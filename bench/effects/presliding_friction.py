@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
 from bench.effects.kinds import Axis, Friction
@@ -20,6 +20,9 @@ from bench.effects.mjcf import AXIS, BRISTLES, passive_motor
 from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
 
 #: Share of critical damping, of the axis against its bristles, below which a negative damping may be noise.
 UNDAMPED = 0.1

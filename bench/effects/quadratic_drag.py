@@ -8,8 +8,8 @@ k_q - N*m*s**2/rad**2 (N*s**2/m**2), not negative.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
 from bench.effects.kinds import Axis, Mechanism
@@ -17,6 +17,9 @@ from bench.effects.mjcf import AXIS
 from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
 
 
 class QuadraticDrag(Mechanism):

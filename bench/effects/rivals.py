@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from scipy.signal import lfilter
 
 from bench.effects.effect import Effect
 from bench.effects.kinds import Axis, Number
@@ -106,6 +105,8 @@ class FrictionalMemory(Rival):
 
 
 def _lowpass(values: np.ndarray, keep: float) -> np.ndarray:
+    from scipy.signal import lfilter  # 0.9 s, which only a search has to pay
+
     return np.asarray(lfilter([1.0 - keep], [1.0, -keep], values))
 
 

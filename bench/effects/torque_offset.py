@@ -8,8 +8,8 @@ M_0 - N*m (N).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
 from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
@@ -17,6 +17,9 @@ from bench.effects.mjcf import add_resisting_torque
 from bench.effects.signals import Base, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
 
 
 class TorqueOffset(Mechanism):

@@ -8,14 +8,16 @@ c - stiffness - N*m/rad (N/m), not negative; q - position - rad (m). A rest posi
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-
-import mujoco
+from typing import TYPE_CHECKING
 
 from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
 from bench.effects.mjcf import AXIS
 from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
 
 
 class TorsionSpring(Mechanism):

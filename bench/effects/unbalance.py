@@ -8,8 +8,8 @@ A - N*m; q - angle - rad.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
 from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
@@ -18,6 +18,9 @@ from bench.effects.signals import Base, Signals
 from bench.effects.waves import amplitude_and_phase
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
 
 
 class Unbalance(Mechanism):

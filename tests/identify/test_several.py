@@ -288,7 +288,7 @@ def test_the_command_writes_what_the_contract_asks_for(tmp_path, monkeypatch, ca
         assert found["between"][name]["std_dev"] >= 0.0
         assert all(name in each["parameters"] and each["reason"] is None for each in found["recordings"])
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"identification.png", "identification-2.png", "identify.json"}
+    assert names == {"identification.png", "identification-2.png", "identify.json", "report.html", "report.json"}
     assert "the next one" in capsys.readouterr().out
     assert command("identify", "run1.csv", "--rig", "rig.toml", "--json", "one.json") == 0
     alone = json.loads((tmp_path / "one.json").read_text())

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bench.assets import asset
 from bench.errors import InputError
 from bench.rig.rig import Rig, load_rig
 from bench.trace.trace import Trace
@@ -64,6 +65,6 @@ def test_what_a_rig_lacks_is_said(change, told):
 
 
 def test_a_motor_that_saturates_is_mujocos_alone():
-    own = own_axis(load_rig("data/rigs/sh30701p.toml"), "fast_reversals", None)
+    own = own_axis(load_rig(asset("data", "rigs", "sh30701p.toml")), "fast_reversals", None)
     assert own.rig.motor.torque_per_ampere is not None
     assert own.plants == (("mujoco",) if own.rig.motor.torque_per_ampere.curvature else ("independent", "mujoco"))

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bench.balance.fit import Fit
+from bench.balance.fit import Fit, explained
 from bench.balance.shapes import free_shapes
 from bench.diagnose.name.candidates import Candidate
 from bench.effects.effect import Effect
@@ -83,8 +83,7 @@ class Explains:
 
     def holds(self, before: Fit, after: Fit, significant: Significant) -> bool:
         """Whether the last term of `after` explains enough, significantly."""
-        damped = before.count * max(before.noise.white**2 - after.noise.white**2, 0.0)
-        saved = worth(before, after) - damped
+        saved = explained(before, after)
         noise = min(before.floor, after.floor * before.noise.white / after.noise.white) ** 2
         excess = before.excess or max(before.squares - before.count * noise, 0.0)
         term = after.terms[-1]

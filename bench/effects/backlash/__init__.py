@@ -11,8 +11,8 @@ Source: M. Nordin, P.-O. Gutman, Automatica 38 (2002) 1633-1649, sec. 2 (dead zo
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
 from bench.arrays import Array
@@ -24,6 +24,9 @@ from bench.effects.mjcf import add_coupling_joint
 from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
 
 #: Contact of a gear whose own is not known: natural frequency against the two inertias - rad/s - and damping ratio.
 CONTACT_FREQUENCY, CONTACT_DAMPING_RATIO = 2.0 * np.pi * 200.0, 0.2
@@ -115,6 +118,8 @@ class Backlash(Mechanism):
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """A joint with a range between motor and load; limits take acceleration, hence the inverse inertia."""
+        import mujoco
+
         joint = add_coupling_joint(spec, name)
         inverse = 1.0 / float(axis.motor_inertia) + 1.0 / float(axis.inertia - axis.motor_inertia)
         joint.range = [-0.5 * values["gap"], 0.5 * values["gap"]]

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from bench.arrays import Array
 from bench.effects.signals import Signals
@@ -37,6 +36,8 @@ def load_positions(angle: Array, sample_period: float, shapes: Array) -> Array:
         sample_period: s.
         shapes: (k, 4): gap, contact's frequency and damping, spring's rate.
     """
+    from scipy.interpolate import CubicSpline  # 0.15 s, which only a dead zone has to pay
+
     substeps = max(2, int(np.ceil(sample_period * shapes[:, 1].max() * STEPS_PER_RADIAN)))
     spline = CubicSpline(np.arange(angle.size), angle)
     length = max(SHORTEST, -(-(angle.size - 1) // WINDOWS))

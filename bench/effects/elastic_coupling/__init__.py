@@ -11,8 +11,8 @@ Source: D. Schröder, Elektrische Antriebe - Regelung von Antriebssystemen (two-
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,6 +24,9 @@ from bench.effects.mjcf import add_coupling_joint
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+    import mujoco
 
 #: Antiresonances - rad/s - and damping ratios that a search tries first.
 ANTIRESONANCES = tuple(2.0 * np.pi * float(f) for f in np.geomspace(8.0, 110.0, 28))

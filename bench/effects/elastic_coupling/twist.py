@@ -14,8 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
-import scipy.signal
-from scipy.interpolate import CubicSpline
 
 from bench.arrays import Array
 from bench.effects.effect import Load
@@ -40,6 +38,8 @@ def twist_columns(signals: Signals, shapes: Sequence[Sequence[float]], loads: Se
         loads: what acts on the load; its own column in the balance is that of an effect on the motor, so only the
             difference of the two enters here.
     """
+    from scipy.interpolate import CubicSpline  # 0.15 s, which only a coupling has to pay
+
     values = signals.position if signals.source == "position" else signals.velocity
     spline = CubicSpline(np.arange(values.size), values)
     fine: dict[int, Array] = {}
@@ -110,6 +110,8 @@ class _Driven:
 
     def __call__(self, values: Array, every: int) -> tuple[Array, Array]:
         """Both states at every so many of the values."""
+        import scipy.signal  # 0.9 s, which only a coupling has to pay
+
         moved = [np.asarray(scipy.signal.lfilter(row, self.denominator, values))[::every] for row in self.numerators]
         return moved[0], moved[1]
 
