@@ -235,8 +235,22 @@ class Downloads(Block):
     files: tuple[File, ...]
 
 
+class Neighbour(Block):
+    """A file in the folder of the page, by its name; `about`: what it is."""
+
+    name: str = Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$")
+    about: str
+
+
+class Neighbours(Block):
+    """Links to files beside the page."""
+
+    kind: Literal["neighbours"] = "neighbours"
+    files: tuple[Neighbour, ...]
+
+
 AnyBlock = Annotated[
-    Paragraph | Points | Table | TimeGraph | Chart | Intervals | Downloads, Field(discriminator="kind")
+    Paragraph | Points | Table | TimeGraph | Chart | Intervals | Downloads | Neighbours, Field(discriminator="kind")
 ]
 
 
