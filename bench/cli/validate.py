@@ -33,9 +33,12 @@ def validate(
         str | None, typer.Option("--scheduler", help="Dask cluster to work on, e.g. tcp://host:8786.")
     ] = None,
     json: JsonOption = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder for tables, figures and JSON.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for page, tables, figures and JSON.")] = None,
 ) -> None:
     """Monte Carlo on synthetic recordings: how far off numbers are, and how often intervals and names hold."""
+    from bench.files import held
+    from bench.report.page.folder import write_page
+    from bench.report.pages.validation import validation_page
     from bench.report.progress import progress
     from bench.report.provenance import without_files
     from bench.report.validation import determined, sheets, validation_json, write_validation
@@ -55,7 +58,11 @@ def validate(
         found = run_validation(plan, rigs, workers, scheduler, done)
     command = f"bench validate --rigs {rigs} --seed {seed} --effects {effects}{' --diagnose' * named}"
     command += "" if rig is None else f" --rig {rig} --profile {profile}"
-    written = write_validation(out, found, basis, command) if out is not None else []
+    written = []
+    if out is not None:
+        page = validation_page(found, basis, command, rig is not None)
+        with held(out):
+            written = [*write_page(out, page), *write_validation(out, found, basis, command)]
     if json is not None:
         write_json(json, validation_json(found, basis))
     if json != Path("-"):

@@ -197,7 +197,7 @@ class Intervals(Block):
         title: of the chart.
         alternative: what it shows, in words.
         label, unit: of the scale.
-        right: values between which all is as it should be: a band behind all rows.
+        right: values between which all is as it should be: a band behind all rows, or a line.
         limits: of the scale; what lies beyond is drawn at its end, as a ring.
         spans: from top to bottom.
     """

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
+from bench.arrays import Array
 from bench.fleet.change import expected
 from bench.fleet.changed import ALARM, Changed
 from bench.fleet.fleet import TABLE, Fleet
@@ -79,13 +78,16 @@ def fleet_page(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any]) -
 
 def _verdict(summary: Summary) -> str:
     changed, called = ({one.axis for one in some} for some in (summary.changed, summary.concerns))
+    first = f"{len(changed) or 'None'} of {summary.axes} axes changed"
     if not summary.compared:
         first = "No axis could be compared over time"
-    else:
-        first = f"{len(changed) or 'None'} of {summary.axes} axes changed"
     beside = len(called - changed)
-    others = " others" if changed else ""
-    return f"{first}; {beside or 'none'}{others} {'needs' if beside == 1 else 'need'} a person for another reason."
+    verb = "needs" if beside == 1 else "need"
+    if changed:
+        return f"{first}; {beside} more {verb} a person for another reason." if beside else f"{first}."
+    return (
+        f"{first}, but {beside} of {summary.axes} {verb} a person." if beside else f"{first}, and none needs a person."
+    )
 
 
 def _tone(summary: Summary) -> Tone:
@@ -106,7 +108,7 @@ def _answers(fleet: Fleet) -> tuple[Answer, ...]:
         sure = "Not known: that needs three recordings of an axis with a time, by one rig."
     first = next(iter(_reasons(summary).items()), None)
     told = {
-        "Who first?": "Nobody." if first is None else f"{first[0]}: {first[1][0]}.",
+        "Who first?": "Nobody." if first is None else f"{short(first[0], NAME)}: {first[1][0]}.",
         "How sure?": sure,
         "Recordings?": f"{counts}.",
     }
@@ -117,10 +119,10 @@ def _reasons(summary: Summary) -> dict[str, list[str]]:
     """By axis, why a person should look: what changed surely comes before what could not be told, gravest first."""
     told: dict[str, list[str]] = {}
     for one in summary.changed:
-        told.setdefault(short(one.axis, NAME), []).append(f"{words(one.quantity)} {_share(one)} since {one.since}")
+        told.setdefault(one.axis, []).append(f"{words(one.quantity)} {_share(one)} since {one.since}")
     for one in summary.concerns:
         why = f"{words(one.kind)} ({one.count} of {one.of} recordings): {short(one.reason, REASON)}"
-        told.setdefault(short(one.axis, NAME), []).append(why)
+        told.setdefault(one.axis, []).append(why)
     return told
 
 
@@ -137,13 +139,10 @@ def _share(one: Changed) -> str:
 def _people(summary: Summary) -> AnyBlock:
     reasons = _reasons(summary)
     if not reasons:
-        return Paragraph(
-            text="Nobody: no axis changed, and every recording gave a result that explains it."
-        )
-    rows = [(axis, "; ".join(why)) for axis, why in reasons.items()]
-    changed = {short(one.axis, NAME) for one in summary.changed}
+        return Paragraph(text="Nobody: no axis changed, and every recording gave a result that explains it.")
+    rows = [(short(axis, NAME), "; ".join(why)) for axis, why in reasons.items()]
     columns = Column(heading="axis"), Column(heading="why", prose=True)
-    marked = tuple(k for k, (axis, _) in enumerate(rows[:ROWS]) if axis in changed)
+    marked = tuple(range(min(ROWS, len({one.axis for one in summary.changed}))))
     return _table("Changed first, then by how grave it is", columns, rows, marked)
 
 
@@ -216,7 +215,7 @@ def _over_time(one: Changed, fleet: Fleet) -> Chart:
     )
 
 
-def _clock(fleet: Fleet, rows: Sequence[int]) -> tuple[np.ndarray, str, str]:
+def _clock(fleet: Fleet, rows: Sequence[int]) -> tuple[Array, str, str]:
     """Times of recordings, what they are called, and their unit: of moments, since the first of them."""
     times = fleet.manifest.times[rows]
     if not fleet.manifest.dated:
