@@ -1,4 +1,4 @@
-"""The page of a validation: how often intervals hold the truth, how far off numbers are, and whether names are right."""
+"""The page of a validation: how often intervals hold, how far off numbers are, and whether names are right."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from bench.report.page.blocks import (
     Span,
     Table,
 )
-from bench.report.page.numbers import number, share, words
+from bench.report.page.numbers import number, sentence, share, words
 from bench.report.pages.tables import origin
 from bench.report.sheet import Sheet
 from bench.report.validation import SYMBOLS, TITLES, by_name, covered, determined, names, outcomes, told
@@ -29,8 +29,10 @@ from bench.validate.validate import Validation
 
 #: The level that the chart shows; the table has the others.
 LEVEL = LEVELS[-1]
-#: Least share that the chart's scale begins at, where no bound lies below it.
+#: Share that the chart's scale begins at, where no bound lies below it; fewer runs than tell as much are too few.
 FROM = 0.8
+FEW = " More runs narrow these bounds."
+SPOKEN = {"inertia": "inertia", "viscous": "viscous friction", "coulomb": "Coulomb friction"}
 FILES = {
     "validation.json": "all of it, as data",
     "runs.csv": "what each run was, and what was said of it",
@@ -63,7 +65,7 @@ def validation_page(found: Validation, provenance: Mapping[str, Any], command: s
         title="Validation",
         subject=command,
         verdict=_verdict(first, found.naming),
-        tone="open" if not first or low or false else "sure",
+        tone="open" if not _enough(first) or low or false else "sure",
         answers=_answers(found, first),
         sections=tuple(sections),
         origin=origin(provenance),
@@ -76,12 +78,17 @@ def _first(found: Validation) -> list[Coverage]:
     return [one for one in whole if one.group == whole[0].group]
 
 
+def _enough(first: list[Coverage]) -> bool:
+    """Whether there are so many runs that a level much below the one claimed would show."""
+    return bool(first) and all(one.inside[-1].bounds[0] >= FROM for one in first)
+
+
 def _verdict(first: list[Coverage], naming: Naming | None) -> str:
     if not first:
         verdict = "No run tells a quantity"
     else:
-        shares = ", ".join(f"of {SYMBOLS[one.quantity]} in {share(one.inside[-1].value)}" for one in first)
-        verdict = f"Intervals of {share(LEVEL)} hold the truth {shares} of {first[0].runs} {_runs(first[0])}"
+        shares = ", ".join(f"of {SPOKEN[one.quantity]} in {share(one.inside[-1].value)}" for one in first)
+        verdict = f"Intervals of {share(LEVEL)} hold the truth {shares}, of {_runs(first[0])}"
     if naming is None:
         return f"{verdict}."
     false = naming.false
@@ -89,7 +96,8 @@ def _verdict(first: list[Coverage], naming: Naming | None) -> str:
 
 
 def _runs(one: Coverage) -> str:
-    return "runs with nothing hidden" if one.group == "nulls" else f"runs with {one.group} hidden"
+    hidden = "nothing" if one.group == "nulls" else one.group
+    return f"{one.runs} {'run' if one.runs == 1 else 'runs'} with {hidden} hidden"
 
 
 def _has(count: int) -> str:
@@ -99,11 +107,11 @@ def _has(count: int) -> str:
 def _answers(found: Validation, first: list[Coverage]) -> tuple[Answer, ...]:
     status = Counter(run.status for run in found.runs)
     counts = ", ".join(f"{count} {words(name)}" for name, count in status.most_common())
-    far = ", ".join(f"{SYMBOLS[one.quantity]} {share(one.typical)}" for one in first) or "not known"
-    bounds = "; ".join(f"{SYMBOLS[one.quantity]} {told(one.inside[-1])}" for one in first) or "not known"
+    far = ", ".join(f"{SPOKEN[one.quantity]} {share(one.typical)}" for one in first) or "not known"
+    bounds = "; ".join(f"{SPOKEN[one.quantity]} {told(one.inside[-1])}" for one in first) or "not known"
     answers = {
         "How far off are numbers?": f"RMS error over the true value: {far}.",
-        f"In their {share(LEVEL)} interval?": f"{bounds} (bounds of 95 %).",
+        f"In their {share(LEVEL)} interval?": f"{bounds} (bounds of 95 %).{'' if _enough(first) else FEW}",
     }
     if found.naming is not None:
         answers["Named exactly?"] = f"{told(found.naming.exact)} of {found.naming.exact.of} runs."
@@ -121,9 +129,9 @@ def _charts(found: Validation) -> Iterator[AnyBlock]:
         spans = tuple(_span(one) for one in shown if one.quantity == quantity)
         if spans:
             yield Intervals(
-                title=f"{symbol}.",
-                alternative=f"Share of the intervals of {share(LEVEL)} that hold the true {symbol}, by groups of runs, with "
-                "bounds of 95 %; the line is what they claim.",
+                title=f"{sentence(SPOKEN[quantity])}, {symbol}.",
+                alternative=f"Share of the intervals of {share(LEVEL)} that hold the truth, by groups of runs, "
+                "with bounds of 95 %; the line is what they claim.",
                 label=f"in their {share(LEVEL)} interval",
                 unit="%",
                 right=(100.0 * LEVEL, 100.0 * LEVEL),
