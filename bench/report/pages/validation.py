@@ -56,9 +56,9 @@ def validation_page(found: Validation, provenance: Mapping[str, Any], command: s
         sections.insert(0, Section(key="axis", heading="This motion on this drive", blocks=block))
     sections.append(Section(key="numbers", heading="How far off numbers are", blocks=tuple(_numbers(found))))
     if found.naming is not None:
-        sections.append(Section(key="names", heading="Names", blocks=tuple(_naming(found.naming))))
+        sections.append(Section(key="names", heading="Whether names are right", blocks=tuple(_naming(found.naming))))
     beside = Neighbours(files=tuple(Neighbour(name=name, about=about) for name, about in FILES.items()))
-    sections.append(Section(key="runs", heading="Runs", blocks=(*_table(outcomes(found.runs)), beside)))
+    sections.append(Section(key="runs", heading="All runs", blocks=(*_table(outcomes(found.runs)), beside)))
     low = any(one.inside[-1].bounds[1] < LEVEL for one in first)
     false = found.naming is not None and found.naming.false.count > 0
     return Page(
