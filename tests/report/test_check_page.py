@@ -90,3 +90,12 @@ def test_the_command_writes_it(bench):
     assert "before.csv" in told
     assert bench("check", "now.csv", *BASE, "--report", "check.txt")[0] == 2
     assert bench("check", "now.csv", *BASE, "--update", "--report", "check.html")[0] == 2
+
+
+def test_models_are_told_without_recordings():
+    found = checked(state(), state())
+    model = replace(found.now, gaps={}, conditions={}, source="model")
+    page = check_page(replace(found, baseline=model, now=model, false_alarm_rate=0.0), "x")
+    assert [section.key for section in page.sections] == ["comparisons", "conditions"]
+    assert any("neither rests on a recording" in one.text for one in blocks(page, Paragraph))
+    assert "without noise" in page.answers[2].answer

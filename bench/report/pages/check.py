@@ -42,17 +42,19 @@ def check_page(checked: Checked, title: str) -> Page:
         checked: what was found.
         title: what was held against what.
     """
+    sections = [
+        Section(key="comparisons", heading="What was compared", blocks=tuple(_compared(checked))),
+        Section(key="conditions", heading="Like with like", blocks=(_conditions(checked),)),
+    ]
+    if checked.baseline.gaps or checked.now.gaps:
+        sections.append(Section(key="gaps", heading="What the models leave", blocks=(_gaps(checked),)))
     return Page(
         title=f"{short(title)}: check",
         subject=short(title, LONG),
         verdict=_verdict(checked),
         tone=TONES[checked.result],
         answers=_answers(checked),
-        sections=(
-            Section(key="comparisons", heading="What was compared", blocks=tuple(_compared(checked))),
-            Section(key="conditions", heading="Like with like", blocks=(_conditions(checked),)),
-            Section(key="gaps", heading="What the models leave", blocks=(_gaps(checked),)),
-        ),
+        sections=tuple(sections),
         origin=(_basis("now", checked.now.provenance), _basis("baseline", checked.baseline.provenance)),
     )
 
@@ -97,7 +99,7 @@ def _next(checked: Checked) -> str:
     if checked.result == SAME:
         return "Nothing."
     if checked.result == CHANGED:
-        return "Look at the axis; where the new state is right, accept it with --update."
+        return "Look at what changed; where the new state is right, accept it with --update."
     if checked.rig:
         return "Make the baseline anew: --update with recordings of the old state and the rig file of now."
     if checked.conditions:
@@ -161,6 +163,8 @@ def _conditions(checked: Checked) -> AnyBlock:
     ]
     if lines:
         return Points(items=tuple(lines))
+    if not checked.now.conditions:
+        return Paragraph(text="Nothing beside the models differs: neither rests on a recording here.")
     return Paragraph(text="The rig, the motion and the sampling are those of the baseline.")
 
 

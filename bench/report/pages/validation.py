@@ -19,7 +19,7 @@ from bench.report.page.blocks import (
     Span,
     Table,
 )
-from bench.report.page.numbers import number, sentence, share, words
+from bench.report.page.numbers import number, sentence, share, unit_text, words
 from bench.report.pages.tables import origin
 from bench.report.sheet import Sheet
 from bench.report.validation import SYMBOLS, TITLES, by_name, covered, determined, names, outcomes, told
@@ -171,6 +171,6 @@ def _said(counts: Mapping[str, int]) -> str:
 def _table(sheet: Sheet) -> tuple[AnyBlock, ...]:
     """A sheet, with its note below."""
     columns = tuple(Column(heading=one, number=place >= sheet.words) for place, one in enumerate(sheet.headings))
-    rows = tuple(tuple("–" if cell == "-" else cell for cell in row) for row in sheet.rows)
+    rows = tuple(tuple("–" if cell == "-" else unit_text(cell) for cell in row) for row in sheet.rows)
     notes = (Paragraph(text=sheet.note),) if sheet.note else ()
     return Table(caption=sheet.title, columns=columns, rows=rows), *notes
