@@ -13,7 +13,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.console import AxisOption, JsonOption, console, tell_files, tell_warnings, told_in_json, write_json
+from bench.console import (
+    AxisOption,
+    JsonOption,
+    ReportOption,
+    console,
+    tell_files,
+    tell_warnings,
+    told_in_json,
+    write_json,
+)
 from bench.errors import InputError
 from bench.files import keeping, require_writable, write_text
 
@@ -50,6 +59,7 @@ def check(
     ] = False,
     junit: Annotated[Path | None, typer.Option("--junit", help="JUnit XML to write.")] = None,
     json: JsonOption = None,
+    report: ReportOption = None,
     form: Annotated[
         Format, typer.Option("--format", help="github: annotations. gitlab: a code quality report on standard output.")
     ] = Format.TEXT,
@@ -60,9 +70,9 @@ def check(
 ) -> None:
     """Has this axis, or this model of one, changed? Exit status 0: the same, 3: changed, 1: undecided."""
     asked = Asked(traces or [], rig, simulated, baseline, axis_name)
-    _require_consistent(asked, update, without_names, [path for path in (junit, json) if path is not None])
+    _require_consistent(asked, update, without_names, [path for path in (junit, json, report) if path is not None])
     with keeping(asked.inputs if update else [*asked.inputs, baseline]):
-        for path in (junit, json, baseline if update else None):
+        for path in (junit, json, report, baseline if update else None):
             if path is not None and path != Path("-"):
                 require_writable(path)
         if update:
@@ -70,7 +80,7 @@ def check(
             return
         with told_in_json(json, "bench.check/1"):
             checked = asked.checked(false_alarm_rate)
-        _write(checked, asked, junit, json, form)
+        _write(checked, asked, junit, json, report, form)
     raise typer.Exit(STATUS[checked.result])
 
 
@@ -159,7 +169,9 @@ def _require_consistent(asked: Asked, update: bool, quick: bool, written: list[P
         found = "found without --update TRACE..."
         raise InputError("--without-names", found, "allowed: when the baseline is made, which says so from then on")
     if update and written:
-        raise InputError("--update", "found with --junit or --json", "allowed: alone; the check after it has results")
+        raise InputError(
+            "--update", "found with --junit, --json or --report", "allowed: alone; the check after it has results"
+        )
 
 
 def _update(asked: Asked, names: bool) -> None:
@@ -179,7 +191,9 @@ def _update(asked: Asked, names: bool) -> None:
         )
 
 
-def _write(checked: Checked, asked: Asked, junit: Path | None, json: Path | None, form: Format) -> None:
+def _write(
+    checked: Checked, asked: Asked, junit: Path | None, json: Path | None, report: Path | None, form: Format
+) -> None:
     """Every result where it is asked for."""
     from bench.report.annotations import github_lines, gitlab_report, summary
     from bench.report.check import check_json, check_table
@@ -189,12 +203,17 @@ def _write(checked: Checked, asked: Asked, junit: Path | None, json: Path | None
         write_text(junit, check_junit(checked, asked.title))
     if json is not None:
         write_json(json, check_json(checked, checked.now.provenance))
+    if report is not None:
+        from bench.report.page.folder import write_html
+        from bench.report.pages.check import check_page
+
+        write_html(report, check_page(checked, asked.title))
     if form is Format.GITLAB:
         typer.echo(gitlab_report(checked, asked.baseline))
     elif json != Path("-"):
         with _no_commands(form):
             console().print(check_table(checked, asked.title))
-            tell_files([path for path in (junit, json) if path is not None])
+            tell_files([path for path in (junit, json, report) if path is not None])
     if form is Format.GITHUB:
         for line in github_lines(checked, asked.baseline):
             typer.echo(line)

@@ -11,10 +11,12 @@ from bench import __version__
 from bench.console import JsonOption, console, tell_files, write_json
 from bench.errors import UndeterminedError
 
+SUMMARY = "summary.json"
+
 
 def fleet(
     manifest: Annotated[Path, typer.Argument(metavar="MANIFEST", help="CSV or Parquet: file, rig, axis, time, ...")],
-    out: Annotated[Path, typer.Option("--out", help="Folder for results, table and summary.")],
+    out: Annotated[Path, typer.Option("--out", help="Folder for results, table, summary and page.")],
     diagnose: Annotated[bool, typer.Option("--diagnose", help="Name missing effects too.")] = False,
     retry: Annotated[bool, typer.Option("--retry", help="Do again what failed or timed out.")] = False,
     deadline: Annotated[float, typer.Option("--deadline", help="Of one recording, in s.", min=0.1)] = 120.0,
@@ -24,26 +26,29 @@ def fleet(
     json: JsonOption = None,
 ) -> None:
     """Evaluate many recordings of many axes: one row each, which axes changed since when, and which need a person."""
-    from bench.files import sha256, write_text
+    from bench.files import keeping, sha256, write_text
     from bench.fleet.fleet import TABLE
     from bench.fleet.fleet import fleet as run_fleet
     from bench.jobs.limits import Limits
     from bench.report.fleet import fleet_json, fleet_tables
+    from bench.report.page.folder import write_html
+    from bench.report.pages.fleet import fleet_page
     from bench.report.progress import progress
 
     limits = Limits(deadline, memory * 1024**3)
     with progress(f"evaluating {manifest.name}") as done:
         found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done)
-    text = fleet_json(
-        found, {"version": __version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
-    )
-    write_text(out / "summary.json", text + "\n")
+    basis = {"version": __version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
+    text, page = fleet_json(found, basis), out / "fleet.html"
+    with keeping(found.manifest.inputs):
+        write_text(out / SUMMARY, text + "\n")
+        write_html(page, fleet_page(found, SUMMARY, basis))
     if json is not None:
         write_json(json, text)
     if json != Path("-"):
         for part in fleet_tables(found):
             console().print(part)
-        tell_files([out / TABLE, out / "summary.json"])
+        tell_files([out / TABLE, out / SUMMARY, page])
     if not found.summary.counts["done"]:
         reason = f"none of {len(found.manifest)} recordings gave a result"
         raise UndeterminedError("the fleet", reason, f"what the column `reason` of {out / TABLE} asks for")

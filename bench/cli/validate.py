@@ -13,6 +13,7 @@ from bench.plant.profile_names import DEFAULT, NAMES
 
 if TYPE_CHECKING:
     from bench.validate.own import OwnAxis
+    from bench.validate.validate import Validation
 
 
 def validate(
@@ -33,12 +34,12 @@ def validate(
         str | None, typer.Option("--scheduler", help="Dask cluster to work on, e.g. tcp://host:8786.")
     ] = None,
     json: JsonOption = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder for tables, figures and JSON.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for page, tables, figures and JSON.")] = None,
 ) -> None:
     """Monte Carlo on synthetic recordings: how far off numbers are, and how often intervals and names hold."""
     from bench.report.progress import progress
     from bench.report.provenance import without_files
-    from bench.report.validation import determined, sheets, validation_json, write_validation
+    from bench.report.validation import determined, sheets, validation_json
     from bench.validate.case import AnyAxis
     from bench.validate.hiding import Hiding
     from bench.validate.plan import Plan
@@ -55,7 +56,7 @@ def validate(
         found = run_validation(plan, rigs, workers, scheduler, done)
     command = f"bench validate --rigs {rigs} --seed {seed} --effects {effects}{' --diagnose' * named}"
     command += "" if rig is None else f" --rig {rig} --profile {profile}"
-    written = write_validation(out, found, basis, command) if out is not None else []
+    written = _write(out, found, basis, command, rig is not None) if out is not None else []
     if json is not None:
         write_json(json, validation_json(found, basis))
     if json != Path("-"):
@@ -64,6 +65,18 @@ def validate(
         for sheet in sheets(found):
             console().print(sheet.table())
         tell_files(written)
+
+
+def _write(out: Path, found: Validation, basis: dict[str, Any], command: str, own: bool) -> list[Path]:
+    """Page, tables, figures and JSON in a folder; `own`: whether the axis is of a rig file."""
+    from bench.files import held
+    from bench.report.page.folder import write_page
+    from bench.report.pages.validation import validation_page
+    from bench.report.validation import write_validation
+
+    with held(out):
+        page = write_page(out, validation_page(found, basis, command, own))
+        return [*page, *write_validation(out, found, basis, command)]
 
 
 def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis, dict[str, Any]]:

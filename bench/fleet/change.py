@@ -73,3 +73,26 @@ def change(values: Array, errors: Array) -> Change | None:
         size=float(sizes[best]),
         chance=min(1.0, (n - 1) * 2.0 * float(special.stdtr(n - 2, -sizes[best]))),
     )
+
+
+def expected(values: Array, errors: Array, place: int) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Intervals of 95 % of the next recording, as those before a step and those after it have it - the quantity's unit.
+
+    Mean -+ t sqrt(p (1 + 1/c)), with p the variance pooled about both means, or of the recordings' own errors.
+
+    Args:
+        values: in the order of time (n,), n >= 3.
+        errors: standard errors of each (n,).
+        place: of the first recording after the step, 1 to n - 1.
+    """
+    sides = np.split(values, [place])
+    pooled = sum(float(((side - side.mean()) ** 2).sum()) for side in sides) / (values.size - 2)
+    student = float(special.stdtrit(values.size - 2, 0.975))
+
+    def interval(side: Array, own: Array) -> tuple[float, float]:
+        variance = max(pooled, float(np.mean(own**2)))
+        reach = student * float(np.sqrt(variance * (1.0 + 1.0 / side.size)))
+        return float(side.mean()) - reach, float(side.mean()) + reach
+
+    before, after = zip(sides, np.split(errors, [place]), strict=True)
+    return interval(*before), interval(*after)

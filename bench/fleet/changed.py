@@ -55,6 +55,7 @@ class Changed:
         file: of that recording.
         counts: recordings before and after.
         chance: that a fleet without a change shows one like it anywhere, at most.
+        series: that it was found in.
     """
 
     axis: str
@@ -65,6 +66,7 @@ class Changed:
     file: str
     counts: tuple[int, int]
     chance: float
+    series: Series
 
 
 def changes(
@@ -89,7 +91,7 @@ def changes(
             break
         first = one.rows[step.place]
         counts = (step.place, len(one.rows) - step.place)
-        told.append(Changed(one.axis, one.quantity, one.unit, step, times[first], files[first], counts, chance))
+        told.append(Changed(one.axis, one.quantity, one.unit, step, times[first], files[first], counts, chance, one))
     return len(steps), told
 
 

@@ -63,8 +63,7 @@ def fleet(
     """
     manifest = read_manifest(path)
     tabulate(replace(manifest, table=manifest.table.slice(0, 0)), [], [])  # names that clash are told before any work
-    inputs = {*manifest.located("file"), *manifest.located("rig")}
-    with keeping([path, *(Path(one) for one in inputs if "://" not in one)]), held(out):
+    with keeping(manifest.inputs), held(out):
         require_writable(out / TABLE)
         planned = plan(manifest, diagnose, lambda share: progress(PLANNING * share))
         store = Store(out / "results")

@@ -45,10 +45,21 @@ class Manifest:
         return [named if "://" in named else str(folder / named) for named in self.text(column)]
 
     @property
+    def inputs(self) -> list[Path]:
+        """Every file on this machine that a fleet reads."""
+        named = {*self.located("file"), *self.located("rig")}
+        return [self.path, *(Path(one) for one in sorted(named) if "://" not in one)]
+
+    @property
+    def dated(self) -> bool:
+        """Whether times are moments rather than numbers."""
+        return pa.types.is_temporal(self.table["time"].type)
+
+    @property
     def times(self) -> Array:
         """When each was recorded (n,) - s, or what the manifest counts in; nan where it does not say."""
         column = self.table["time"].combine_chunks()
-        if pa.types.is_temporal(column.type):
+        if self.dated:
             microseconds = column.cast(pa.timestamp("us"), safe=False).cast(pa.int64())
             return 1e-6 * microseconds.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
         return column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)

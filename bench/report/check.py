@@ -119,11 +119,13 @@ def check_table(checked: Checked, title: str) -> Table:
     table.add_column("unit", no_wrap=True)
     table.add_column("", no_wrap=True)
     for one in checked.comparisons:
-        table.add_row(*_row(one))
+        table.add_row(*cells(one))
     return table
 
 
-def _row(one: Comparison) -> list[str]:
+def cells(one: Comparison) -> list[str]:
+    """A comparison as a row: quantity, baseline, now, difference, margin, unit, result."""
+
     def number(value: float | None) -> str:
         return "-" if value is None else read(value, one.unit)
 

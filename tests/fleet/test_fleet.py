@@ -195,6 +195,9 @@ def test_the_command_prints_and_writes_what_it_found(made, found, capsys, monkey
     assert summary["recordings"] == {"total": 27, "done": 17, "refused": 8, "failed": 1, "timed_out": 1}
     assert [one["quantity"] for one in summary["changed"]] == ["coulomb_friction_torque"]
     assert summary["attention"][1]["reason"] == "no result within 12 s"
+    page = (out / "fleet.html").read_text(encoding="utf-8")
+    assert "1 of 3 axes changed" in page
+    assert "press 1: coulomb friction torque" in page
 
 
 def test_effects_are_named_where_that_is_asked_for(tmp_path):
@@ -239,10 +242,11 @@ def test_a_bad_manifest_is_one_line(text, told, tmp_path, capsys, monkeypatch):
     assert not (tmp_path / "out").exists()
 
 
-def test_an_output_is_never_an_input(tmp_path, capsys, monkeypatch):
+@pytest.mark.parametrize("output", ["fleet.parquet", "fleet.html", "summary.json"])
+def test_an_output_is_never_an_input(output, tmp_path, capsys, monkeypatch):
     made = fleet_of(tmp_path, axes=1, each=1)
-    (tmp_path / "press_0_0.csv.gz").rename(tmp_path / "fleet.parquet")
-    made.rows = [made.rows[0].replace("press_0_0.csv.gz", "fleet.parquet")]
+    (tmp_path / "press_0_0.csv.gz").rename(tmp_path / output)
+    made.rows = [made.rows[0].replace("press_0_0.csv.gz", output)]
     monkeypatch.setattr(sys, "argv", ["bench", "fleet", str(made.write()), "--out", str(tmp_path)])
     with pytest.raises(SystemExit) as stop:
         main()

@@ -16,6 +16,7 @@ from bench.report.page.blocks import (
     Curve,
     Downloads,
     File,
+    Intervals,
     Page,
     Panel,
     Paragraph,
@@ -23,6 +24,7 @@ from bench.report.page.blocks import (
     Samples,
     Section,
     Series,
+    Span,
     Table,
     TimeGraph,
 )
@@ -57,6 +59,15 @@ def page_full_of(text):
             y_label=text,
             y_unit=text,
             panels=(Axes(x_label=text, x_unit=text, note=text, series=(series,)),),
+        ),
+        Intervals(
+            title=text,
+            alternative=text,
+            label=text,
+            unit=text,
+            right=(-1.0, 1.0),
+            limits=(-2.0, 2.0),
+            spans=(Span(name=text, colour="ink", value=3.0, low=-1.0, high=4.0),),
         ),
         Downloads(files=(File(name=text, about=text, media="text/plain", content=text),)),
     )

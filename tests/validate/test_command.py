@@ -55,7 +55,9 @@ def test_files_of_a_run_agree_with_each_other(folder):
     mine = [row for row in told if row["by"] == "identify" and row["index"] % 3 == 2]
     assert sum(each["told"] for each in asked) == len(mine) == 3
     assert set(found["naming"]["named"]) == {"unbalance", "cogging_torque"}
-    assert {"coverage.png", "confusion.png", "validation.md"} <= {path.name for path in home.iterdir()}
+    written = {path.name for path in home.iterdir()}
+    assert {"coverage.png", "confusion.png", "validation.md", "report.html", "report.json"} <= written
+    assert "This motion on this drive" in (home / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,8 @@ SCHEMA = "bench.page/1"
 
 #: How a verdict is meant: all is well, something is left to do, or the answer is no.
 Tone = Literal["sure", "open", "refused"]
+#: What something drawn stands for: what was measured, a model, what is left, noise, or what comes first.
+Colour = Literal["ink", "model", "left", "floor", "first"]
 
 
 class Block(BaseModel):
@@ -138,7 +140,7 @@ class Series(Block):
 
     name: str
     style: Literal["dots", "rings", "line", "band"]
-    colour: Literal["ink", "model", "left", "floor", "first"]
+    colour: Colour
     x: tuple[float, ...]
     y: tuple[float, ...] = ()
     low: tuple[float, ...] = ()
@@ -172,6 +174,44 @@ class Chart(Block):
     panels: tuple[Axes, ...]
 
 
+class Span(Block):
+    """A row of intervals: a value and its bounds.
+
+    Attributes:
+        name: of it.
+        colour: by what it stands for, as of a series.
+        value, low, high: of it, low <= value <= high.
+    """
+
+    name: str
+    colour: Colour
+    value: float
+    low: float
+    high: float
+
+
+class Intervals(Block):
+    """Intervals below each other on one scale, a row each (a forest plot); drawn without a script.
+
+    Attributes:
+        title: of the chart.
+        alternative: what it shows, in words.
+        label, unit: of the scale.
+        right: values between which all is as it should be: a band behind all rows, or a line.
+        limits: of the scale; what lies beyond is drawn at its end, as a ring.
+        spans: from top to bottom.
+    """
+
+    kind: Literal["intervals"] = "intervals"
+    title: str
+    alternative: str
+    label: str
+    unit: str = ""
+    right: tuple[float, float]
+    limits: tuple[float, float]
+    spans: tuple[Span, ...]
+
+
 class File(Block):
     """A file inside the page.
 
@@ -195,7 +235,23 @@ class Downloads(Block):
     files: tuple[File, ...]
 
 
-AnyBlock = Annotated[Paragraph | Points | Table | TimeGraph | Chart | Downloads, Field(discriminator="kind")]
+class Neighbour(Block):
+    """A file in the folder of the page, by its name; `about`: what it is."""
+
+    name: str = Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$")
+    about: str
+
+
+class Neighbours(Block):
+    """Links to files beside the page."""
+
+    kind: Literal["neighbours"] = "neighbours"
+    files: tuple[Neighbour, ...]
+
+
+AnyBlock = Annotated[
+    Paragraph | Points | Table | TimeGraph | Chart | Intervals | Downloads | Neighbours, Field(discriminator="kind")
+]
 
 
 class Section(Block):

@@ -15,6 +15,7 @@ from markupsafe import Markup
 from bench.names import plain
 from bench.report.page.blocks import File, Page, TimeGraph
 from bench.report.page.chart import drawn
+from bench.report.page.intervals import laid
 
 
 def html(page: Page, script: str | None = None) -> str:
@@ -59,7 +60,7 @@ def _environment() -> Environment:
         loader=PackageLoader("bench.report.page"), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True, finalize=_shown,
     )  # fmt: skip
-    found.filters |= {"data": _data, "link": _link, "drawn": drawn}
+    found.filters |= {"data": _data, "link": _link, "drawn": drawn, "laid": laid}
     return found
 
 

@@ -82,7 +82,8 @@ def origin(provenance: Mapping[str, Any] | None) -> tuple[str, ...]:
     """Version and digests of what a page rests on."""
     if provenance is None:
         return (f"servobench {__version__}",)
-    found = [f"servobench {provenance['version']}; rig sha256 {provenance['rig_sha256']}"]
+    rig = provenance["rig_sha256"]
+    found = [f"servobench {provenance['version']}" + ("" if rig is None else f"; rig sha256 {rig}")]
     files = [*provenance["traces"], *([provenance["holdout"]] if "holdout" in provenance else [])]
     found += [f"{Path(one['file']).name} sha256 {one['sha256']}" for one in files]
     given = {key: value for key, value in provenance["options"].items() if value not in (None, [], False)}

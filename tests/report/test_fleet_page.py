@@ -1,0 +1,154 @@
+"""The page of a fleet: who needs a person first, what changed with its prediction band, and small."""
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from bench.fleet.change import expected
+from bench.fleet.fleet import Fleet
+from bench.fleet.manifest import Manifest
+from bench.fleet.plan import Planned
+from bench.fleet.summary import summarise
+from bench.report.page.blocks import Chart, Table
+from bench.report.page.render import html
+from bench.report.pages.fleet import CHARTS, DOTS, ROWS, fleet_page
+from tests.fleet.test_summary import TASK, found
+from tests.report.test_page import HOSTILE
+
+BASIS = {"version": "0.1.0", "manifest_sha256": "abc", "options": {"diagnose": False}}
+DAY = np.timedelta64(1, "D")
+
+
+def fleet_of(values, results=None, name="axis {}", dated=True, evaluated=0):
+    """Axes (a,) recorded once a day, n times each, with inertias (a, n); `results`: of some rows, in their place."""
+    count, each = values.shape
+    rows = range(count * each)
+    days = np.tile(np.datetime64("2026-03-02T06:00:00") + DAY * np.arange(each), count)
+    columns = {
+        "file": [f"{row}.csv" for row in rows],
+        "rig": ["rig.toml"] * len(rows),
+        "axis": [name.format(row // each) for row in rows],
+        "time": days if dated else np.tile(np.arange(each, dtype=float), count),
+    }
+    manifest = Manifest(Path("fleet.csv"), pa.table(columns))
+    planned = [Planned(str(row), TASK, None, {"rig_sha256": "same"}) for row in rows]
+    told = [(results or {}).get(row, found(value, 1e-3)) for row, value in enumerate(values.ravel())]
+    return Fleet(manifest, summarise(manifest, planned, told), evaluated)
+
+
+def stepped(count, each, changed, step=0.3):
+    values = np.random.default_rng(1).normal(1.0, 0.01, (count, each))
+    values[changed, each // 2 :] += step
+    return values
+
+
+def page_of(fleet):
+    return fleet_page(fleet, "summary.json", BASIS)
+
+
+def blocks(page, kind):
+    return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
+
+
+def refused(reason):
+    return {"status": "refused", "reason": reason}
+
+
+def test_who_needs_a_person_first_comes_first_with_the_reason():
+    page = page_of(fleet_of(stepped(6, 10, [4]), {3: refused("too short")}))
+    assert page.verdict == "1 of 6 axes changed; 1 more needs a person for another reason."
+    assert page.tone == "refused"
+    people = blocks(page, Table)[0]
+    assert [row[0] for row in people.rows] == ["axis 4", "axis 0"]
+    assert people.marked == (0,)
+    assert "since 2026-03-07" in people.rows[0][1]
+    assert people.rows[1][1] == "refused (1 of 10 recordings): too short"
+    assert page.answers[0].answer.startswith("axis 4: ")
+
+
+@pytest.mark.parametrize(
+    ("fleet", "verdict", "tone"),
+    [
+        (fleet_of(stepped(3, 8, [])), "None of 3 axes changed, and none needs a person.", "sure"),
+        (fleet_of(stepped(3, 8, []), {0: refused("x")}), "None of 3 axes changed, but 1 of 3 needs a person.", "open"),
+        (fleet_of(np.ones((3, 1))), "No axis could be compared over time, and none needs a person.", "open"),
+    ],
+)
+def test_where_nothing_changed_the_page_says_so(fleet, verdict, tone):
+    page = page_of(fleet)
+    assert (page.verdict, page.tone) == (verdict, tone)
+    assert not blocks(page, Chart)
+
+
+def test_a_change_is_drawn_over_time_outside_of_what_was_expected_before():
+    values = stepped(3, 10, [1])
+    (chart,) = blocks(page_of(fleet_of(values)), Chart)
+    (axes,) = chart.panels
+    before, after = (series for series in axes.series if series.style == "band")
+    (dots,) = (series for series in axes.series if series.style == "dots")
+    assert (axes.x_label, axes.x_unit) == ("time since 2026-03-02 06:00:00", "d")
+    assert dots.x == tuple(range(10))
+    assert dots.y == pytest.approx(values[1])
+    assert all(before.low[0] < value < before.high[0] for value in dots.y[:5])
+    assert all(value > before.high[0] for value in dots.y[5:])
+    assert all(after.low[0] < value < after.high[0] for value in dots.y[5:])
+    assert after.x == (5.0, 9.0)
+
+
+def test_times_that_are_numbers_are_told_as_they_are():
+    (chart,) = blocks(page_of(fleet_of(stepped(3, 10, [1]), dated=False)), Chart)
+    assert (chart.panels[0].x_label, chart.panels[0].x_unit) == ("time", "")
+
+
+@pytest.mark.parametrize("after", [1, 3])
+def test_the_band_holds_the_next_recording_in_95_of_100(after):
+    rng, trials, held = np.random.default_rng(2), 4000, 0
+    for _ in range(trials):
+        values = rng.normal(1.0, 0.02, 5 + after)
+        values[5:] += 0.5
+        (low, high), _ = expected(values, np.full(values.size, 1e-4), 5)
+        held += low <= rng.normal(1.0, 0.02) <= high
+    assert held / trials == pytest.approx(0.95, abs=0.014)  # four standard deviations
+
+
+def test_the_band_is_never_narrower_than_the_recordings_own_errors():
+    (low, high), _ = expected(np.array([1.0, 1.0, 2.0, 2.0]), np.full(4, 0.1), 2)
+    assert high - low > 2.0 * 1.96 * 0.1
+
+
+def test_names_are_text():
+    page = page_of(fleet_of(stepped(2, 10, [1]), {0: refused(HOSTILE)}, name=HOSTILE.replace("{", "(") + " {}"))
+    made = html(page)
+    assert "<script" not in made
+    assert "&lt;script&gt;alert(1)" in made
+
+
+def test_a_large_fleet_is_a_small_page_that_says_what_it_leaves_out():
+    values = stepped(1000, 12, np.arange(300))
+    long = {row: refused("x" * 5000) for row in range(0, 12000, 12)}
+    page = page_of(fleet_of(values, long, name="a" * 500 + "{}"))
+    assert len(blocks(page, Chart)) == CHARTS
+    assert all(len(table.rows) <= ROWS for table in blocks(page, Table))
+    assert "the first 100 of 300" in "".join(table.caption for table in blocks(page, Table))
+    assert len(html(page).encode()) < 1e6
+
+
+def test_of_an_axis_recorded_a_thousand_times_those_around_the_change_are_drawn():
+    page = page_of(fleet_of(stepped(1, 1000, [0])))
+    (chart,) = blocks(page, Chart)
+    (dots,) = (series for series in chart.panels[0].series if series.style == "dots")
+    assert len(dots.x) == DOTS
+    assert (dots.x[0], dots.x[-1]) == (400.0, 599.0)
+    assert f"Of 1000 recordings the {DOTS} nearest" in chart.alternative
+    assert len(html(page).encode()) < 1e6
+
+
+def test_the_page_is_the_same_however_many_were_evaluated_now():
+    values = stepped(3, 10, [1])
+    assert html(page_of(fleet_of(values))) == html(page_of(fleet_of(values, evaluated=30)))
+
+
+def test_the_table_is_one_step_away():
+    assert '<a href="fleet.parquet">fleet.parquet</a>' in html(page_of(fleet_of(stepped(1, 3, []))))

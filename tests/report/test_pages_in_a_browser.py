@@ -1,0 +1,37 @@
+"""Pages of check, fleet and validate in a browser: no complaint, as wide as the window, and nothing that axe finds."""
+
+import pytest
+
+from bench.report.page.folder import write_html
+from bench.report.pages.check import check_page
+from tests.check.states import state
+from tests.check.test_compare import checked
+from tests.report import test_fleet_page, test_validation_page
+from tests.report.test_page import HOSTILE
+
+PAGES = {
+    "check": lambda: check_page(checked(state(), state({"moment_of_inertia": 3.0}, duration=3.0)), HOSTILE),
+    "fleet": lambda: test_fleet_page.page_of(
+        test_fleet_page.fleet_of(
+            test_fleet_page.stepped(3, 10, [1]), {0: test_fleet_page.refused(HOSTILE)}, HOSTILE.replace("{", "(") + "{}"
+        )
+    ),
+    "validate": lambda: test_validation_page.page_of(
+        [test_validation_page.covered(quantity, 90, 100) for quantity in ("inertia", "viscous", "coulomb")],
+        test_validation_page.named(1, 9, {"nothing": {"nothing missing": 5}}),
+        HOSTILE,
+    ),
+}
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (390, "dark")])
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_opens(opened, tmp_path, name, width, scheme):
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs axe-playwright-python")
+    write_html(tmp_path / "page.html", PAGES[name]())
+    page = opened(tmp_path / "page.html", width, color_scheme=scheme, bypass_csp=True)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.locator("script").count() == 0
+    assert "alert(1)" in page.locator("body").inner_text()
+    violations = axe.Axe().run(page).response["violations"]
+    assert [(one["id"], [node["html"] for node in one["nodes"]][:3]) for one in violations] == []
