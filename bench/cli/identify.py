@@ -24,6 +24,7 @@ from bench.console import (
     write_json,
 )
 from bench.errors import InputError
+from bench.names import in_a_row
 
 if TYPE_CHECKING:
     from bench.cli.robot import Subject
@@ -87,7 +88,7 @@ def identify(
     if json is not None:
         write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):
-        _tell(estimate, refinement, axis, ", ".join(trace.name for trace in traces))
+        _tell(estimate, refinement, axis, in_a_row(traces))
         tell_files(files)
     tell_warnings([*estimate.warnings, *spoken(estimate.checks)])
 
