@@ -67,11 +67,11 @@ def test_an_axis_that_is_heavier_in_everything_takes_as_much_more_current(seed):
     assert_alike(identify(scaled(trace, current=factor), RIG), identify(trace, RIG), (factor,) * 3)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_the_order_of_recordings_does_not_matter(seed):
-    rng, truth = np.random.default_rng(seed), Truth()
+@pytest.mark.parametrize("order", [(2, 1, 0), (1, 2, 0), (2, 0, 1)])
+def test_the_order_of_recordings_does_not_matter(order):
+    rng, truth = np.random.default_rng(0), Truth()
     runs = [recording(rng, replace(truth, inertia=truth.inertia * share), duration=3.0) for share in (0.98, 1.0, 1.03)]
-    there, back = (identify([runs[k] for k in order], RIG, CUTOFF) for order in ((0, 1, 2), rng.permutation(3)[::-1]))
+    there, back = identify(runs, RIG, CUTOFF), identify([runs[k] for k in order], RIG, CUTOFF)
     assert_alike(back, there)
     assert back.residual.rms == pytest.approx(there.residual.rms)
 
