@@ -45,9 +45,7 @@ def identify(
     rig: BesideRigOption = None,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for figures and JSON.")] = None,
-    estimator: Annotated[
-        Estimator, typer.Option("--estimator", help="lab: as the course does.")
-    ] = Estimator.REGRESSION,
+    estimator: Annotated[Estimator, typer.Option("--estimator", help="lab: as in courses.")] = Estimator.REGRESSION,
     refine: Annotated[bool, typer.Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
     offset: Annotated[bool, typer.Option("--offset", help="Fit a constant torque (force) too.")] = False,
     cutoff: Annotated[
