@@ -15,7 +15,7 @@ from tests.hostile import DEADLINE, RIG, ROOT, assert_one_line, columns, csv_of
 PERSONAL = ("DISPLAY", "WAYLAND_DISPLAY", "XAUTHORITY", "HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR")
 ASCII = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONIOENCODING": "ascii"}
 NAME = "Ächse 軸"
-IDENTIFY = ("identify", "run.csv", "--rig", "rig.toml")
+IDENTIFY = ("identify", "run.csv", "--rig", "rig.toml", "--cutoff", "60")
 
 
 @pytest.fixture
