@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
+from pathlib import Path
 
 #: Control characters (a terminal obeys them), those that turn the direction of text, and halves of surrogates (no
 #: encoding has them; Python reads file names that are not UTF-8 so). Line ends and tabs are not among them.
@@ -24,6 +26,11 @@ def cell(text: str) -> str:
 def readable(path: object) -> str:
     r"""A path as text that any encoding has: bytes of a file name that are not UTF-8 written out, e.g. `\xff`."""
     return str(path).encode("utf-8", errors="surrogateescape").decode("utf-8", errors="backslashreplace")
+
+
+def in_a_row(paths: Iterable[Path]) -> str:
+    """Names of files as text, without their folders, e.g. for a title."""
+    return ", ".join(readable(path.name) for path in paths)
 
 
 def short(text: str, most: int = 200) -> str:

@@ -253,6 +253,12 @@ def test_file_names_that_are_not_utf_8(tmp_path):
     assert next(stream(Path(path).with_suffix(".parquet"))).origin == f"{tmp_path}/half \\xff.parquet"
     done = run("inspect", path, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "") and "half \\xff.csv" in done.stdout
+    (tmp_path / "rig.toml").write_text(RIG)
+    done = run("identify", path, "--rig", "rig.toml", "--out", "found", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    found = json.loads((tmp_path / "found" / "identify.json").read_text(encoding="utf-8"))
+    assert found["provenance"]["traces"][0]["file"] == f"{tmp_path}/half \\xff.csv"
+    assert "half \\xff.csv" in (tmp_path / "found" / "report.html").read_text(encoding="utf-8")
 
 
 def test_names_are_no_formulas_in_a_spreadsheet():

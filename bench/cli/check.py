@@ -25,6 +25,7 @@ from bench.console import (
 )
 from bench.errors import InputError
 from bench.files import keeping, require_writable, write_text
+from bench.names import in_a_row, readable
 
 if TYPE_CHECKING:
     from bench.check.compare import Checked
@@ -104,7 +105,7 @@ class Asked:
         """What stands above results."""
         if self.simulated is not None:  # all of which are named model.toml
             return f"{self.simulated} against {self.baseline}"
-        return f"{', '.join(path.name for path in self.traces)} against {self.baseline.name}"
+        return f"{in_a_row(self.traces)} against {readable(self.baseline.name)}"
 
     @property
     def axis(self) -> Rig | None:
@@ -123,7 +124,7 @@ class Asked:
         axis = self.axis
         assert axis is not None
         assert self.rig is not None
-        with progress(f"checking {', '.join(trace.name for trace in self.traces)}") as done:
+        with progress(f"checking {in_a_row(self.traces)}") as done:
             observed = observe([read(trace, axis.trace) for trace in self.traces], axis, names, done)
         basis = provenance(self.rig, self.traces, {"names": names, "axis": self.axis_name})
         return replace(observed, state=replace(observed.state, provenance=basis))

@@ -20,6 +20,7 @@ from bench.console import (
     told_in_json,
     write_json,
 )
+from bench.names import in_a_row
 
 
 def diagnose(
@@ -49,7 +50,7 @@ def diagnose(
     axis, read = of.rig, of.read
     excluded = frozenset(named(name, "--without").name for name in without or [])
     other = read(holdout) if holdout else None
-    names = ", ".join(trace.name for trace in traces)
+    names = in_a_row(traces)
     with told_in_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
         recordings = [read(trace) for trace in traces]
         found = run_diagnosis(recordings, axis, other, excluded, done)

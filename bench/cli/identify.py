@@ -24,6 +24,7 @@ from bench.console import (
     write_json,
 )
 from bench.errors import InputError
+from bench.names import in_a_row
 
 if TYPE_CHECKING:
     from bench.cli.robot import Subject
@@ -44,9 +45,7 @@ def identify(
     rig: BesideRigOption = None,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for figures and JSON.")] = None,
-    estimator: Annotated[
-        Estimator, typer.Option("--estimator", help="lab: as the course does.")
-    ] = Estimator.REGRESSION,
+    estimator: Annotated[Estimator, typer.Option("--estimator", help="lab: as in courses.")] = Estimator.REGRESSION,
     refine: Annotated[bool, typer.Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
     offset: Annotated[bool, typer.Option("--offset", help="Fit a constant torque (force) too.")] = False,
     cutoff: Annotated[
@@ -86,7 +85,7 @@ def identify(
     if json is not None:
         write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):
-        _tell(estimate, refinement, axis, ", ".join(trace.name for trace in traces))
+        _tell(estimate, refinement, axis, in_a_row(traces))
         tell_files(files)
     tell_warnings([*estimate.warnings, *spoken(estimate.checks)])
 

@@ -10,7 +10,7 @@ import typer
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
 from bench.console import AxisOption, ReportOption, tell_files, tell_warnings
 from bench.files import read_text, write_text
-from bench.names import plain
+from bench.names import plain, readable
 
 
 def replay(
@@ -35,8 +35,10 @@ def replay(
         from bench.report.page.folder import write_html
         from bench.report.pages.replay import replay_page
 
-        file = File(name=model.name, about="the model", media="application/toml", content=read_text(model, "a model"))
-        write_html(report, replay_page(replayed, f"{model.name} along {trace.name}", [file]))
+        file = File(
+            name=readable(model.name), about="the model", media="application/toml", content=read_text(model, "a model")
+        )
+        write_html(report, replay_page(replayed, f"{readable(model.name)} along {readable(trace.name)}", [file]))
     typer.echo(plain(replayed.says))
     tell_files([path for path in (out, report) if path is not None])
     tell_warnings(replayed.warnings)

@@ -11,6 +11,7 @@ from bench.axis_kind import MISALIGNMENT
 from bench.checks.gate import gate
 from bench.files import held, write_text
 from bench.identify.estimate import Estimate
+from bench.names import in_a_row, readable
 from bench.report.estimate import estimate_json
 from bench.report.figures import save
 from bench.report.identification_figure import identification_figure
@@ -54,13 +55,13 @@ def write_identification(
     """
     figures, text, motions = [], out / "identify.json", []
     json = estimate_json(estimate, refinement, None, provenance) + "\n"
-    names = ", ".join(trace.name for trace in traces)
+    names = in_a_row(traces)
     with held(out):
         for number, trace in enumerate(traces, 1):
             moved, along = _motion(trace, rig, estimate, read), _along(estimate, number - 1, rig)
-            motions.append((trace.name, moved, along))
+            motions.append((readable(trace.name), moved, along))
             figures.append(out / f"identification{'' if number == 1 else f'-{number}'}{ending}")
-            save(identification_figure(moved, along, rig.axis_kind, f"{rig.name}: {trace.name}"), figures[-1])
+            save(identification_figure(moved, along, rig.axis_kind, f"{rig.name}: {readable(trace.name)}"), figures[-1])
         write_text(text, json)
         file = File(name=text.name, about="all of it as numbers", media="application/json", content=json)
         page = identification_page(f"{rig.name}: {names}", rig.axis_kind, estimate, motions, [file], provenance)

@@ -8,6 +8,7 @@ from typing import Any
 
 from bench import __version__
 from bench.files import sha256
+from bench.names import readable
 
 
 def provenance(
@@ -32,12 +33,12 @@ def provenance(
     found = {
         "version": __version__,
         "rig_sha256": None if rig is None else sha256(rig),
-        "traces": [{"file": str(trace), "sha256": sha256(trace)} for trace in traces],
+        "traces": [{"file": readable(trace), "sha256": sha256(trace)} for trace in traces],
         "options": dict(options),
     }
     beside = {"holdout": holdout, "mjcf": mjcf}
     given = {key: path for key, path in beside.items() if path is not None}
-    return found | {key: {"file": str(path), "sha256": sha256(path)} for key, path in given.items()}
+    return found | {key: {"file": readable(path), "sha256": sha256(path)} for key, path in given.items()}
 
 
 def without_files(options: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,0 +1,72 @@
+"""Energy of the simulated axis under axes, drives and frictions that are drawn: it closes, and friction only takes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bench.effects.catalogue import catalogue
+from bench.effects.kinds import Friction
+from bench.effects.present import Present
+from bench.plant.drive import Cascade
+from bench.plant.model import AxisParameters
+from bench.plant.plant import Plant
+from bench.plant.run import run
+from tests.effects.axes import VALUES, WINDING, Reversals
+
+PERIOD = 125e-6
+MOTION = Reversals(0.4).references(PERIOD)
+#: Frictions of the catalogue that give nothing back; bristles return what they stored and have a test of their own.
+TAKING = [n for n, e in catalogue().items() if isinstance(e, Friction) and "bristle_stiffness" not in VALUES[n]]
+
+
+def drawn(seed, effects=()):
+    """A random axis under a random drive that follows the motion, in torque without limit."""
+    rng = np.random.default_rng(seed)
+    inertia, viscous, coulomb = 10.0 ** rng.uniform((-3.3, -3.5, -1.6), (-2.3, -2.5, -0.8))
+    gain = inertia * rng.uniform(50.0, 200.0)
+    cascade = Cascade(rng.uniform(5.0, 40.0), gain, gain * rng.uniform(5.0, 20.0), inertia, 1e3, PERIOD)
+    axis = AxisParameters(inertia, viscous, coulomb, motor_inertia=inertia * rng.uniform(0.1, 0.5))
+    return Plant(axis, cascade, PERIOD, effects=tuple(effects), winding=WINDING)
+
+
+def disturbed(name, seed):
+    """The effect with values of half to all of those that suit an axis."""
+    rng = np.random.default_rng(seed)
+    return Present.of(name, {key: value * rng.uniform(0.5, 1.0) for key, value in VALUES[name].items()})
+
+
+def taken(states, inertia):
+    """Energy that left the motion by each step's end - J (ticks - 1, axes): the motor's work less kinetic energy."""
+    middle = (states.velocity[1:] + states.velocity[:-1]) / 2.0
+    work = np.cumsum(states.torque[:-1] * middle, axis=0) * PERIOD
+    return work - inertia * (states.velocity[1:] ** 2 - states.velocity[0] ** 2) / 2.0, work
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_motors_work_is_kinetic_energy_and_heat(seed):
+    plant = drawn(seed)
+    axis, states = plant.parameters, run([plant], [MOTION])
+    left, work = taken(states, axis.inertia)
+    middle = (states.velocity[1:] + states.velocity[:-1]) / 2.0
+    heat = axis.viscous_friction_coefficient * middle**2 + axis.coulomb_friction * np.abs(middle)
+    off = np.abs(left - np.cumsum(heat, axis=0) * PERIOD).max() / np.abs(work).max()
+    print(f"\nenergy closes to {off:.1e} of the work; heat {left[-1, 0]:.3g} J")
+    assert off < 1e-6
+    assert np.abs(states.velocity).max() > 10.0
+
+
+@pytest.mark.parametrize("name", TAKING)
+def test_friction_only_takes(name):
+    """Under the drive too, which moves the axis and brakes it: at no step has the axis more than the motor gave."""
+    plants = [drawn(seed, [disturbed(name, seed)]) for seed in range(4)]
+    inertia = np.array([plant.parameters.inertia for plant in plants])
+    states, bare = (run(each, [MOTION] * 4) for each in (plants, [replace(plant, effects=()) for plant in plants]))
+    left, less = taken(states, inertia)[0], taken(bare, inertia)[0]
+    print(f"\n{name}: takes {left[-1]} J, {less[-1]} J without it")
+    one_way = np.sign(states.velocity[1:-1]) == np.sign(states.velocity[2:])
+    gained = -np.diff(left, axis=0) / left[-1]
+    assert gained[one_way].max() < 1e-12
+    # where it turns within a step, the middle of its ends is not its speed
+    assert gained.max() < 1e-5
+    assert (np.abs(left[-1] / less[-1] - 1.0) > 1e-4).all()
