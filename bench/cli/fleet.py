@@ -32,14 +32,14 @@ def fleet(
     from bench.report.progress import progress
 
     limits = Limits(deadline, memory * 1024**3)
+    basis = {"version": __version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
     with progress(f"evaluating {manifest.name}") as done:
-        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done)
-    text = fleet_json(
-        found, {"version": __version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
-    )
-    write_text(out / "summary.json", text + "\n")
+        found = run_fleet(
+            manifest, out, diagnose, retry, limits, workers, scheduler, done,
+            lambda found: write_text(out / "summary.json", fleet_json(found, basis) + "\n"),
+        )  # fmt: skip
     if json is not None:
-        write_json(json, text)
+        write_json(json, fleet_json(found, basis))
     if json != Path("-"):
         for part in fleet_tables(found):
             console().print(part)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 from enum import StrEnum
 from functools import partial
@@ -60,6 +61,7 @@ def identify(
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.checks.gate import spoken
+    from bench.files import held
     from bench.identify.estimate import RefusedEstimateError
     from bench.report.estimate import SCHEMA, estimate_json
     from bench.report.provenance import provenance
@@ -79,13 +81,14 @@ def identify(
         tell_warnings(refusal.estimate.warnings)
         raise
     files = []
-    if out is not None:
-        from bench.report.identification import write_identification  # matplotlib: 0.35 s
+    with nullcontext() if out is None else held(out):
+        if out is not None:
+            from bench.report.identification import write_identification  # matplotlib: 0.35 s
 
-        parts = of.read if of.robot else None
-        files = write_identification(out, traces, axis, estimate, refinement, basis(), parts, figures.ending)
-    if json is not None:
-        write_json(json, estimate_json(estimate, refinement, None, basis()))
+            parts = of.read if of.robot else None
+            files = write_identification(out, traces, axis, estimate, refinement, basis(), parts, figures.ending)
+        if json is not None:
+            write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):
         _tell(estimate, refinement, axis, ", ".join(trace.name for trace in traces))
         tell_files(files)

@@ -5,8 +5,9 @@
 
 Half of the kills fall anywhere into a command's run, a quarter into its writing by the clock, a quarter exactly before
 one of its steps of writing. After each, every file has to be whole or absent, no input may have changed and no process
-live on; every few kills the command runs to its end, which has to succeed and to leave nothing but its outputs. `--faults`
-are the full disk, the folder that cannot be written to, and two runs with one folder. Whatever is found ends it with 1.
+live on; every few kills the command runs to its end, which has to succeed and to leave nothing but its outputs.
+`--faults` are the full disk, the folder that cannot be written to, and two runs with one folder. Whatever is found is
+printed, and ends it with 1.
 """
 
 import argparse
@@ -35,7 +36,6 @@ def main() -> None:
         kills = asked.kills // len(asked.commands) + (number < asked.kills % len(asked.commands))
         until = time.monotonic() + asked.seconds / len(asked.commands)
         above = Path(tempfile.mkdtemp(prefix="crash-"))
-        above.chmod(0o755)  # for another user who tries to write there
         try:
             found = _faulty(name, above) if asked.faults else _killed(name, kills, until, above)
         finally:

@@ -62,7 +62,8 @@ def make_inputs(folder: Path) -> None:
     (folder / "other.csv").write_text(head + rows.replace("one", "other"))
     (folder / "model.toml").write_text(
         'schema = "bench.model/1"\nkind = "rotary"\n[parameters]\nmoment_of_inertia = "0.0022 kg*m**2"\n'
-        'viscous_friction_coefficient = "8e-4 N*m*s/rad"\ncoulomb_friction_torque = "0.06 N*m"\nload_torque = "0 N*m"\nmotor_moment_of_inertia = "0.0002 kg*m**2"\n'
+        'viscous_friction_coefficient = "8e-4 N*m*s/rad"\ncoulomb_friction_torque = "0.06 N*m"\nload_torque = "0 N*m"\n'
+        'motor_moment_of_inertia = "0.0002 kg*m**2"\n'
     )
     for name, recording in (("recordings", "JLoadWithoutFriction"), ("others", "JLoadAndFriction")):
         (folder / name).mkdir()

@@ -63,19 +63,19 @@ class Trial:
         number = 0
         while self.tally.kills.total() < asked and number < 2 * asked and time.monotonic() < until:
             moment, share = MOMENTS[number % len(MOMENTS)], (number + 1) * GOLDEN % 1.0
-            if self._kill(moment, share):
+            if self.kill(moment, share):
                 self.tally.kills[moment] += 1
             else:
                 self.tally.missed += 1
             self._look(f"{moment} {share:.3f}")
             number += 1
             if number % EACH == 0:
-                self._end(clear=self.command.resumes or number % (2 * EACH) == 0)
-        self._end(clear=False)
+                self.end(clear=self.command.resumes or number % (2 * EACH) == 0)
+        self.end(clear=False)
         return self.tally
 
-    def _kill(self, moment: str, share: float) -> bool:
-        """Whether it was still running."""
+    def kill(self, moment: str, share: float) -> bool:
+        """Kill it at a share of its run, of its writing or of the steps of it; whether it was still running."""
         step = 1 + int(share * self.pace.steps)
         line = self._stepping(step) if moment == "step" else arguments(self.command.line)
         before, process = state(self.out), self._start(line)
@@ -106,7 +106,7 @@ class Trial:
         if self._inputs() != self.inputs:
             self.tally.faults.append(f"killed at {after}: an input has changed")
 
-    def _end(self, clear: bool) -> None:
+    def end(self, clear: bool) -> None:
         """Run it to its end, which has to put everything right."""
         begun = time.monotonic()
         done = finished(self.command.line, self.folder, self.environment)

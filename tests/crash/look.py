@@ -17,13 +17,14 @@ import psutil
 import pyarrow.parquet as pq
 
 #: How files of other kinds end.
-ENDS = {".png": b"IEND\xaeB`\x82", ".pdf": b"%%EOF", ".html": b"</html>", ".csv": b"\n", ".trace": b">"}
+ENDS = {".png": b"IEND\xaeB`\x82", ".pdf": b"%%EOF", ".html": b"</html>", ".csv": b"\n"}
 #: Processes of a command that is gone are gone after this - s.
 GONE = 10.0
 
 
 def _ends(path: Path) -> bool:
-    return path.read_bytes().rstrip(b"\r\n").endswith(ENDS[path.suffix].rstrip(b"\n"))
+    content = path.read_bytes()
+    return content.endswith((ENDS[path.suffix], ENDS[path.suffix] + b"\n"))
 
 
 READS: dict[str, Callable[[Path], object]] = {
