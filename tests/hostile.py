@@ -41,7 +41,7 @@ def csv_of(time, velocity, current, head="time [s],velocity [rad/s],current [A]"
 
 
 def run(*arguments, cwd, deadline=DEADLINE, under=(), **environment):
-    """`bench` as a process of its own, begun by the command line `under` if there is one; its standard error is text whatever bytes it holds."""
+    """`bench` as a process of its own, in the care of the command `under`; its standard error is text in any case."""
     env = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
     return subprocess.run(
         [*under, sys.executable, "-m", "bench", *map(str, arguments)],
