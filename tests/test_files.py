@@ -64,7 +64,10 @@ def test_a_file_beside_an_output_is_no_input_either(folder):
 
 def test_every_path_of_every_command_is_known_as_read_or_written():
     """An output of an unknown name would be taken for an input, and refused."""
-    read = {"trace", "traces", "rig", "holdout", "model", "data", "manifest", "recordings", "submissions", "truth"}
+    read = {
+        "trace", "traces", "rig", "holdout", "model", "data", "manifest", "recordings", "submissions", "truth", "mjcf",
+        "simulated", "profile", "ranges", "folders",
+    }  # fmt: skip
     for command in app.registered_commands:
         assert command.callback is not None
         for name, hint in command.callback.__annotations__.items():
@@ -78,7 +81,8 @@ def test_json_goes_to_a_folder_that_is_there_or_that_out_makes(folder):
     assert not (folder / "new").exists()
     line = ("identify", "run.csv", "--rig", "rig.toml", "--json", "new/found.json", "--out", "new")
     assert run(*line, cwd=folder).returncode == 0
-    assert {path.name for path in (folder / "new").iterdir()} == {"found.json", "identify.json", "identification.png"}
+    made = {"found.json", "identify.json", "identification.png", "report.html", "report.json"}
+    assert {path.name for path in (folder / "new").iterdir()} == made
 
 
 def test_links_are_followed_and_loops_refused(tmp_path):

@@ -23,13 +23,17 @@ from tests.crash.kills import Trial
 from tests.hostile import ROOT
 
 
-def main() -> None:
+def options() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m tests.crash")
     parser.add_argument("--kills", type=int, default=300, help="of all commands together")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="after which no further kill begins")
     parser.add_argument("--faults", action="store_true", help="in the place of kills")
     parser.add_argument("--commands", nargs="*", default=list(COMMANDS), choices=list(COMMANDS))
-    asked = parser.parse_args()
+    return parser
+
+
+def main() -> None:
+    asked = options().parse_args()
     os.environ["PYTHONPATH"] = str(ROOT)
     faults = []
     for number, name in enumerate(asked.commands):

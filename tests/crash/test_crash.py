@@ -1,9 +1,12 @@
 """A few kills of one command, and what the long run (`python -m tests.crash`) judges by."""
 
 import gzip
+import re
+import shlex
 
 import pytest
 
+from tests.crash.__main__ import options
 from tests.crash.commands import COMMANDS
 from tests.crash.faults import read_only, two_writers
 from tests.crash.kills import EACH, Trial
@@ -38,6 +41,16 @@ def test_a_kill_just_before_the_output_takes_its_name_leaves_it_under_way_and_th
 def test_a_folder_closed_by_permissions_is_told_in_one_line(folder):
     told = read_only(COMMANDS["export"], folder)
     assert (told.runs, told.faults) == (1, [])
+
+
+def test_the_page_has_commands_that_there_are():
+    page = (ROOT / "docs" / "robustness.md").read_text(encoding="utf-8")
+    lines = re.findall(r"^python -m tests\.crash(.*)$", page, re.MULTILINE)
+    assert lines
+    for line in lines:
+        options().parse_args(shlex.split(line))
+    for name in COMMANDS:
+        assert f"| `{name}` |" in page
 
 
 @pytest.mark.slow
