@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import secrets
 import stat
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from io import BufferedReader
 from pathlib import Path
@@ -19,6 +20,8 @@ from bench.errors import InputError
 _INPUTS: ContextVar[frozenset[tuple[int, int]]] = ContextVar("inputs", default=frozenset())
 #: The same of each folder that it writes to alone.
 _HELD: ContextVar[frozenset[tuple[int, int]]] = ContextVar("held", default=frozenset())
+#: Names of files that are being written.
+_UNDER_WAY = re.compile(r"\.bench-[0-9a-f]{12}-.*", re.DOTALL)
 
 
 def read_bytes(path: str | Path, kind: str) -> bytes:
@@ -123,7 +126,7 @@ def whole(path: str | Path, make_folder: bool = True) -> Iterator[Path]:
     """A temporary path beside `path` that takes its name once the block has ended well, and is gone otherwise.
 
     The file is on the disk before it takes the name. Links are followed; permissions are those of the file that is
-    replaced, else what the umask leaves.
+    replaced, else what the umask leaves. What a run that was killed has left beside `path` is removed.
 
     Args:
         path: of the output.
@@ -133,31 +136,58 @@ def whole(path: str | Path, make_folder: bool = True) -> Iterator[Path]:
         InputError: the place cannot be written to, or is an input.
     """
     target = require_writable(path)
-    temporary = target.with_name(f".{target.stem[:32]}-{secrets.token_hex(6)}{target.suffix[-16:]}")
     try:
         if make_folder:
             target.parent.mkdir(parents=True, exist_ok=True)
-        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))  # less the umask
-        if target.exists():
-            temporary.chmod(stat.S_IMODE(target.stat().st_mode))
-        yield temporary
-        _flush(temporary)
-        temporary.replace(target)
-        _flush(target.parent)
+        _remove_left(target.parent)
+        temporary, handle = _begun(target)
+        try:
+            if target.exists():
+                temporary.chmod(stat.S_IMODE(target.stat().st_mode))
+            yield temporary
+            _flush(temporary)
+            temporary.replace(target)
+            _flush(target.parent)
+        finally:
+            os.close(handle)
+            temporary.unlink(missing_ok=True)
     except OSError as error:
         raise InputError(
             path, f"cannot be written ({reason(error)})", "name a file in a folder that can be written to"
         ) from error
-    finally:
-        _remove(temporary)
 
 
-def _remove(temporary: Path) -> None:
-    try:
-        temporary.unlink(missing_ok=True)
-    except OSError:
-        if temporary.exists():  # a name that cannot be made cannot be removed either
-            raise
+def _begun(target: Path) -> tuple[Path, int]:
+    """A new file beside an output, and a handle that locks it for as long as this process writes to it."""
+    while True:
+        name = f".bench-{secrets.token_hex(6)}-{target.stem[:32]}{target.suffix[-16:]}"
+        temporary = target.with_name(name)
+        handle = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)  # less the umask
+        if os.name == "posix":
+            import fcntl
+
+            with suppress(OSError):  # a file system without locks, where `_remove_left` gets none either
+                fcntl.flock(handle, fcntl.LOCK_EX)
+        if os.fstat(handle).st_nlink:  # none: another process took it for left over before it was locked
+            return temporary, handle
+        os.close(handle)
+
+
+def _remove_left(folder: Path) -> None:
+    """Remove files of runs that were killed while they wrote: those that no process has locked."""
+    if os.name != "posix":
+        return
+    import fcntl
+
+    for name in filter(_UNDER_WAY.fullmatch, os.listdir(folder)):  # noqa: PTH208 (a name is enough)
+        left = folder / name
+        with suppress(OSError):  # locked, or not ours to remove: it does no harm
+            handle = os.open(left, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                left.unlink()
+            finally:
+                os.close(handle)
 
 
 def _flush(path: Path) -> None:

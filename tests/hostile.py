@@ -1,6 +1,7 @@
 """The command line against hostile input: a run with its limits, and what every run owes."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,17 @@ ROOT = Path(__file__).resolve().parents[1]
 RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nrotor_inertia = "2 kg*cm**2"\n'
 #: A run ends within this, on a machine that does much else - s; what hangs does not end at all.
 DEADLINE = 120.0
+
+
+#: Rights of root that permissions do not bind.
+_OVERRIDES = "-dac_override,-dac_read_search"
+
+
+def bound_by_permissions() -> list[str] | None:
+    """What a command line begins with so that permissions bind it, whoever runs the tests; None where nothing does."""
+    if os.geteuid():
+        return []
+    return ["setpriv", "--bounding-set", _OVERRIDES, "--inh-caps", _OVERRIDES] if shutil.which("setpriv") else None
 
 
 def columns(samples=3000):
@@ -28,11 +40,11 @@ def csv_of(time, velocity, current, head="time [s],velocity [rad/s],current [A]"
     return "\n".join([head, *(f"{t!r},{w!r},{i!r}" for t, w, i in rows)]) + "\n"
 
 
-def run(*arguments, cwd, deadline=DEADLINE, **environment):
-    """`bench` as a process of its own; its standard error is text whatever bytes it holds."""
+def run(*arguments, cwd, deadline=DEADLINE, under=(), **environment):
+    """`bench` as a process of its own, in the care of the command `under`; its standard error is text in any case."""
     env = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
     return subprocess.run(
-        [sys.executable, "-m", "bench", *map(str, arguments)],
+        [*under, sys.executable, "-m", "bench", *map(str, arguments)],
         cwd=cwd, env=env, capture_output=True, text=True, errors="replace", timeout=deadline, check=False,
     )  # fmt: skip
 

@@ -1,9 +1,11 @@
 """Outputs are whole, never an input, and go where they were sent; inputs are read whatever is wrong with them."""
 
 import os
+import signal
 import stat
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -133,6 +135,36 @@ def test_a_failure_leaves_what_was_there_and_nothing_else(tmp_path):
         with open("/dev/full", "w") as full:  # noqa: PTH123
             full.write("x" * 100)
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("x", "old")]
+
+
+KILLED = """
+import os, signal, sys
+from bench.files import whole
+with whole("x") as temporary:
+    temporary.write_text("half")
+    print(temporary, flush=True)
+    sys.stdin.read()
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_what_a_killed_run_has_left_goes_with_the_next_output_and_what_is_being_written_stays(tmp_path):
+    write_text(tmp_path / "x", "old")
+    pipe = subprocess.PIPE
+    with subprocess.Popen([sys.executable, "-c", KILLED], cwd=tmp_path, stdin=pipe, stdout=pipe, text=True) as writer:
+        assert writer.stdout is not None
+        temporary = tmp_path / Path(writer.stdout.readline().strip()).name
+        write_text(tmp_path / "y", "beside it")
+        assert temporary.read_text() == "half"
+        writer.communicate()
+    assert writer.returncode == -signal.SIGKILL
+    assert {path.name for path in tmp_path.iterdir()} == {"x", "y", temporary.name}
+    (tmp_path / ".bench-of-mine").touch()
+    (tmp_path / ".bench-0123456789ab-link").symlink_to("y")
+    write_text(tmp_path / "y", "new")
+    here = {path.name for path in tmp_path.iterdir()}
+    assert here == {"x", "y", ".bench-of-mine", ".bench-0123456789ab-link"}
+    assert (tmp_path / "x").read_text() == "old"
 
 
 def test_inputs_are_kept_only_while_their_command_runs(tmp_path):

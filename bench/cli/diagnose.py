@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
 
@@ -42,6 +43,7 @@ def diagnose(
     from bench.checks.gate import spoken
     from bench.diagnose.diagnosis import diagnose as run_diagnosis
     from bench.effects.present import named
+    from bench.files import held
     from bench.report.diagnosis import SCHEMA, diagnosis_json, diagnosis_table, write_diagnosis
     from bench.report.progress import progress
     from bench.report.provenance import provenance
@@ -56,10 +58,13 @@ def diagnose(
         found = run_diagnosis(recordings, axis, other, excluded, done)
     options = {"without": sorted(excluded)} | ({"joint": joint, "at": at or []} if of.robot else {})
     basis = provenance(rig, traces, options, holdout, mjcf)
-    files = write_diagnosis(out, found, f"{axis.name}: {names}", basis, figures.ending) if out is not None else []
-    if json is not None:
-        write_json(json, diagnosis_json(found, basis))
+    title, files = f"{axis.name}: {names}", []
+    with nullcontext() if out is None else held(out):
+        if out is not None:
+            files = write_diagnosis(out, found, title, basis, figures.ending)
+        if json is not None:
+            write_json(json, diagnosis_json(found, basis))
     if json != Path("-"):
-        console().print(diagnosis_table(found, f"{axis.name}: {names}"))
+        console().print(diagnosis_table(found, title))
         tell_files(files)
     tell_warnings([*found.warnings, *spoken(found.checks)])

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from bench import __version__
 from bench.console import JsonOption, console, tell_files, write_json
 from bench.errors import UndeterminedError
+
+if TYPE_CHECKING:
+    from bench.fleet.fleet import Fleet
 
 SUMMARY = "summary.json"
 
@@ -36,15 +39,18 @@ def fleet(
     from bench.report.progress import progress
 
     limits = Limits(deadline, memory * 1024**3)
-    with progress(f"evaluating {manifest.name}") as done:
-        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done)
     basis = {"version": __version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
-    text, page = fleet_json(found, basis), out / "fleet.html"
-    with keeping(found.manifest.inputs):
-        write_text(out / SUMMARY, text + "\n")
-        write_html(page, fleet_page(found, SUMMARY, basis))
+    page = out / "fleet.html"
+
+    def tell(found: Fleet) -> None:
+        with keeping(found.manifest.inputs):
+            write_text(out / SUMMARY, fleet_json(found, basis) + "\n")
+            write_html(page, fleet_page(found, SUMMARY, basis))
+
+    with progress(f"evaluating {manifest.name}") as done:
+        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, tell)
     if json is not None:
-        write_json(json, text)
+        write_json(json, fleet_json(found, basis))
     if json != Path("-"):
         for part in fleet_tables(found):
             console().print(part)

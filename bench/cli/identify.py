@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     from bench.identify.estimate import Estimate
     from bench.identify.refine import Refinement
     from bench.rig.rig import Rig
+    from bench.trace.trace import Trace
 
 
 class Estimator(StrEnum):
@@ -59,6 +62,7 @@ def identify(
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.checks.gate import spoken
+    from bench.files import held
     from bench.identify.estimate import RefusedEstimateError
     from bench.report.estimate import SCHEMA, estimate_json
     from bench.report.provenance import provenance
@@ -77,17 +81,32 @@ def identify(
             write_json(json, estimate_json(refusal.estimate, None, str(refusal), basis()))
         tell_warnings(refusal.estimate.warnings)
         raise
-    files = []
-    if out is not None:
-        from bench.report.identification import write_identification  # matplotlib: 0.35 s
-
-        files = write_identification(out, traces, axis, estimate, refinement, basis(), of.whole, figures.ending)
-    if json is not None:
-        write_json(json, estimate_json(estimate, refinement, None, basis()))
+    with nullcontext() if out is None else held(out):
+        files = _write(out, traces, axis, estimate, refinement, basis(), of.whole, figures.ending)
+        if json is not None:
+            write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):
         _tell(estimate, refinement, axis, in_a_row(traces))
         tell_files(files)
     tell_warnings([*estimate.warnings, *spoken(estimate.checks)])
+
+
+def _write(
+    out: Path | None,
+    traces: list[Path],
+    axis: Rig,
+    estimate: Estimate,
+    refinement: Refinement | None,
+    basis: dict[str, Any],
+    read: Callable[[Path], Trace] | None,
+    ending: str,
+) -> list[Path]:
+    """Figures, page and JSON into a folder, if one is asked for."""
+    if out is None:
+        return []
+    from bench.report.identification import write_identification  # matplotlib: 0.35 s
+
+    return write_identification(out, traces, axis, estimate, refinement, basis, read, ending)
 
 
 def _tell(estimate: Estimate, refinement: Refinement | None, axis: Rig, names: str) -> None:

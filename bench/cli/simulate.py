@@ -22,6 +22,7 @@ def simulate(
 ) -> None:
     """Simulate the axis of a rig in MuJoCo; write its trace and, beside it, the truth."""
     from bench.effects.present import parse_effect
+    from bench.files import held
     from bench.plant.simulate import simulate as run_simulation
     from bench.plant.truth import write_truth
     from bench.report.progress import progress
@@ -34,5 +35,7 @@ def simulate(
     with progress(f"simulating {axis.name}") as done:
         present = [parse_effect(text, axis.axis_kind) for text in effect or ()]
         simulated = run_simulation(axis, profile, seed, progress=done, effects=present)
-    write(simulated.trace, out)
-    tell_files([out, write_truth(out, simulated.truth)])
+    with held(out.parent):  # a trace and its own truth, not that of a run beside this one
+        write(simulated.trace, out)
+        truth = write_truth(out, simulated.truth)
+    tell_files([out, truth])

@@ -47,6 +47,7 @@ def fleet(
     workers: int | None = None,
     scheduler: str | None = None,
     progress: Callable[[float], None] = lambda share: None,
+    tell: Callable[[Fleet], None] = lambda found: None,
 ) -> Fleet:
     """Evaluate what has no result yet, and write the table of all.
 
@@ -57,6 +58,7 @@ def fleet(
         retry: what failed or timed out before is done again.
         limits, workers, scheduler: as `bench.jobs.each.each` has them.
         progress: called with the share done.
+        tell: called with what was found while no other run writes to the folder.
 
     Raises:
         InputError: a bad manifest, a folder that cannot be written to, or no scheduler at the address.
@@ -69,12 +71,14 @@ def fleet(
         store = Store(out / "results")
         missing = _missing(store, planned, retry)
         keys, tasks = list(missing), list(missing.values())
-        for count, (place, found) in enumerate(each(evaluate, tasks, limits, workers, scheduler), 1):
-            store.put(keys[place], _plain(found))
+        for count, (place, result) in enumerate(each(evaluate, tasks, limits, workers, scheduler), 1):
+            store.put(keys[place], _plain(result))
             progress(PLANNING + (1.0 - PLANNING) * count / len(tasks))
         results = [one.refusal or store.get(one.key) or {} for one in planned]
         write_table(out / TABLE, tabulate(manifest, planned, results))
-    return Fleet(manifest, summarise(manifest, planned, results), len(tasks))
+        found = Fleet(manifest, summarise(manifest, planned, results), len(tasks))
+        tell(found)
+    return found
 
 
 def _missing(store: Store, planned: Sequence[Planned], retry: bool) -> dict[str, Task]:

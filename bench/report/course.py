@@ -9,6 +9,7 @@ from pathlib import Path
 from rich import box
 from rich.table import Table
 
+from bench.files import held
 from bench.lab.course import RECORDED, course
 from bench.lab.cover import Cover
 from bench.lab.recordings import Recordings
@@ -44,10 +45,12 @@ def report_course(data: Path | None, out: Path, progress: Callable[[float], None
     """
     recordings, cover = Recordings.in_folder(data), Cover.in_folder(data)
     results = course(recordings, lambda share: progress(0.7 * share))
-    files = write_lab_report(
-        out, results, _about(recordings, results), lambda share: progress(0.7 + 0.3 * share), cover, recordings.rig.name
-    )
-    sources = write_sources(out / "sources", recordings, results)
+    about = _about(recordings, results)
+    with held(out):
+        files = write_lab_report(
+            out, results, about, lambda share: progress(0.7 + 0.3 * share), cover, recordings.rig.name
+        )
+        sources = write_sources(out / "sources", recordings, results)
     return CourseReport(results, [*sources, *files])
 
 

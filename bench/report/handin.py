@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -56,7 +55,7 @@ def write_sources(folder: Path, recordings: Recordings, results: Results) -> lis
         _write_table(folder / "recordings" / "flights.csv", "flight,y [m],z [m]", rows)
     write_text(folder / "values.json", _values(recordings, done, periods))
     for path in (*scripts, *(SCRIPTS / f"{name}.py" for name in SHARED)):
-        shutil.copy(path, folder / path.name)
+        write_text(folder / path.name, path.read_text(encoding="utf-8"))
     return [folder]
 
 

@@ -1,129 +1,78 @@
 """Kill commands at moments spread evenly over their run and over their writing, and look at what they leave.
 
     python -m tests.crash --kills 300
+    python -m tests.crash --faults
 
-Each command runs once to its end, which tells how long it takes, when it begins to write, and what. Then it is killed
-(SIGKILL: no cleaning up) into folders that hold the outputs of an earlier run: every file there has to be whole, the
-earlier one or the new one.
+Half of the kills fall anywhere into a command's run, a quarter into its writing by the clock, a quarter exactly before
+one of its steps of writing. After each, every file has to be whole or absent, no input may have changed and no process
+live on; every few kills the command runs to its end, which has to succeed and to leave nothing but its outputs.
+`--faults` are the full disk, the folder that cannot be written to, and two runs with one folder. Whatever is found is
+printed, and ends it with 1.
 """
 
 import argparse
-import gzip
-import hashlib
-import json
+import os
 import shutil
-import subprocess
-import sys
 import tempfile
 import time
-import tomllib
 from pathlib import Path
-from xml.etree import ElementTree
 
-from tests.hostile import RIG, ROOT, columns, csv_of
-
-#: Commands, `{out}` being the folder they write to.
-COMMANDS = {
-    "demo": "demo --out {out}",
-    "identify": "identify run.csv --rig rig.toml --out {out} --json {out}/found.json",
-    "simulate": "simulate simulated.toml --out {out}/run.csv.gz",
-    "diagnose": "diagnose run.csv --rig rig.toml --out {out}",
-    "lab": "lab --out {out}",
-}
+from tests.crash.commands import COMMANDS
+from tests.crash.faults import FAULTS
+from tests.crash.kills import Trial
+from tests.hostile import ROOT
 
 
-def whole(path: Path) -> bool:
-    """Whether a file reads to its end."""
-    content = path.read_bytes()
-    if path.suffix == ".gz":
-        return gzip.decompress(content).endswith(b"\n")
-    if path.suffix == ".json":
-        return bool(json.loads(content))
-    if path.suffix == ".toml":
-        return bool(tomllib.loads(content.decode()))
-    if path.suffix == ".xml":
-        return ElementTree.fromstring(content) is not None
-    ends = {".png": b"IEND\xaeB`\x82", ".pdf": b"%%EOF\n", ".html": b"</html>", ".csv": b"\n"}
-    return content.rstrip(b"\n").endswith(ends[path.suffix].rstrip(b"\n"))
-
-
-def visible(folder: Path) -> list[Path]:
-    return [path for path in folder.rglob("*") if path.is_file() and not path.name.startswith(".")]
-
-
-def start(line: str, folder: Path) -> subprocess.Popen:
-    arguments = [sys.executable, "-m", "bench", *line.split()]
-    silent = subprocess.DEVNULL
-    return subprocess.Popen(arguments, cwd=folder, env={"PYTHONPATH": str(ROOT)}, stdout=silent, stderr=silent)
-
-
-def timed(line: str, folder: Path) -> tuple[float, float]:
-    """How long a command takes, and when it made its first file - s."""
-    begun, first, process = time.monotonic(), None, start(line, folder)
-    out = folder / "out"
-    while process.poll() is None:
-        if first is None and out.exists() and any(out.iterdir()):
-            first = time.monotonic() - begun
-        time.sleep(0.005)
-    if process.returncode:
-        raise SystemExit(f"bench {line} failed with {process.returncode}")
-    lasted = time.monotonic() - begun
-    return lasted, first if first is not None else lasted
-
-
-def killed(line: str, folder: Path, after: float) -> bool:
-    """Kill a command so long after its start - s; whether it was still running."""
-    process = start(line, folder)
-    try:
-        process.wait(after)
-        return False
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
-        return True
-
-
-def tried(name: str, kills: int, folder: Path) -> tuple[int, int, list[str]]:
-    """Kills that hit a command, files left by them, and those that are no whole file."""
-    line = COMMANDS[name].format(out="out")
-    (folder / "out").mkdir()
-    lasted, first = timed(line, folder)
-    hits, files, broken = 0, 0, []
-    for k in range(kills):
-        over_all = k % 2 == 0  # the other half falls into the writing
-        share = (k + 0.5) / kills
-        hits += killed(line, folder, share * lasted if over_all else first + share * (lasted - first))
-        for path in visible(folder / "out"):
-            files += 1
-            try:
-                good = whole(path)
-            except (ValueError, EOFError, OSError, ElementTree.ParseError):
-                good = False
-            if not good:
-                broken.append(f"{name}: {path.name} {hashlib.sha256(path.read_bytes()).hexdigest()[:8]}")
-    return hits, files, broken
+def options() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m tests.crash")
+    parser.add_argument("--kills", type=int, default=300, help="of all commands together")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="after which no further kill begins")
+    parser.add_argument("--faults", action="store_true", help="in the place of kills")
+    parser.add_argument("--commands", nargs="*", default=list(COMMANDS), choices=list(COMMANDS))
+    return parser
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(prog="python -m tests.crash")
-    parser.add_argument("--kills", type=int, default=300)
-    parser.add_argument("--commands", nargs="*", default=list(COMMANDS), choices=list(COMMANDS))
-    asked = parser.parse_args()
-    all_broken = []
+    asked = options().parse_args()
+    os.environ["PYTHONPATH"] = str(ROOT)
+    faults = []
     for number, name in enumerate(asked.commands):
-        share = asked.kills // len(asked.commands) + (number < asked.kills % len(asked.commands))
-        folder = Path(tempfile.mkdtemp(prefix="crash-"))
+        kills = asked.kills // len(asked.commands) + (number < asked.kills % len(asked.commands))
+        until = time.monotonic() + asked.seconds / len(asked.commands)
+        above = Path(tempfile.mkdtemp(prefix="crash-"))
         try:
-            (folder / "rig.toml").write_text(RIG)
-            (folder / "run.csv").write_text(csv_of(*columns()))
-            shutil.copy(ROOT / "data" / "rigs" / "sh30701p.toml", folder / "simulated.toml")
-            hits, files, broken = tried(name, share, folder)
+            found = _faulty(name, above) if asked.faults else _killed(name, kills, until, above)
         finally:
-            shutil.rmtree(folder)
-        print(f"{name}: {share} kills, {hits} while it ran; {files} files looked at, {len(broken)} broken", flush=True)
-        all_broken += broken
-    if all_broken:
-        raise SystemExit("\n".join(all_broken))
+            shutil.rmtree(above)
+        faults += [f"{name}: {one}" for one in found]
+    if faults:
+        raise SystemExit("\n".join(faults))
+
+
+def _killed(name: str, kills: int, until: float, above: Path) -> list[str]:
+    (above / "trial").mkdir()
+    trial = Trial(COMMANDS[name], above / "trial")
+    tally = trial.killed(kills, until)
+    moments = ", ".join(f"{moment} {count}" for moment, count in sorted(tally.kills.items()))
+    strays = sorted({path.name for path in trial.temporary.iterdir()} - {"steps"})
+    print(
+        f"{name}: {tally.kills.total()} kills ({moments}; {tally.missed} came too late), {trial.pace.steps} steps, "
+        f"{tally.looked} files whole or not, {tally.left} under way left, {tally.ended} runs to the end, "
+        f"{len(tally.faults)} faults; in the system's temporary folder: {strays or 'nothing'}",
+        flush=True,
+    )
+    return tally.faults
+
+
+def _faulty(name: str, above: Path) -> list[str]:
+    found = []
+    for fault, tried in FAULTS.items():
+        folder = above / fault.replace(" ", "-")
+        folder.mkdir()
+        told = tried(COMMANDS[name], folder)
+        print(f"{name}: {fault}: {told.runs} runs, {len(told.faults)} faults {told.about}", flush=True)
+        found += [f"{fault}: {one}" for one in told.faults]
+    return found
 
 
 if __name__ == "__main__":
