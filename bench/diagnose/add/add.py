@@ -143,9 +143,10 @@ def rejection(trial: Trial) -> tuple[int, str] | None:
         less = trial.without[index]
         if judged.occasional(index) and (not held_out.recorded.events or held_out.rows != RECORDING):
             continue
-        torque = tuple(each.balance(held_out.recorded.events).gap(held_out.judge) for each in (less, judged))
-        if torque[1] > torque[0]:
-            return index, _grows("torque", torque, judged.rig.effort_unit, held_out)
+        if held_out.judge.effort.size:  # none where the axis stands throughout
+            torque = tuple(each.balance(held_out.recorded.events).gap(held_out.judge) for each in (less, judged))
+            if torque[1] > torque[0]:
+                return index, _grows("torque", torque, judged.rig.effort_unit, held_out)
         velocity = trial.gaps.of(less.whole, held_out.recorded), trial.gaps.of(judged.whole, held_out.recorded)
         allowed = float(np.hypot(velocity[0], floor))
         follows = min(velocity) < held_out.recorded.varies
