@@ -9,9 +9,9 @@ from tests.identify.motions import RIG, UNITS, Truth
 COGGING, HARMONIC = 0.03, 6
 
 
-def stopping(rng, truth=Truth(), moving=6.0, resting=4.0, period=1e-3):
+def stopping(rng, moving=6.0, resting=4.0, period=1e-3):
     """Six pushes in one direction, then rest - closed form, with noise of the sensors."""
-    time = period * np.arange(round((moving + resting) / period))
+    truth, time = Truth(), period * np.arange(round((moving + resting) / period), dtype=np.float64)
     w, pushed = 2.0 * np.pi, time < moving
     speed = np.where(pushed, 30.0 * (1.0 - np.cos(w * time)), 0.0)
     position = np.where(pushed, 30.0 * (time - np.sin(w * time) / w), 30.0 * moving)
