@@ -2,8 +2,10 @@
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +14,6 @@ ROOT = Path(__file__).resolve().parents[1]
 RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nrotor_inertia = "2 kg*cm**2"\n'
 #: A run ends within this, on a machine that does much else - s; what hangs does not end at all.
 DEADLINE = 120.0
-
 
 #: Rights of root that permissions do not bind.
 _OVERRIDES = "-dac_override,-dac_read_search"
@@ -40,6 +41,10 @@ def csv_of(time, velocity, current, head="time [s],velocity [rad/s],current [A]"
     return "\n".join([head, *(f"{t!r},{w!r},{i!r}" for t, w, i in rows)]) + "\n"
 
 
+#: The plain axis as a file.
+TABLE = csv_of(*columns())
+
+
 def run(*arguments, cwd, deadline=DEADLINE, under=(), **environment):
     """`bench` as a process of its own, in the care of the command `under`; its standard error is text in any case."""
     env = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
@@ -55,3 +60,19 @@ def assert_one_line(done, *words, status=2):
     assert done.stderr.startswith("bench: ")
     for word in words:
         assert word in done.stderr
+
+
+@contextmanager
+def cpu_seconds(most):
+    """At most so much of this process' time; what would hang is stopped."""
+
+    def stop(*_):
+        raise TimeoutError(f"more than {most} s of CPU")
+
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, most)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)

@@ -24,7 +24,7 @@ def declared(*extras):
 
 
 def pinned(name):
-    lines = (ROOT / "requirements" / name).read_text(encoding="utf-8").splitlines()
+    lines = (ROOT / ".ci" / name).read_text(encoding="utf-8").splitlines()
     found = [Requirement(line) for line in lines if line and not line.startswith("#")]
     assert all(each.url is None for each in found)
     exact = {}

@@ -6,16 +6,19 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from bench.check.allowed import FLOOR, MARGINS, OTHER_MOTION, Allowed
 from bench.check.comparison import CHANGED, RESULTS, SAME, UNDECIDED, Comparison
 from bench.check.conditions import unlike
-from bench.check.difference import Difference, holm
+from bench.check.difference import Difference
 from bench.check.measured import Measured
 from bench.check.names import matched, of_both, of_names
 from bench.check.observe import Observed, Under
 from bench.check.same_rig import differing
 from bench.check.state import GAPS, TORQUE_GAP, VELOCITY_GAP, NamedHere, State
 from bench.effects.catalogue import catalogue
+from bench.statistics import holm
 
 
 @dataclass(frozen=True)
@@ -67,8 +70,8 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     comparisons = [*_of_quantities(baseline, views, allowed, bool(moved)), *_untold(baseline, state), *pairs, *names]
     if rig:
         comparisons = [replace(one, chance=1.0, held_back="the rig is not that of the baseline") for one in comparisons]
-    rejected = holm({one.name: one.chance for one in comparisons}, rate, silent)
-    answered = [one.answered(rejected) for one in comparisons]
+    chances = holm(np.array([one.chance for one in comparisons]), silent)
+    answered = [one.answered(bool(chance <= rate)) for one, chance in zip(comparisons, chances, strict=True)]
     answered.sort(key=lambda one: (RESULTS.index(one.result), one.chance))
     by_name = {one.name: one for one in answered}
     return Checked(

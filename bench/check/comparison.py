@@ -65,9 +65,9 @@ class Comparison:
             return found
         return replace(found, chance=max(least_chance, *(difference.chance(margin) for difference in differences)))
 
-    def answered(self, rejected: frozenset[str]) -> Comparison:
-        """With its result, given those of the family that are rejected."""
-        if self.name in rejected:
+    def answered(self, rejected: bool) -> Comparison:
+        """With its result, given whether the family rejects that it is the same."""
+        if rejected:
             return replace(self, result=CHANGED)
         may = self.differences and not self.held_back and self.effect != "appeared"
         shown = may and all(one.within(self.margin) for one in self.differences)

@@ -13,14 +13,13 @@ Against a margin m three answers are possible, as D's interval lies inside, outs
   Biopharmaceutics 15, 1987, 657-680); that all quantities are the same is shown at 5 % without a correction, as
   each one has to be (R. L. Berger, Technometrics 24, 1982, 295-300).
 - changed: |D| is larger than m; its chance under |true D| <= m is at most `Difference.chance(m)`, and these are held
-  against the family's rate by `holm`.
+  against the family's rate by `bench.statistics.holm`.
 - undecided: neither.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from scipy import special
@@ -99,22 +98,3 @@ def _tail(degrees: float, value: float) -> float:
 def _reach(degrees: float, level: float) -> float:
     share = 0.5 * (1.0 + level)
     return float(special.ndtri(share) if math.isinf(degrees) else special.stdtrit(degrees, share))
-
-
-def holm(chances: Mapping[str, float], rate: float, silent: int = 0) -> frozenset[str]:
-    """Those that are rejected so that one false rejection or more happens at most at a rate, whatever hangs together.
-
-    S. Holm, Scandinavian Journal of Statistics 6, 1979, 65-70.
-
-    Args:
-        chances: of each comparison, were nothing changed.
-        rate: for all of them together.
-        silent: comparisons that were made too and cannot be rejected, as of effects that nobody named.
-    """
-    ordered = sorted(chances, key=lambda name: chances[name])
-    rejected = []
-    for place, name in enumerate(ordered):
-        if not chances[name] <= rate / (len(ordered) + silent - place):
-            break
-        rejected.append(name)
-    return frozenset(rejected)

@@ -14,6 +14,7 @@ from bench.fleet.change import Change, change
 from bench.fleet.manifest import Manifest
 from bench.fleet.plan import Planned
 from bench.fleet.recording import Plain
+from bench.statistics import holm
 
 #: Chance of being told that any axis changed of a fleet in which none did.
 ALARM = 0.01
@@ -74,8 +75,6 @@ def changes(
 ) -> tuple[int, list[Changed]]:
     """How many series could be compared, and the steps that stand out of all of them together, surest first.
 
-    Chances are those of S. Holm, Scandinavian Journal of Statistics 6(2), 1979, 65-70.
-
     Args:
         manifest: of the fleet (n rows).
         planned, results: of its recordings (n,).
@@ -84,14 +83,14 @@ def changes(
     series = _series(manifest, planned, results, order)
     steps = [(one, found) for one in series if (found := change(one.values, one.errors)) is not None]
     files, times = manifest.text("file"), manifest.text("time")
-    told, chance = [], 0.0
-    for place, (one, step) in enumerate(sorted(steps, key=lambda each: each[1].chance)):
-        chance = max(chance, min(1.0, (len(steps) - place) * step.chance))
-        if chance >= ALARM:
-            break
-        first = one.rows[step.place]
-        counts = (step.place, len(one.rows) - step.place)
-        told.append(Changed(one.axis, one.quantity, one.unit, step, times[first], files[first], counts, chance, one))
+    chances = holm(np.array([step.chance for _, step in steps]))
+    told = []
+    for (one, step), chance in sorted(zip(steps, chances.tolist(), strict=True), key=lambda each: each[0][1].chance):
+        if chance < ALARM:
+            first, counts = one.rows[step.place], (step.place, len(one.rows) - step.place)
+            told.append(
+                Changed(one.axis, one.quantity, one.unit, step, times[first], files[first], counts, chance, one)
+            )
     return len(steps), told
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import binomtest
 
 from bench.balance.parameter import Parameter
-from bench.check.difference import ENOUGH, NOT_EQUIVALENT, Difference, holm
+from bench.check.difference import ENOUGH, NOT_EQUIVALENT, Difference
 from bench.check.measured import Measured
 
 
@@ -73,10 +73,3 @@ def test_an_interval_of_small_samples_keeps_its_degrees():
     found = Measured.of(Parameter(1.0, "", 0.1, (1.0 - reach * 0.1, 1.0 + reach * 0.1)))
     assert found.degrees == pytest.approx(4.0, rel=0.01)
     assert math.isinf(Measured.of(Parameter(1.0, "", 0.1, (0.8041, 1.1959))).degrees)
-
-
-def test_holm_rejects_from_the_smallest_until_one_is_not():
-    assert holm({"a": 0.001, "b": 0.02, "c": 0.9}, 0.05) == {"a", "b"}
-    assert holm({"a": 0.02, "b": 0.02, "c": 0.02}, 0.05) == frozenset()
-    assert holm({"a": 0.001}, 0.05, silent=100) == frozenset()
-    assert holm({}, 0.05) == frozenset()

@@ -1,0 +1,114 @@
+"""Names are text, nowhere markup: in terminal, figures, pages, models, spreadsheets and on disk."""
+
+import json
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+from bench.assets import asset
+from bench.console import console
+from bench.files import write_text
+from bench.identify.regression import identify
+from bench.names import cell
+from bench.plant.model_file import StoredModel, load_model, model_toml
+from bench.plant.plant import Plant
+from bench.report.estimate import estimate_table
+from bench.report.figures import save
+from bench.report.identification_figure import identification_figure
+from bench.report.lab import lab_html
+from bench.rig.rig import Rig, load_rig
+from bench.trace.conditioning import condition
+from bench.trace.motion import motion
+from bench.trace.read import read
+from bench.trace.stream import stream
+from bench.trace.trace import Trace
+from bench.trace.write import write
+from tests.hostile import RIG, TABLE, assert_one_line, columns, run
+
+NAMES = [
+    "axis [/b]",
+    "[link=http://x]y[/link]",
+    "[red]x",
+    ":smile: axis",
+    "a$x^$b",
+    "$",
+    r"\frac{",
+    "<script>alert(1)</script>",
+    "=1+1",
+    "a\rb\x01c\x1b]0;title\x07\x1b[31m",
+    "\u202etxt.exe",
+    "half \udcff",
+    "軸 🙂",
+    "\"]]>'",
+]
+
+
+@pytest.fixture(scope="module")
+def identified():
+    trace = Trace.from_arrays(dict(zip(("time [s]", "velocity [rad/s]", "current [A]"), columns(), strict=True)))
+    rig = Rig.of({"name": "x", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A"}})
+    effort, _ = rig.net_effort(trace)
+    return rig, identify(trace, rig), motion(trace, effort, condition(trace, effort, None))
+
+
+@pytest.mark.parametrize("name", NAMES, ids=ascii)
+def test_names_are_text_in_terminal_and_figures(identified, tmp_path, capsys, name):
+    rig, estimate, moved = identified
+    console().print(estimate_table(estimate, name))
+    shown = capsys.readouterr().out
+    for character in "\x1b\x07\x01\r\u202e":
+        assert character not in shown
+    for word in re.findall(r"[\[\]$:<>=/a-z]+", name.split("\x1b")[0]):
+        assert word in shown
+    figure = identification_figure(moved, estimate, rig.axis_kind, name)
+    for ending in ("png", "svg", "pdf"):
+        save(figure, tmp_path / f"x.{ending}")
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if "\udcff" not in name], ids=ascii)
+def test_names_are_text_in_a_model_and_come_back(tmp_path, name):
+    stored = StoredModel(name, Plant.from_rig(load_rig(asset("data", "rigs", "sh30701p.toml"))).model)
+    write_text(tmp_path / "model.toml", model_toml(stored))
+    assert load_model(tmp_path / "model.toml").name == name
+
+
+def test_file_names_that_are_not_utf_8(tmp_path):
+    path = os.fsdecode(os.fsencode(tmp_path) + b"/half \xff.csv")
+    Path(path).write_text(TABLE)
+    assert read(path).origin == f"{tmp_path}/half \\xff.csv"
+    write(read(path), Path(path).with_suffix(".parquet"))
+    assert next(stream(Path(path).with_suffix(".parquet"))).origin == f"{tmp_path}/half \\xff.parquet"
+    done = run("inspect", path, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "") and "half \\xff.csv" in done.stdout
+    (tmp_path / "rig.toml").write_text(RIG)
+    done = run("identify", path, "--rig", "rig.toml", "--out", "found", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    found = json.loads((tmp_path / "found" / "identify.json").read_text(encoding="utf-8"))
+    assert found["provenance"]["traces"][0]["file"] == f"{tmp_path}/half \\xff.csv"
+    assert "half \\xff.csv" in (tmp_path / "found" / "report.html").read_text(encoding="utf-8")
+
+
+def test_names_are_no_formulas_in_a_spreadsheet():
+    for text in ("=1+1", "+cmd|x", "-cmd", "@SUM(1)", "\t=1", "-1+1"):
+        assert cell(text) == f"'{text}"
+    for text in ("a=1", "-1.5e-3", "+2", "-0,5", ""):
+        assert cell(text) == text
+
+
+def test_names_are_text_in_html():
+    page = lab_html([], [f"axis: {name}" for name in NAMES])
+    assert "<script>" not in page and "&lt;script&gt;" in page
+
+
+@pytest.mark.parametrize("name", ["axis [/b]", "a$x^$b\r\x01\x1b[31m"])
+def test_a_run_with_such_names_ends_well(tmp_path, name):
+    """Rig and recording both have it; before, the traceback came after all the work."""
+    (tmp_path / "rig.toml").write_text(RIG.replace('"axis"', json.dumps(name)))
+    file = name.replace("/", "")
+    (tmp_path / f"{file}.csv").write_text(TABLE)
+    done = run("identify", f"{file}.csv", "--rig", "rig.toml", "--out", "found", "--json", "-", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "\x1b" not in run("inspect", f"{file}.csv", cwd=tmp_path).stdout
+    assert_one_line(run("identify", f"{file}.none", "--rig", "rig.toml", cwd=tmp_path), "no such file")

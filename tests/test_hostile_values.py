@@ -1,0 +1,122 @@
+"""Values and tables that nothing physical has are refused in one line, and no nan is ever written."""
+
+import json
+import re
+import sys
+
+import numpy as np
+import pytest
+
+from bench.assets import asset
+from bench.cli import main
+from bench.errors import InputError, UndeterminedError
+from bench.identify.regression import identify
+from bench.plant.model_file import load_model, read_table
+from bench.plant.s_curve import s_curve
+from bench.rig.rig import Rig, load_rig
+from bench.structured import json_text, parse_json
+from bench.trace.stream import stream
+from tests.hostile import columns, cpu_seconds, csv_of
+
+
+def one_sample(values, value):
+    changed = values.copy()
+    changed[1000] = value
+    return changed
+
+
+TIME, VELOCITY, CURRENT = columns()
+IMPOSSIBLE = {
+    "1e200 rad/s": (TIME, one_sample(VELOCITY, 1e200), CURRENT),
+    "1e308 A": (TIME, VELOCITY, one_sample(CURRENT, 1e308)),
+    "-1e155 A": (TIME, VELOCITY, one_sample(CURRENT, -1e155)),
+    "time 1e300": (TIME * 1e300, VELOCITY, CURRENT),
+    "time 1e-300": (TIME * 1e-300, VELOCITY, CURRENT),
+    "time 1e-320": (np.arange(3000) * 1e-320, VELOCITY, CURRENT),
+    "current 1e-200": (TIME, VELOCITY, CURRENT * 1e-200),
+    "velocity 1e200": (TIME, VELOCITY * 1e200, CURRENT),
+}
+
+
+@pytest.mark.parametrize("case", IMPOSSIBLE)
+def test_magnitudes_that_no_axis_has_are_refused(tmp_path, case):
+    (tmp_path / "run.csv").write_text(csv_of(*IMPOSSIBLE[case]))
+    rig = Rig.of({"name": "x", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A"}})
+    with pytest.raises(InputError, match=r"is the unit right|increase|different times"):
+        identify(stream(tmp_path / "run.csv"), rig)
+
+
+@pytest.mark.parametrize("case", IMPOSSIBLE)
+def test_json_never_holds_nan(tmp_path, monkeypatch, case):
+    (tmp_path / "run.csv").write_text(csv_of(*IMPOSSIBLE[case]))
+    monkeypatch.setattr(sys, "argv", ["bench", "inspect", str(tmp_path / "run.csv"), "--json", str(tmp_path / "x")])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert stop.value.code in (0, 1, 2)
+    assert (tmp_path / "x").exists() is (stop.value.code == 0)
+    if stop.value.code == 0:
+        content = json.loads((tmp_path / "x").read_text(), parse_constant=pytest.fail)
+        assert content["schema"]
+
+
+def test_a_result_that_is_no_number_is_refused():
+    for content, place in (({"a": {"b": [1.0, float("nan")]}}, r"a\.b\[1\]"), ({"c": (float("inf"),)}, r"c\[0\]")):
+        with pytest.raises(UndeterminedError, match=place):
+            json_text(content)
+
+
+DEEP = "[" * 5000 + "]" * 5000
+BAD_TOML = {
+    "deep": f"x = {DEEP}",
+    "deep tables": "x = " + "{a = " * 5000 + "1" + "}" * 5000,
+    "digits": f"x = {'1' * 5000}",
+    "null": "x = \0",
+    "latin-1": "name = '\udce9'",
+    "key": "'" * 5000,
+}
+
+
+@pytest.mark.parametrize("case", BAD_TOML)
+@pytest.mark.parametrize("load", [load_rig, load_model, read_table])
+def test_toml_that_is_none(tmp_path, case, load):
+    path = tmp_path / "x.toml"
+    path.write_text(BAD_TOML[case], errors="surrogateescape")
+    with cpu_seconds(4.0), pytest.raises(InputError) as error:
+        load(path)
+    assert str(path) in str(error.value) and "\n" not in str(error.value)
+    for place in (tmp_path, tmp_path / "none", tmp_path / ("x" * 300), "/proc/self/mem"):
+        with pytest.raises(InputError):
+            load(place)
+
+
+def test_json_that_is_none():
+    for text, words in ((DEEP * 40, "too deep"), ("1" * 5000, "number that is none"), ("{", "line 1")):
+        with pytest.raises(InputError, match=words):
+            parse_json("[" * 100_000 if words == "too deep" else text, "x.json")
+
+
+RIG_TEXT = asset("data", "rigs", "sh30701p.toml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("control_period", "250 ns", "drive.control_period.*5 us to 10 s"),
+        ("control_period", "1 ns", "drive.control_period"),
+        ("control_period", "250 ms", "drive: inconsistent.*control_period must be below"),
+        ("control_period", "250 s", "drive.control_period"),
+        ("sample_period", "1 ns", "simulation.sample_period"),
+        ("sample_period", "1e9 s", "simulation.sample_period"),
+        ("position_gain", "1e300 1/s", "control_period must be below"),
+    ],
+)
+def test_periods_in_the_wrong_unit_are_told(tmp_path, key, value, words):
+    path = tmp_path / "rig.toml"
+    path.write_text(re.sub(rf"^{key} = .*", f'{key} = "{value}"', RIG_TEXT, flags=re.MULTILINE))
+    with pytest.raises(InputError, match=words):
+        load_rig(path)
+
+
+def test_motions_that_take_for_ever_are_told():
+    with cpu_seconds(4.0), pytest.raises(InputError, match=r"takes 1e\+12 periods of the drive"):
+        s_curve([1e9], [1.0], 1e-3)
