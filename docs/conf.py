@@ -1,0 +1,37 @@
+"""How the pages are built: `python -m sphinx -W -b html docs docs/_build/html`."""
+
+import logging
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE / "_ext"), str(HERE.parent)]
+
+# before a highlighter of the theme sets logging up to tell everything
+logging.basicConfig(level=logging.ERROR)
+
+from bench import __version__
+
+project = "servobench"
+author = copyright = "the authors of servobench"  # noqa: A001 - as Sphinx calls it
+release = version = __version__
+extensions = ["myst_nb", "docstrings", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "generated", "outside"]
+exclude_patterns = ["_build", "_ext"]
+html_theme = "furo"
+html_title = "servobench"
+html_static_path = ["_static"]
+html_css_files = ["pages.css"]
+html_copy_source = False
+# nothing is fetched when a page is read
+html_math_renderer = "mathml"
+nb_ipywidgets_js = {}
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 3
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+autodoc_member_order = "bysource"
+default_role = "code"
+napoleon_custom_sections = ["Source"]
