@@ -10,13 +10,19 @@ sys.path[:0] = [str(HERE / "_ext"), str(HERE.parent)]
 # before a highlighter of the theme sets logging up to tell everything
 logging.basicConfig(level=logging.ERROR)
 
+from pygments.lexers.special import TextLexer
+from sphinx.highlighting import lexers
+
 from bench import __version__
+
+# a git host colours tables in text; here they stay plain
+lexers["csv"] = TextLexer()
 
 project = "servobench"
 author = copyright = "the authors of servobench"  # noqa: A001 - as Sphinx calls it
 release = version = __version__
 extensions = ["myst_nb", "docstrings", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "generated", "outside"]
-exclude_patterns = ["_build", "_ext"]
+exclude_patterns = ["_build", "_ext", "jupyter_execute"]
 html_theme = "furo"
 html_title = "servobench"
 html_static_path = ["_static"]

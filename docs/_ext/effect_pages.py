@@ -33,7 +33,7 @@ DECLARED = {
     "scales_friction": "It multiplies the level of dry friction, what other effects add to it included.",
 }
 #: Greek letters in equations that are written in ASCII.
-LETTERS = dict(zip(("alpha", "omega", "sigma", "phi", "mu", "tau", "pi"), "αωσφμτπ", strict=True))
+LETTERS: dict[str, str] = dict(zip(("alpha", "omega", "sigma", "phi", "mu", "tau", "pi"), "αωσφμτπ", strict=True))
 #: Gap over noise floor above which something is missing, as the verdict has it.
 SHOWS = 1.12
 #: Share of the squared gap from which another effect is told as a rival.
@@ -177,7 +177,7 @@ def explained(effect: Effect, found: Signature) -> str:
         itself = "it takes none by itself, as it is tried only once others are found"
     near = [(other, share) for other, share in found.shares.items() if other is not effect and share >= NEAR]
     named = [f"{link(o.name) if o.name in catalogue() else escaped(o.summary)} {share:.0%}" for o, share in near[:4]]
-    return f"Of the squared gap of the picture's recording, {words(effect.name)} by itself would take {own}. " + (
+    return f"Of the squared gap of the picture's recording {itself}. " + (
         f"The nearest others: {', '.join(named)}." if named else "No other would take a twentieth."
     )
 
