@@ -24,9 +24,11 @@ release = version = __version__
 extensions = ["myst_nb", "docstrings", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "generated", "outside"]
 exclude_patterns = ["_build", "_ext", "jupyter_execute"]
 html_theme = "furo"
+smartquotes = False
 html_title = "servobench"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
+html_js_files = ["pages.js"]
 html_copy_source = False
 # nothing is fetched when a page is read
 html_math_renderer = "mathml"
@@ -38,6 +40,7 @@ nb_execution_raise_on_error = True
 nb_execution_timeout = 120
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
+autodoc_preserve_defaults = True
 autodoc_member_order = "bysource"
 default_role = "code"
 napoleon_custom_sections = ["Source"]

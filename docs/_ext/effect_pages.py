@@ -18,7 +18,7 @@ from bench.effects.signals import Scope
 from bench.plant.plant import Plant
 from bench.plant.profile_names import NAMES
 from bench.report.effects import acting, bounds, unit_of
-from bench.report.page.numbers import number, words
+from bench.report.page.numbers import number, share, words
 from bench.units import Quantity
 from signature import Signature, rig
 
@@ -170,13 +170,13 @@ def rivals(effect: Effect, found: Signature | None) -> str:
 
 def explained(effect: Effect, found: Signature) -> str:
     """Shares of the gap that it and its nearest rivals would take."""
-    itself = f"{words(effect.name)} by itself would take {found.shares.get(effect, 0.0):.0%}"
+    itself = f"{words(effect.name)} by itself would take {share(found.shares.get(effect, 0.0))}"
     if effect.overrides("detect"):
         itself = "it takes none, as single signals show it rather than the balance"
     elif effect not in found.shares:
         itself = "it takes none by itself, as it is tried only once others are found"
-    near = [(other, share) for other, share in found.shares.items() if other is not effect and share >= NEAR]
-    named = [f"{link(o.name) if o.name in catalogue() else escaped(o.summary)} {share:.0%}" for o, share in near[:4]]
+    near = [(other, part) for other, part in found.shares.items() if other is not effect and part >= NEAR]
+    named = [f"{link(o.name) if o.name in catalogue() else escaped(o.summary)} {share(part)}" for o, part in near[:4]]
     return f"Of the squared gap of the picture's recording {itself}. " + (
         f"The nearest others: {', '.join(named)}." if named else "No other would take a twentieth."
     )
