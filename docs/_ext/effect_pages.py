@@ -156,8 +156,10 @@ def rivals(effect: Effect, found: Signature | None) -> str:
     pairs = [
         ("It is tried in the place of", effect.replaces),
         ("In its place are tried", (name for name, other in others.items() if effect.name in other.replaces)),
-        ("It is not sought beside", effect.not_beside),
-        ("Not sought beside it", (name for name, other in others.items() if effect.name in other.not_beside)),
+        (
+            "A recording tells but one of it and",
+            effect.not_beside.union(name for name, other in others.items() if effect.name in other.not_beside),
+        ),
         ("Where some of it is nil, it is", effect.simpler_forms()),
         ("It is a special case of", (n for n, other in others.items() if effect.name in other.simpler_forms())),
     ]

@@ -47,7 +47,8 @@ def test_a_page_opens_without_a_network_and_is_accessible(name, scheme, site, op
     axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs axe (pip install -e '.[dev]')")
     page = opened(site / f"{name}.html", color_scheme=scheme)
     assert page.evaluate("document.documentElement.scrollWidth") <= 1280
-    found = axe.Axe().run(page).response["violations"]
+    # its look into style sheets is for rules that ask of media, and a browser lets no file read another
+    found = axe.Axe().run(page, options={"preload": False}).response["violations"]
     assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == []
 
 
