@@ -62,7 +62,7 @@ def shaped(rows: Rows, hypothesis: Hypothesis, index: int) -> Fit:
 
 
 def together(fitted: Fit) -> Fit:
-    """Search the shapes of all terms at once for the least residual: along a valley between two, one alone stands still.
+    """Search the shapes of all terms at once for the least residual: in a valley between two, one alone stands still.
 
     Gauss and Newton's steps over the shapes, strengths solved for at each (G. H. Golub, V. Pereyra, SIAM Journal on
     Numerical Analysis 10, 1973, 413-432). Shapes without a derivative, as of an instant between two rows, are held.
