@@ -100,6 +100,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
     for index in range(len(hypothesis.terms)):
         table = term_columns(rows, seen, hypothesis, index)
         parts.append(table)
+        bounds |= {len(owners) + place: most for place, most in hypothesis.terms[index].effect.bounded.items()}
         owners += [index] * table.shape[1]
     columns = np.concatenate(parts, axis=1)
     held_by = np.array(owners)
