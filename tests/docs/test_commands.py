@@ -6,24 +6,15 @@ import re
 import shlex
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 import typer
 
 from bench.cli import app
-from tests.docs.pages import DOCS, PAGES, ROOT, bench_commands, commands, spoken
+from tests.docs.pages import PAGES, ROOT, bench_commands, commands, spoken
 from tests.docs.test_run import RUN_HERE, SLOW
 
-#: Pages whose commands another test runs, in the folder and with the recordings that the page speaks of.
-RUN_ELSEWHERE = {
-    "docs/check.md": "tests/check/test_manual.py",
-    "docs/drive.md": "tests/export/test_compensate.py",
-    "docs/export.md": "tests/export/test_in_a_robot.py",
-    "docs/fleet.md": "tests/fleet/test_fleet.py",
-    "docs/recordings.md": "tests/test_recordings_manual.py",
-    "docs/report.md": "tests/report/test_manual.py",
-    "docs/validate.md": "tests/validate/test_command.py",
-}
 #: Words in a page's text that stand for what a reader puts in.
 STANDS_FOR = re.compile(r"[A-Z_]{2,}(\.\w+)?|\.\.\.|…")
 
@@ -94,10 +85,9 @@ def test_tests_that_pages_tell_to_run_are_there(name):
 
 
 def test_every_block_of_commands_is_run():
-    """A page with commands of the bench has a test that runs them; that test reads the page."""
-    shown = {name for name, page in PAGES.items() if bench_commands(page)}
-    assert shown == {*RUN_HERE, *SLOW, *RUN_ELSEWHERE}
-    assert not {*RUN_HERE, *SLOW} & {*RUN_ELSEWHERE}
-    for name, test in RUN_ELSEWHERE.items():
-        text = (ROOT / test).read_text(encoding="utf-8")
-        assert DOCS.joinpath(name.removeprefix("docs/")).name in text, f"{test} does not read {name}"
+    """Here, or by a test of the page's own, which has the folder and the recordings that the page speaks of."""
+    tests = [path for path in (ROOT / "tests").rglob("test_*.py") if path.parent.name != "docs"]
+    reading = "".join(path.read_text(encoding="utf-8") for path in tests)
+    for name, page in PAGES.items():
+        if bench_commands(page) and name not in {*RUN_HERE, *SLOW}:
+            assert f'"{Path(name).name}"' in reading, f"no test runs the commands of {name}: list it in RUN_HERE"

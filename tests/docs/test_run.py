@@ -16,9 +16,9 @@ from tests.diagnose.command import started
 from tests.docs.pages import PAGES, bench_commands
 from tests.export.two_links import MJCF, log, write_log
 
-#: Pages that are run here; the course's takes a minute.
-RUN_HERE = ("README.md", "docs/index.md", "docs/diagnose.md", "docs/effects.md", "docs/notebooks/first_model.md")
-SLOW = ("docs/lab.md",)
+#: Pages that are run here, and those of them that take longer.
+RUN_HERE = ("README.md", "docs/diagnose.md", "docs/effects.md", "docs/notebooks/first_model.md")
+SLOW = ("docs/index.md", "docs/lab.md")
 RECORDINGS = ("recording.csv", "monday.csv", "tuesday.csv", "wednesday.csv", "run1.csv", "run2.csv")
 RIG = asset("data", "rigs", "sh30701p.toml")
 
@@ -40,7 +40,7 @@ def supposed(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize("page", RUN_HERE)
+@pytest.mark.parametrize("page", [*RUN_HERE, pytest.param("docs/index.md", marks=pytest.mark.slow)])
 def test_the_commands_of_a_page_run(page, supposed, tmp_path, monkeypatch):
     """Monte Carlo with two recordings in the place of many; a draft of a rig is completed by its reader."""
     folder = tmp_path / "here"
