@@ -22,7 +22,9 @@ def as_text(app: Sphinx, what: str, name: str, obj: object, options: object, lin
         equation = line.startswith("    ") and not inside
         if equation and made and not made[-1] and not (len(made) > 1 and made[-2].startswith("    ")):
             made += ["::", ""]
-        made.append(line if equation else escaped(line))
+        named = re.match(r"    [\w, ]+: ", line) if inside else None
+        start = named.end() if named else 0  # names of arguments are taken as they stand
+        made.append(line if equation else line[:start] + escaped(line[start:]))
     lines[:] = made
 
 

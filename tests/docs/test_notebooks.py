@@ -11,6 +11,7 @@ assert abs(estimate["moment_of_inertia"].value / truth.inertia - 1.0) < 0.002
 for name, true in (("viscous_friction_coefficient", 1.1e-3), ("coulomb_friction_torque", 0.085)):
     assert abs(estimate[name].value / true - 1.0) < 0.03
 assert found.verdict == "nothing_missing" and after < 1.2 * found.torque.noise_floor
+assert abs(mass[0, 0] / truth.inertia - 1.0) < 0.002
 assert np.nanstd(off) < 0.003 * np.nanstd(moved.velocity)
 """,
     "hidden_effect": """

@@ -137,8 +137,8 @@ def test_docstrings_are_text():
     pytest.importorskip("sphinx", reason="needs Sphinx (pip install -e '.[docs]')")
     import docstrings
 
-    lines = ["Torque - N*m - of `x`, |omega|.", "", "    M = J*alpha", "", "Args:", "    a: N*m."]
+    lines = ["Torque - N*m - of `x`, |omega|.", "", "    M = J*alpha", "", "Args:", "    a_b: N*m."]
     docstrings.as_text(ModuleType("app"), "function", "f", None, None, lines)
     assert lines[0] == r"Torque - N\*m - of ``x``, \|omega\|."
     assert lines[2:5] == ["::", "", "    M = J*alpha"]
-    assert lines[-1] == r"    a: N\*m."
+    assert lines[-1] == r"    a_b: N\*m."
