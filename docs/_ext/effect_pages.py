@@ -144,9 +144,14 @@ def mjcf(present: Present) -> list[str]:
     """Lines of the axis' MJCF that are another with the effect."""
     bare, with_it = (Plant.from_rig(rig(), some).spec().to_xml().splitlines() for some in ([], [present]))
     added = [line[2:].strip() for line in difflib.ndiff(bare, with_it) if line.startswith("+ ")]
-    return [
-        part for line in added for part in textwrap.wrap(line, 84, subsequent_indent="    ", break_long_words=False)
-    ]
+    return [part for line in added for part in broken(line)]
+
+
+def broken(line: str) -> list[str]:
+    """A long line of XML as several, broken between attributes."""
+    kept = re.sub(r'"[^"]*"', lambda value: value[0].replace(" ", "\0"), line)
+    parts = textwrap.wrap(kept, 84, subsequent_indent="    ", break_long_words=False, break_on_hyphens=False)
+    return [part.replace("\0", " ") for part in parts]
 
 
 def rivals(effect: Effect, found: Signature | None) -> str:
