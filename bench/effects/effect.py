@@ -2,8 +2,8 @@
 
     motor torque = J*alpha + K_w*omega + K_0*sgn(omega) + sum over effects of strength_k * column_k(signals, shape)
 
-Strengths enter linearly; shapes (a Stribeck speed, a harmonic, a time constant) do not and are profiled. An effect
-overrides what is not neutral in it; the rest of the bench asks the object. In a simulation: `bench.effects.kinds`.
+Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are profiled. An effect overrides what is
+not neutral in it; the rest of the bench asks the object. In a simulation: `bench.effects.kinds`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.effects.grids import is_pitch, places
-from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.effects.signals import Base, Scope, Shape, Shapes, Signals
 from bench.rig.rig import Rig
 from bench.trace.filter import Column
 from bench.trace.trace import Trace
@@ -27,10 +27,9 @@ from bench.units import Quantity
 if TYPE_CHECKING:
     from bench.effects.kinds import Axis, Number
 
-#: Share of what stands above noise that an effect must explain; one alone explains 0.90 (`tests.blind.margins`).
-SHARE = 0.25
-#: The same for a pitch that repeats so many half cycles over a linear axis' travel that no smooth error copies it.
-PITCH_SHARE, MANY = 0.1, 20.0
+#: Share of what stands above noise that an effect must explain (one alone explains 0.90, `tests.blind.margins`); that
+#: of a pitch that repeats so many half cycles over a linear axis' travel that no smooth error copies it.
+SHARE, PITCH_SHARE, MANY = 0.25, 0.1, 20.0
 
 #: What acts on the load behind a coupling: effect, its shape, its strengths over load inertia.
 Load = tuple["Effect", tuple[float, ...], tuple[float, ...]]
@@ -109,7 +108,7 @@ class Effect:
         copies_torque: whether its columns are made of the measured torque, and so hold its noise.
         scales_friction: whether it multiplies the level of dry friction, what other effects add to it included.
         carries_friction: whether it carries all of dry friction, what other effects add and scale included.
-        bounded: lowest and highest value of strengths that physics bounds, by their places: a fit holds them there.
+        bounded: lowest and highest value of strengths, by their places, at which a fit holds them.
         may_load: whether it may act on the load of a coupling rather than on the motor.
         couples: whether it joins motor and load; an axis has one such effect.
         turning_only: whether it has no meaning on a linear axis.
@@ -177,9 +176,7 @@ class Effect:
         """Resisting torque per unit of each strength - N*m (N) per unit, raw samples before the filter."""
         return []
 
-    def columns_of(
-        self, signals: Signals, shapes: Sequence[Sequence[float]], loads: Sequence[Load] = ()
-    ) -> list[Column]:
+    def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
         """Columns of several shapes, one shape after the other; `loads` act behind it if it couples."""
         return [column for shape in shapes for column in self.columns(signals, shape)]
 
@@ -235,7 +232,7 @@ class Effect:
         found = self.report(strengths, shape, base)
         return all(q.lower <= found[q.name] <= q.upper for q in self.quantities if q.name in found)
 
-    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Shapes, scope: Scope) -> bool:
         """Whether its terms, several if it is repeatable, are credible in such a recording."""
         return True
 

@@ -83,7 +83,7 @@ class Mechanism(Effect):
         """Make the effect a part of the model; `name` is free for what is added."""
 
     def native(self, values: Mapping[str, float], friction_scaled: bool) -> bool:
-        """Whether MuJoCo alone makes it; `friction_scaled`: another effect scales friction in every step."""
+        """Whether MuJoCo alone makes it; `friction_scaled`: another effect scales or carries friction in every step."""
         return self.overrides("add")
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:

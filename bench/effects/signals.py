@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.trace.filter import Column
 from bench.units import Quantity
+
+#: Values of the nonlinear quantities of an effect, of several terms or candidates.
+Shapes = Sequence[Sequence[float]]
 
 
 @dataclass(frozen=True)

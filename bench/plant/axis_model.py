@@ -120,9 +120,9 @@ class AxisModel:
 
 
 def scales_friction(effects: Sequence[Present]) -> bool:
-    """Whether dry friction changes in every step."""
+    """Whether dry friction changes in every step, or is carried by what bends to its level."""
     hooks = ("friction_factor", "friction_excess", "friction_under_load")
-    return any(p.effect.overrides(hook) for p in effects for hook in hooks)
+    return any(p.effect.carries_friction or any(map(p.effect.overrides, hooks)) for p in effects)
 
 
 def winding_of(rig: Rig) -> Winding | None:

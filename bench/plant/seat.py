@@ -29,6 +29,11 @@ class Seat(Protocol):
         """Timestep - s."""
         ...
 
+    @property
+    def bristled(self) -> bool:
+        """Whether bristles carry the dry friction."""
+        ...
+
     def set_torque(self, torque: Array) -> None:
         """Torque that is applied beside the drive's - N*m (N)."""
         ...
@@ -67,6 +72,11 @@ class BatchSeat:
         """Timestep - s."""
         return float(self._batch.model.opt.timestep)
 
+    @property
+    def bristled(self) -> bool:
+        """See `Seat`."""
+        return self._bristles >= 0
+
     def set_torque(self, torque: Array) -> None:
         """See `Seat`."""
         self._applied[:] = self._ratio * torque
@@ -82,7 +92,7 @@ class BatchSeat:
 
     def set_friction(self, level: Array) -> None:
         """See `Seat`."""
-        self._levels[:] = level[:, None] if self._bristles >= 0 else (self._ratio * level)[:, None]
+        self._levels[:] = level[:, None] if self.bristled else (self._ratio * level)[:, None]
 
     @cached_property
     def _armatures(self) -> tuple[Array, Array]:
@@ -93,7 +103,7 @@ class BatchSeat:
     @cached_property
     def _levels(self) -> NDArray[np.float64]:
         """Of friction, (axes, k)."""
-        if self._bristles >= 0:
+        if self.bristled:
             return self._batch.expand("actuator_biasprm")[:, self._bristles, BRISTLE_LEVELS]
         return self._batch.expand("dof_frictionloss")[:, self._dof : self._dof + 1]
 
@@ -119,6 +129,11 @@ class ModelSeat:
         """Timestep - s."""
         return float(self._model.opt.timestep)
 
+    @property
+    def bristled(self) -> bool:
+        """See `Seat`."""
+        return self._bristles >= 0
+
     def set_torque(self, torque: Array) -> None:
         """In the place of what was set before; what others apply stays."""
         self.add_torque(torque - self._given)
@@ -138,7 +153,7 @@ class ModelSeat:
 
     def set_friction(self, level: Array) -> None:
         """See `Seat`."""
-        if self._bristles >= 0:
+        if self.bristled:
             self._model.actuator_biasprm[self._bristles, BRISTLE_LEVELS] = level[0]
         else:
             self._model.dof_frictionloss[self._dof] = self._ratio * float(level[0])

@@ -134,6 +134,9 @@ class _FrictionLevels:
             self._seat.set_friction(np.maximum(level, 0.0))
             return 0.0
         forward, backward = np.maximum(level + half, 0.0), np.maximum(level - half, 0.0)
+        if self._seat.bristled:  # which bend to the level of their direction, and hold no torque beside
+            self._seat.set_friction(np.where(at.velocity > 0.0, forward, backward))
+            return 0.0
         self._seat.set_friction(0.5 * (forward + backward))
         return 0.5 * (forward - backward)
 

@@ -17,6 +17,8 @@ TOGETHER = [
     ("encoder_eccentricity", "velocity_filter_lag", "voltage_limit"),
     ("current_filter_lag", "current_gain_asymmetry", "current_loop_lag"),
     ("directional_load_friction", "torsion_spring", "unbalance"),
+    ("presliding_friction", "stribeck_friction", "direction_dependent_friction", "friction_warmup"),
+    ("presliding_friction", "direction_dependent_friction"),
 ]
 CASES = [(), *((name,) for name in VALUES), *TOGETHER]
 
