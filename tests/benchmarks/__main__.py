@@ -88,7 +88,9 @@ def page(known: Mapping[str, str]) -> str:
 
 
 def main(
-    names: Annotated[list[str] | None, typer.Argument(help=f"Of {', '.join(BENCHMARKS)}; all if none is given.")] = None,
+    names: Annotated[
+        list[str] | None, typer.Argument(help=f"Of {', '.join(BENCHMARKS)}; all if none is given.")
+    ] = None,
     out: Annotated[Path | None, typer.Option(help=f"Folder of {PAGE}; sections not measured stay.")] = None,
 ) -> None:
     """Measure the bench beside what it is made of and what does the same."""
