@@ -18,6 +18,8 @@ BLOCK_WIDTHS = 8.0
 BLOCKS = 512
 #: Power of a combination of scaled columns below which it is none but rounding.
 ROUNDING = 1e-13
+#: Rows of a block up to which filling up costs less than a product of its own: at 500 it costs twice as much.
+SHORT = 64
 
 
 @dataclass(frozen=True)
@@ -58,13 +60,18 @@ class NormalEquations:
         return int(self.rows.sum())
 
     @cached_property
+    def total(self) -> Array:
+        """X'X of all rows - (p, p)."""
+        return self.gram.sum(axis=0)
+
+    @cached_property
     def matrix(self) -> Array:
         """X'X less what sensor noise put into it - (p, p)."""
-        return self.gram.sum(axis=0) - self.count * self.noise
+        return self.total - self.count * self.noise
 
     def solve(self) -> tuple[Array, Array]:
         """Coefficients (p,), and the inverse of the matrix (p, p)."""
-        return solved(self.gram.sum(axis=0), self.moment.sum(axis=0), self.count * self.noise)
+        return solved(self.total, self.moment.sum(axis=0), self.count * self.noise)
 
     def knowing(self, place: int, value: float, weight: float) -> NormalEquations:
         """The same equations and, as if it had been measured, what is known of one coefficient beforehand.
@@ -86,8 +93,8 @@ class NormalEquations:
 
     def residual_power(self, theta: Array) -> float:
         """Sum of squared residuals of all rows - the effort's unit squared."""
-        gram, moment = self.gram.sum(axis=0), self.moment.sum(axis=0)
-        return float(self.power.sum() - 2.0 * theta @ moment + theta @ gram @ theta)
+        moment = self.moment.sum(axis=0)
+        return float(self.power.sum() - 2.0 * theta @ moment + theta @ self.total @ theta)
 
 
 def solved(gram: Array, moment: Array, noise: Array) -> tuple[Array, Array]:
@@ -116,10 +123,7 @@ def normal_equations(columns: Array, effort: Array, time: Array, noise: Array, w
     """
     edges = block_edges(time, width)
     table = np.column_stack([columns, effort])
-    products = np.zeros((max(edges.size - 1, 0), table.shape[1], table.shape[1]))
-    for index, (start, stop) in enumerate(pairwise(edges.tolist())):
-        rows = table[start:stop]
-        np.matmul(rows.T, rows, out=products[index])
+    products = _products(table, edges)
     return NormalEquations(
         gram=products[:, :-1, :-1],
         moment=products[:, :-1, -1],
@@ -127,6 +131,24 @@ def normal_equations(columns: Array, effort: Array, time: Array, noise: Array, w
         rows=np.diff(edges),
         noise=noise,
     )
+
+
+def _products(table: Array, edges: NDArray[np.int64]) -> Array:
+    """X'X of each block of rows of a table (m, p) between edges (b + 1,) - (b, p, p).
+
+    Short blocks are filled up with zeros and multiplied at once: of 3 s at 1 kHz in a third of the time.
+    """
+    lengths = np.diff(edges)
+    longest = int(lengths.max(initial=0))
+    if longest <= SHORT:
+        place = np.arange(longest)
+        blocks = table[np.minimum(edges[:-1, None] + place, edges[-1:] - 1)] * (place < lengths[:, None])[:, :, None]
+        return blocks.transpose(0, 2, 1) @ blocks
+    products = np.empty((lengths.size, table.shape[1], table.shape[1]))
+    for index, (start, stop) in enumerate(pairwise(edges.tolist())):
+        rows = table[start:stop]
+        np.matmul(rows.T, rows, out=products[index])
+    return products
 
 
 def block_edges(time: Array, width: float) -> NDArray[np.int64]:
