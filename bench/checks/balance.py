@@ -144,7 +144,7 @@ class _Summed:
         return np.arange(reach, last, max(length // 2, 1))
 
     def windows(self, length: int) -> tuple[Array, Array, NDArray[np.intp]] | None:
-        """Columns (windows, 7), mean effort and first samples of the recording (windows,); None where there are none."""
+        """Columns (windows, 7), mean effort and first samples (windows,); None where there are none."""
         at, reach = self.windows_of(length), length // 4
         if not at.size:
             return None

@@ -16,8 +16,8 @@ Result = TypeVar("Result")
 def in_parallel(work: Callable[[Part], Result], parts: Iterable[Part]) -> Iterator[Result]:
     """Results of `work` on each part, in order, on one thread a core: NumPy lets them run while it computes.
 
-    At most two parts a core wait at a time, so a recording may be longer than memory. A lone part needs no thread, which
-    takes some milliseconds to start.
+    At most two parts a core wait at a time, so a recording may be longer than memory. A lone part needs no thread: to
+    start some takes milliseconds.
     """
     cores, parts = os.cpu_count() or 1, iter(parts)
     ahead = list(islice(parts, 2))

@@ -21,10 +21,10 @@ INTRODUCTION = """# Benchmarks
 
     python -m tests.benchmarks --out docs
 
-measures what follows (`pip install -e '.[dev,benchmarks]'`; names, as in `python -m tests.benchmarks lstsq stepping --out docs`,
-measure some of it anew and leave the rest as it is). Ways that are held against each other are measured within one run, in
-turn, so that they share what else the machine is doing; times are medians, and a ratio is the median of the ratios within each
-round. A time of one machine says little about another, a ratio more.
+measures what follows (`pip install -e '.[dev,benchmarks]'`). With names, as in `python -m tests.benchmarks lstsq stepping
+--out docs`, it measures some of it anew and leaves the rest as it is. Ways that are held against each other are measured
+within one run, in turn, so that they share what else the machine is doing; times are medians, and a ratio is the median of
+the ratios within each round. A time of one machine says little about another, a ratio more.
 """
 
 
@@ -88,9 +88,7 @@ def page(known: Mapping[str, str]) -> str:
 
 
 def main(
-    names: Annotated[
-        list[str] | None, typer.Argument(help=f"Of {', '.join(BENCHMARKS)}; all if none is given.")
-    ] = None,
+    names: Annotated[list[str] | None, typer.Argument(help=f"Of {', '.join(BENCHMARKS)}; all if none.")] = None,
     out: Annotated[Path | None, typer.Option(help=f"Folder of {PAGE}; sections not measured stay.")] = None,
 ) -> None:
     """Measure the bench beside what it is made of and what does the same."""

@@ -1,4 +1,4 @@
-"""Beside NumPy's `lstsq`: what the core of `identify` costs, from columns to coefficients with all a covariance needs."""
+"""Beside NumPy's `lstsq`: the core of `identify`, from columns to coefficients with all that a covariance needs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def measured(durations: Sequence[float] = (3.0, 30.0, 300.0), rounds: int = 15) 
         seconds = (f"{1e3 * timed.median(way):.3g} ms" for way in (LSTSQ, CORE))
         found.append((f"{duration:g} s, {shape}", *seconds, f"{timed.ratio(CORE, LSTSQ):.2f}"))
     says = (
-        "The same columns, rows of the torque balance after the filter. The core sums normal equations over blocks of time, "
-        "from which coefficients and a covariance for correlated residuals follow; `lstsq` gives the coefficients."
+        "The same columns, rows of the torque balance after the filter. The core sums normal equations over blocks of "
+        "time, from which coefficients and a covariance for correlated residuals follow; `lstsq` gives coefficients."
     )
     return [Table(says, ("recording", LSTSQ, CORE, "ratio"), tuple(found))]

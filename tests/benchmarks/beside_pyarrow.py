@@ -61,7 +61,7 @@ def measured(sizes: Sequence[int] = (100_000, 1_000_000, 10_000_000), rounds: in
                 ratios = [f"{timed.ratio(way, 'pyarrow'):.2f}" if way in those else "" for way in ("read", "stream")]
                 found.append((f"{form}, {size:.0e} rows", f"{timed.median('pyarrow'):.3g} s", *ratios))
     says = (
-        "`read` gives a trace on one regular time base in SI units, every value looked at; `stream` the same part by part, in "
-        "bounded memory. pyarrow's columns stay as they stand in the file."
+        "`read` gives a trace on one regular time base in SI units, every value looked at; `stream` the same part by "
+        "part, in bounded memory. pyarrow's columns stay as they stand in the file."
     )
     return [Table(says, ("file", "pyarrow", "`read`, times that", "`stream`, times that"), tuple(found))]

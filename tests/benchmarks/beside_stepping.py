@@ -81,7 +81,7 @@ def measured(steps: int = 4000, axes: int = 1000, few: int = 200, rounds: int = 
         rows.append((name, f"{1e6 * timed.median(name) / count:.3g} us", *(f"{ratio:.2f}" for ratio in times)))
     says = (
         f"Time of an axis and step, building models included; {steps} steps of one axis, {few} of {axes} axes on all "
-        "cores. By ticks means that the drive's law is Python on arrays of axes, which has to be where a torque is limited "
-        "or an effect acts that MuJoCo does not have."
+        "cores. By ticks means that the drive's law is Python on arrays of axes, which has to be where a torque is "
+        "limited or an effect acts that MuJoCo does not have."
     )
     return [Table(says, ("", "axis and step", "times bare `mj_step`", "times bare batch"), tuple(rows))]

@@ -1,14 +1,15 @@
 """Beside `mujoco.sysid` on the same recordings: how long each takes, how far off it is, what its intervals cover.
 
-Recordings are of the independent integrator, so that neither is judged by its own model. `mujoco.sysid` gets the bench's
-MuJoCo model with its stiff dry friction, the recorded torque, the simulated speed at the recorded instants, residuals
-in shares of the signal, parameters scaled by the Jacobian (`x_scale="jac"`), and starts at what the rig file lets expect.
-Its model takes steps of a sample, as is its habit, or of the drive's period, with which it errs less.
+Recordings are of the independent integrator, so that neither is judged by its own model. `mujoco.sysid` gets the
+bench's MuJoCo model with its stiff dry friction, the recorded torque, the simulated speed at the recorded instants,
+residuals in shares of the signal, parameters scaled by the Jacobian (`x_scale="jac"`), and a start that the rig file
+lets expect. Its model takes steps of a sample, as is its habit, or of the drive's period, with which it errs less.
 """
 
 from __future__ import annotations
 
 import io
+import logging
 import statistics
 import time
 import tomllib
@@ -138,6 +139,7 @@ def measured(count: int = 20, duration: float = 3.0, steps: Sequence[float] = (1
         duration: about, of each - s.
         steps: of the model of `mujoco.sysid` - s.
     """
+    logging.getLogger("absl").setLevel(logging.ERROR)  # it warns that speed is taken from the state, not from a sensor
     runs = recordings(count, duration)
     by_bench(runs[0])  # so that what is imported late is there
     answers: dict[str, list[Answer]] = {OURS: [], **{theirs(step): [] for step in steps}}
@@ -181,9 +183,11 @@ def compared(answers: Mapping[str, Sequence[Answer]], duration: float) -> Table:
             )
         )
     says = (
-        f"{len(ours)} recordings of {duration:g} s at 1 kHz, each of an axis of its own that the independent integrator moves. Errors are "
-        "RMS over the recordings, behind them in brackets how many times that of `identify`; coverage counts the true values "
-        "of J, viscous and Coulomb friction that lie within the interval of 95 %."
+        f"{len(ours)} recordings of about {duration:g} s at 1 kHz, each of another axis, moved by the independent "
+        "integrator. Both start from the rig file: `mujoco.sysid` at the drive's inertia feed-forward and friction of 1 % "
+        'of the peak torque, with `x_scale="jac"`, its steps as long as a sample or as the period of the drive. Errors '
+        "are RMS over the recordings, in brackets how many times that of `identify`; covered are true values of J, "
+        "viscous and Coulomb friction that lie within the interval of 95 %."
     )
     heads = ("", "time, median", "times `identify`'s, median (range)", *(f"error of {name}" for name in PARAMETERS))
     return Table(says, (*heads, "covered"), tuple(rows))

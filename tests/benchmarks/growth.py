@@ -32,7 +32,7 @@ def measured(
     samples: Sequence[int] = (1_000, 10_000, 100_000, 1_000_000, 10_000_000),
     axes: Sequence[int] = (1, 10, 100, 1000),
     effects: Sequence[int] = (1, 3, 7, 14, 21),
-    ticks: int = 200,
+    ticks: int = 2000,
     rounds: int = 3,
 ) -> list[Table]:
     """Time over each of these sizes."""
@@ -65,8 +65,8 @@ def by_samples(sizes: Sequence[int], rounds: int) -> Table:
         strict=True,
     )
     says = (
-        "`identify` from a Parquet file of time, velocity and current, read whole or streamed in bounded memory. The exponent "
-        "is that of time over size, from the row above: 1 is proportional."
+        "`identify` from a Parquet file of time, velocity and current, read whole or streamed in bounded memory. The "
+        "exponent is that of time over size, from the row above: 1 is proportional."
     )
     return Table(says, ("samples", "read whole", "exponent", "streamed", "exponent"), tuple(rows))
 
@@ -107,8 +107,8 @@ def by_effects(sizes: Sequence[int], ticks: int, rounds: int) -> Table:
         strict=True,
     )
     says = (
-        "The first so many effects of the catalogue, one coupling among them, on one axis: a simulated tick, and the columns of "
-        "a hypothesis that has all of them, of 8 s at 1 kHz, nothing kept from before."
+        "The first so many effects of the catalogue, one coupling among them, on one axis: a simulated tick, and the "
+        "columns of a hypothesis that has all of them, of 8 s at 1 kHz, nothing kept from before."
     )
     return Table(says, ("effects", "simulated tick", "exponent", "columns", "exponent"), tuple(rows))
 
