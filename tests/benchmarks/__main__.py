@@ -21,15 +21,19 @@ INTRODUCTION = """# Benchmarks
 
     python -m tests.benchmarks --out docs
 
-measures what follows (`pip install -e '.[dev,benchmarks]'`). With names, as in `python -m tests.benchmarks lstsq stepping
---out docs`, it measures some of it anew and leaves the rest as it is. Ways that are held against each other are measured
-within one run, in turn, so that they share what else the machine is doing; times are medians, and a ratio is the median of
-the ratios within each round. A time of one machine says little about another, a ratio more.
+measures what follows (`pip install -e '.[dev,benchmarks]'`). With names, as in `python -m tests.benchmarks lstsq --out
+docs`, it measures some of it anew and leaves the rest as it is. Ways that are held against each other are measured
+within one run, in turn, so that they share what else the machine is doing; times are medians, and a ratio is the median
+of the ratios within each round. A time of one machine says little about another, a ratio more.
 """
 
 
 def sysid() -> list[Table]:
-    from tests.benchmarks.beside_sysid import measured  # of an extra of MuJoCo that the others do without
+    try:  # an extra of MuJoCo, which hides that it is not there
+        from mujoco.sysid import optimize as _  # noqa: F401
+    except ImportError as error:
+        raise typer.BadParameter("mujoco.sysid is not complete; pip install -e '.[benchmarks]'") from error
+    from tests.benchmarks.beside_sysid import measured
 
     return measured()
 

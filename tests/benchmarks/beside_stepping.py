@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import mujoco
@@ -69,6 +70,7 @@ def measured(steps: int = 4000, axes: int = 1000, few: int = 200, rounds: int = 
         "one axis, drive in MuJoCo": (partial(run_native, bare, motion), steps),
         "the same with five native effects": (partial(run_native, native, motion), steps),
         "one axis by ticks": (partial(run_ticks, [bare], one), steps),
+        "the same with friction by the drive": (partial(run_ticks, [replace(bare, emulated=True)], one), steps),
         "the same with five ticked effects": (partial(run, [ticked], one), steps),
         BATCH.format(axes): (partial(batched, [bare] * axes, few), few * axes),
         f"{axes} axes by ticks": (partial(run_ticks, [bare] * axes, many), few * axes),
