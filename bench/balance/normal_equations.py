@@ -18,8 +18,9 @@ BLOCK_WIDTHS = 8.0
 BLOCKS = 512
 #: Power of a combination of scaled columns below which it is none but rounding.
 ROUNDING = 1e-13
-#: Rows of a block up to which filling up costs less than a product of its own: at 500 it costs twice as much.
-SHORT = 64
+#: Rows of a block up to which filling up costs less than a product of its own; at 60 it depends on where the memory
+#: comes from, at 500 it costs twice as much.
+SHORT = 24
 
 
 @dataclass(frozen=True)

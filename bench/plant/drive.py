@@ -132,9 +132,9 @@ class CascadeDrive:
         return setpoint, motor
 
 
-def _by_ticks(values: Array) -> Array | list[float]:
-    """Values of axes (ticks, axes), those of a lone axis as numbers."""
-    return values[:, 0].tolist() if values.shape[1] == 1 else values
+def _by_ticks(values: Array) -> Array:
+    """Values of axes (ticks, axes), those of a lone axis (ticks,)."""
+    return values[:, 0] if values.shape[1] == 1 else values
 
 
 def _limited(torque: Values, lower: Values, upper: Values) -> Values:

@@ -1,6 +1,6 @@
 """Effects of axes side by side, gathered: one kind of effect on all the axes that have it.
 
-Values are arrays of axes; of a lone axis they are numbers, as all that is computed of them then costs a tenth.
+Values are arrays of axes; of a lone axis they are numbers, of which all that is computed costs a fraction.
 """
 
 from __future__ import annotations
@@ -107,5 +107,8 @@ def _windings(axes: Sequence[Axis]) -> Winding | None:
 
 
 def abreast(values: Sequence[float] | Array) -> Number:
-    """Values of axes side by side, (axes,), as they are now; that of a lone axis as a number."""
-    return float(values[0]) if len(values) == 1 else np.array(values, dtype=np.float64)
+    """Values of axes side by side, (axes,), as they are now; that of a lone axis as a number.
+
+    NumPy's, which overflows to infinity as arrays do, where one of Python's raises an error.
+    """
+    return np.float64(values[0]) if len(values) == 1 else np.array(values, dtype=np.float64)

@@ -185,9 +185,9 @@ def compared(answers: Mapping[str, Sequence[Answer]], duration: float) -> Table:
     says = (
         f"{len(ours)} recordings of about {duration:g} s at 1 kHz, each of another axis, moved by the independent "
         "integrator. Both start from the rig file: `mujoco.sysid` at the drive's inertia feed-forward and friction of "
-        '1 % of the peak torque, with `x_scale="jac"`, its steps as long as a sample or as the period of the drive. Errors '
-        "are RMS over the recordings, in brackets how many times that of `identify`; covered are true values of J, "
-        "viscous and Coulomb friction that lie within the interval of 95 %."
+        '1 % of the peak torque, with `x_scale="jac"`, its steps as long as a sample or as the period of the drive. '
+        "Errors are RMS over the recordings, in brackets how many times that of `identify`; covered are true values of "
+        "J, viscous and Coulomb friction that lie within the interval of 95 %."
     )
     heads = ("", "time, median", "times `identify`'s, median (range)", *(f"error of {name}" for name in PARAMETERS))
     return Table(says, (*heads, "covered"), tuple(rows))

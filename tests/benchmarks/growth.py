@@ -17,6 +17,7 @@ from bench.balance.layout import Layout, lay_out
 from bench.balance.memory import Memory
 from bench.balance.rows import Rows
 from bench.effects.catalogue import catalogue
+from bench.identify.estimate import Estimate
 from bench.identify.regression import identify
 from bench.plant.run import run
 from bench.plant.ticks import run_ticks
@@ -41,21 +42,12 @@ def measured(
 
 def by_samples(sizes: Sequence[int], rounds: int) -> Table:
     """`identify` of a Parquet file at 1 kHz, read whole and streamed; the longest only streamed."""
-    whole, parts = [], []
     with tempfile.TemporaryDirectory() as folder:
-        for size in sizes:
-            path = Path(folder) / f"{size}.parquet"
-            trace = recording(np.random.default_rng(1), duration=size * 1e-3)
-            signals = {"velocity [rad/s]": trace["velocity"], "current [A]": trace["current"]}
-            pq.write_table(pa.table({"time [s]": trace.time, **signals}), path)
-            del trace, signals
-            ways: dict[str, Way] = {"stream": lambda: identify(stream(path), RIG)}  # noqa: B023
-            if size < WHOLE:
-                ways["read"] = lambda: identify(read(path), RIG)  # noqa: B023
-            timed = in_turn(ways, rounds)
-            parts.append(timed.median("stream"))
-            whole += [timed.median("read")] if size < WHOLE else []
-            path.unlink()
+        paths = {size: written(Path(folder), size) for size in sizes}
+        streamed = in_turn({str(size): partial(by_stream, path) for size, path in paths.items()}, rounds)
+        read_whole = {str(size): partial(by_read, path) for size, path in paths.items() if size < WHOLE}
+        together = in_turn(read_whole, rounds)
+    parts, whole = [streamed.median(str(size)) for size in sizes], [together.median(size) for size in read_whole]
     rows = zip(
         (f"{size:.0e}" for size in sizes),
         (*(f"{seconds:.3g} s" for seconds in whole), *[""] * (len(sizes) - len(whole))),
@@ -69,6 +61,25 @@ def by_samples(sizes: Sequence[int], rounds: int) -> Table:
         "exponent is that of time over size, from the row above: 1 is proportional."
     )
     return Table(says, ("samples", "read whole", "exponent", "streamed", "exponent"), tuple(rows))
+
+
+def written(folder: Path, size: int) -> Path:
+    """Parquet file of so many samples at 1 kHz."""
+    path = folder / f"{size}.parquet"
+    trace = recording(np.random.default_rng(1), duration=size * 1e-3)
+    signals = {"velocity [rad/s]": trace["velocity"], "current [A]": trace["current"]}
+    pq.write_table(pa.table({"time [s]": trace.time, **signals}), path)
+    return path
+
+
+def by_stream(path: Path) -> Estimate:
+    """`identify` of a file that is read as it is needed."""
+    return identify(stream(path), RIG)
+
+
+def by_read(path: Path) -> Estimate:
+    """`identify` of a file that is read before."""
+    return identify(read(path), RIG)
 
 
 #: Samples from which on a recording is streamed only.
