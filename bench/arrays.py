@@ -31,3 +31,19 @@ def symmetric_inverse(matrix: Array, least: float) -> Array:
     kept = magnitude > least * magnitude.max(axis=-1, keepdims=True, initial=0.0)
     inverse = np.divide(1.0, values, out=np.zeros_like(values), where=kept)
     return (vectors * inverse[..., None, :]) @ vectors.swapaxes(-1, -2)
+
+
+def recurrence(kept: Array, added: Array) -> Array:
+    """y[k] = kept[k]*y[k - 1] + added[k] of a sequence that begins at zero (n,), by doubling the reach of each sum.
+
+    Args:
+        kept: (n,) from 0 to 1.
+        added: (n,), any unit.
+    """
+    kept, found = kept.copy(), added.copy()
+    reach = 1
+    while reach < found.size and kept[reach:].any():
+        found[reach:] += kept[reach:] * found[:-reach]
+        kept[reach:] *= kept[:-reach]
+        reach *= 2
+    return found
