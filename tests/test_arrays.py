@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.special
 
-from bench.arrays import column_rms, recurrence, rms
+from bench.arrays import column_rms, recurrence, rms, symmetric_inverse
 from bench.statistics import NORMAL95
 
 
@@ -22,6 +22,20 @@ def test_rms_of_columns_is_that_of_each_alone():
 
 def test_the_normal_interval_holds_95_percent():
     assert scipy.special.erf(NORMAL95 / math.sqrt(2.0)) == pytest.approx(0.95, abs=1e-12)
+
+
+@pytest.mark.parametrize("rank", [0, 1, 3, 4])
+def test_inverse_of_symmetric_matrices_is_that_of_numpy(rank):
+    factors = np.random.default_rng(rank).normal(size=(5, 4, rank))
+    signs = np.where(np.arange(rank) % 2, -1.0, 1.0)
+    matrices = (factors * signs) @ factors.transpose(0, 2, 1)
+    expected = np.linalg.pinv(matrices, rcond=1e-10, hermitian=True)
+    np.testing.assert_allclose(symmetric_inverse(matrices, 1e-10), expected, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(symmetric_inverse(matrices[0], 1e-10), expected[0], rtol=1e-9, atol=1e-12)
+
+
+def test_inverse_of_nothing_is_nothing():
+    assert symmetric_inverse(np.empty((2, 0, 0)), 1e-8).shape == (2, 0, 0)
 
 
 @pytest.mark.parametrize("kept", [0.0, 0.3, 0.999, 1.0])

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import special
 
-from bench.arrays import Array
+from bench.arrays import Array, symmetric_inverse
 
 #: Andrews' bandwidth minimises the error of the covariance, not of an interval's coverage: on 400 recordings of 6 s
 #: with first-order residuals (0.9 a ms) nominal 95 % intervals covered .958/.923/.903 with it, .963/.935/.908 half
@@ -100,7 +100,7 @@ def _without_each(columns: Array, residual: Array, parts: list[slice]) -> Array:
         return np.full(columns.shape[1], np.inf)
     grams = np.stack([columns[part].T @ columns[part] for part in parts])
     scores = np.stack([columns[part].T @ residual[part] for part in parts])
-    inverses = np.linalg.pinv(grams.sum(axis=0) - grams, rcond=1e-10, hermitian=True)
+    inverses = symmetric_inverse(grams.sum(axis=0) - grams, 1e-10)
     moved = np.einsum("gij,gj->gi", inverses, scores)
     return special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * np.sum(moved**2, axis=0))
 

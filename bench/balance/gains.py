@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.arrays import Array, symmetric_inverse
 
 
 def gains(columns: Array, width: int, residual: Array, basis: Array) -> Array:
@@ -26,5 +26,5 @@ def gains(columns: Array, width: int, residual: Array, basis: Array) -> Array:
     rows *= np.where(scale > 1e-4 * np.maximum(full, 1e-300), 1.0 / np.maximum(scale, 1e-300), 0.0)[:, None]
     shared = (rows @ residual).reshape(-1, width)
     groups = rows.reshape(-1, width, rows.shape[1])
-    inverse = np.linalg.pinv(groups @ groups.transpose(0, 2, 1), rcond=1e-8, hermitian=True)
+    inverse = symmetric_inverse(groups @ groups.transpose(0, 2, 1), 1e-8)
     return np.einsum("gi,gij,gj->g", shared, inverse, shared)

@@ -8,7 +8,7 @@ known to be sound.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,19 +76,21 @@ def balance(trace: Trace, effort: Array, lengths: Sequence[int] = LENGTHS) -> Ba
         effort: over it (n,).
         lengths: of windows to try - samples.
     """
-    found = [one for length in lengths if (one := _balance(trace, effort, length)) is not None]
+    parts = [_Summed.of(trace, effort, part) for part in stretches(trace, 3 * min(lengths))]
+    found = [one for length in lengths if (one := _balance(parts, length)) is not None]
     return max(found, key=lambda one: one.by_position) if found else None
 
 
-def _balance(trace: Trace, effort: Array, length: int) -> Balance | None:
-    parts = list(_windows(trace, effort, length))
-    if not parts:
+def _balance(parts: Sequence[_Summed], length: int) -> Balance | None:
+    windows = [found for part in parts if (found := part.windows(length)) is not None]
+    if not windows:
         return None
-    columns, mean, starts, noises = (np.concatenate(column) for column in zip(*parts, strict=True))
+    columns, mean, starts = (np.concatenate(column) for column in zip(*windows, strict=True))
     varies = float(np.var(mean))
     if mean.size < LEAST or varies == 0.0:
         return None
     shares, thetas = zip(*(_fitted(columns[:, :count], mean) for count in (MOTION, columns.shape[1])), strict=True)
+    noises = [part.noise for part in parts if part.windows_of(length).size]
     noise = float(np.median(noises)) / np.sqrt(length)
     audible = float(np.sqrt(varies)) / noise if noise > 0.0 else np.inf
     power = float(np.mean(mean * columns[:, 1]))
@@ -103,31 +105,55 @@ def _fitted(columns: Array, effort: Array) -> tuple[float, Array]:
     return 1.0 - float(np.mean((effort - columns @ theta) ** 2)) / float(np.var(effort)), theta
 
 
-def _windows(trace: Trace, effort: Array, length: int) -> Iterator[tuple[Array, Array, NDArray[np.intp], Array]]:
-    """Half-overlapping windows of each stretch: columns, mean effort, starts, and white noise of the effort."""
-    period, reach = trace.sample_period, length // 4
-    for part in stretches(trace, 3 * length):
-        speed = speed_of(trace, part)
+@dataclass(frozen=True)
+class _Summed:
+    """A stretch as running sums, from which means over windows of any length are differences.
+
+    Attributes:
+        start: its first sample.
+        period: of the samples - s.
+        gone: sum of the speed before each sample, and of all (n + 1,).
+        sums: by the trapezoidal rule: speed, its sign, position and its sine and cosine, effort (6, n).
+        noise: standard deviation of the effort's white noise.
+    """
+
+    start: int
+    period: float
+    gone: Array
+    sums: Array
+    noise: float
+
+    @classmethod
+    def of(cls, trace: Trace, effort: Array, part: slice) -> _Summed:
+        """The sums of a stretch."""
+        speed, period = speed_of(trace, part), trace.sample_period
         assert speed is not None
-        at = np.arange(reach, speed.size - length - reach, max(length // 2, 1))
-        if not at.size:
-            continue
         travelled = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2.0)]) * period
         position = trace["position"][part] if "position" in trace else travelled
-        gone = np.concatenate([[0.0], np.cumsum(speed)])
-        change = (_smooth(gone, at + length, reach) - _smooth(gone, at, reach)) / (length * period)
         known = (speed, np.sign(speed), position - position.mean(), np.sin(position), np.cos(position), effort[part])
-        v, sign, place, sine, cosine, torque = (_mean(one, at, length) for one in known)
+        signals = np.stack(known)
+        sums = np.zeros_like(signals)
+        np.cumsum((signals[:, 1:] + signals[:, :-1]) / 2.0, axis=1, out=sums[:, 1:])
+        gone = np.concatenate([[0.0], np.cumsum(speed)])
+        return cls(part.start, period, gone, sums, white_noise(effort[part]))
+
+    def windows_of(self, length: int) -> NDArray[np.intp]:
+        """First samples of half-overlapping windows, none in a stretch of less than three."""
+        size, reach = self.sums.shape[1], length // 4
+        last = size - length - reach if size >= 3 * length else 0
+        return np.arange(reach, last, max(length // 2, 1))
+
+    def windows(self, length: int) -> tuple[Array, Array, NDArray[np.intp]] | None:
+        """Columns (windows, 7), mean effort and first samples (windows,); None where there are none."""
+        at, reach = self.windows_of(length), length // 4
+        if not at.size:
+            return None
+        change = (_smooth(self.gone, at + length, reach) - _smooth(self.gone, at, reach)) / (length * self.period)
+        v, sign, place, sine, cosine, torque = (self.sums[:, at + length] - self.sums[:, at]) / length
         columns = np.column_stack([change, v, sign, np.ones(at.size), place, sine, cosine])
-        yield columns, torque, at + part.start, np.array([white_noise(effort[part])])
+        return columns, torque, at + self.start
 
 
 def _smooth(gone: Array, at: NDArray[np.intp], reach: int) -> Array:
     """Mean of a signal over `reach` samples to each side, from its running sum."""
     return (gone[at + reach + 1] - gone[at - reach]) / (2 * reach + 1)
-
-
-def _mean(values: Array, at: NDArray[np.intp], length: int) -> Array:
-    """Mean from sample `at` to `at + length` by the trapezoidal rule."""
-    gone = np.concatenate([[0.0], np.cumsum((values[1:] + values[:-1]) / 2.0)])
-    return (gone[at + length] - gone[at]) / length

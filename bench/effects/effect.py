@@ -108,7 +108,7 @@ class Effect:
         copies_torque: whether its columns are made of the measured torque, and so hold its noise.
         scales_friction: whether it multiplies the level of dry friction, what other effects add to it included.
         carries_friction: whether it carries all of dry friction, what other effects add and scale included.
-        bounded: lowest and highest value of strengths, by their places, at which a fit holds them.
+        bounded: lowest and highest value at which a fit holds strengths, by their places.
         may_load: whether it may act on the load of a coupling rather than on the motor.
         couples: whether it joins motor and load; an axis has one such effect.
         turning_only: whether it has no meaning on a linear axis.
@@ -123,7 +123,7 @@ class Effect:
         shows_under_drive: whether it shows where the drive runs the model, and hardly where the recording holds it.
         tolerates: share of the first gap that may be left beside it, if it is unlike that of other effects.
         fixed_in_simulation: quantities that a fit by simulation leaves alone: whole numbers, instants between samples.
-        undiagnosed: why no recording names it, a sentence; empty if one does, which a test then carries out.
+        undiagnosed: why no recording names it; empty if one does, which a test carries out.
     """
 
     name: ClassVar[str]
@@ -277,8 +277,6 @@ class Effect:
     def shown_in(self, trace: Trace, rig: Rig, values: Mapping[str, float]) -> Trace:
         """The part of a recording in which it shows, if it `shows_under_drive`."""
         return trace
-
-    # What motion tells it from another explanation.
 
     def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """Values of an effect it is `ambiguous` with that looks the same in this motion; None if in every motion."""

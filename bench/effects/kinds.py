@@ -70,9 +70,9 @@ class Moment:
     """
 
     time: Number
-    position: Array
-    velocity: Array
-    effort: Array
+    position: Number
+    velocity: Number
+    effort: Number
     began: Number = 0.0
 
 

@@ -201,15 +201,14 @@ class _Running:
         self._qpos, self._dof = int(here.qposadr[0]), int(here.dofadr[0])
         self.drive = Drive.of(model, joint, self._ratio)
         self.seat = ModelSeat(model, data, joint, self._ratio, _bristles(model, joint))
-        velocity = self._ratio * data.qvel[self._dof : self._dof + 1]
+        velocity = self._ratio * float(data.qvel[self._dof])
         self._ticked = TickedEffects(self.seat, [stored.model], velocity)
 
     def prepare(self) -> None:
         """Set the effects for the step that comes."""
         data, self.time = self.data, self.data.time
-        position = self._ratio * data.qpos[self._qpos : self._qpos + 1]
-        velocity = self._ratio * data.qvel[self._dof : self._dof + 1]
-        demand = self.drive.torque(data.ctrl[None], data.actuator_force[None])
+        position, velocity = (self._ratio * float(each) for each in (data.qpos[self._qpos], data.qvel[self._dof]))
+        demand = float(self.drive.torque(data.ctrl[None], data.actuator_force[None])[0])
         _, torque = self._ticked.act(data.time, position, velocity, demand)
         self.seat.add_torque(torque - demand)
 

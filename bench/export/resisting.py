@@ -6,13 +6,14 @@ hooks, as in a simulation. Time stands at its end: what warms up is warm, what h
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
 from bench.arrays import Array
+from bench.effects.kinds import Number
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.plant.axis_model import AxisModel
 from bench.plant.ticked import TickedEffects
@@ -25,21 +26,22 @@ TIMESTEP = 1e-4
 class _Told:
     """A seat that keeps what effects would set."""
 
-    friction: Array
-    torque: Array = field(default_factory=lambda: np.zeros(0))
+    friction: Number
+    torque: Number = 0.0
     step: float = TIMESTEP
+    bristled: bool = False
 
-    def set_torque(self, torque: Array) -> None:
-        self.torque = torque.copy()
+    def set_torque(self, torque: Number) -> None:
+        self.torque = torque
 
-    def add_torque(self, torque: Array) -> None:
+    def add_torque(self, torque: Number) -> None:
         self.torque = self.torque + torque
 
-    def set_added_inertia(self, inertia: Array) -> None:
+    def set_added_inertia(self, inertia: Number) -> None:
         """Inertia resists no steady motion."""
 
-    def set_friction(self, level: Array) -> None:
-        self.friction = level.copy()
+    def set_friction(self, level: Number) -> None:
+        self.friction = level
 
 
 def resisting_torque(model: AxisModel, position: Array, velocity: Array) -> Array:

@@ -107,10 +107,10 @@ def _require_excited(equations: NormalEquations, column: str, kind: AxisKind) ->
 
 def independent_share(equations: NormalEquations, column: str, others: Sequence[str]) -> float:
     """Share of a column's power that is neither noise nor explained by others; negative where noise is all of it."""
-    chosen = equations.select([PLACES[column], *(PLACES[term] for term in others)])
-    power = np.diag(chosen.gram.sum(axis=0))
+    places = [PLACES[column], *(PLACES[term] for term in others)]
+    power = np.diag(equations.total)[places]
     scale = np.sqrt(np.where(power > 0.0, power, 1.0))
-    matrix = chosen.matrix / np.outer(scale, scale)
+    matrix = equations.matrix[np.ix_(places, places)] / np.outer(scale, scale)
     return float(matrix[0, 0] - matrix[0, 1:] @ np.linalg.lstsq(matrix[1:, 1:], matrix[1:, 0], rcond=1e-9)[0])
 
 

@@ -6,6 +6,7 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from itertools import chain, islice
 from typing import TypeVar
 
 Part = TypeVar("Part")
@@ -15,12 +16,17 @@ Result = TypeVar("Result")
 def in_parallel(work: Callable[[Part], Result], parts: Iterable[Part]) -> Iterator[Result]:
     """Results of `work` on each part, in order, on one thread a core: NumPy lets them run while it computes.
 
-    At most two parts a core wait at a time, so a recording may be longer than memory.
+    At most two parts a core wait at a time, so a recording may be longer than memory. A lone part needs no thread: to
+    start some takes milliseconds.
     """
-    cores = os.cpu_count() or 1
+    cores, parts = os.cpu_count() or 1, iter(parts)
+    ahead = list(islice(parts, 2))
+    if len(ahead) < 2:
+        yield from map(work, ahead)
+        return
     waiting: deque[Future[Result]] = deque()
     with ThreadPoolExecutor(cores) as pool:
-        for part in parts:
+        for part in chain(ahead, parts):
             waiting.append(pool.submit(work, part))
             if len(waiting) >= 2 * cores:
                 yield waiting.popleft().result()

@@ -25,9 +25,12 @@ def by_tolerance(first: Trace, rig: Rig, tried: Tried) -> Array:
         tried: the estimate of it at the cut-off taken.
     """
     offset = rig.offset and only_direction(tried.equations) is None
+    others = tuple(rig.within_tolerance())
+    moved = np.zeros(tried.equations.noise.shape[0] - (not offset))
+    if not others:
+        return moved
     theta = solved_with_shift(tried.equations, tried.rows, offset).theta
-    moved = np.zeros(theta.size)
-    for other in rig.within_tolerance():
+    for other in others:
         rows = Rows.of(first, other, conditioning=tried.rows.conditioning)
         found = solved_with_shift(equations_of(rows, tried.hypothesis), rows, offset).theta
         moved = np.hypot(moved, found - theta)

@@ -19,6 +19,7 @@ from bench.arrays import Array
 from bench.effects.mjcf import DRIVE
 from bench.errors import InputError
 from bench.plant.references import References
+from bench.plant.rows import abreast
 from bench.rig.rig import Rig
 
 Values = float | Array
@@ -98,39 +99,48 @@ class CascadeDrive:
 
     def __init__(self, cascade: Cascade, references: References, emulation: FrictionEmulation | None = None) -> None:
         period = cascade.control_period
-        self._position_gain = np.asarray(cascade.position_gain)
+        self._position_gain = cascade.position_gain
         # The velocity error is integrated by the trapezoidal rule: half of this tick's error, all of those before.
-        self._gain = np.asarray(cascade.velocity_gain) + np.asarray(cascade.integral_gain) * (period / 2.0)
-        self._integral_step = np.asarray(cascade.integral_gain) * period
-        self._upper = np.asarray(cascade.torque_limit)
+        self._gain = cascade.velocity_gain + cascade.integral_gain * (period / 2.0)
+        self._integral_step = cascade.integral_gain * period
+        self._upper = cascade.torque_limit
         self._lower = -self._upper
-        self._speed_demand = references.velocity + self._position_gain * references.position
-        self._feedforward = references.feedforward(np.asarray(cascade.inertia_feedforward))
-        self._integral = np.zeros(references.velocity.shape[1:])
-        self._friction = None if emulation is None else _EmulatedFriction(emulation, period, references.velocity[0])
+        self._speed_demand = _by_ticks(references.velocity + self._position_gain * references.position)
+        self._feedforward = _by_ticks(references.feedforward(cascade.inertia_feedforward))
+        self._integral: Values = 0.0
+        start = abreast(references.velocity[0])
+        self._friction = None if emulation is None else _EmulatedFriction(emulation, period, start)
 
-    def tick(self, k: int, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """Torque from tick k to the next, (axes,) each - N*m (N): the set-point, and what the motor makes.
+    def tick(self, k: int, position: Values, velocity: Values) -> tuple[Values, Values]:
+        """Torque from tick k to the next, as position and velocity are given - N*m (N): set-point, and the motor's.
 
         They differ by the emulated friction. The set-point is what the drive reports as current: the torque that moves
         the axis against its friction, whether that sits in the mechanics or in the software.
 
         Args:
             k: number of the tick.
-            position, velocity: measured at it - rad (m), rad/s (m/s) - (axes,).
+            position, velocity: measured at it - rad (m), rad/s (m/s) - (axes,), or numbers of a lone axis.
         """
         error = self._speed_demand[k] - self._position_gain * position - velocity
         wanted = self._gain * error + self._integral + self._feedforward[k]
-        setpoint = motor = self._limited(wanted)
+        setpoint = motor = _limited(wanted, self._lower, self._upper)
         if self._friction is not None:
             asked = setpoint - self._friction.torque(setpoint, velocity)
-            self._friction.applied = motor = self._limited(asked)
+            self._friction.applied = motor = _limited(asked, self._lower, self._upper)
             setpoint = setpoint + (motor - asked)
         self._integral = self._integral + self._integral_step * error * (setpoint == wanted)
         return setpoint, motor
 
-    def _limited(self, torque: Array) -> Array:
-        return np.maximum(np.minimum(torque, self._upper), self._lower)
+
+def _by_ticks(values: Array) -> Array:
+    """Values of axes (ticks, axes), those of a lone axis (ticks,)."""
+    return values[:, 0] if values.shape[1] == 1 else values
+
+
+def _limited(torque: Values, lower: Values, upper: Values) -> Values:
+    if isinstance(torque, np.ndarray):
+        return np.maximum(np.minimum(torque, upper), lower)
+    return max(min(torque, upper), lower)
 
 
 class _EmulatedFriction:
@@ -142,10 +152,9 @@ class _EmulatedFriction:
     slips. The load is what the last tick's change of speed tells: M_load = M_motor - J*(w - w_last)/T.
     """
 
-    def __init__(self, emulation: FrictionEmulation, period: float, velocity: Array) -> None:
-        viscous = np.asarray(emulation.viscous_friction_coefficient)
-        inertia = np.asarray(emulation.inertia)
-        self._upper = np.asarray(emulation.coulomb_friction)
+    def __init__(self, emulation: FrictionEmulation, period: float, velocity: Values) -> None:
+        viscous, inertia = emulation.viscous_friction_coefficient, emulation.inertia
+        self._upper = emulation.coulomb_friction
         self._lower = -self._upper
         self._momentum_rate = inertia / period
         self._stopping = inertia / period - viscous / 2.0
@@ -153,14 +162,14 @@ class _EmulatedFriction:
         self._share = inertia / (inertia + viscous * period / 2.0)
         self._viscous = self._share * viscous
         self._last = self._momentum_rate * velocity
-        self.applied: Array = np.zeros_like(velocity)
+        self.applied: Values = 0.0
 
-    def torque(self, setpoint: Array, velocity: Array) -> Array:
+    def torque(self, setpoint: Values, velocity: Values) -> Values:
         """Friction torque - N*m (N), (axes,), to be taken off the set-point."""
         now = self._momentum_rate * velocity
         net = setpoint - self.applied + (now - self._last)
         self._last = now
-        dry = np.maximum(np.minimum(net + self._stopping * velocity, self._upper), self._lower)
+        dry = _limited(net + self._stopping * velocity, self._lower, self._upper)
         return net + self._share * (dry - net) + self._viscous * velocity
 
 

@@ -1,9 +1,12 @@
-"""Effects of axes side by side, gathered: one kind of effect on all the axes that have it, values as arrays."""
+"""Effects of axes side by side, gathered: one kind of effect on all the axes that have it.
+
+Values are arrays of axes; of a lone axis they are numbers, of which all that is computed costs a fraction.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -11,7 +14,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.effects.effect import Effect
-from bench.effects.kinds import Axis, Moment, Winding
+from bench.effects.kinds import Axis, Moment, Number, Winding
 from bench.plant.axis_model import AxisModel
 
 Kind = TypeVar("Kind", bound=Effect)
@@ -23,24 +26,35 @@ class Rows(Generic[Kind]):
 
     Attributes:
         effect: what it is.
-        index: of the axes that have it.
-        values: of its quantities, (k,) each.
-        axis: constants of these axes, (k,) each.
-        memory: of the effect, (k,).
+        index: of the axes that have it, None where all do.
+        values: of its quantities, (k,) each, or numbers of a lone axis.
+        axis: constants of these axes, alike.
+        memory: of the effect, alike.
     """
 
     effect: Kind
-    index: NDArray[np.intp] | slice
-    values: dict[str, Array]
+    index: NDArray[np.intp] | None
+    values: dict[str, Number]
     axis: Axis
-    memory: Array = field(default_factory=lambda: np.zeros(0))
+    memory: Number = 0.0
 
     def moment(self, at: Moment) -> Moment:
         """What these axes see of a moment."""
-        if isinstance(self.index, slice):
+        if self.index is None:
             return at
-        time, began = (each[self.index] if isinstance(each, np.ndarray) else each for each in (at.time, at.began))
-        return Moment(time, at.position[self.index], at.velocity[self.index], at.effort[self.index], began)
+        return Moment(*(self.of(each) for each in (at.time, at.position, at.velocity, at.effort, at.began)))
+
+    def of(self, values: Number) -> Number:
+        """Of values of all axes, or one for all, those of these axes."""
+        return values if self.index is None or not isinstance(values, np.ndarray) else values[self.index]
+
+    def put(self, values: Number, these: Number) -> Number:
+        """Values of all axes with those of these axes in their places; what came in stays as it is."""
+        if self.index is None or not isinstance(values, np.ndarray):
+            return these
+        changed = values.copy()
+        changed[self.index] = these
+        return changed
 
 
 def gather(models: Sequence[AxisModel], kind: type[Kind], ticked: bool = False) -> list[Rows[Kind]]:
@@ -72,15 +86,15 @@ def _rows(
     assert isinstance(effect, kind)
     axes = [models[row].axis for row in index]
     constants = {
-        key: np.array([getattr(axis, key) for axis in axes], dtype=np.float64)
+        key: abreast([float(getattr(axis, key)) for axis in axes])
         for key in ("inertia", "motor_inertia", "viscous", "coulomb", "peak_effort")
     }
     return Rows(
         effect,
-        slice(None) if len(index) == len(models) else np.array(index),
-        {key: np.array([value[key] for value in values]) for key in values[0]},
+        None if len(index) == len(models) else np.array(index),
+        {key: abreast([value[key] for value in values]) for key in values[0]},
         Axis(**constants, winding=_windings(axes)),
-        np.zeros(len(index)),
+        abreast([0.0] * len(index)),
     )
 
 
@@ -89,4 +103,12 @@ def _windings(axes: Sequence[Axis]) -> Winding | None:
     if len(known) < len(axes):
         return None
     names = ("torque_constant", "resistance", "inductance", "back_emf_constant")
-    return Winding(**{name: np.array([getattr(winding, name) for winding in known]) for name in names})
+    return Winding(**{name: abreast([float(getattr(winding, name)) for winding in known]) for name in names})
+
+
+def abreast(values: Sequence[float] | Array) -> Number:
+    """Values of axes side by side, (axes,), as they are now; that of a lone axis as a number.
+
+    NumPy's, which overflows to infinity as arrays do, where one of Python's raises an error.
+    """
+    return np.float64(values[0]) if len(values) == 1 else np.array(values, dtype=np.float64)

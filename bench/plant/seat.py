@@ -15,6 +15,7 @@ from mujoco.batch import Batch
 from numpy.typing import NDArray
 
 from bench.arrays import Array
+from bench.effects.kinds import Number
 from bench.effects.mjcf import AXIS, BRISTLES
 
 #: Places of the two friction levels among the parameters of a passive motor with bristles.
@@ -22,7 +23,7 @@ BRISTLE_LEVELS = slice(3, 5)
 
 
 class Seat(Protocol):
-    """Axes side by side in MuJoCo, all values on the motor's side, (axes,) each."""
+    """Axes side by side in MuJoCo, all values on the motor's side, (axes,) each, or numbers of a lone axis."""
 
     @property
     def step(self) -> float:
@@ -31,22 +32,22 @@ class Seat(Protocol):
 
     @property
     def bristled(self) -> bool:
-        """Whether bristles carry the dry friction."""
+        """Whether bristles carry the dry friction, which bend to the level of their direction."""
         ...
 
-    def set_torque(self, torque: Array) -> None:
+    def set_torque(self, torque: Number) -> None:
         """Torque that is applied beside the drive's - N*m (N)."""
         ...
 
-    def add_torque(self, torque: Array) -> None:
+    def add_torque(self, torque: Number) -> None:
         """More of it in the same step - N*m (N)."""
         ...
 
-    def set_added_inertia(self, inertia: Array) -> None:
+    def set_added_inertia(self, inertia: Number) -> None:
         """Inertia beyond that of the model - kg*m**2 (kg)."""
         ...
 
-    def set_friction(self, level: Array) -> None:
+    def set_friction(self, level: Number) -> None:
         """Level of dry friction - N*m (N)."""
         ...
 
@@ -77,22 +78,22 @@ class BatchSeat:
         """See `Seat`."""
         return self._bristles >= 0
 
-    def set_torque(self, torque: Array) -> None:
+    def set_torque(self, torque: Number) -> None:
         """See `Seat`."""
         self._applied[:] = self._ratio * torque
 
-    def add_torque(self, torque: Array) -> None:
+    def add_torque(self, torque: Number) -> None:
         """See `Seat`."""
         self._applied += self._ratio * torque
 
-    def set_added_inertia(self, inertia: Array) -> None:
+    def set_added_inertia(self, inertia: Number) -> None:
         """See `Seat`."""
         armature, bare = self._armatures
         armature[:] = bare + self._ratio**2 * inertia
 
-    def set_friction(self, level: Array) -> None:
+    def set_friction(self, level: Number) -> None:
         """See `Seat`."""
-        self._levels[:] = level[:, None] if self.bristled else (self._ratio * level)[:, None]
+        self._levels[:] = level if self.bristled else self._ratio * level
 
     @cached_property
     def _armatures(self) -> tuple[Array, Array]:
@@ -102,10 +103,10 @@ class BatchSeat:
 
     @cached_property
     def _levels(self) -> NDArray[np.float64]:
-        """Of friction, (axes, k)."""
+        """Of friction, (k, axes)."""
         if self.bristled:
-            return self._batch.expand("actuator_biasprm")[:, self._bristles, BRISTLE_LEVELS]
-        return self._batch.expand("dof_frictionloss")[:, self._dof : self._dof + 1]
+            return self._batch.expand("actuator_biasprm")[:, self._bristles, BRISTLE_LEVELS].T
+        return self._batch.expand("dof_frictionloss")[:, self._dof : self._dof + 1].T
 
 
 class ModelSeat:
@@ -134,26 +135,26 @@ class ModelSeat:
         """See `Seat`."""
         return self._bristles >= 0
 
-    def set_torque(self, torque: Array) -> None:
+    def set_torque(self, torque: Number) -> None:
         """In the place of what was set before; what others apply stays."""
         self.add_torque(torque - self._given)
 
-    def add_torque(self, torque: Array) -> None:
+    def add_torque(self, torque: Number) -> None:
         """See `Seat`."""
-        self._data.qfrc_applied[self._dof] += self._ratio * float(torque[0])
-        self._given += float(torque[0])
+        self._data.qfrc_applied[self._dof] += self._ratio * float(torque)
+        self._given += float(torque)
 
-    def set_added_inertia(self, inertia: Array) -> None:
+    def set_added_inertia(self, inertia: Number) -> None:
         """See `Seat`."""
-        self._model.dof_armature[self._dof] = self._armature + self._ratio**2 * float(inertia[0])
+        self._model.dof_armature[self._dof] = self._armature + self._ratio**2 * float(inertia)
 
     def leave(self) -> None:
         """Give the model back the inertia it had."""
         self._model.dof_armature[self._dof] = self._armature
 
-    def set_friction(self, level: Array) -> None:
+    def set_friction(self, level: Number) -> None:
         """See `Seat`."""
         if self.bristled:
-            self._model.actuator_biasprm[self._bristles, BRISTLE_LEVELS] = level[0]
+            self._model.actuator_biasprm[self._bristles, BRISTLE_LEVELS] = level
         else:
-            self._model.dof_frictionloss[self._dof] = self._ratio * float(level[0])
+            self._model.dof_frictionloss[self._dof] = self._ratio * float(level)

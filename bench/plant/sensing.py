@@ -8,21 +8,18 @@ from dataclasses import replace
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.kinds import Sensing
+from bench.effects.kinds import Number, Sensing
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
 from bench.plant.rows import Rows
 from bench.plant.states import States
 
 
-def seen_by_drive(encoders: Sequence[Rows[Sensing]], position: Array, velocity: Array) -> tuple[Array, Array]:
+def seen_by_drive(encoders: Sequence[Rows], position: Number, velocity: Number) -> tuple[Number, Number]:
     """What the drives of axes side by side have of their true motion, (axes,) each."""
-    if encoders:
-        # copied, as both may be views of a batch that steps on
-        position, velocity = position.copy(), velocity.copy()
     for rows in encoders:
-        i = rows.index
-        position[i], velocity[i] = rows.effect.seen(rows.values, position[i], velocity[i])
+        turned, moving = rows.effect.seen(rows.values, rows.of(position), rows.of(velocity))
+        position, velocity = rows.put(position, turned), rows.put(velocity, moving)
     return position, velocity
 
 

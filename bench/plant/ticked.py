@@ -14,10 +14,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bench.arrays import Array
-from bench.effects.kinds import Electronics, Friction, Mechanism, Moment, Sensing
+from bench.effects.kinds import Electronics, Friction, Mechanism, Moment, Number, Sensing
 from bench.plant.axis_model import AxisModel
-from bench.plant.rows import Rows, gather
+from bench.plant.rows import Rows, abreast, gather
 from bench.plant.seat import Seat
 
 
@@ -27,11 +26,12 @@ class TickedEffects:
     Args:
         seat: where MuJoCo has the axes.
         models: one for each of them.
-        velocity: they start with - rad/s (m/s) - (axes,).
+        velocity: they start with - rad/s (m/s) - (axes,), or a number of a lone axis.
     """
 
-    def __init__(self, seat: Seat, models: Sequence[AxisModel], velocity: Array) -> None:
+    def __init__(self, seat: Seat, models: Sequence[AxisModel], velocity: Number) -> None:
         self._seat, self._step = seat, seat.step
+        self._none = abreast([0.0] * len(models))
         self._mechanisms = gather(models, Mechanism, ticked=True)
         electronics = gather(models, Electronics)
         self._flowing = _through(electronics, "flowing")
@@ -42,12 +42,14 @@ class TickedEffects:
         self._inertia = _through(self._mechanisms, "added_inertia")
         self._resisting = _through(self._mechanisms, "resisting_torque")
         self._factors = _through(self._mechanisms, "torque_factor")
-        self._before = velocity.copy()
+        self._before = velocity
 
     def act(
-        self, time: float | Array, position: Array, velocity: Array, demand: Array, began: float | Array = 0.0
-    ) -> tuple[Array, Array]:
+        self, time: Number, position: Number, velocity: Number, demand: Number, began: Number = 0.0
+    ) -> tuple[Number, Number]:
         """Set up the next step; returns the effort that is reported and the motor's torque, (axes,) each.
+
+        Of a lone axis everything may be numbers. The velocity is kept, and must not change afterwards.
 
         Args:
             time: at the start of the step, since the recording's start - s - one for all axes, or (axes,).
@@ -57,41 +59,42 @@ class TickedEffects:
             began: the recording, as `Moment` has it - s - one for all axes, or (axes,).
         """
         middle = 1.5 * velocity - 0.5 * self._before
-        self._before = velocity.copy()
+        self._before = velocity
         reported, torque = self._driven(time + 0.5 * self._step, middle, demand)
         at = Moment(time + 0.5 * self._step, position, middle, torque, began)
         if self._factors:
-            torque = torque.copy()
             for rows in self._factors:
-                torque[rows.index] *= rows.effect.torque_factor(rows.values, rows.axis, rows.moment(at))
+                factor = rows.effect.torque_factor(rows.values, rows.axis, rows.moment(at))
+                torque = rows.put(torque, rows.of(torque) * factor)
             at = Moment(at.time, position, middle, torque, began)
-        applied = np.zeros_like(velocity) - self._friction.offset(at)
+        applied = self._none - self._friction.offset(at)
         for rows in self._resisting:
-            applied[rows.index] -= rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))
+            resisting = rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))
+            applied = rows.put(applied, rows.of(applied) - resisting)
         self._seat.set_torque(applied)
         if self._inertia:
-            added = np.zeros_like(velocity)
+            added = self._none
             for rows in self._inertia:
-                added[rows.index] += rows.effect.added_inertia(rows.values, rows.axis, rows.moment(at))
+                more = rows.effect.added_inertia(rows.values, rows.axis, rows.moment(at))
+                added = rows.put(added, rows.of(added) + more)
             self._seat.set_added_inertia(added)
         return reported, torque
 
-    def _driven(self, time: float | Array, velocity: Array, demand: Array) -> tuple[Array, Array]:
+    def _driven(self, time: Number, velocity: Number, demand: Number) -> tuple[Number, Number]:
         """In the order of the signal: what flows of a demand, what that truly is, what acts, what torque it makes."""
-        reported = demand.copy()
+        reported = demand
         for rows in self._flowing:
-            i = rows.index
-            flows = rows.effect.flowing(rows.values, rows.axis, velocity[i], demand[i], rows.memory, self._step)
-            reported[i], rows.memory = flows
-        torque = reported.copy()
+            wanted, speed = rows.of(demand), rows.of(velocity)
+            flows, rows.memory = rows.effect.flowing(rows.values, rows.axis, speed, wanted, rows.memory, self._step)
+            reported = rows.put(reported, flows)
+        torque = reported
         for rows in self._acted:
-            at = time[rows.index] if isinstance(time, np.ndarray) else time
-            torque[rows.index] = rows.effect.acted(rows.values, rows.axis, torque[rows.index], at)
+            torque = rows.put(torque, rows.effect.acted(rows.values, rows.axis, rows.of(torque), rows.of(time)))
         for rows in self._acting:
-            i = rows.index
-            torque[i], rows.memory = rows.effect.acting(rows.values, torque[i], rows.memory, self._step)
+            acts, rows.memory = rows.effect.acting(rows.values, rows.of(torque), rows.memory, self._step)
+            torque = rows.put(torque, acts)
         for rows in self._delivered:
-            torque[rows.index] = rows.effect.delivered(rows.values, rows.axis, torque[rows.index])
+            torque = rows.put(torque, rows.effect.delivered(rows.values, rows.axis, rows.of(torque)))
         return reported, torque
 
 
@@ -100,7 +103,8 @@ class _FrictionLevels:
 
     def __init__(self, seat: Seat, models: Sequence[AxisModel]) -> None:
         mechanisms = gather(models, Friction, ticked=True)
-        self._coulomb = np.array([model.parameters.coulomb_friction for model in models])
+        self._coulomb = abreast([model.parameters.coulomb_friction for model in models])
+        self._none = abreast([0.0] * len(models))
         self._excesses = _through(mechanisms, "friction_excess")
         self._factors = _through(mechanisms, "friction_factor")
         self._differences = _through(mechanisms, "friction_difference")
@@ -109,27 +113,23 @@ class _FrictionLevels:
         self._seat = seat
         self._changes = bool(self._excesses or self._factors or self._differences or self._under_load)
 
-    def offset(self, at: Moment) -> Array | float:
+    def offset(self, at: Moment) -> Number:
         """Set the level; returns half the difference of the two directions' levels - N*m (N) - (axes,)."""
         if not self._changes:
             return 0.0
-        level = self._coulomb.copy()
+        level = self._coulomb
         for rows in self._excesses:
-            level[rows.index] += rows.effect.friction_excess(rows.values, rows.axis, rows.moment(at))
+            excess = rows.effect.friction_excess(rows.values, rows.axis, rows.moment(at))
+            level = rows.put(level, rows.of(level) + excess)
         if self._under_load:
-            load = np.zeros(level.size)
-            for rows in self._loads:
-                load[rows.index] += rows.effect.load_torque(rows.values, rows.moment(at))
-            for rows in self._under_load:
-                values, axis, i = rows.values, rows.axis, rows.index
-                level[i] += rows.effect.friction_under_load(values, axis, rows.moment(at), load[i])
-        half = np.zeros(level.size)
+            level = self._with_load(level, at)
+        half = self._none
         for rows in self._differences:
-            half[rows.index] += 0.5 * rows.effect.friction_difference(rows.values, rows.axis)
+            difference = rows.effect.friction_difference(rows.values, rows.axis)
+            half = rows.put(half, rows.of(half) + 0.5 * difference)
         for rows in self._factors:
             factor = rows.effect.friction_factor(rows.values, rows.axis, rows.moment(at))
-            level[rows.index] *= factor
-            half[rows.index] *= factor
+            level, half = (rows.put(each, rows.of(each) * factor) for each in (level, half))
         if not self._differences:
             self._seat.set_friction(np.maximum(level, 0.0))
             return 0.0
@@ -139,6 +139,16 @@ class _FrictionLevels:
             return 0.0
         self._seat.set_friction(0.5 * (forward + backward))
         return 0.5 * (forward - backward)
+
+    def _with_load(self, level: Number, at: Moment) -> Number:
+        """The level with what the transmitted torque adds to it - N*m (N) - (axes,)."""
+        load = self._none
+        for rows in self._loads:
+            load = rows.put(load, rows.of(load) + rows.effect.load_torque(rows.values, rows.moment(at)))
+        for rows in self._under_load:
+            pulled = rows.effect.friction_under_load(rows.values, rows.axis, rows.moment(at), rows.of(load))
+            level = rows.put(level, rows.of(level) + pulled)
+        return level
 
 
 def _through(rows: Sequence[Rows], hook: str) -> list[Rows]:

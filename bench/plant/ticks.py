@@ -15,7 +15,7 @@ from bench.plant.drive import Cascade, CascadeDrive, FrictionEmulation
 from bench.plant.plant import Plant
 from bench.plant.quiet import quiet
 from bench.plant.references import References, side_by_side
-from bench.plant.rows import gather
+from bench.plant.rows import abreast, gather
 from bench.plant.seat import BatchSeat
 from bench.plant.sensing import seen_by_drive
 from bench.plant.states import DIVERGED, States
@@ -38,20 +38,21 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
     velocity = batch.bind("qvel")[:, joint.dofadr[0]]
     torque_input = batch.bind("ctrl")[:, batch.model.actuator_ctrladr[batch.model.actuator(DRIVE).id]]
     motion, substeps = side_by_side(list(references)), plants[0].substeps
-    half = np.asarray(plants[0].timestep / 2.0)
+    half = plants[0].timestep / 2.0
     drive = CascadeDrive(_cascades(plants), motion, _emulations(plants))
     velocity[:] = motion.velocity[0]
     position[:] = motion.position[0] + half * velocity
     models = [plant.model for plant in plants]
     encoders = [rows for rows in gather(models, Sensing) if rows.effect.overrides("seen")]
     ticked = any(not model.all_native for model in models)
-    acting = TickedEffects(BatchSeat(batch), models, velocity) if ticked else None
+    acting = TickedEffects(BatchSeat(batch), models, abreast(velocity)) if ticked else None
     record = States(motion.time, *(np.zeros_like(motion.velocity) for _ in range(4)))
     with quiet():
         for k in range(len(motion.time)):
-            record.position[k] = position - half * velocity
-            record.velocity[k] = velocity
-            setpoint, motor = drive.tick(k, *seen_by_drive(encoders, record.position[k], velocity))
+            now = abreast(velocity)
+            there = abreast(position) - half * now
+            record.position[k], record.velocity[k] = there, now
+            setpoint, motor = drive.tick(k, *seen_by_drive(encoders, there, now))
             if acting is None:
                 record.torque[k], record.motor_torque[k] = setpoint, motor
                 torque_input[:] = motor
@@ -59,9 +60,10 @@ def run_ticks(plants: Sequence[Plant], references: Sequence[References], progres
             else:
                 for substep in range(substeps):
                     time = motion.time[k] + substep * batch.model.opt.timestep
-                    flowing, torque_input[:] = acting.act(time, position, velocity, motor)
+                    flowing, acts = acting.act(time, abreast(position), abreast(velocity), motor)
+                    torque_input[:] = acts
                     record.torque[k] += (setpoint + (flowing - motor)) / substeps
-                    record.motor_torque[k] += torque_input / substeps
+                    record.motor_torque[k] += acts / substeps
                     batch.step()
             if progress is not None and k % REPORT_EVERY == 0:
                 progress(k / len(motion.time))
@@ -84,7 +86,7 @@ def batch_of(models: Sequence[mujoco.MjModel]) -> Batch:
 
 def _cascades(plants: Sequence[Plant]) -> Cascade:
     names = ("position_gain", "velocity_gain", "integral_gain", "inertia_feedforward", "torque_limit")
-    gains = {name: np.array([float(getattr(plant.cascade, name)) for plant in plants]) for name in names}
+    gains = {name: abreast([float(getattr(plant.cascade, name)) for plant in plants]) for name in names}
     return Cascade(**gains, control_period=plants[0].cascade.control_period)
 
 
@@ -94,7 +96,7 @@ def _emulations(plants: Sequence[Plant]) -> FrictionEmulation | None:
         return None
     made = [plant.parameters if plant.emulated else plant.parameters.frictionless for plant in plants]
     return FrictionEmulation(
-        np.array([parameters.viscous_friction_coefficient for parameters in made]),
-        np.array([parameters.coulomb_friction for parameters in made]),
-        np.array([parameters.inertia for parameters in made]),
+        abreast([parameters.viscous_friction_coefficient for parameters in made]),
+        abreast([parameters.coulomb_friction for parameters in made]),
+        abreast([parameters.inertia for parameters in made]),
     )

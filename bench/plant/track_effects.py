@@ -23,6 +23,7 @@ from bench.plant.axis_model import AxisModel
 from bench.plant.blocks import blocks
 from bench.plant.native import OpenLoop, run_blocks
 from bench.plant.quiet import quiet
+from bench.plant.rows import abreast
 from bench.plant.seat import BatchSeat
 from bench.plant.states import DIVERGED
 from bench.plant.stretches import Held, Reported, Stretch, all_stretches, inputs_of
@@ -106,9 +107,9 @@ def _run_ticked(simulated: Sequence[Array], stretches: Sequence[Stretch]) -> lis
     starts = np.array([each.start for each in inputs])
     velocity[:] = starts[:, 1]
     position[:] = starts[:, 0] + step / 2.0 * velocity
-    since, began = (np.array([getattr(one, name) for one in stretches]) for name in ("since", "began"))
+    since, began = (abreast([getattr(one, name) for one in stretches]) for name in ("since", "began"))
     mechanisms = [stretch.held.model.with_effects(stretch.held.model.of_kind(Mechanism)) for stretch in stretches]
-    acting = TickedEffects(BatchSeat(batch), mechanisms, velocity)
+    acting = TickedEffects(BatchSeat(batch), mechanisms, abreast(velocity))
     reported = [Reported(stretch, simulated[stretch.row][stretch.part]) for stretch in stretches]
     sound = np.ones(count, dtype=np.bool_)
     for start, stop in blocks(max(stretch.steps for stretch in stretches), 8 * 5 * count):
@@ -116,9 +117,10 @@ def _run_ticked(simulated: Sequence[Array], stretches: Sequence[Stretch]) -> lis
         for i, each in enumerate(inputs):
             controls[:, i] = each(start, stop)
         for k, control in enumerate(controls):
-            record[:, k] = position - step / 2.0 * velocity, velocity
+            there, now = abreast(position), abreast(velocity)
+            record[0, k], record[1, k] = there - step / 2.0 * now, now
             driven[:] = control
-            driven[:, 2] = acting.act(since + (start + k) * step, position, velocity, control[:, 2], began)[1]
+            driven[:, 2] = acting.act(since + (start + k) * step, there, now, abreast(control[:, 2]), began)[1]
             batch.step()
         sound &= np.isfinite(record).all(axis=(0, 1))
         for i, each in enumerate(reported):

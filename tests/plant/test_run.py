@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from bench.effects.present import Present
 from bench.errors import InputError, SimulationError
 from bench.plant.drive import Cascade
 from bench.plant.native import run_native
@@ -62,3 +63,12 @@ def test_refuses_periods_that_do_not_fit(plant):
     other = dataclasses.replace(plant, cascade=dataclasses.replace(plant.cascade, control_period=500e-6))
     with pytest.raises(InputError, match="tick together"):
         run([plant, other], [reversals(), reversals(period=500e-6)])
+
+
+def test_a_lone_axis_diverges_as_axes_side_by_side_do(plant):
+    """Its values are numbers, and a Stribeck velocity of nothing divides by it all the same."""
+    effect = Present.of("stribeck_friction", {"static_friction": 0.2, "stribeck_velocity": 0.0})
+    axis = dataclasses.replace(plant, effects=(effect,))
+    for count in (1, 2):
+        with np.errstate(all="ignore"), pytest.raises(SimulationError, match="diverged"):
+            run_ticks([axis] * count, [reversals(duration=0.05)] * count)

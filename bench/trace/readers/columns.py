@@ -7,7 +7,7 @@ from pyarrow import csv
 
 
 def parse_columns(
-    body: bytes, kinds: list[pa.DataType], separator: str, decimal: str, nulls: tuple[str, ...] = ()
+    body: bytes | memoryview, kinds: list[pa.DataType], separator: str, decimal: str, nulls: tuple[str, ...] = ()
 ) -> pa.Table:
     """Lines of cells as columns named 0, 1, ... of the types given.
 

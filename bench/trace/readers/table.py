@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -35,11 +36,28 @@ _GROUPS = re.compile(r"[+-]?\d{1,3}(?:[.,' ’\u00a0\u202f]\d{3})+")
 
 @dataclass(frozen=True)
 class Body:
-    """Lines of samples as UTF-8, and the number of the first one in the file; None where lines were left out."""
+    """Lines of samples in a text.
 
-    content: bytes
+    Attributes:
+        text: as UTF-8.
+        line: number of the first of them in the file; None where lines were left out.
+        notes: what the user should know.
+        start: where in the text they start. A long text is not copied to be rid of its head.
+    """
+
+    text: bytes
     line: int | None
     notes: tuple[str, ...] = ()
+    start: int = 0
+
+    @cached_property
+    def content(self) -> bytes:
+        """The lines alone."""
+        return self.text[self.start :]
+
+    def parsed(self, kinds: list[pa.DataType], layout: Layout, nulls: tuple[str, ...] = ()) -> pa.Table:
+        """Columns, as `parse_columns` has them."""
+        return parse_columns(memoryview(self.text)[self.start :], kinds, _separator(layout), layout.decimal, nulls)
 
 
 def recognises(source: Source) -> bool:
@@ -61,17 +79,23 @@ def read(source: Source) -> Recording:
     if len(layout.labels) > MOST_COLUMNS:
         raise InputError(source.path, f"found {len(layout.labels)} columns", f"allowed: {MOST_COLUMNS}")
     content = utf8(source.content)
-    start = _offset(content, layout.start)
-    body = Body(content[start:], layout.start + 1)
+    body = Body(content, layout.start + 1, start=_offset(content, layout.start))
     if layout.separator == BLANKS:
-        body = replace(body, content=_between_tabs(body.content))
+        body = Body(_between_tabs(body.content), body.line)
     table, body = _columns(body, layout, source.path)
     rows = _filled_rows(table)
-    blank = re.search(rb"\n[ \t\r]*\n", body.content.rstrip()) is not None
-    line = None if blank or (rows is not None and not rows[: int(rows.sum())].all()) else body.line
+    gaps = _has_blank_lines(body, table.num_rows) or (rows is not None and not rows[: int(rows.sum())].all())
+    line = None if gaps else body.line
     table = table if rows is None else table.filter(pa.array(rows))
     channels = tuple(_channels(table, layout, line, source.path))
     return Recording(channels, FORMAT, source.path, notes=body.notes)
+
+
+def _has_blank_lines(body: Body, rows: int) -> bool:
+    """Whether a line between samples is blank; where every line is a row none is, and to count lines takes no time."""
+    if body.text.count(b"\n", body.start) + (not body.text.endswith(b"\n")) == rows:
+        return False
+    return re.search(rb"\n[ \t\r]*\n", body.content.rstrip()) is not None
 
 
 def _layout(source: Source) -> Layout | None:
@@ -111,11 +135,11 @@ def _columns(body: Body, layout: Layout, path: str) -> tuple[pa.Table, Body]:
     separator, count = _separator(layout), len(layout.labels)
     try:
         kinds = [types[kind] for kind in layout.kinds]
-        return parse_columns(body.content, kinds, separator, layout.decimal, EMPTY), body
+        return body.parsed(kinds, layout, EMPTY), body
     except pa.ArrowInvalid:
         body = _cleaned(body, separator, count, path)
     try:
-        return parse_columns(body.content, [pa.string()] * count, separator, layout.decimal), body
+        return body.parsed([pa.string()] * count, layout), body
     except pa.ArrowInvalid as error:
         first = body.line or 1
         lines = enumerate(body.content.splitlines(), first)
