@@ -13,23 +13,20 @@ from bench.report.page.blocks import (
     Axes,
     Chart,
     Column,
-    Curve,
     Downloads,
     File,
     Intervals,
     Page,
-    Panel,
     Paragraph,
     Points,
-    Samples,
     Section,
     Series,
     Span,
     Table,
-    TimeGraph,
 )
 from bench.report.page.folder import DATA, HTML, read_page, write_page
 from bench.report.page.render import html
+from bench.report.page.scripted import Curve, Panel, Samples, TimeGraph
 
 HOSTILE = "<script>alert(1)</script>\"'&{{ 7*7 }}</style>-->"
 

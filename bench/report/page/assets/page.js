@@ -59,9 +59,17 @@
         window.addEventListener("pointerup", () => window.removeEventListener("pointermove", move), { once: true });
       }, { capture: true });
       this.place.addEventListener("mousedown", (event) => { if (event.shiftKey) event.stopPropagation(); }, { capture: true });
+      window.addEventListener("instant", (event) => this.point(event.detail));
       new ResizeObserver(() => this.fit()).observe(this.place);
       for (const query of ["(prefers-color-scheme: dark)", "print"])
         window.matchMedia(query).addEventListener("change", () => this.build());
+    }
+
+    point(time) { // the cursor of all panels, for whoever tells a time; beyond what is in sight it is gone
+      for (const plot of this.plots) {
+        const left = plot.valToPos(time, "x");
+        plot.setCursor(left < 0 || left > plot.over.clientWidth ? { left: -10, top: -10 } : { left, top: 0 });
+      }
     }
 
     curves(panel) {
