@@ -8,6 +8,12 @@
   };
   const shown = (value, unit) => (value == null ? "–" : Number(value.toPrecision(4)) + (unit ? " " + unit : ""));
 
+  const labels = (u, splits, axis, space, step) => { // with as many digits as tell them apart
+    const digits = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
+    const text = (value) => (digits > 4 ? value.toExponential(Math.max(0, Math.floor(Math.log10(Math.abs(value)) + digits))) : value.toFixed(digits));
+    return splits.map((value) => (Math.abs(value) < step / 2 ? "0" : text(value).replace(/-/g, "−")));
+  };
+
   class TimeGraph {
     constructor(figure) {
       this.data = JSON.parse(figure.querySelector("script[type='application/json']").textContent);
@@ -101,7 +107,7 @@
         scales: { x: { time: false } },
         axes: [
           { ...axis, size: last ? 42 : 4, label: last ? "time / s" : undefined, labelSize: 18, labelFont: axis.font, values: last ? undefined : (u, splits) => splits.map(() => "") },
-          { ...axis, size: 64, space: 24 },
+          { ...axis, size: 64, space: 24, values: labels },
         ],
         series: [{}, ...curves.map((c, i) => ({ label: c.name, stroke: colours[i], width: c.role === "measured" ? 3 : 1.3, points: { show: false }, spanGaps: false }))],
         cursor: { sync: { key: sync.key, scales: ["x", null] }, drag: { x: true, y: false, setScale: false }, y: false, points: { size: 6 },
