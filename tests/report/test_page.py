@@ -15,6 +15,7 @@ from bench.report.page.blocks import (
     Column,
     Downloads,
     File,
+    HeatMap,
     Intervals,
     Page,
     Paragraph,
@@ -74,6 +75,7 @@ def page_full_of(text):
             y_unit=text,
             panels=(Axes(x_label=text, x_unit=text, note=text, series=(series,)),),
         ),
+        HeatMap(caption=text, corner=text, rows=(text, text), columns=(text,), counts=((1,), (0,))),
         Intervals(
             title=text,
             alternative=text,

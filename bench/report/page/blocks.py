@@ -149,6 +149,24 @@ class Intervals(Block):
     spans: tuple[Span, ...]
 
 
+class HeatMap(Block):
+    """Counts as a table whose cells are coloured by their share of the row; drawn without a script.
+
+    Attributes:
+        caption: what it tells.
+        corner: what rows are.
+        rows, columns: headings.
+        counts: a row each; zero is left blank. All should lie on the diagonal, which is framed.
+    """
+
+    kind: Literal["heat"] = "heat"
+    caption: str
+    corner: str
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    counts: tuple[tuple[int, ...], ...]
+
+
 class File(Block):
     """A file inside the page.
 
@@ -187,7 +205,7 @@ class Neighbours(Block):
 
 
 AnyBlock = Annotated[
-    Paragraph | Points | Table | TimeGraph | Motion | Chart | Intervals | Downloads | Neighbours,
+    Paragraph | Points | Table | TimeGraph | Motion | Chart | Intervals | HeatMap | Downloads | Neighbours,
     Field(discriminator="kind"),
 ]
 
