@@ -1,6 +1,6 @@
 "use strict";
 (() => {
-  const NOTHING = -32768, HEIGHT = { first: 170, other: 130 }, LEAST = 8;
+  const NOTHING = -32768, HEIGHT = { first: 170, other: 130 }, LEAST = 8, DENSE = 8;
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   const numbers = (text) => {
     const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -15,11 +15,19 @@
     return splits.map((value) => (Math.abs(value) < step / 2 ? "0" : text(value).replace(/-/g, "−")));
   };
 
-  // Lowest and highest values, one after the other, as an upright bar for each pair, which reaches as far as the one
-  // before: a line up and down in every pixel looks the same and takes a browser several times as long to draw.
+  // Whether a curve of lowest and highest values goes up and down in nearly every pixel.
+  const dense = (u, i) => {
+    const y = u.data[i], { min, max } = u.scales.y;
+    let way = 0;
+    for (let k = 0; k < y.length; k += 2) if (y[k] !== null) way += y[k + 1] - y[k];
+    return (way / (max - min)) * u.bbox.height > DENSE * u.bbox.width;
+  };
+
+  // Such a curve as an upright bar for each pair, which reaches as far as the one before: a line up and down looks the
+  // same and takes a browser several times as long to draw.
   const bars = (u, i, colour) => {
     const [x, y] = [u.data[0], u.data[i]], thick = u.series[i].width * devicePixelRatio, { left, top, width, height } = u.bbox;
-    const wide = ((x[2] - x[0]) / (u.scales.x.max - u.scales.x.min)) * width;
+    const wide = Math.max(thick, ((x[2] - x[0]) / (u.scales.x.max - u.scales.x.min)) * width);
     u.ctx.save();
     u.ctx.beginPath();
     u.ctx.rect(left, top, width, height);
@@ -118,6 +126,7 @@
       const readout = document.createElement("div");
       readout.className = "readout";
       this.place.append(readout);
+      const barred = []; // curves that are drawn as bars
       const curves = this.curves(panel), last = k === this.data.panels.length - 1;
       const colours = curves.map((c) => colour(panel.first && c.choice === 0 && this.choice > 0 ? "first" : c.role));
       const axis = { stroke: colour("soft"), grid: { stroke: colour("rule"), width: 1 }, ticks: { stroke: colour("rule"), width: 1 }, font: "12px system-ui, sans-serif" };
@@ -133,11 +142,11 @@
           { ...axis, size: 64, space: 24, values: labels },
         ],
         series: [{}, ...curves.map((c, i) => ({ label: c.name, stroke: colours[i], width: c.role === "measured" ? 3 : 1.3,
-          points: { show: false }, spanGaps: false, paths: (...asked) => (this.plain ? line(...asked) : null) }))],
+          points: { show: false }, spanGaps: false, paths: (u, at, from, to) => ((barred[at] = !this.plain && dense(u, at)) ? null : line(u, at, from, to)) }))],
         cursor: { sync: { key: sync.key, scales: ["x", null] }, drag: { x: true, y: false, setScale: false }, y: false, points: { size: 6 },
           bind: { dblclick: () => () => { this.show(...this.whole); return null; } } },
         hooks: {
-          drawSeries: [(u, i) => { if (!this.plain) bars(u, i, colours[i - 1]); }],
+          drawSeries: [(u, i) => { if (barred[i]) bars(u, i, colours[i - 1]); }],
           setCursor: [tell],
           setSelect: [(u) => {
             if (u.select.width < 4) return;
