@@ -2,7 +2,7 @@
 (() => {
   const SLOWED = [1, 2, 5, 10, 20, 50, 100], LEFT = 80, RIGHT = 680, LEAP = 0.1; // px of the rail, as rail.py has them; s
   const floats = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
-  const figures = (value, unit) => (Number.isNaN(value) ? "not known" : value.toPrecision(4).replace("-", "−") + " " + unit);
+  const figures = (value, unit) => (Number.isNaN(value) ? "not known" : value.toPrecision(4).replace(/-/g, "−") + " " + unit);
 
   class Motion {
     constructor(figure) {
@@ -90,7 +90,7 @@
       const seconds = time.toFixed(Math.min(6, Math.max(3, Math.ceil(-Math.log10(step))))) + " s";
       this.instant.value = Math.round(this.at);
       this.instant.setAttribute("aria-valuetext", seconds);
-      const degrees = turns && !Number.isNaN(apart) ? " (" + ((apart * 180) / Math.PI).toPrecision(3).replace("-", "−") + "°)" : "";
+      const degrees = turns && !Number.isNaN(apart) ? " (" + ((apart * 180) / Math.PI).toPrecision(3).replace(/-/g, "−") + "°)" : "";
       const texts = ["at " + seconds, ghost + " " + figures(at, unit), "simulated " + figures(at + apart, unit),
         "simulated less " + ghost + " " + figures(apart, unit) + degrees];
       this.readout.replaceChildren(...texts.map((text) => Object.assign(document.createElement("span"), { textContent: text })));
