@@ -76,11 +76,11 @@ def write_video(path: Path, shown: SideBySide, scene: Scene, slowed: float, done
 def _instants(shown: SideBySide, slowed: float) -> Array:
     """Times of the motion that the frames show - s."""
     first, last = float(shown.time[0]), float(shown.time[-1])
-    count = int(round((last - first) * slowed * RATE, 6)) + 1
-    if count > MOST:
-        found = f"found {last - first:g} s of motion, slowed {slowed:g} times: {count} frames"
+    frames = round((last - first) * slowed * RATE, 6)
+    if frames >= MOST:
+        found = f"found {last - first:g} s of motion, slowed {slowed:g} times: {frames:g} frames"
         raise InputError("--video", found, f"allowed: up to {MOST}; show a part of it with --from and --to")
-    return first + np.arange(count) / (slowed * RATE)
+    return first + np.arange(int(frames) + 1) / (slowed * RATE)
 
 
 def _encoder() -> Any:  # noqa: ANN401 - an optional library
