@@ -11,6 +11,8 @@ from bench.effects.catalogue import catalogue
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = sorted((ROOT / "bench").rglob("*.py"))
+#: What makes the pages of the documentation.
+PAGE_MAKERS = sorted((ROOT / "docs" / "_ext").glob("*.py"))
 
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
@@ -114,7 +116,9 @@ def known_by_name(tree: ast.AST) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("path", [path for path in SOURCES if "effects" not in path.parts], ids=module_of)
+@pytest.mark.parametrize(
+    "path", [path for path in (*SOURCES, *PAGE_MAKERS) if "effects" not in path.parts], ids=module_of
+)
 def test_no_effect_is_known_by_name(path):
     assert known_by_name(ast.parse(path.read_text(encoding="utf-8"))) == []
 
@@ -150,7 +154,7 @@ def test_asking_an_effect_is_not_knowing_its_name(code):
     assert not known_by_name(ast.parse(code))
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=module_of)
+@pytest.mark.parametrize("path", (*SOURCES, *PAGE_MAKERS), ids=module_of)
 def test_files_and_functions_stay_small(path):
     text = path.read_text(encoding="utf-8")
     assert len(text.splitlines()) < 300

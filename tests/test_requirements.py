@@ -53,7 +53,7 @@ def test_lower_bounds_are_the_oldest_versions_that_are_tested():
 def test_the_lock_keeps_to_every_bound_and_holds_no_project():
     locked = pinned("locked.txt")
     assert PROJECT["name"] not in locked
-    for name, each in declared(*OPTIONAL, "notebooks", "test", "dev").items():
+    for name, each in declared(*OPTIONAL, "notebooks", "test", "docs", "dev").items():
         assert each.specifier.contains(locked[name]), f"{name} {locked[name]}: {each}"
 
 

@@ -16,7 +16,7 @@ from bench.balance.hypothesis import Hypothesis, Term
 from bench.balance.last_digit import rounding
 from bench.balance.layout import COULOMB, DIGIT, INERTIA, VISCOUS, Layout, delays, lay_out, seen_by
 from bench.balance.load_side import with_loads
-from bench.balance.noise import Floor, noise_floor, white_power
+from bench.balance.noise import Floor, noise_floor, noise_power
 from bench.balance.normal_equations import solved
 from bench.balance.rows import Rows
 from bench.effects.effect import Effect, Proposal
@@ -72,7 +72,7 @@ class Fit:
         step, modelled = self.hypothesis.step, self.effort - self.left
         cut = float(self.theta[self.owners == DIGIT].sum())
         rounded = rounding(self.rows, step, modelled, cut)
-        power = white_power(self.rows, self.hypothesis, self.layout, self.theta)
+        power = noise_power(self.rows, self.hypothesis, self.layout, self.theta)
         return noise_floor(self.rows, power, self.left, rounded)
 
     @property

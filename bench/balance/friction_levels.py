@@ -21,14 +21,15 @@ from bench.effects.signals import Signals
 
 
 def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
-    """The recording with the level of dry friction that the term at an index scales, as share of K_0.
+    """The recording with the level of dry friction that the term at an index scales or carries, as share of K_0.
 
-    sgn(omega) and what terms add to it, times what scales it before the one at the index.
+    sgn(omega) and what terms add to it, times what scales it: before the one at the index, or all where it carries it.
     """
-    others = [term for k, term in enumerate(hypothesis.terms) if term.level and k != index]
-    before = [term for k, term in enumerate(hypothesis.terms) if term.level and k < index]
+    terms = hypothesis.terms
+    last = len(terms) if index < len(terms) and terms[index].effect.carries_friction else index
+    others = [term for k, term in enumerate(terms) if term.level and k != index]
     acting = [term for term in others if not term.effect.scales_friction]
-    acting += [term for term in before if term.effect.scales_friction]
+    acting += [term for k, term in enumerate(terms[:last]) if term.level and k != index and term.effect.scales_friction]
     if not acting:
         return seen
 
@@ -54,9 +55,11 @@ def with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64])
 
 
 def multiply(hypothesis: Hypothesis) -> bool:
-    """Whether an effect scales what another adds."""
-    rubs = [term.effect for term in hypothesis.terms if term.effect.overrides("level")]
-    return len(rubs) > 1 and any(effect.scales_friction for effect in rubs)
+    """Whether an effect scales what another adds, or carries it."""
+    effects = [term.effect for term in hypothesis.terms]
+    levels = sum(effect.overrides("level") for effect in effects)
+    scaled = levels > 1 and any(effect.scales_friction for effect in effects)
+    return scaled or (levels > 0 and any(effect.carries_friction for effect in effects))
 
 
 def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows:

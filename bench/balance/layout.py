@@ -100,6 +100,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
     for index in range(len(hypothesis.terms)):
         table = term_columns(rows, seen, hypothesis, index)
         parts.append(table)
+        bounds |= {len(owners) + place: most for place, most in hypothesis.terms[index].effect.bounded.items()}
         owners += [index] * table.shape[1]
     columns = np.concatenate(parts, axis=1)
     held_by = np.array(owners)
@@ -184,7 +185,7 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.int64], moving
             place = int(np.flatnonzero(owners == index)[0])
             heard[place] = accelerated * term.effect.noise_of_motion(term.shape, omega)
     spectra = np.stack(list(heard.values()))
-    weight = conditioning.source_noise**2 * smooth.sample_period / np.pi * np.exp(-((omega * smooth.width) ** 2))
+    weight = conditioning.source_power(omega) * smooth.sample_period / np.pi * np.exp(-((omega * smooth.width) ** 2))
     places = list(heard)
     step = omega[1] - omega[0]
     noise[np.ix_(places, places)] = step * ((spectra * weight) @ spectra.conj().T).real

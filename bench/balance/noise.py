@@ -27,6 +27,8 @@ from bench.balance.rows import Rows
 LENGTHS, ENOUGH = (128, 64), 24
 #: Lowest bin clear of the window's own leakage, and share of the strongest density below which a bin is not read.
 LOWEST, HEARD = 3, 0.03
+#: Power of a line in Hann's window, at its bin and the next.
+HANN = np.array([1.0, 4.0, 1.0]) / 6.0
 #: Quantile over windows that counts as quiet. Of noise every quantile tells the same level; of a lag's residual at
 #: 4 ms a bin of the lower quartile still held 600 times the noise, of the lowest tenth 6 to 12 times.
 QUIET = 0.1
@@ -35,6 +37,9 @@ CHANCE = 0.4
 #: Excesses tried, and corners, from the lowest frequency read to this many times the highest.
 EXCESSES = np.r_[0.0, np.geomspace(CHANCE, 1e4, 60)]
 CORNERS, BEYOND = 16, 3.0
+#: Power of noise in the torque balance - (N*m)**2 (N**2) - over angular frequency - rad/s -, for the power there of the
+#: noise of the signal that speed is taken from.
+Power = Callable[[Array, Array], Array]
 
 
 @dataclass(frozen=True)
@@ -45,31 +50,37 @@ class Floor:
     white: float
 
 
-def noise_floor(rows: Rows, power: Callable[[Array], Array], residual: Array, rounded: float = 0.0) -> Floor:
+def noise_floor(rows: Rows, power: Power, residual: Array, rounded: float = 0.0) -> Floor:
     """RMS of noise in a residual.
 
     Args:
         rows: the recording.
-        power: of white noise in the torque balance before the filter, over angular frequency - (N*m)**2 (N**2).
+        power: of noise in the torque balance before the filter.
         residual: (m,) of the used rows - N*m (N).
         rounded: RMS of what rounding of the effort leaves beside - N*m (N).
     """
-    smooth = rows.conditioning.filter
+    conditioning, smooth = rows.conditioning, rows.conditioning.filter
     omega = np.linspace(0.0, np.pi / smooth.sample_period, 2048)
 
-    def density(at: Array) -> Array:
-        return np.exp(-((at * smooth.width) ** 2)) * power(at)
+    def density(at: Array, source: Array) -> Array:
+        return np.exp(-((at * smooth.width) ** 2)) * power(at, source)
 
-    excess, corner = colour(rows, density, residual)
-    white = density(omega)
-    coloured = white * (1.0 + excess / (1.0 + (omega / corner) ** 2))
+    def white(at: Array) -> Array:
+        return density(at, np.full(at.size, conditioning.source_noise**2))
+
+    def lines(at: Array) -> Array:
+        return density(at, conditioning.source_power(at))
+
+    excess, corner = colour(rows, white, lines, residual)
+    uncoloured = lines(omega)
+    coloured = uncoloured + white(omega) * excess / (1.0 + (omega / corner) ** 2)
     scale = smooth.sample_period / np.pi
-    floor, least = (float(np.sqrt(scale * np.trapezoid(spectrum, omega))) for spectrum in (coloured, white))
+    floor, least = (float(np.sqrt(scale * np.trapezoid(spectrum, omega))) for spectrum in (coloured, uncoloured))
     return Floor(math.hypot(floor, rounded), math.hypot(least, rounded))
 
 
-def white_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> Callable[[Array], Array]:
-    """Power of white noise of effort and speed in the torque balance, over angular frequency - (N*m)**2 (N**2).
+def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> Power:
+    """Power of noise of effort and speed in the torque balance, over angular frequency.
 
     s_M**2*|(1 + tau*s)*(1 + T*s)|**2*<(1 - dM_model/dM)**2> + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
     """
@@ -77,7 +88,7 @@ def white_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
     left = _left_of_effort(rows, hypothesis, layout, theta)
     moving, _ = delays(rows, hypothesis)
 
-    def power(omega: Array) -> Array:
+    def power(omega: Array, source: Array) -> Array:
         s = 1j * omega
         kinetic = theta[INERTIA] * s + theta[VISCOUS]
         for index, term in enumerate(hypothesis.terms):
@@ -88,7 +99,7 @@ def white_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
         late = (1.0 + theta[MISALIGNMENT] * s) * (1.0 + effort_lag(hypothesis) * s)
         effort = left * conditioning.effort_noise**2 * np.abs(late) ** 2
         known = conditioning.known_noise**2 * np.abs((1.0 + moving * s) * s) ** 2
-        return effort + known + conditioning.source_noise**2 * np.abs(kinetic) ** 2
+        return effort + known + source * np.abs(kinetic) ** 2
 
     return power
 
@@ -114,8 +125,19 @@ def _left_of_effort(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: A
     return total / count
 
 
-def colour(rows: Rows, density: Callable[[Array], Array], residual: Array) -> tuple[float, float]:
-    """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white."""
+def colour(
+    rows: Rows, density: Callable[[Array], Array], lines: Callable[[Array], Array], residual: Array
+) -> tuple[float, float]:
+    """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white.
+
+    Lines that rounding leaves come and go with the speed, and stay with a steady one: neither is colour.
+
+    Args:
+        rows: the recording.
+        density: of white noise behind the filter, over angular frequency - (N*m)**2 (N**2).
+        lines: the same with what rounding leaves.
+        residual: (m,) of the used rows - N*m (N).
+    """
     windows = _windows(rows, residual)
     count, length = windows.shape
     smooth = rows.conditioning.filter
@@ -128,7 +150,8 @@ def colour(rows: Rows, density: Callable[[Array], Array], residual: Array) -> tu
         return 0.0, 1.0
     taper = np.hanning(length)
     spectra = np.abs(np.fft.rfft(windows * taper, axis=1)[:, read]) ** 2 / np.sum(taper**2)
-    ratio = np.quantile(spectra, QUIET, axis=0) / _quiet_level(count) / white[read]
+    known = np.maximum(white, np.convolve(lines(omega), HANN, "same") / smooth.stride)[read]
+    ratio = np.quantile(spectra, QUIET, axis=0) / _quiet_level(count) / known
     corners = np.geomspace(omega[read[0]], BEYOND * omega[read[-1]], CORNERS)
     shapes = 1.0 / (1.0 + (omega[read] / corners[:, None]) ** 2)
     levels = np.log1p(EXCESSES[:, None, None] * shapes)

@@ -15,6 +15,9 @@ from bench.effects.signals import Scope
 #: How far a search of several shapes may wander, in units of how far a grid's shape reaches: along a valley without an
 #: end, as of a coupling that damps everything, it went on until numbers overflowed.
 FURTHEST = 10.0
+#: Of a search of all shapes at once: step of its derivatives, in the same units; saving at which it ends, relative; and
+#: steps at most.
+JOINT_STEP, JOINT_ENOUGH, JOINT_MOST = 1e-3, 1e-3, 8
 
 
 def free_shapes(term: Term, scope: Scope) -> list[int]:
@@ -56,6 +59,36 @@ def shaped(rows: Rows, hypothesis: Hypothesis, index: int) -> Fit:
         options={"initial_simplex": simplex, "xatol": 3e-3, "fatol": 1e-4, "maxfev": 120},
     )
     return fit(rows, at(np.asarray(best.x)))
+
+
+def together(fitted: Fit) -> Fit:
+    """Search the shapes of all terms at once for the least residual: in a valley between two, one alone stands still.
+
+    Gauss and Newton's steps over the shapes, strengths solved for at each (G. H. Golub, V. Pereyra, SIAM Journal on
+    Numerical Analysis 10, 1973, 413-432). Shapes without a derivative, as of an instant between two rows, are held.
+    """
+    scope, terms = fitted.scope, fitted.terms
+    free = [[k for k in free_shapes(term, scope) if term.effect.shapes[k].step] for term in terms]
+    ends = np.cumsum([len(places) for places in free])
+    if sum(map(bool, free)) < 2:
+        return fitted
+
+    def at(offset: Array) -> Fit:
+        moved = fitted.hypothesis
+        for index, (term, places, own) in enumerate(zip(terms, free, np.split(offset, ends[:-1]), strict=True)):
+            moved = moved.reshaped(index, _moved(term, places, own, scope))
+        return fit(fitted.rows, moved)
+
+    best = scipy.optimize.least_squares(
+        lambda offset: at(offset).residual / fitted.floor,
+        np.zeros(int(ends[-1])),
+        diff_step=JOINT_STEP,
+        x_scale=1.0,
+        ftol=JOINT_ENOUGH,
+        max_nfev=JOINT_MOST,
+    )
+    found = at(best.x)
+    return found if found.squares < fitted.squares else fitted
 
 
 def _moved(term: Term, free: list[int], offset: Array, scope: Scope) -> tuple[float, ...]:

@@ -108,6 +108,8 @@ class Effect:
         of_motion: whether its columns are accelerations, which a lag of the reported speed delays as J's.
         copies_torque: whether its columns are made of the measured torque, and so hold its noise.
         scales_friction: whether it multiplies the level of dry friction, what other effects add to it included.
+        carries_friction: whether it carries all of dry friction, what other effects add and scale included.
+        bounded: lowest and highest value of strengths that physics bounds, by their places: a fit holds them there.
         may_load: whether it may act on the load of a coupling rather than on the motor.
         couples: whether it joins motor and load; an axis has one such effect.
         turning_only: whether it has no meaning on a linear axis.
@@ -133,6 +135,8 @@ class Effect:
     of_motion: ClassVar[bool] = False
     copies_torque: ClassVar[bool] = False
     scales_friction: ClassVar[bool] = False
+    carries_friction: ClassVar[bool] = False
+    bounded: ClassVar[Mapping[int, tuple[float, float]]] = {}
     may_load: ClassVar[bool] = False
     couples: ClassVar[bool] = False
     turning_only: ClassVar[bool] = False

@@ -18,13 +18,16 @@ from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
+#: Share of the torque that friction takes at most; at one, torque would explain itself whatever it did.
+LOSSIEST = 0.7
+
 
 class LoadDependentFriction(Friction):
     """See the module."""
 
     name = "load_dependent_friction"
     summary = "friction grows with the magnitude of the transmitted torque"
-    quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0, null=0.0),)
+    quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0, upper=LOSSIEST, null=0.0),)
     copies_torque = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

@@ -13,7 +13,7 @@ from bench.balance.covariance import estimated, misfit
 from bench.balance.hypothesis import Hypothesis
 from bench.balance.last_digit import cut_beforehand, plain, rounding
 from bench.balance.layout import Layout, lay_out
-from bench.balance.noise import noise_floor, white_power
+from bench.balance.noise import noise_floor, noise_power
 from bench.balance.normal_equations import NormalEquations, normal_equations, solved
 from bench.balance.rows import Rows
 from bench.identify.determined import INDEPENDENT_SHARE, independent_share
@@ -128,7 +128,7 @@ class Left:
         modelled = laid.columns @ theta + offset
         residual, cut = laid.effort - modelled, float(theta[laid.owners == layout.DIGIT].sum())
         rounded = rounding(rows, hypothesis.step, modelled, cut)
-        floor = noise_floor(rows, white_power(rows, hypothesis, laid, theta), residual, rounded).coloured
+        floor = noise_floor(rows, noise_power(rows, hypothesis, laid, theta), residual, rounded).coloured
         return cls(laid, residual, floor)
 
     def misfit(self, found: Solved) -> Array:

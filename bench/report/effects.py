@@ -38,7 +38,7 @@ def effects_table() -> Table:
     """Every effect with its quantities, and where it acts."""
     table = Table("effect", "what it is", "quantities", "simulated", box=box.SIMPLE_HEAD)
     for name, effect in sorted(catalogue().items()):
-        quantities = ", ".join(f"{q.name} [{_unit(q)}]" for q in effect.quantities)
+        quantities = ", ".join(f"{q.name} [{unit_of(q)}]" for q in effect.quantities)
         table.add_row(name, effect.summary, quantities, _where(effect))
     return table
 
@@ -52,15 +52,16 @@ def effect_page(name: str) -> str:
     effect = named(name, "bench effects")
     module = inspect.getmodule(type(effect))
     lines = [effect.name, "=" * len(effect.name), inspect.getdoc(module) or effect.summary, "", "Quantities"]
-    lines += [f"    {q.name} ({q.symbol}) [{_unit(q)}], {_bounds(q)}" for q in effect.quantities]
+    lines += [f"    {q.name} ({q.symbol}) [{unit_of(q)}], {bounds(q)}" for q in effect.quantities]
     lines += ["", "Simulated"]
-    for hook, place in _acting(effect).items():
+    for hook, place in acting(effect).items():
         text = inspect.getdoc(getattr(effect, hook)) or ""
         lines.append(f"    {place}: {text.splitlines()[0]}")
     return "\n".join(lines)
 
 
-def _acting(effect: Effect) -> dict[str, str]:
+def acting(effect: Effect) -> dict[str, str]:
+    """Hooks through which an effect is simulated, and where each acts, in words."""
     return {hook: place for hook, place in HOOKS.items() if effect.overrides(hook)}
 
 
@@ -70,11 +71,13 @@ def _where(effect: Effect) -> str:
     return "electronics" if isinstance(effect, Electronics) else "sensor" if isinstance(effect, Sensing) else ""
 
 
-def _unit(quantity: Quantity) -> str:
+def unit_of(quantity: Quantity) -> str:
+    """SI unit of a quantity on a rotary axis; a dash where there is none."""
     return "-" if quantity.unit == "dimensionless" else quantity.unit
 
 
-def _bounds(quantity: Quantity) -> str:
+def bounds(quantity: Quantity) -> str:
+    """What values a quantity may have, in words."""
     if math.isinf(quantity.lower) and math.isinf(quantity.upper):
         return "any"
     if math.isinf(quantity.upper):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.fft
@@ -14,7 +14,8 @@ from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, GaussianFilter
 from bench.trace.known import less_known
-from bench.trace.noise import resolution, white_noise
+from bench.trace.noise import TOP, resolution, white_noise
+from bench.trace.rounding import common_step, rounding_spectrum
 from bench.trace.signals import KNOWN_MOMENTUM
 from bench.trace.trace import Trace
 
@@ -46,6 +47,8 @@ class Conditioning:
         speed_noise: of the raw speed whose sign is taken (central difference of a position) - rad/s (m/s).
         coherence: highest coherence of effort and acceleration over frequency.
         known_noise: white noise of the momentum that is known - N*m*s (N*s); 0 where none is.
+        source_spectrum: angular frequencies (k,) - rad/s - and power that rounding leaves there (k,) - the source's
+            unit squared; None where it is white.
     """
 
     filter: GaussianFilter
@@ -56,6 +59,18 @@ class Conditioning:
     speed_noise: float
     coherence: float
     known_noise: float = 0.0
+    source_spectrum: tuple[Array, Array] | None = field(default=None, compare=False)
+
+    def source_power(self, omega: Array) -> Array:
+        """Power of the source's noise around angular frequencies (k,), increasing - its SI unit squared."""
+        if self.source_spectrum is None:
+            return np.full(omega.size, self.source_noise**2)
+        known, power = self.source_spectrum
+        step = known[1] - known[0]
+        below = np.concatenate([[0.0], np.cumsum(power)]) * step
+        edges = np.concatenate([omega[:1] - 0.5 * step, 0.5 * (omega[1:] + omega[:-1]), omega[-1:] + 0.5 * step])
+        held = np.interp(edges, np.append(known, known[-1] + step) - 0.5 * step, below)
+        return np.diff(held) / np.maximum(np.diff(np.clip(edges, -0.5 * step, known[-1] + 0.5 * step)), 1e-300)
 
     @property
     def order(self) -> int:
@@ -125,7 +140,27 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
     efforts = [effort[part] for part in parts]
     loud, step = white_noise(*efforts), resolution(np.concatenate(efforts))
     known = white_noise(*(trace[KNOWN_MOMENTUM][part] for part in parts)) if KNOWN_MOMENTUM in trace else 0.0
-    return Conditioning(chosen, source, noise[source], loud, step, speed_noise, float(coherence[peak]), known)
+    spectrum = _rounded([trace[source][part] for part in parts], chosen, noise[source])
+    return Conditioning(chosen, source, noise[source], loud, step, speed_noise, float(coherence[peak]), known, spectrum)
+
+
+def _rounded(stretches: Sequence[Array], smooth: GaussianFilter, noise: float) -> tuple[Array, Array] | None:
+    """Spectrum of a source that is reported in steps; None where they are lost in its noise, which makes them white.
+
+    Args:
+        stretches: of the source, its SI unit (n,).
+        smooth: the recording's filter.
+        noise: white noise of the source - its SI unit.
+    """
+    step = common_step(np.concatenate(stretches), noise)
+    if not step:
+        return None
+    omega, power = rounding_spectrum(stretches, smooth, step)
+    if not power.any():
+        return None
+    other = max(noise**2 - float(np.mean(power[omega > (1.0 - TOP) * omega[-1]])), 0.0)
+    followed = np.exp(-((2.0 * np.pi / step) ** 2) * other)  # the characteristic function of a normal dither
+    return omega, followed * (power + other) + (1.0 - followed) * noise**2
 
 
 def moving(trace: Trace, source: str, least: int) -> list[slice]:

@@ -52,7 +52,7 @@ class Told:
     def inside(self, level: float) -> bool:
         """Whether the interval of a level holds the truth."""
         low, high = self.parameter.interval(level)
-        return low <= self.true <= high
+        return bool(low <= self.true <= high)
 
 
 def base(by: str, case: Case, parameters: Mapping[str, Parameter]) -> Iterator[Told]:

@@ -11,9 +11,19 @@ import numpy as np
 
 from bench.rig.rig import Rig, load_rig
 from bench.trace.trace import Trace
-from tests.independent import KINDS, Axis, Effect, Motion, Sensors, random_motion, random_rig, random_sensors, simulate
-from tests.independent.case import residual_ratio
-from tests.independent.rig import write_rig
+from bench.validate.independent import (
+    KINDS,
+    Axis,
+    Effect,
+    Motion,
+    Sensors,
+    random_motion,
+    random_rig,
+    random_sensors,
+    simulate,
+)
+from bench.validate.independent.case import residual_ratio
+from bench.validate.independent.rig import write_rig
 
 #: Tick of all drives, so that many run side by side, and step of the integration - s.
 TICK, LONGEST_STEP = 250e-6, 62.5e-6

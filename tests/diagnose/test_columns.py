@@ -90,7 +90,7 @@ def test_bristles_are_dahls_equation_integrated():
         state += rate * (1.0 - state * np.sign(step)) * step
         if k % 20 == 0:
             expected[k // 20] = state
-    found = bristles(position, np.sign(velocity), rate)
+    found = bristles(position, np.sign(velocity), np.ones(4000), rate)
     assert found == pytest.approx(expected, abs=0.02)
 
 

@@ -41,10 +41,11 @@ def test_it_copies_torque_if_its_columns_are_made_of_torque(effect):
 
 
 @every
-def test_it_scales_friction_if_its_columns_follow_the_level_others_make(effect):
+def test_it_scales_or_carries_friction_if_its_columns_follow_the_level_others_make(effect):
     louder = changed(effect, friction=2.0 * RECORDED.friction)
-    assert effect.scales_friction == louder == effect.overrides("friction_factor")
-    if louder:
+    assert effect.scales_friction == effect.overrides("friction_factor")
+    assert louder == (effect.scales_friction or effect.carries_friction)
+    if effect.scales_friction:
         none, once, twice = (
             np.array(raw(effect, replace(RECORDED, friction=factor * RECORDED.friction))) for factor in (0.0, 1.0, 2.0)
         )

@@ -30,6 +30,12 @@ def test_an_interval_of_any_level_is_a_students(degrees, level):
     assert [3.0 - low, high - 3.0] == pytest.approx([expected, expected], rel=1e-4)
 
 
+def test_a_share_of_true_values_from_an_array_counts_in_whole_numbers_that_json_writes():
+    told = [Told("diagnose", "", "inertia", np.float64(3.0), 3.0, parameter(3.0, 0.2))] * 2
+    found = Coverage.of("diagnose", Group("nulls", 2, True), "inertia", told)
+    assert [type(share.count) for share in found.inside] == [int] * len(LEVELS)
+
+
 def test_an_interval_that_is_wide_beside_its_covariance_scales_as_a_normal_ones():
     low, high = parameter(3.0, 0.01, stats.t.ppf(0.975, 5)).widened(1.0).interval(0.5)
     assert high - low == pytest.approx(2.0 * 1.0 * 0.6745 / 1.95996, rel=1e-2)

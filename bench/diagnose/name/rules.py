@@ -46,6 +46,23 @@ class Promising:
 
 
 @dataclass(frozen=True)
+class Exchangeable:
+    """A candidate is worth the search of its shape in the place of a name if even at a grid's shape it takes as much.
+
+    Attributes:
+        share: of what the name takes.
+        finalists: candidates at most whose shapes are searched.
+    """
+
+    share: float = 0.9
+    finalists: int = 2
+
+    def of(self, less: Fit, tried: list[Candidate], taken: float) -> list[Candidate]:
+        """Those of the candidates beside `less`, the fit without the name, which took so much - (N*m)**2 (N**2)."""
+        return [candidate for candidate in tried if candidate.gain > self.share * taken][: self.finalists]
+
+
+@dataclass(frozen=True)
 class Significant:
     """An effect must save more squares than chance does in a search over some hundred candidates.
 
@@ -175,6 +192,7 @@ class Rules:
 
     Attributes:
         promising, significant, explains, physical: what takes a name up.
+        exchangeable: what is tried in the place of another name.
         no_longer_needed: what lets go of one.
         replaces: what puts one in the place of others.
         remainder: what is left unexplained.
@@ -186,6 +204,7 @@ class Rules:
     significant: Significant = field(default_factory=Significant)
     explains: Explains = field(default_factory=Explains)
     physical: Physical = field(default_factory=Physical)
+    exchangeable: Exchangeable = field(default_factory=Exchangeable)
     no_longer_needed: NoLongerNeeded = field(default_factory=NoLongerNeeded)
     replaces: ReplacesClearly = field(default_factory=ReplacesClearly)
     remainder: Remainder = field(default_factory=Remainder)

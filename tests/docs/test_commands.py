@@ -1,0 +1,93 @@
+"""Every command on every page is one that there is, with options that it has; and every block of commands is run."""
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import typer
+
+from bench.cli import app
+from tests.docs.pages import PAGES, ROOT, bench_commands, commands, spoken
+from tests.docs.test_run import RUN_HERE, SLOW
+
+#: Words in a page's text that stand for what a reader puts in.
+STANDS_FOR = re.compile(r"[A-Z_]{2,}(\.\w+)?|\.\.\.|…")
+
+
+#: What `python -m MODULE --help` says of each module, in one process, as they share what they import.
+HELP = """
+import contextlib, io, json, runpy, sys
+told = {}
+for module in sys.argv[1:]:
+    sys.argv = [module, "--help"]
+    with contextlib.redirect_stdout(io.StringIO()) as printed, contextlib.suppress(SystemExit):
+        runpy.run_module(module, run_name="__main__", alter_sys=True)
+    told[module] = printed.getvalue()
+print(json.dumps(told))
+"""
+MEASURING = re.compile(r"python -m (tests\.\w+)")
+
+
+@pytest.fixture(scope="module")
+def told():
+    """Help of every measuring command that a page names."""
+    modules = sorted({module for page in PAGES.values() for module in MEASURING.findall(page)})
+    environment = {**os.environ, "COLUMNS": "200"}
+    line = [sys.executable, "-c", HELP, *modules]
+    done = subprocess.run(line, cwd=ROOT, env=environment, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def require_options(command, told):
+    for option in re.findall(r"(?<=\s)--[a-z][a-z-]*", command):
+        assert option in told, f"{command}: no option {option}"
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_commands_of_the_bench_are_there_with_their_options(name):
+    known_commands = typer.main.get_command(app).commands
+    for line in bench_commands(PAGES[name]):
+        words = shlex.split(line)
+        assert words[1] in known_commands, line
+        known_commands[words[1]].make_context(words[1], words[2:]).close()  # an error of usage is raised here
+    for line in spoken(PAGES[name]):
+        words = line.split()
+        if words[0] != "bench" or len(words) == 1 or words[1].startswith("-") or STANDS_FOR.fullmatch(words[1]):
+            continue
+        assert words[1] in known_commands, line
+        options = {option for parameter in known_commands[words[1]].params for option in parameter.opts}
+        require_options(line, options | {"--help"})
+
+
+@pytest.mark.parametrize("name", [name for name, page in PAGES.items() if MEASURING.search(page)])
+def test_measuring_commands_are_there_with_their_options(name, told):
+    for line in [*commands(PAGES[name]), *spoken(PAGES[name])]:
+        for module in MEASURING.findall(line):
+            require_options(line, told[module])
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_tests_that_pages_tell_to_run_are_there(name):
+    for line in [*commands(PAGES[name]), *spoken(PAGES[name])]:
+        if "pytest" not in line.split("tests")[0]:
+            continue
+        paths = re.findall(r"(?<=\s)tests/[\w/]+(?:\.py)?", line)
+        for path in paths:
+            assert (ROOT / path).exists(), line
+        for chosen in re.findall(r"-k (\w+)", line):
+            text = "".join((ROOT / path).read_text(encoding="utf-8") for path in paths)
+            assert re.search(rf"def test_\w*{chosen}", text), f"{line}: no such test"
+
+
+def test_every_block_of_commands_is_run():
+    """Here, or by a test of the page's own, which has the folder and the recordings that the page speaks of."""
+    tests = [path for path in (ROOT / "tests").rglob("test_*.py") if path.parent.name != "docs"]
+    reading = "".join(path.read_text(encoding="utf-8") for path in tests)
+    for name, page in PAGES.items():
+        if bench_commands(page) and name not in {*RUN_HERE, *SLOW}:
+            assert f'"{Path(name).name}"' in reading, f"no test runs the commands of {name}: list it in RUN_HERE"

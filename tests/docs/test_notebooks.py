@@ -1,0 +1,48 @@
+"""The notebooks run from the first cell to the last, and find what was hidden from them."""
+
+import pytest
+
+from tests.docs.pages import DOCS
+
+#: What has to hold in each notebook once it has run, as a cell of its own.
+HOLDS = {
+    "first_model": """
+assert abs(estimate["moment_of_inertia"].value / truth.inertia - 1.0) < 0.002
+for name, true in (("viscous_friction_coefficient", 1.1e-3), ("coulomb_friction_torque", 0.085)):
+    assert abs(estimate[name].value / true - 1.0) < 0.03
+assert found.verdict == "nothing_missing" and after < 1.2 * found.torque.noise_floor
+assert abs(mass[0, 0] / truth.inertia - 1.0) < 0.002
+assert np.nanstd(off) < 0.003 * np.nanstd(moved.velocity)
+""",
+    "hidden_effect": """
+assert found.verdict == "explained"
+values = {effect.name: effect.values for effect in found.effects}
+assert set(values) == {one.name for one in hidden}
+assert abs(values["cogging_torque"]["amplitude"] / 0.05 - 1.0) < 0.03
+assert abs(values["stribeck_friction"]["static_friction"] / 0.16 - 1.0) < 0.1
+elbow = mujoco.MjModel.from_xml_path("robot_id.xml")
+level = elbow.dof_frictionloss[elbow.joint("elbow").dofadr[0]]
+assert abs(level / 0.085 - 1.0) < 0.03
+assert elbow.actuator("elbow cogging_torque 0") is not None
+assert np.std(identified[2000:]) > 5.0 * np.std(as_written[2000:])
+""",
+}
+
+
+def test_every_notebook_is_tried():
+    assert {path.stem for path in (DOCS / "notebooks").glob("*.md")} == set(HOLDS)
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of the libraries that run notebooks
+@pytest.mark.parametrize("name", HOLDS)
+def test_it_runs_and_finds_the_truth(name):
+    read = pytest.importorskip("myst_nb.core.read", reason="needs myst-nb (pip install -e '.[docs]')")
+    from nbclient import NotebookClient
+    from nbformat.v4 import new_code_cell
+
+    path = DOCS / "notebooks" / f"{name}.md"
+    notebook = read.read_myst_markdown_notebook(path.read_text(encoding="utf-8"), path=path)
+    notebook.cells.append(new_code_cell(HOLDS[name]))
+    NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
+    printed = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
+    assert any("image/png" in output.get("data", {}) for output in printed)

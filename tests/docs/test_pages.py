@@ -1,0 +1,144 @@
+"""Links lead somewhere, sources of the theory are cited in the code, and generated pages say what objects say."""
+
+import re
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import bench
+from bench.effects.catalogue import catalogue
+from bench.effects.kinds import Mechanism
+from bench.trace.read import read
+from bench.units import Quantity
+from tests.diagnose.command import started
+from tests.docs.pages import DOCS, PAGES, ROOT, bench_commands
+
+sys.path.insert(0, str(DOCS / "_ext"))
+import command_pages
+import effect_pages
+import signature
+
+SOURCES = "\n".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / "bench").rglob("*.py")))
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_links_lead_to_files_as_a_git_host_shows_them(name):
+    text = re.sub(r"^```.*?^```", "", PAGES[name], flags=re.MULTILINE | re.DOTALL)
+    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text):
+        if not target.startswith("http"):
+            assert ((ROOT / name).parent / target).exists(), f"{name}: {target}"
+
+
+def test_the_index_leads_to_every_page():
+    index, measured = PAGES["docs/index.md"], PAGES["docs/measured.md"]
+    for path in DOCS.rglob("*.md"):
+        name = str(path.relative_to(DOCS))
+        if name != "index.md" and not name.startswith(("reference/", "_build/", "jupyter_execute/")):
+            assert f"({name})" in index + measured or name in ("contributing.md", "security.md", "changelog.md"), name
+
+
+def test_the_readme_leads_to_the_index():
+    assert "](docs/index.md)" in PAGES["README.md"]
+
+
+#: A year in brackets or behind a name, as the text cites it, and the first author of each source of the list.
+THEORY, _, LISTED = PAGES["docs/theory.md"].partition("## Sources\n")
+
+
+def first_author(source):
+    """Surname of the first author, without accents that the code leaves out."""
+    name = re.match(r"- (?:(?:[A-Z]\.[- ]?)+ ?)?([^,]+?)(?: et al\.)?,", source)[1]
+    return name.split("-")[0] if name.startswith("Armstrong") else name
+
+
+def plainly(text):
+    return text.translate(str.maketrans("öéá", "oea"))
+
+
+@pytest.mark.parametrize("source", LISTED.strip().replace("\n  ", " ").splitlines())
+def test_every_source_of_the_theory_is_one_that_the_code_cites(source):
+    author = first_author(source)
+    assert author in THEORY, f"{author} is listed and not cited"
+    blocks = [part for part in re.split(r"\n\s*\n|\"\"\"", plainly(SOURCES)) if plainly(author) in part]
+    assert blocks, f"no module cites {author}"
+    for year in re.findall(r"(?<!\d)(?:19|20)\d\d(?!\d)", source.split("-")[0] if "arXiv" in source else source)[:1]:
+        assert any(year in part for part in blocks), f"{author} {year}"
+
+
+def test_every_name_of_the_front_door_is_in_the_reference():
+    for name in bench.__all__:
+        assert f"bench.{name}\n" in PAGES["docs/python.md"] or name == "__version__"
+
+
+@pytest.mark.parametrize("name", catalogue())
+def test_the_page_of_an_effect_says_what_the_effect_says(name):
+    effect = catalogue()[name]
+    text = effect_pages.page(effect, None)
+    assert effect.summary in text
+    for quantity in effect.quantities:
+        assert f"| `{quantity.name}` |" in text
+    assert re.search(r"## Equation\n\n```text\n.+\n", text)
+    assert re.search(r"## In MuJoCo\n\n- ", text)
+
+
+class Creep(Mechanism):
+    """An effect of somebody else's."""
+
+    name = "belt_creep"
+    summary = "the belt creeps"
+    quantities = (Quantity("rate", "r_c", "1/s", lower=0.0, null=0.0),)
+
+    def resisting_torque(self, values, axis, at):
+        """In proportion to | the * rate."""
+        return values["rate"]
+
+
+def test_an_effect_of_another_package_has_a_page_too():
+    assert not signature.shown(Creep())
+    text = effect_pages.page(Creep(), None)
+    assert "| `rate` | r\\_c | `1/s` | `1/s` | from 0 | 0 |" in text
+    assert "In proportion to \\| the · rate." in text
+
+
+def test_the_picture_is_of_the_recording_that_the_pages_commands_make(tmp_path, monkeypatch):
+    """And of an unbalance it shows the position, the motions that tell it, and what is added to the MJCF."""
+    effect = catalogue()["unbalance"]
+    found = signature.signature(effect)
+    monkeypatch.chdir(tmp_path)
+    run = started(tmp_path)
+    Path("axis.toml").write_bytes(signature.RIG.read_bytes())
+    text = effect_pages.page(effect, found)
+    (line, _) = bench_commands(text)
+    assert run(*line.split()[1:]) == 0
+    recorded = read("run.csv.gz")
+    assert recorded["velocity"] == pytest.approx(found.told["velocity"], abs=1e-6)
+    assert "position" in {axes.get_xlabel().split(" /")[0] for axes in signature.drawn(found).axes[:1]}
+    assert all(found.motions[name] > 2.0 for name in ("identification", "slow_reversals", "multisine"))
+    assert found.shares[effect] > 0.99
+    assert "```xml\n<general " in text
+    signature.draw(found, Path("unbalance.png"))
+    assert Path("unbalance.png").stat().st_size > 20_000
+
+
+def test_the_page_of_a_command_has_all_its_options():
+    found = command_pages.commands()
+    assert {"identify", "diagnose", "export", "effects"} <= set(found)
+    for name, command in found.items():
+        text = command_pages.page(name, command)
+        assert text.startswith(f"# bench {name}\n")
+        for parameter in command.params:
+            assert parameter.help.split()[0] in text
+            assert all(option in text for option in parameter.opts if option.startswith("--"))
+
+
+def test_docstrings_are_text():
+    pytest.importorskip("sphinx", reason="needs Sphinx (pip install -e '.[docs]')")
+    import docstrings
+
+    lines = ["Torque - N*m - of `x`, |omega|.", "", "    M = J*alpha", "", "Args:", "    a_b: N*m."]
+    docstrings.as_text(ModuleType("app"), "function", "f", None, None, lines)
+    assert lines[0] == r"Torque - N\*m - of ``x``, \|omega\|."
+    assert lines[2:5] == ["::", "", "    M = J*alpha"]
+    assert lines[-1] == r"    a_b: N\*m."
