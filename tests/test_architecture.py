@@ -38,7 +38,7 @@ LAYERS = (
     {"identify"},
     {"friction_map"},
     {"diagnose"},
-    {"check", "validate", "fleet", "export"},
+    {"check", "validate", "fleet", "export", "view"},
     {"lab"},
     {"report"},
     {"demo"},

@@ -36,12 +36,12 @@ def pinned(name):
     return exact
 
 
-CONTAINERS = ("mcap", "tdms", "hdf5", "mdf")
+OPTIONAL = ("mcap", "tdms", "hdf5", "mdf", "video")
 
 
 def test_lower_bounds_are_the_oldest_versions_that_are_tested():
     bounds = {}
-    for name, each in declared(*CONTAINERS, "test").items():
+    for name, each in declared(*OPTIONAL, "test").items():
         (specifier,) = each.specifier
         assert specifier.operator == ">="
         bounds[name] = specifier.version
@@ -53,7 +53,7 @@ def test_lower_bounds_are_the_oldest_versions_that_are_tested():
 def test_the_lock_keeps_to_every_bound_and_holds_no_project():
     locked = pinned("locked.txt")
     assert PROJECT["name"] not in locked
-    for name, each in declared(*CONTAINERS, "notebooks", "test", "docs", "dev").items():
+    for name, each in declared(*OPTIONAL, "notebooks", "test", "docs", "dev").items():
         assert each.specifier.contains(locked[name]), f"{name} {locked[name]}: {each}"
 
 
@@ -70,7 +70,7 @@ def imported(path):
 
 def test_every_import_is_of_something_that_is_declared():
     providers = packages_distributions()
-    known = {*declared(*CONTAINERS), *BROUGHT, "distributed"}
+    known = {*declared(*OPTIONAL), *BROUGHT, "distributed"}
     packages = set().union(*(imported(path) for path in (ROOT / "bench").rglob("*.py")))
     assert len(packages) > 10
     for package in packages:

@@ -36,6 +36,7 @@ from bench.cli.report import report
 from bench.cli.rigs import rigs
 from bench.cli.simulate import simulate
 from bench.cli.validate import validate
+from bench.cli.view import view
 from bench.errors import BenchError
 from bench.names import plain, short
 
@@ -62,6 +63,7 @@ COMMANDS = (
     identify,
     diagnose,
     replay,
+    view,
     friction,
     check,
     validate,

@@ -15,7 +15,7 @@ from bench.errors import InputError
 from bench.files import keeping, require_writable
 
 #: Parameters of commands that name what is written, files or folders; every other path is read.
-WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script"})
+WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "video"})
 #: Parameters of commands whose file is read, and replaced where that is asked for.
 REPLACED = frozenset({"baseline"})
 

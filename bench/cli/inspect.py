@@ -7,17 +7,18 @@ from typing import Annotated
 
 import typer
 
-from bench.console import AxisOption, JsonOption, console, tell_files, write_json
+from bench.console import AxisOption, JsonOption, ReportOption, console, tell_files, write_json
 
 
 def inspect(
-    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    file: Annotated[Path, typer.Argument(metavar="TRACE", help="Recording of any known format.")],
     rig: Annotated[Path | None, typer.Option("--rig", help="Rig file whose [trace] says how to read it.")] = None,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Picture of every signal: .png, .pdf or .svg.")] = None,
     draft: Annotated[Path | None, typer.Option("--draft", help="Rig file to write, as far as the file tells.")] = None,
     motor: Annotated[str | None, typer.Option("--motor", help="For --draft: a motor of the catalogue.")] = None,
     axis_name: AxisOption = None,
+    report: ReportOption = None,
 ) -> None:
     """Say what a recording holds: every column, what it is likely to be, rate, holes, signals with their range."""
     from bench.checks.gate import gate
@@ -31,10 +32,11 @@ def inspect(
 
     axis = load_rig(rig).on_axis(axis_name) if rig else None
     how = axis.trace if axis is not None else How(axis=axis_name)
-    recording = read_recording(trace)
+    recording = read_recording(file)
     found = inspect_recording(recording, how)
-    checks = () if found.asks is not None else gate(assemble(recording, how), axis).checks
-    files = [path for path in (out, draft) if path is not None]
+    trace = None if found.asks is not None else assemble(recording, how)
+    checks = () if trace is None else gate(trace, axis).checks
+    files = [path for path in (out, draft, report) if path is not None]
     if draft is not None:
         from bench.files import write_text
         from bench.rig.draft import draft as drafted
@@ -44,6 +46,11 @@ def inspect(
         from bench.report.signals import draw_signals  # matplotlib: 0.35 s
 
         draw_signals(recording, how, out)
+    if report is not None:
+        from bench.report.page.folder import write_html
+        from bench.report.pages.inspection import inspection_page
+
+        write_html(report, inspection_page(found, checks, trace))
     if json is not None:
         write_json(json, to_json(found, {"checks": checks_json(checks)}))
     if json != Path("-"):

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from bench.console import tell_files
+from bench.console import ReportOption, tell_files
+from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
 
@@ -19,6 +20,7 @@ def simulate(
     effect: Annotated[
         list[str] | None, typer.Option("--effect", help="NAME:key=value,... to add; see bench effects. Repeatable.")
     ] = None,
+    report: ReportOption = None,
 ) -> None:
     """Simulate the axis of a rig in MuJoCo; write its trace and, beside it, the truth."""
     from bench.effects.present import parse_effect
@@ -38,4 +40,9 @@ def simulate(
     with held(out.parent):  # a trace and its own truth, not that of a run beside this one
         write(simulated.trace, out)
         truth = write_truth(out, simulated.truth)
-    tell_files([out, truth])
+    if report is not None:
+        from bench.report.page.folder import write_html
+        from bench.report.pages.simulation import simulation_page
+
+        write_html(report, simulation_page(simulated, readable(out.name)))
+    tell_files([path for path in (out, truth, report) if path is not None])

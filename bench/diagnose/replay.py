@@ -15,8 +15,8 @@ from bench.balance.stored import EVERY, Balance
 from bench.diagnose.add.model import holding_bandwidth, without_events
 from bench.errors import InputError, UndeterminedError
 from bench.plant.model_file import load_model, read_table
-from bench.plant.track import measured_velocity
-from bench.plant.track_effects import track_effects
+from bench.plant.track import measured_position, measured_velocity
+from bench.plant.track_effects import Held, track_motion
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -30,6 +30,7 @@ class Replay:
 
     Attributes:
         time: s.
+        position, position_simulated: rad (m); where none was recorded, each stretch without holes counts from zero.
         velocity, velocity_simulated: rad/s (m/s).
         torque, torque_simulated: both through the filter the model was fitted with - N*m (N).
         speed_unit, effort_unit: of velocity and torque.
@@ -37,6 +38,8 @@ class Replay:
     """
 
     time: Array
+    position: Array
+    position_simulated: Array
     velocity: Array
     velocity_simulated: Array
     torque: Array
@@ -89,20 +92,21 @@ def replay(path: str | Path, trace: Trace, rig: Rig) -> Replay:
     samples = rows.samples()
     torque, simulated = np.full(len(trace), np.nan), np.full(len(trace), np.nan)
     torque[samples], simulated[samples] = rows.effort, rows.effort - balance.left(rows)
-    velocity = np.full(len(trace), np.nan)
+    position, velocity = np.full((2, len(trace)), np.nan)
+    measured = measured_position(trace), measured_velocity(trace)
     if stored is not None:
         happening = balance.recording in (EVERY, trace.origin)
         model = stored.model if happening else without_events(stored.model)
-        bandwidth = holding_bandwidth(model, float(np.abs(measured_velocity(trace)).max()))
-        velocity = track_effects(model, trace, effort, stored.misalignment, bandwidth)
+        bandwidth = holding_bandwidth(model, float(np.abs(measured[1]).max()))
+        position, velocity = track_motion(Held(model, trace, effort, stored.misalignment), bandwidth)
     warnings = []
     if str(table.get("name", rig.name)) != rig.name:
         warnings.append(f"the model is of '{table['name']}', the rig file of '{rig.name}'")
     left = _rms(torque - simulated) / max(_rms(torque), 1e-300)
     if left > LEFT:
         warnings.append(f"the model leaves {left:.0%} of the torque unexplained: another axis, or other units?")
-    speed = rig.axis_kind.speed_unit
-    return Replay(trace.time, measured_velocity(trace), velocity, torque, simulated, speed, unit, tuple(warnings))
+    moved = measured[0], position, measured[1], velocity
+    return Replay(trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, unit, tuple(warnings))
 
 
 def _rms(values: Array) -> float:

@@ -178,11 +178,11 @@ def _electronics(model: AxisModel) -> list[tuple[dict[str, float], Electronics]]
 
 
 class Reported:
-    """Velocity that sensors report of a model at the samples of its stretch, from true motion block by block.
+    """What sensors report of a model at the samples of its stretch, from true motion block by block.
 
     Args:
         stretch: model and samples.
-        into: where the velocity goes - rad/s (m/s) - (n,) along the stretch.
+        into: where it goes, (1, n) or (2, n) along the stretch: velocity - rad/s (m/s) -, then position - rad (m).
     """
 
     def __init__(self, stretch: Stretch, into: Array) -> None:
@@ -190,15 +190,17 @@ class Reported:
         self._timestep, self._into = stretch.compiled.opt.timestep, into
         # a filter needs every step, and nothing else does
         self._every = 1 if filters(self._model) else self._substeps
-        self._velocity = np.empty(self._steps) if filters(self._model) else into
+        self._found = np.empty((len(into), self._steps)) if filters(self._model) else into
 
     def add(self, start: int, position: Array, velocity: Array) -> None:
         """Position - rad (m) - and velocity - rad/s (m/s) - from a step on, (k,); none beyond the end kept."""
         rows, kept = samples_in(start, min(start + velocity.size, self._steps), self._every)
-        self._velocity[kept] = seen(self._model, position[rows], velocity[rows])[1]
+        reported = seen(self._model, position[rows], velocity[rows])
+        self._found[:, kept] = np.stack(reported[::-1][: len(self._found)])
 
     def finish(self) -> None:
         """Put what is reported where it goes: nothing follows."""
-        if self._velocity is not self._into:
-            self._into[:] = filtered(self._model, self._velocity, self._timestep)[:: self._substeps]
-            self._velocity = self._into
+        if self._found is not self._into:
+            self._found[0] = filtered(self._model, self._found[0], self._timestep)
+            self._into[:] = self._found[:, :: self._substeps]
+            self._found = self._into

@@ -124,6 +124,16 @@ def measured_velocity(trace: Trace) -> Array:
     return velocity
 
 
+def measured_position(trace: Trace) -> Array:
+    """Reported position, or the integral of a reported velocity from zero in each stretch - rad (m) - (n,)."""
+    if "position" in trace:
+        return trace["position"]
+    position = np.full(len(trace), np.nan)
+    for part in stretches_of(trace):
+        position[part] = integrated(trace["velocity"][part], trace.sample_period)
+    return position
+
+
 def integrated(velocity: Array, sample_period: float) -> Array:
     """Position from zero, by the trapezoidal rule - rad (m) - (n,)."""
     return np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2.0) * sample_period])

@@ -56,13 +56,32 @@ def track_effects(
     return simulated
 
 
+def track_motion(held: Held, bandwidth: float = BANDWIDTH) -> tuple[Array, Array]:
+    """Position - rad (m) - and velocity as `track_effects` has it, (n,) each.
+
+    Where the recording holds no position, that of each stretch counts from zero.
+
+    Raises:
+        SimulationError: the model diverged.
+    """
+    (simulated,) = _track([held], bandwidth, signals=2)
+    if simulated is None:
+        raise SimulationError(DIVERGED)
+    return simulated[1], simulated[0]
+
+
 def track_models(held: Sequence[Held], bandwidth: float = BANDWIDTH) -> list[Array | None]:
     """Velocities that models report, each held to its recording - rad/s (m/s) - (n,) each; None where one diverged.
 
     Models of one structure run side by side, which costs hardly more than one of them where effects are ticked.
     Lone samples between holes are nan, as in `track_effects`.
     """
-    simulated = [np.full(len(one.trace), np.nan) for one in held]
+    return [None if found is None else found[0] for found in _track(held, bandwidth, signals=1)]
+
+
+def _track(held: Sequence[Held], bandwidth: float, signals: int) -> list[Array | None]:
+    """The same as (signals, n): velocity, and position where two signals are wanted."""
+    simulated = [np.full((signals, len(one.trace)), np.nan) for one in held]
     stretches = all_stretches(held, bandwidth)
     native = [stretch for stretch in stretches if not stretch.held.model.ticked]
     with quiet():
@@ -72,7 +91,7 @@ def track_models(held: Sequence[Held], bandwidth: float = BANDWIDTH) -> list[Arr
         for alike in _alike([stretch for stretch in stretches if stretch.held.model.ticked]):
             runs = zip(alike, _run_ticked(simulated, alike), strict=True)
             diverged |= {stretch.row for stretch, sound in runs if not sound}
-    return [None if row in diverged else velocity for row, velocity in enumerate(simulated)]
+    return [None if row in diverged else found for row, found in enumerate(simulated)]
 
 
 def _alike(stretches: Sequence[Stretch]) -> list[list[Stretch]]:
@@ -85,8 +104,8 @@ def _alike(stretches: Sequence[Stretch]) -> list[list[Stretch]]:
 
 
 def _run_native(simulated: Sequence[Array], stretch: Stretch) -> bool:
-    """Run an axis that MuJoCo runs by itself; its velocity goes where its row has the stretch. False if it diverges."""
-    (inputs,), reported = inputs_of([stretch]), Reported(stretch, simulated[stretch.row][stretch.part])
+    """Run an axis that MuJoCo runs by itself; what it reports goes where its row has it. False if it diverges."""
+    (inputs,), reported = inputs_of([stretch]), Reported(stretch, simulated[stretch.row][:, stretch.part])
     try:
         for block in run_blocks(OpenLoop(stretch.compiled, inputs, stretch.steps, *inputs.start)):
             reported.add(block.start, block.position, block.velocity)
@@ -110,7 +129,7 @@ def _run_ticked(simulated: Sequence[Array], stretches: Sequence[Stretch]) -> lis
     since, began = (abreast([getattr(one, name) for one in stretches]) for name in ("since", "began"))
     mechanisms = [stretch.held.model.with_effects(stretch.held.model.of_kind(Mechanism)) for stretch in stretches]
     acting = TickedEffects(BatchSeat(batch), mechanisms, abreast(velocity))
-    reported = [Reported(stretch, simulated[stretch.row][stretch.part]) for stretch in stretches]
+    reported = [Reported(stretch, simulated[stretch.row][:, stretch.part]) for stretch in stretches]
     sound = np.ones(count, dtype=np.bool_)
     for start, stop in blocks(max(stretch.steps for stretch in stretches), 8 * 5 * count):
         controls, record = np.empty((stop - start, count, 3)), np.empty((2, stop - start, count))

@@ -6,11 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
+from bench.report.confusion import Confusion
 from bench.report.figures import MEASURED, MODELLED, REST, title_figure
 from bench.validate.coverage import LEVELS, Coverage
 from bench.validate.naming import Naming
 
+#: Frame of the right answer.
+RIGHT = "#1c232b"
 COLOURS = {"inertia": MEASURED, "viscous": MODELLED, "coulomb": REST}
 SYMBOLS = {"inertia": "J", "viscous": "$K_\\omega$", "coulomb": "$K_0$"}
 
@@ -43,24 +47,23 @@ def coverage_figure(found: Sequence[Coverage]) -> Figure:
 
 
 def confusion_figure(found: Naming) -> Figure:
-    """Names given for each effect that is hidden alone, and where nothing is; coloured by share of the row's runs."""
-    rows = list(found.confusion)
-    said = {name for counts in found.confusion.values() for name in counts}
-    columns = [name for name in rows if name in said] + sorted(said - set(rows))
-    counts = np.array([[found.confusion[row].get(column, 0) for column in columns] for row in rows]).reshape(
-        len(rows), -1
-    )
-    figure = Figure(figsize=(3.4 + 0.42 * len(columns), 2.6 + 0.34 * len(rows)), layout="constrained")
+    """Names given for each effect that is hidden alone, and where nothing is; coloured by share of what a row says."""
+    matrix = Confusion.of(found.confusion)
+    rows, columns = matrix.counts.shape
+    figure = Figure(figsize=(3.4 + 0.42 * columns, 2.6 + 0.34 * rows), layout="constrained")
     title_figure(figure, "Named, by what is hidden")
     axis = figure.subplots()
-    share = counts / np.maximum(counts.max(axis=1, initial=1, keepdims=True), 1)
-    axis.imshow(share, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
-    for row, column in zip(*np.nonzero(counts), strict=True):
-        colour = "white" if share[row, column] > 0.6 else "black"
-        axis.text(column, row, str(counts[row, column]), ha="center", va="center", color=colour, fontsize=8)
-    axis.set_xticks(range(len(columns)), [name.replace("_", " ") for name in columns], rotation=55, ha="left")
-    axis.set_yticks(range(len(rows)), [name.replace("_", " ") for name in rows])
+    axis.imshow(matrix.shares, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
+    for row, column in zip(*np.nonzero(matrix.counts), strict=True):
+        colour = "white" if matrix.shares[row, column] > 0.6 else "black"
+        told = str(matrix.counts[row, column])
+        axis.text(column, row, told, ha="center", va="center", color=colour, fontsize=8)
+    for row in range(rows):
+        axis.add_patch(Rectangle((row - 0.5, row - 0.5), 1.0, 1.0, fill=False, edgecolor=RIGHT, lw=1.2))
+    axis.set_xticks(range(columns), matrix.said, rotation=55, ha="left")
+    axis.set_yticks(range(rows), matrix.hidden)
     axis.xaxis.tick_top()
-    axis.set_ylabel("hidden")
+    axis.set_ylabel("hidden; the right answer is framed")
     axis.tick_params(length=0)
+    axis.grid(visible=False)
     return figure

@@ -9,7 +9,7 @@ from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import build_spec
 from bench.plant.track import holding_cascade, holding_model, step_of, track
-from bench.plant.track_effects import track_effects
+from bench.plant.track_effects import Held, track_effects, track_motion
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, PARAMETERS, PERIOD, model
 from tests.effects.conftest import CASES
@@ -73,3 +73,12 @@ def test_natively_and_step_by_step_alike(recordings):
     assert ticked.ticked
     effort = AXIS.torque_constant * trace["current"]
     np.testing.assert_allclose(track_effects(ticked, trace, effort), track_effects(native, trace, effort), atol=1e-6)
+
+
+@pytest.mark.parametrize("case", [(), ("stribeck_friction",), ("velocity_filter_lag",), ("encoder_eccentricity",)])
+def test_position_is_told_as_the_sensor_has_it(case, recordings):
+    trace = recordings[case]
+    held = Held(model(*case), trace, AXIS.torque_constant * trace["current"], -PERIOD / 2.0)
+    position, velocity = track_motion(held)
+    np.testing.assert_array_equal(velocity, track_effects(held.model, trace, held.effort, held.misalignment))
+    assert np.abs(position - trace["position"]).max() < 0.01

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bench.report.page.blocks import Chart, TimeGraph
+from bench.report.page.blocks import Chart
 from bench.report.page.folder import read_page
+from bench.report.page.scripted import TimeGraph
 from bench.trace.write import write
 from tests.diagnose.test_commands import run_of
 

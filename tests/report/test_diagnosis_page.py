@@ -9,9 +9,10 @@ import pytest
 from bench.diagnose.diagnosis import diagnose
 from bench.diagnose.found import NamedEffect
 from bench.effects.catalogue import catalogue
-from bench.report.page.blocks import Chart, Table, TimeGraph
+from bench.report.page.blocks import Chart, Table
 from bench.report.page.folder import read_page
 from bench.report.page.samples import unpacked
+from bench.report.page.scripted import TimeGraph
 from bench.report.pages.diagnosis import diagnosis_page
 from bench.report.pages.verdict import verdict_sentence
 from bench.rig.rig import Rig

@@ -19,7 +19,14 @@ def test_the_commands_of_the_manual_run(bench, tmp_path):
     page = read_page(tmp_path / "found" / "report.json")
     assert "Cogging torque (amplitude 0.05" in page.verdict.replace("\N{NO-BREAK SPACE}", " ")
     assert page.tone == "sure"
-    for written in ("found/report.html", "result/identification.pdf", "replay.html", "pages.js"):
+    for written in (
+        "found/report.html",
+        "result/identification.pdf",
+        "replay.html",
+        "simulated.html",
+        "inspected.html",
+        "pages.js",
+    ):
         assert (tmp_path / written).stat().st_size > 1000
 
 

@@ -13,23 +13,21 @@ from bench.report.page.blocks import (
     Axes,
     Chart,
     Column,
-    Curve,
     Downloads,
     File,
+    HeatMap,
     Intervals,
     Page,
-    Panel,
     Paragraph,
     Points,
-    Samples,
     Section,
     Series,
     Span,
     Table,
-    TimeGraph,
 )
 from bench.report.page.folder import DATA, HTML, read_page, write_page
 from bench.report.page.render import html
+from bench.report.page.scripted import Curve, Motion, Panel, Samples, TimeGraph
 
 HOSTILE = "<script>alert(1)</script>\"'&{{ 7*7 }}</style>-->"
 
@@ -53,6 +51,23 @@ def page_full_of(text):
             choices=(text, text),
             panels=(Panel(label=text, unit=text, curves=(curve, chosen)),),
         ),
+        *(
+            Motion(
+                title=text,
+                alternative=text,
+                turns=turns,
+                unit=text,
+                ghost=text,
+                start=0.0,
+                step=1.0,
+                count=2,
+                low=0.0,
+                high=1.0,
+                position="AAAAAAAAgD8=",
+                apart="AAAAAAAAAAA=",
+            )
+            for turns in (True, False)
+        ),
         Chart(
             title=text,
             alternative=text,
@@ -60,6 +75,7 @@ def page_full_of(text):
             y_unit=text,
             panels=(Axes(x_label=text, x_unit=text, note=text, series=(series,)),),
         ),
+        HeatMap(caption=text, corner=text, rows=(text, text), columns=(text,), counts=((1,), (0,))),
         Intervals(
             title=text,
             alternative=text,
@@ -81,7 +97,7 @@ def page_full_of(text):
 def test_text_is_text_wherever_it_stands():
     made = html(page_full_of(HOSTILE))
     assert "<script>alert(1)" not in made
-    assert made.count("<script") == 2  # the graph's data and the program
+    assert made.count("<script") == 4  # data of the graph and of both motions, and the program
     assert made.count("</style>") == 1
     assert "49" not in re.sub(r"<script.*?</script>|<style.*?</style>", "", made, flags=re.DOTALL)
     assert made.count(entities.escape(HOSTILE, quote=False)[:24]) > 20

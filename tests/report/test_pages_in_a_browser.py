@@ -18,7 +18,11 @@ PAGES = {
     ),
     "validate": lambda: test_validation_page.page_of(
         [test_validation_page.covered(quantity, 90, 100) for quantity in ("inertia", "viscous", "coulomb")],
-        test_validation_page.named(1, 9, {"nothing": {"nothing missing": 5}}),
+        test_validation_page.named(
+            1,
+            9,
+            {HOSTILE: {"refused": 3, "backlash": 2}, "backlash": {"backlash": 4}, "nothing": {"nothing missing": 5}},
+        ),
         HOSTILE,
     ),
 }

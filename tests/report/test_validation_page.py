@@ -2,9 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from bench.report.page.blocks import Intervals, Table
+from bench.report.confusion import Confusion
+from bench.report.page.blocks import HeatMap, Intervals, Table
 from bench.report.page.render import html
 from bench.report.pages.validation import validation_page
 from bench.report.provenance import without_files
@@ -87,6 +89,25 @@ def test_what_is_said_in_the_place_of_a_name_is_told_most_frequent_first():
     confusion = next(table for table in blocks(page, Table) if "nothing" in table.caption)
     assert confusion.rows == (("backlash", "backlash 8, refused 1"), ("nothing", "nothing missing 5"))
     assert page.verdict.startswith("No run tells a quantity; 1 of 9")
+
+
+def test_names_given_are_a_matrix_whose_right_answers_lie_on_its_diagonal():
+    confusion = {
+        "backlash": {"refused": 1, "backlash": 8},
+        "unbalance": {"backlash": 2, "torque_offset": 1},
+        "nothing": {"nothing missing": 5, "backlash": 1},
+    }
+    matrix = Confusion.of(confusion)
+    assert matrix.hidden == ("backlash", "unbalance", "nothing")
+    assert matrix.said == ("backlash", "unbalance", "nothing missing", "refused", "torque offset")
+    assert matrix.counts.tolist() == [[8, 0, 0, 1, 0], [2, 0, 0, 0, 1], [1, 0, 5, 0, 0]]
+    np.testing.assert_allclose(matrix.shares.sum(axis=1), 1.0)
+    (heat,) = blocks(page_of([], named(3, 18, confusion)), HeatMap)
+    assert heat.counts == tuple(map(tuple, matrix.counts.tolist()))
+    made = html(page_of([], named(3, 18, confusion)))
+    assert '<td class="right" style="--share: 89%">8</td>' in made
+    assert '<td style="--share: 67%">2</td>' in made
+    assert '<td class="right" style="--share: 0%"></td>' in made
 
 
 def test_text_is_text():

@@ -7,7 +7,10 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from bench.report.page.block import Block
+from bench.report.page.scripted import Motion, TimeGraph
 
 SCHEMA = "bench.page/1"
 
@@ -15,12 +18,6 @@ SCHEMA = "bench.page/1"
 Tone = Literal["sure", "open", "refused"]
 #: What something drawn stands for: what was measured, a model, what is left, noise, or what comes first.
 Colour = Literal["ink", "model", "left", "floor", "first"]
-
-
-class Block(BaseModel):
-    """A part of a page: frozen, and an unknown key in it is an error."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class Paragraph(Block):
@@ -65,66 +62,6 @@ class Table(Block):
     columns: tuple[Column, ...]
     rows: tuple[tuple[str, ...], ...]
     marked: tuple[int, ...] = ()
-
-
-class Samples(Block):
-    """A curve on the grid of its graph, in 16 bits; see `bench.report.page.samples`.
-
-    Attributes:
-        offset, scale: a value is offset + scale*number.
-        low, high: numbers in base 64; `high` is None where one value stands for each interval.
-    """
-
-    offset: float
-    scale: float
-    low: str
-    high: str | None
-
-
-class Curve(Block):
-    """A curve of a graph over time.
-
-    Attributes:
-        name: of it.
-        role: how it is drawn: what was measured, what a model makes, or what a model leaves.
-        choice: shown where this one of the graph's choices is made; None always.
-        samples: of it.
-    """
-
-    name: str
-    role: Literal["measured", "model", "left"]
-    choice: int | None
-    samples: Samples
-
-
-class Panel(Block):
-    """Curves over one y axis; `first`: whether those of the first choice stay in sight beside another one's."""
-
-    label: str
-    unit: str
-    curves: tuple[Curve, ...]
-    first: bool = False
-
-
-class TimeGraph(Block):
-    """Panels over one time axis that zoom, pan and hover together.
-
-    Attributes:
-        title: of the graph.
-        alternative: what it shows, in words.
-        start, step, count: of the grid of its curves - s.
-        choices: models to choose from, the last one first in sight.
-        panels: from top to bottom.
-    """
-
-    kind: Literal["time"] = "time"
-    title: str
-    alternative: str
-    start: float
-    step: float = Field(gt=0.0)
-    count: int = Field(gt=0)
-    choices: tuple[str, ...] = ()
-    panels: tuple[Panel, ...]
 
 
 class Series(Block):
@@ -212,6 +149,24 @@ class Intervals(Block):
     spans: tuple[Span, ...]
 
 
+class HeatMap(Block):
+    """Counts as a table whose cells are coloured by their share of the row; drawn without a script.
+
+    Attributes:
+        caption: what it tells.
+        corner: what rows are.
+        rows, columns: headings.
+        counts: a row each; zero is left blank. All should lie on the diagonal, which is framed.
+    """
+
+    kind: Literal["heat"] = "heat"
+    caption: str
+    corner: str
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    counts: tuple[tuple[int, ...], ...]
+
+
 class File(Block):
     """A file inside the page.
 
@@ -250,7 +205,8 @@ class Neighbours(Block):
 
 
 AnyBlock = Annotated[
-    Paragraph | Points | Table | TimeGraph | Chart | Intervals | Downloads | Neighbours, Field(discriminator="kind")
+    Paragraph | Points | Table | TimeGraph | Motion | Chart | Intervals | HeatMap | Downloads | Neighbours,
+    Field(discriminator="kind"),
 ]
 
 

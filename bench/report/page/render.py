@@ -13,9 +13,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from bench.names import plain
-from bench.report.page.blocks import File, Page, TimeGraph
+from bench.report.page.blocks import File, Page
 from bench.report.page.chart import drawn
 from bench.report.page.intervals import laid
+from bench.report.page.rail import ruler
+from bench.report.page.scripted import Motion, TimeGraph
 
 
 def html(page: Page, script: str | None = None) -> str:
@@ -25,23 +27,25 @@ def html(page: Page, script: str | None = None) -> str:
         page: what it says.
         script: address, as seen from the page, of the script file that it shares with others; inside of it without.
     """
-    graphs = [block for section in page.sections for block in section.blocks if isinstance(block, TimeGraph)]
+    blocks = [block for section in page.sections for block in section.blocks]
+    lively = any(isinstance(block, TimeGraph | Motion) for block in blocks)
     return (
         _environment()
         .get_template("page.html.j2")
         .render(
             page=page,
             style=Markup(style()),
-            script=Markup(program()) if graphs and script is None else None,
-            shared=script if graphs else None,
-            policy=_policy(program() if graphs and script is None else None),
+            script=Markup(program()) if lively and script is None else None,
+            shared=script if lively else None,
+            policy=_policy(program() if lively and script is None else None),
         )
     )
 
 
 def program() -> str:
-    """uPlot and the page's own script, for inside of a page or for a file of its own."""
-    return _asset("uplot", "uPlot.iife.min.js") + "\n" + _asset("assets", "page.js")
+    """uPlot and the page's own scripts, for inside of a page or for a file of its own."""
+    own = (_asset("assets", name) for name in ("page.js", "motion.js"))
+    return "\n".join((_asset("uplot", "uPlot.iife.min.js"), *own))
 
 
 def style() -> str:
@@ -60,7 +64,7 @@ def _environment() -> Environment:
         loader=PackageLoader("bench.report.page"), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True, finalize=_shown,
     )  # fmt: skip
-    found.filters |= {"data": _data, "link": _link, "drawn": drawn, "laid": laid}
+    found.filters |= {"data": _data, "link": _link, "drawn": drawn, "laid": laid, "ruler": ruler}
     return found
 
 
@@ -69,8 +73,8 @@ def _shown(value: Any) -> Any:  # noqa: ANN401 - whatever a template prints
     return plain(value) if type(value) is str else value
 
 
-def _data(graph: TimeGraph) -> Markup:
-    """A graph as JSON inside of a script element, which no text in it can end."""
+def _data(graph: TimeGraph | Motion) -> Markup:
+    """A graph or a motion as JSON inside of a script element, which no text in it can end."""
     text = json.dumps(graph.model_dump(), ensure_ascii=True, separators=(",", ":"))
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.report.page.blocks import Samples
+from bench.report.page.scripted import Samples
 
 #: Numbers that a page holds of its graphs: FEW where samples are few, then MORE for each of them, at most MOST. A
 #: number takes 2.7 bytes: that is 0.7 MB for 10 s at 1 kHz, and 3.7 MB for ten million samples.

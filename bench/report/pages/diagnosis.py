@@ -24,9 +24,9 @@ from bench.report.page.blocks import (
     Section,
     Series,
     Table,
-    TimeGraph,
 )
 from bench.report.page.numbers import number, sentence, share, unit_text, words
+from bench.report.page.scripted import TimeGraph
 from bench.report.pages.over_time import Measured, time_graph
 from bench.report.pages.tables import (
     checks_section,

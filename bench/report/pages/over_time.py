@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.report.page.blocks import Curve, Panel, TimeGraph
 from bench.report.page.numbers import unit_text
 from bench.report.page.samples import Grid
+from bench.report.page.scripted import Curve, Panel, TimeGraph
 
 Values = NDArray[np.floating]
 
@@ -27,6 +27,7 @@ class Measured:
         left: measured less modelled, for each model (n,); None where it says nothing.
         modelled: what a model's signal is called.
         apart: whether what is left has a panel of its own, on its own scale.
+        name: what the values are called.
     """
 
     label: str
@@ -36,6 +37,7 @@ class Measured:
     left: Sequence[Values | None] = ()
     modelled: str = "simulated"
     apart: bool = True
+    name: str = "measured"
 
     @property
     def told(self) -> list[tuple[int, Values]]:
@@ -75,7 +77,7 @@ def time_graph(
 
 def _panels(signal: Measured, grid: Grid, choices: Sequence[str]) -> list[Panel]:
     places, unit = grid.places(signal.time), unit_text(signal.unit)
-    curves = [Curve(name="measured", role="measured", choice=None, samples=grid.samples(places, signal.values))]
+    curves = [Curve(name=signal.name, role="measured", choice=None, samples=grid.samples(places, signal.values))]
     rest = []
     for k, left in signal.told:
         samples = grid.samples(places, signal.values - left)
@@ -85,6 +87,6 @@ def _panels(signal: Measured, grid: Grid, choices: Sequence[str]) -> list[Panel]
             rest.append(Curve(name=name, role="left", choice=k, samples=grid.samples(places, left)))
     found = [Panel(label=signal.label, unit=unit, curves=tuple(curves))]
     if rest:
-        label = f"{signal.label}, measured less {signal.modelled}"
+        label = f"{signal.label}, {signal.name} less {signal.modelled}"
         found.append(Panel(label=label, unit=unit, curves=tuple(rest), first=True))
     return found

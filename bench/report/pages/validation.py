@@ -6,10 +6,12 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from bench.report.confusion import Confusion
 from bench.report.page.blocks import (
     Answer,
     AnyBlock,
     Column,
+    HeatMap,
     Intervals,
     Neighbour,
     Neighbours,
@@ -158,9 +160,22 @@ def _naming(found: Naming) -> Iterator[AnyBlock]:
     yield from _table(names(found))
     if found.named:
         yield from _table(by_name(found))
+    if found.confusion:
+        yield _matrix(Confusion.of(found.confusion))
     columns = Column(heading="hidden"), Column(heading="said, and how often", prose=True)
     rows = tuple((words(hidden), _said(counts)) for hidden, counts in found.confusion.items())
     yield Table(caption="What is said where one effect is hidden, or nothing", columns=columns, rows=rows)
+
+
+def _matrix(found: Confusion) -> HeatMap:
+    return HeatMap(
+        caption="Hidden down, said across: how often, coloured by the share of what is said in a row; "
+        "the right answer is framed",
+        corner="hidden",
+        rows=found.hidden,
+        columns=found.said,
+        counts=tuple(map(tuple, found.counts.tolist())),
+    )
 
 
 def _said(counts: Mapping[str, int]) -> str:

@@ -1,12 +1,49 @@
 "use strict";
 (() => {
-  const NOTHING = -32768, HEIGHT = { first: 170, other: 130 }, LEAST = 8;
+  const NOTHING = -32768, HEIGHT = { first: 170, other: 130 }, LEAST = 8, DENSE = 8;
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   const numbers = (text) => {
     const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
     return new Int16Array(bytes.buffer);
   };
+  const line = uPlot.paths.linear();
   const shown = (value, unit) => (value == null ? "–" : Number(value.toPrecision(4)) + (unit ? " " + unit : ""));
+
+  const labels = (u, splits, axis, space, step) => { // with as many digits as tell them apart
+    const digits = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
+    const text = (value) => (digits > 4 ? value.toExponential(Math.max(0, Math.floor(Math.log10(Math.abs(value)) + digits))) : value.toFixed(digits));
+    return splits.map((value) => (Math.abs(value) < step / 2 ? "0" : text(value).replace(/-/g, "−")));
+  };
+
+  // Whether a curve of lowest and highest values goes up and down in nearly every pixel.
+  const dense = (u, i) => {
+    const y = u.data[i], { min, max } = u.scales.y;
+    let way = 0;
+    for (let k = 0; k < y.length; k += 2) if (y[k] !== null) way += y[k + 1] - y[k];
+    return (way / (max - min)) * u.bbox.height > DENSE * u.bbox.width;
+  };
+
+  // Such a curve as an upright bar for each pair, which reaches as far as the one before: a line up and down looks the
+  // same and takes a browser several times as long to draw.
+  const bars = (u, i, colour) => {
+    const [x, y] = [u.data[0], u.data[i]], thick = u.series[i].width * devicePixelRatio, { left, top, width, height } = u.bbox;
+    const wide = Math.max(thick, ((x[2] - x[0]) / (u.scales.x.max - u.scales.x.min)) * width);
+    u.ctx.save();
+    u.ctx.beginPath();
+    u.ctx.rect(left, top, width, height);
+    u.ctx.clip();
+    u.ctx.fillStyle = colour;
+    let before = null;
+    for (let k = 0; k < y.length; k += 2) {
+      if (y[k] === null) { before = null; continue; }
+      const low = u.valToPos(y[k], "y", true), high = u.valToPos(y[k + 1], "y", true); // downwards on the screen
+      const [from, to] = before === null ? [high, low] : [Math.min(high, before[1]), Math.max(low, before[0])];
+      const at = u.valToPos((x[k] + x[k + 1]) / 2, "x", true) - wide / 2;
+      u.ctx.fillRect(Math.floor(at), Math.round(from - thick / 2), Math.ceil(wide), Math.max(1, Math.round(to - from + thick)));
+      before = [high, low];
+    }
+    u.ctx.restore();
+  };
 
   class TimeGraph {
     constructor(figure) {
@@ -59,9 +96,17 @@
         window.addEventListener("pointerup", () => window.removeEventListener("pointermove", move), { once: true });
       }, { capture: true });
       this.place.addEventListener("mousedown", (event) => { if (event.shiftKey) event.stopPropagation(); }, { capture: true });
+      window.addEventListener("instant", (event) => this.point(event.detail));
       new ResizeObserver(() => this.fit()).observe(this.place);
       for (const query of ["(prefers-color-scheme: dark)", "print"])
         window.matchMedia(query).addEventListener("change", () => this.build());
+    }
+
+    point(time) { // the cursor of all panels, for whoever tells a time; beyond what is in sight it is gone
+      for (const plot of this.plots) {
+        const left = plot.valToPos(time, "x");
+        plot.setCursor(left < 0 || left > plot.over.clientWidth ? { left: -10, top: -10 } : { left, top: 0 });
+      }
     }
 
     curves(panel) {
@@ -81,6 +126,7 @@
       const readout = document.createElement("div");
       readout.className = "readout";
       this.place.append(readout);
+      const barred = []; // curves that are drawn as bars
       const curves = this.curves(panel), last = k === this.data.panels.length - 1;
       const colours = curves.map((c) => colour(panel.first && c.choice === 0 && this.choice > 0 ? "first" : c.role));
       const axis = { stroke: colour("soft"), grid: { stroke: colour("rule"), width: 1 }, ticks: { stroke: colour("rule"), width: 1 }, font: "12px system-ui, sans-serif" };
@@ -93,12 +139,14 @@
         scales: { x: { time: false } },
         axes: [
           { ...axis, size: last ? 42 : 4, label: last ? "time / s" : undefined, labelSize: 18, labelFont: axis.font, values: last ? undefined : (u, splits) => splits.map(() => "") },
-          { ...axis, size: 64, space: 24 },
+          { ...axis, size: 64, space: 24, values: labels },
         ],
-        series: [{}, ...curves.map((c, i) => ({ label: c.name, stroke: colours[i], width: c.role === "measured" ? 3 : 1.3, points: { show: false }, spanGaps: false }))],
+        series: [{}, ...curves.map((c, i) => ({ label: c.name, stroke: colours[i], width: c.role === "measured" ? 3 : 1.3,
+          points: { show: false }, spanGaps: false, paths: (u, at, from, to) => ((barred[at] = !this.plain && dense(u, at)) ? null : line(u, at, from, to)) }))],
         cursor: { sync: { key: sync.key, scales: ["x", null] }, drag: { x: true, y: false, setScale: false }, y: false, points: { size: 6 },
           bind: { dblclick: () => () => { this.show(...this.whole); return null; } } },
         hooks: {
+          drawSeries: [(u, i) => { if (barred[i]) bars(u, i, colours[i - 1]); }],
           setCursor: [tell],
           setSelect: [(u) => {
             if (u.select.width < 4) return;
@@ -153,7 +201,7 @@
       const { start, step } = this.data, [a, b] = this.view;
       const from = Math.max(0, Math.floor(a) - 1), to = Math.min(this.data.count, Math.ceil(b) + 2);
       const size = Math.max(1, Math.floor((to - from) / Math.max(200, this.plots[0].over.clientWidth || 600)));
-      const plain = this.single && size === 1;
+      const plain = (this.plain = this.single && size === 1);
       const x = [];
       for (let k = from; k < to; k += size) {
         x.push(start + step * (plain ? k : k - 0.5 + size * 0.25));

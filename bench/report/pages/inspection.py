@@ -1,0 +1,151 @@
+"""The page of an inspection: what a recording holds, every signal over time, and what its checks say."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import Literal
+
+from bench.checks.check import Check
+from bench.report.page.blocks import Answer, AnyBlock, Column, Page, Paragraph, Points, Section, Table, Tone
+from bench.report.page.numbers import number, unit_text, words
+from bench.report.page.samples import Grid
+from bench.report.page.scripted import Curve, Panel, TimeGraph
+from bench.report.pages.tables import checks_section, origin
+from bench.trace.inspect import ColumnSummary, Inspection
+from bench.trace.trace import Trace
+
+#: How the signals of one unit are told apart, in their order.
+ROLES: tuple[Literal["measured", "model", "left"], ...] = ("measured", "model", "left")
+#: Holes that are listed one by one.
+MOST_HOLES = 20
+
+
+def inspection_page(found: Inspection, checks: Sequence[Check], trace: Trace | None) -> Page:
+    """The page of an inspection.
+
+    Args:
+        found: in the recording.
+        checks: what the gate found; () of a recording that is not read.
+        trace: the recording as it is read; None where `found.asks` something first.
+    """
+    name, verdict = Path(found.origin).name, _verdict(found, checks)
+    sections = []
+    if trace is not None:
+        sections.append(Section(key="signals", heading="Signals", blocks=(signals_graph(trace), _signals(found))))
+    if found.asks is not None:
+        sections.append(Section(key="asked", heading="What to write", blocks=_asked(found)))
+    rest = [column for column in found.columns if not column.read]
+    if rest:
+        sections.append(Section(key="columns", heading="Columns that are not read", blocks=(_columns(rest),)))
+    if checks or found.notes:
+        sections.append(checks_section(checks, found.notes))
+    return Page(
+        title=name,
+        subject=f"Inspection of {name} ({found.format})",
+        verdict=verdict[0],
+        tone=verdict[1],
+        answers=_answers(found),
+        sections=tuple(sections),
+        origin=origin(None),
+    )
+
+
+def signals_graph(trace: Trace) -> TimeGraph:
+    """Every signal of a recording over time; those of one unit share a panel."""
+    signals = sorted(trace.signals, key=lambda name: list(trace.units.values()).index(trace.units[name]))
+    grid = Grid.of(trace.time, len(signals))
+    places, panels = grid.places(trace.time), []
+    for unit, named in groupby(signals, key=lambda name: trace.units[name]):
+        names = list(named)
+        curves = tuple(
+            Curve(
+                name=words(name),
+                role=ROLES[k % len(ROLES)],
+                choice=None,
+                samples=grid.samples(places, trace.signals[name]),
+            )
+            for k, name in enumerate(names)
+        )
+        panels.append(Panel(label=words(names[0]), unit=unit_text(unit), curves=curves))
+    told = f"{', '.join(map(words, signals))} of the recording."
+    return TimeGraph(
+        title="Over time.", alternative=told, start=grid.start, step=grid.step, count=grid.count, panels=tuple(panels)
+    )
+
+
+def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, Tone]:
+    """What the recording is good for, in a sentence, and how that is meant."""
+    if found.asks is not None or found.duration is None or found.rate is None:
+        return "It is not read as a recording yet: its signals have to be told first.", "refused"
+    names = [words(signal.name) for signal in found.signals]
+    held = f"It holds {number(found.duration, 's', 4)} of {', '.join(names)} at {number(found.rate, 'Hz', 6)}"
+    failed = [words(check.name) for check in checks if check.status == "fail"]
+    warned = [words(check.name) for check in checks if check.status == "warn"]
+    if failed:
+        return f"{held}, but cannot be identified from: {', '.join(failed)}.", "refused"
+    if warned:
+        return f"{held}; with care: {', '.join(warned)}.", "open"
+    return f"{held}, and every check passed.", "sure"
+
+
+def _answers(found: Inspection) -> tuple[Answer, ...]:
+    told = {"What is it?": f"{found.format}, {len(found.columns)} columns"}
+    if len(found.axes) > 1:
+        told["Which axes?"] = ", ".join(found.axes)
+    if found.samples is not None and found.start is not None and found.duration is not None:
+        times = f"{number(found.start)} to {number(found.start + found.duration, 's')}"
+        told["How long?"] = f"{found.samples} samples, {times}"
+        told["Is anything lost?"] = _lost(found)
+    return tuple(Answer(question=question, answer=answer) for question, answer in told.items())
+
+
+def _lost(found: Inspection) -> str:
+    holes = [f"{number(duration, 's', 3)} at {number(start, 's')}" for start, duration in found.holes[:MOST_HOLES]]
+    more = len(found.holes) - len(holes)
+    told = [f"holes of {', '.join(holes)}" + (f" and {more} more" if more > 0 else "")] if holes else ["no hole"]
+    told += [f"{found.interpolated} samples interpolated"] if found.interpolated else []
+    told += [f"{found.duplicates} samples stood there twice"] if found.duplicates else []
+    return "; ".join(told)
+
+
+def _signals(found: Inspection) -> Table:
+    columns = tuple(Column(heading=heading) for heading in ("signal", "column", "unit"))
+    columns += tuple(Column(heading=heading, number=True) for heading in ("least", "most", "RMS", "resolution"))
+    rows = tuple(
+        (
+            words(signal.name),
+            signal.column,
+            unit_text(signal.unit),
+            *(number(value, digits=5) for value in (signal.minimum, signal.maximum, signal.rms)),
+            "constant" if signal.resolution is None else number(signal.resolution, digits=3),
+        )
+        for signal in found.signals
+    )
+    return Table(caption="What is read, in SI units", columns=columns, rows=rows)
+
+
+def _columns(columns: Sequence[ColumnSummary]) -> Table:
+    headings = (Column(heading="column"), Column(heading="unit"))
+    headings += tuple(Column(heading=heading, number=True) for heading in ("least", "most", "resolution"))
+    rows = tuple(
+        (
+            column.name if column.axis is None else f"{column.name} ({column.axis})",
+            column.unit or "",
+            *(
+                "" if value is None else number(value, digits=5)
+                for value in (column.minimum, column.maximum, column.resolution)
+            ),
+            f"{words(column.signal)}: {', '.join(column.why)}" if column.signal else ", ".join(column.why),
+        )
+        for column in columns
+    )
+    return Table(caption="In the file's units", columns=(*headings, Column(heading="likely", prose=True)), rows=rows)
+
+
+def _asked(found: Inspection) -> tuple[AnyBlock, ...]:
+    """What keeps the file from being read, and the lines of a rig that would help."""
+    lines = (Points(items=("[trace.columns]", *found.suggestions)),) if found.suggestions else ()
+    told = (Paragraph(text="Likely, for the rig file:"),) if lines else ()
+    return (Paragraph(text=f"{found.asks}."), *told, *lines)
