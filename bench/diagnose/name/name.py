@@ -9,6 +9,7 @@ from bench.balance.fit import Fit, fit
 from bench.balance.hint import hint
 from bench.balance.parameter import Parameter
 from bench.balance.quantities import uncertain
+from bench.balance.shapes import unbiased
 from bench.diagnose.found import NamedEffect
 from bench.diagnose.name.doubts import Evidence, doubted
 from bench.diagnose.name.policy import Policy
@@ -67,7 +68,7 @@ def named(
     """Effects of a fitted balance and those beside it with their quantities, and J, K_w, K_0 beside them."""
     rig, unit = recordings.rig, recordings.unit
     numbers, others = uncertain(fitted), recordings.within_tolerance(fitted)
-    hinted = hint(fitted, catalogue().values()) or fitted
+    hinted, over_noise = hint(fitted, catalogue().values()) or fitted, unbiased(fitted)
     parameters = {
         name: found.widened(*(float(other.theta[k] - fitted.theta[k]) for other in others)).reaching(
             float(hinted.theta[k])
@@ -86,8 +87,11 @@ def named(
         evidence = {"residual_without": less.rms, "residual_with": fitted.rms, "noise_floor": fitted.floor}
         reports = [term.effect.report(other.strengths(index), term.shape, other.base) for other in others]
         by_hint = term.effect.report(hinted.strengths(index), term.shape, hinted.base)
+        by_noise = term.effect.report(over_noise.strengths(index), over_noise.terms[index].shape, over_noise.base)
         found = {
-            key: value.widened(*(report[key] - value.value for report in reports)).reaching(by_hint[key])
+            key: value.widened(*(report[key] - value.value for report in reports))
+            .reaching(by_hint[key])
+            .reaching(by_noise[key])
             for key, value in numbers.quantities(index, unit_of).items()
         }
         effects.append(NamedEffect(term.effect, found, term.effect.ambiguous(fitted.scope), evidence))
