@@ -2,6 +2,7 @@
 
 import contextlib
 import gzip
+import io
 import sys
 import zipfile
 import zlib
@@ -235,3 +236,14 @@ def test_out_of_memory_is_one_line(monkeypatch, capsys):
         main()
     assert stop.value.code == 70
     assert capsys.readouterr().err == "bench: out of memory; give less at a time, or a machine with more\n"
+
+
+def test_a_zip_of_a_version_that_nobody_has_is_told_in_one_line(tmp_path):
+    """Found by fuzzing: the archive's directory asks for version 25.5."""
+    file = io.BytesIO()
+    np.savez(file, **dict(zip(("time_s", "velocity_rad_s", "current_A"), columns(20), strict=True)))
+    content = bytearray(file.getvalue())
+    content[content.index(b"PK\x01\x02") + 6] = 255
+    (tmp_path / "x.npz").write_bytes(bytes(content))
+    with pytest.raises(InputError, match="damaged"):
+        read(tmp_path / "x.npz")

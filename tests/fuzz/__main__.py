@@ -9,13 +9,29 @@ into `tests/test_hostile.py`. Needs `atheris` (Linux).
 """
 
 import argparse
+import bz2
+import gzip
+import io
+import lzma
 import sys
 import tempfile
+import zipfile
+from contextlib import nullcontext
 from pathlib import Path
 
-import atheris
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import scipy.io
 
-with atheris.instrument_imports(include=["bench", "pint", "tomllib"]):
+try:
+    import atheris
+
+    instrumented = atheris.instrument_imports(include=["bench", "pint", "tomllib"])
+except ModuleNotFoundError:  # the options are told without it
+    atheris, instrumented = None, nullcontext()
+
+with instrumented:
     from bench.errors import BenchError
     from bench.plant.model_file import load_model
     from bench.rig.rig import load_rig
@@ -65,6 +81,28 @@ SEEDS = {
 }
 
 
+def containers() -> list[bytes]:
+    """Small recordings in the binary formats that are read."""
+    columns = {"time_s": np.arange(12) * 1e-3, "velocity_rad_s": np.arange(12.0), "current_A": np.ones(12)}
+    rows = "\n".join([",".join(columns), *(",".join(map(str, row)) for row in zip(*columns.values(), strict=True))])
+    made = [gzip.compress(rows.encode(), mtime=0), bz2.compress(rows.encode()), lzma.compress(rows.encode())]
+    for write in (
+        lambda file: pq.write_table(pa.table(columns), file),
+        lambda file: np.savez(file, **columns),
+        lambda file: scipy.io.savemat(file, columns),
+        lambda file: _zipped(file, rows),
+    ):
+        file = io.BytesIO()
+        write(file)
+        made.append(file.getvalue())
+    return made
+
+
+def _zipped(file: io.BytesIO, rows: str) -> None:
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("run.csv", rows)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz")
     parser.add_argument("target", choices=list(TARGETS))
@@ -72,8 +110,11 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=-1)
     parser.add_argument("--corpus", type=Path, default=FOLDER / "corpus")
     asked = parser.parse_args()
+    if atheris is None:
+        parser.error("the extra `fuzz` is not installed: pip install -e '.[fuzz]'")
     asked.corpus.mkdir(parents=True, exist_ok=True)
-    for number, seed in enumerate(SEEDS[asked.target]):
+    seeds = SEEDS[asked.target] + (containers() if asked.target == "readers" else [])
+    for number, seed in enumerate(seeds):
         (asked.corpus / f"seed-{number}").write_bytes(seed)
 
     def once(data: bytes) -> None:
@@ -82,7 +123,7 @@ def main() -> None:
         except BenchError as error:
             assert "\n" not in str(error)
 
-    for seed in SEEDS[asked.target]:
+    for seed in seeds:
         once(seed)  # so that what is imported on the way is not counted as slow
     limits = [
         "-artifact_prefix=./",

@@ -60,7 +60,7 @@ def _require_bounds(source: Source) -> None:
     try:
         with zipfile.ZipFile(BytesIO(source.content)) as archive:
             size = sum(member.file_size for member in archive.infolist())
-    except (zipfile.BadZipFile, OSError, ValueError) as error:
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
         raise damaged(source.path, FORMAT, error) from error
     require_expansion(source.path, size, len(source.content))
 
