@@ -22,7 +22,7 @@ from bench.trace.stream import stream
 from bench.unit_grammar import LONGEST, require_unit
 from bench.units import dimensionality, parse
 from bench.usual_units import USUAL_UNITS
-from tests.hostile import TABLE, cpu_seconds
+from tests.hostile import TABLE, columns, cpu_seconds
 
 ROWS = TABLE.split("\n", 1)[1]
 SLOW = {
