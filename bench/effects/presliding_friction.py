@@ -20,7 +20,7 @@ import numpy as np
 from bench.arrays import Array, recurrence
 from bench.effects.kinds import Axis, Friction
 from bench.effects.mjcf import AXIS, BRISTLES, passive_motor
-from bench.effects.signals import Base, Shape, Signals
+from bench.effects.signals import Base, Scope, Shape, Shapes, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -29,6 +29,8 @@ if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
 
 #: Level of sliding friction, as share of Coulomb's, below which a fit of others has lost its way.
 LEAST = 1e-3
+#: Lengths over which the bristles bend in the travel, at least.
+SLIDES = 10.0
 
 
 class PreslidingFriction(Friction):
@@ -60,6 +62,10 @@ class PreslidingFriction(Friction):
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """The bristles carry Coulomb friction within a factor of two."""
         return base.inertia > 0.0 and 0.5 * base.coulomb < strengths[0] < 2.0 * base.coulomb
+
+    def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
+        """The bristles bend over a small part of the travel: over most of it they would be a spring and a damper."""
+        return all(rate * scope.travel > SLIDES for (rate,) in shapes)
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """LuGre friction of a passive DC motor in place of the joint's."""

@@ -121,6 +121,8 @@ class Numbers:
         """The model with other values; InputError where it cannot have them."""
         moved = self.named(values)
         base = [max(p.value, 0.0) for p in list(moved[1].values())[:3]]
+        if not base[0]:
+            raise InputError(stored.name, "found no inertia", "allowed: above zero")
         parameters = replace(stored.model.parameters, **dict(zip(BASE, base, strict=True)))
         present: tuple[Present, ...] = tuple(present_of(effect.effect, effect.values) for effect in moved[0])
         return replace(stored, model=replace(stored.model, parameters=parameters, effects=present))
