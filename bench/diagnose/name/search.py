@@ -60,10 +60,11 @@ def search(bare: Fit, effects: Sequence[Effect], rules: Rules) -> Searched:
         rules: that decide.
     """
     found = forward_selection(Searched((Step(bare),)), effects, rules)
-    better = exchanged(found.last, effects, rules)
-    while better is not None:
-        found = forward_selection(Searched((*found.steps, Step(better))), effects, rules)
+    for _ in range(rules.most):  # each leaves less, so it ends before; what is let go in between could turn it round
         better = exchanged(found.last, effects, rules)
+        if better is None:
+            break
+        found = forward_selection(Searched((*found.steps, Step(better))), effects, rules)
     if rules.remainder.holds(found.last):
         for effect in effects:
             replaced = replacement(found.last, effect, rules) if effect.replaces else None
