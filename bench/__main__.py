@@ -29,8 +29,10 @@ def main() -> None:
         for number in (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if os.name == "posix" else [])):
             if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup leaves it
                 signal.signal(number, _stop)
+        from bench.allocation import keep_freed_memory
         from bench.cli import main as run
 
+        keep_freed_memory()
         run()
     except Stopped as stop:
         os.write(2, b"bench: interrupted\n")

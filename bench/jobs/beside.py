@@ -24,6 +24,7 @@ from typing import Any, Generic, TypeVar
 
 import psutil
 
+from bench.allocation import KEPT
 from bench.bounds import shown
 from bench.jobs.limits import Failure, Limits
 
@@ -100,7 +101,7 @@ def _process() -> tuple[subprocess.Popen[bytes], Connection]:
     calls, other = Pipe()
     with other:
         command = [sys.executable, "-c", _SERVE, str(other.fileno())]
-        own = {**_ONE_THREAD, **os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+        own = {**_ONE_THREAD, **KEPT, **os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
         nowhere = subprocess.DEVNULL
         return subprocess.Popen(command, pass_fds=[other.fileno()], env=own, stdin=nowhere, stdout=nowhere), calls
 
