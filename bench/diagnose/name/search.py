@@ -109,7 +109,7 @@ def _worthwhile(current: Fit, after: Fit, rules: Rules) -> bool:
 
 
 def exchanged(fitted: Fit, effects: Sequence[Effect], rules: Rules) -> Fit | None:
-    """The hypothesis with an earlier name exchanged for another that leaves less by more than chance; None if none does.
+    """The hypothesis with an earlier name exchanged for one that leaves less by more than chance; else None.
 
     What was nearest when nothing stood beside it need not be so among the others (sequential replacement: A. J. Miller,
     Journal of the Royal Statistical Society A 147, 1984, 389-425).

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Effect:
-    """A physical effect. Each hook below is neutral; an effect overrides those through which it acts.
+    """A physical effect. It overrides the hooks through which it acts; the plant asks no other one.
 
     `rows` shows the state of the axes that have the effect, midway through the step; `memory` is the effect's own state
     (one number an axis), `step` the time to advance - s.
