@@ -24,12 +24,19 @@ def is_pitch(shape: Shape, scope: Scope) -> bool:
 
 
 def places(shape: Shape, scope: Scope) -> tuple[float, ...]:
-    """Where a shape is sought first: on a linear axis as on a rotary one whose top speed is TOP."""
+    """Where a shape is sought first: on a linear axis as on a rotary one whose top speed is TOP.
+
+    A rotary axis may be a motor or the joint behind its gear, so there both are tried: values as they are stated, and
+    beyond them values by its own speed.
+    """
     if is_pitch(shape, scope):
         return tuple((scope.spacing * np.arange(2.0 * COARSEST, 2.0 * FINEST + 1.0)).tolist())
     if shape.whole:
         return tuple(n for n in shape.grid if n * scope.travel >= PERIOD)
     power = {"rad/s": 1, "1/rad": -1}.get(shape.quantity.unit, 0)
-    if scope.kind.turns or not power:
+    if not power:
         return shape.grid
-    return tuple(value * (scope.top_speed / TOP) ** power for value in shape.grid)
+    by_speed = tuple(value * (scope.top_speed / TOP) ** power for value in shape.grid)
+    if not scope.kind.turns:
+        return by_speed
+    return tuple(sorted((*shape.grid, *(value for value in by_speed if not min(shape.grid) <= value <= max(shape.grid)))))
