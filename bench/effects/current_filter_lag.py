@@ -20,6 +20,7 @@ from bench.arrays import Array
 from bench.effects.current_loop_lag import LAGS
 from bench.effects.effect import Fitted, Proposal
 from bench.effects.first_order import lagged
+from bench.effects.grids import LAG
 from bench.effects.kinds import Sensing
 from bench.effects.signals import Scope, Shape, Signals
 from bench.statistics import NORMAL95
@@ -32,7 +33,7 @@ class CurrentFilterLag(Sensing):
     name = "current_filter_lag"
     summary = "reported current is filtered: it shows torque later than it acts"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
-    shapes = (Shape(quantities[0], LAGS, reach=1.0),)
+    shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
     not_beside = frozenset({"current_loop_lag", "velocity_filter_lag"})
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:

@@ -15,6 +15,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.effects.first_order import lagged
+from bench.effects.grids import LAG
 from bench.effects.kinds import Electronics, Values
 from bench.effects.signals import Scope, Shape, Signals
 from bench.statistics import NORMAL95
@@ -30,7 +31,7 @@ class CurrentLoopLag(Electronics):
     name = "current_loop_lag"
     summary = "torque acts later than the reported current"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
-    shapes = (Shape(quantities[0], LAGS, reach=1.0),)
+    shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
     not_beside = frozenset({"velocity_filter_lag", "current_filter_lag"})
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:

@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.arrays import Array
+from bench.effects.grids import DURATION
 from bench.effects.kinds import Axis, Friction, Moment, Number, Values
 from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
@@ -29,7 +30,7 @@ class FrictionWarmup(Friction):
         Quantity("time_constant", "T", "s", lower=0.0),
         Quantity("viscous_share", "s", "dimensionless", lower=0.0, preset=1.0),
     )
-    shapes = (Shape(quantities[1], (0.7, 1.5, 3.0, 6.0, 12.0)),)
+    shapes = (Shape(quantities[1], (0.7, 1.5, 3.0, 6.0, 12.0), measure=DURATION),)
     scales_friction = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

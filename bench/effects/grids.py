@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from bench.effects.signals import Scope, Shape
+from bench.effects.signals import Measure, Scope, Shape
 
-#: Top speed of the rotary axes for which effects state their grids - rad/s.
-TOP = 100.0
+#: Of the axes for which effects state their grids: top speed - rad/s -, width of the filter and duration - s.
+SPEED = Measure(lambda scope: scope.top_speed, usual=100.0, angular=True)
+ANGLE = Measure(lambda scope: scope.top_speed, usual=100.0, power=-1, angular=True)
+LAG = Measure(lambda scope: scope.width, usual=1.5e-3)
+FREQUENCY = Measure(lambda scope: scope.width, usual=1.5e-3, power=-1)
+DURATION = Measure(lambda scope: scope.duration, usual=8.0)
 #: Angle of a cycle that the motion must cover - rad: over less, a wave is a mere curve, and a wave of torque copies it.
 PERIOD = 2.0 * np.pi
 #: Cycles over the travel of a linear axis between which pitches are sought: fewer than two are no repetition.
@@ -24,19 +28,20 @@ def is_pitch(shape: Shape, scope: Scope) -> bool:
 
 
 def places(shape: Shape, scope: Scope) -> tuple[float, ...]:
-    """Where a shape is sought first: on a linear axis as on a rotary one whose top speed is TOP.
+    """Where a shape is sought first: where its grid says, and beyond that where the recording's own measure says.
 
-    A rotary axis may be a motor or the joint behind its gear, so there both are tried: values as they are stated, and
-    beyond them values by its own speed.
+    A motor and the joint behind its gear, a stage and a gantry differ by orders of magnitude. On a linear axis a grid
+    of angles says nothing, so there the measure alone does.
     """
     if is_pitch(shape, scope):
         return tuple((scope.spacing * np.arange(2.0 * COARSEST, 2.0 * FINEST + 1.0)).tolist())
     if shape.whole:
         return tuple(n for n in shape.grid if n * scope.travel >= PERIOD)
-    power = {"rad/s": 1, "1/rad": -1}.get(shape.quantity.unit, 0)
-    if not power:
+    if shape.measure is None:
         return shape.grid
-    by_speed = tuple(value * (scope.top_speed / TOP) ** power for value in shape.grid)
-    if not scope.kind.turns:
-        return by_speed
-    return tuple(sorted((*shape.grid, *(value for value in by_speed if not min(shape.grid) <= value <= max(shape.grid)))))
+    factor = shape.measure.factor(scope)
+    measured = tuple(value * factor for value in shape.grid)
+    if shape.measure.angular and not scope.kind.turns:
+        return measured
+    low, high = min(shape.grid), max(shape.grid)
+    return tuple(sorted((*shape.grid, *(value for value in measured if not low <= value <= high))))

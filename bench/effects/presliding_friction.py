@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from bench.arrays import Array, recurrence
+from bench.effects.grids import ANGLE
 from bench.effects.kinds import Axis, Friction
 from bench.effects.mjcf import AXIS, BRISTLES, passive_motor
 from bench.effects.signals import Base, Scope, Shape, Shapes, Signals
@@ -42,7 +43,13 @@ class PreslidingFriction(Friction):
         Quantity("bristle_stiffness", "sigma", "N*m/rad", lower=0.0, null=np.inf),
         Quantity("bristle_damping", "sigma_1", "N*m*s/rad", lower=0.0, preset=0.0),
     )
-    shapes = (Shape(Quantity("bristle_rate", "sigma/K_0", "1/rad", lower=0.0), (3.0, 8.0, 20.0, 50.0, 130.0, 350.0)),)
+    shapes = (
+        Shape(
+            Quantity("bristle_rate", "sigma/K_0", "1/rad", lower=0.0),
+            (3.0, 8.0, 20.0, 50.0, 130.0, 350.0),
+            measure=ANGLE,
+        ),
+    )
 
     carries_friction = True
     # a rise of friction towards standstill that is not named yet would else make it negative, and the name impossible

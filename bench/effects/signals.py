@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from bench.arrays import Array
@@ -102,6 +102,27 @@ class Scope:
 
 
 @dataclass(frozen=True)
+class Measure:
+    """What a recording has of its own that a quantity goes with: a speed with the top speed, a lag with the filter.
+
+    Attributes:
+        of: value of it in a recording.
+        usual: the value for which grids are stated.
+        power: of it that the quantity goes with.
+        angular: whether the quantity is one of angle, of which a linear axis has none.
+    """
+
+    of: Callable[[Scope], float]
+    usual: float
+    power: int = 1
+    angular: bool = False
+
+    def factor(self, scope: Scope) -> float:
+        """By which values that are stated for the usual are those of this recording."""
+        return (self.of(scope) / self.usual) ** self.power
+
+
+@dataclass(frozen=True)
 class Shape:
     """A quantity of an effect that enters nonlinearly.
 
@@ -112,6 +133,7 @@ class Shape:
         reach: how far a search goes from there, as factor e**reach, or as distance where `additive`; 0 if it does not.
         additive: whether steps are added rather than multiplied (an instant, an angle).
         step: of a numerical derivative, as share of the value; 0 of what is no free number of the fit.
+        measure: that the quantity goes with; None where the grid holds for every recording.
     """
 
     quantity: Quantity
@@ -120,3 +142,4 @@ class Shape:
     reach: float = 0.9
     additive: bool = False
     step: float = 1e-4
+    measure: Measure | None = None

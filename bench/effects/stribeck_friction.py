@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.arrays import Array
+from bench.effects.grids import SPEED
 from bench.effects.kinds import Axis, Friction, Moment, Number, Values
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.trace.filter import Column
@@ -32,7 +33,7 @@ class StribeckFriction(Friction):
         Quantity("static_friction", "M_s", "N*m", lower=0.0),
         Quantity("stribeck_velocity", "omega_s", "rad/s", lower=0.0),
     )
-    shapes = (Shape(quantities[1], (0.3, 0.6, 1.2, 2.5, 5.0, 10.0, 20.0)),)
+    shapes = (Shape(quantities[1], (0.3, 0.6, 1.2, 2.5, 5.0, 10.0, 20.0), measure=SPEED),)
     of_speed_alone = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

@@ -18,6 +18,7 @@ from bench.arrays import Array
 from bench.effects.current_loop_lag import LAGS
 from bench.effects.effect import Detected
 from bench.effects.first_order import lagged
+from bench.effects.grids import LAG
 from bench.effects.kinds import Sensing
 from bench.effects.signals import Scope, Shape
 from bench.rig.rig import Rig
@@ -41,7 +42,7 @@ class VelocityFilterLag(Sensing):
     name = "velocity_filter_lag"
     summary = "reported velocity lags the motion"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
-    shapes = (Shape(quantities[0], LAGS, reach=1.0),)
+    shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
     not_beside = frozenset({"current_loop_lag", "current_filter_lag"})
     faulty_signal = "velocity"
 

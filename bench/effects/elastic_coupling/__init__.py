@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.effects.effect import Load
 from bench.effects.elastic_coupling.twist import twist_columns
+from bench.effects.grids import FREQUENCY
 from bench.effects.kinds import Axis, Mechanism
 from bench.effects.mjcf import add_coupling_joint
-from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -50,16 +51,12 @@ class ElasticCoupling(Mechanism):
     )
     derived = (Quantity("resonance_frequency", "f", "Hz", lower=0.0),)
     shapes = (
-        Shape(Quantity("antiresonance", "w_a", "rad/s", lower=0.0), ANTIRESONANCES, reach=0.35),
+        Shape(Quantity("antiresonance", "w_a", "rad/s", lower=0.0), ANTIRESONANCES, reach=0.35, measure=FREQUENCY),
         Shape(Quantity("damping_ratio", "D", "dimensionless", lower=0.0), DAMPINGS, reach=0.35),
     )
     of_motion = True
     couples = True
     biased_by_noise = True
-
-    def grid(self, scope: Scope) -> list[tuple[float, ...]]:
-        """The same on linear axes: a coupling rings as fast there."""
-        return [(antiresonance, damping) for antiresonance in ANTIRESONANCES for damping in DAMPINGS]
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Load's acceleration less the motor's."""
