@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.effect import Effect
+from bench.effects.grids import DURATION, FREQUENCY, SPEED
 from bench.effects.kinds import Axis, Number
 from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
@@ -27,7 +28,7 @@ class Vibration(Rival):
     name = "outside_vibration"
     summary = "a torque periodic in time"
     quantities = (Quantity("frequency", "f", "1/s", lower=0.0),)
-    shapes = (Shape(quantities[0], tuple(float(f) for f in np.geomspace(0.4, 120.0, 240))),)
+    shapes = (Shape(quantities[0], tuple(float(f) for f in np.geomspace(0.4, 120.0, 240)), measure=FREQUENCY),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Sine and cosine of time."""
@@ -68,7 +69,7 @@ class SlowMemory(Rival):
     name = "outside_slow_memory"
     summary = "friction that grows with recent speed"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0),)
-    shapes = (Shape(quantities[0], (0.05, 0.12, 0.3, 0.7, 1.5, 3.0)),)
+    shapes = (Shape(quantities[0], (0.05, 0.12, 0.3, 0.7, 1.5, 3.0), measure=DURATION),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Direction times low-passed magnitude of speed."""
@@ -90,8 +91,8 @@ class FrictionalMemory(Rival):
     summary = "friction that follows a change of speed late"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0), Quantity("speed", "omega_s", "rad/s", lower=0.0))
     shapes = (
-        Shape(quantities[0], (0.03, 0.1, 0.3, 1.0)),
-        Shape(quantities[1], (1.0, 3.0, 10.0, 30.0)),
+        Shape(quantities[0], (0.03, 0.1, 0.3, 1.0), measure=DURATION),
+        Shape(quantities[1], (1.0, 3.0, 10.0, 30.0), measure=SPEED),
     )
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
