@@ -40,8 +40,12 @@ def places(shape: Shape, scope: Scope) -> tuple[float, ...]:
     if shape.measure is None:
         return shape.grid
     factor = shape.measure.factor(scope)
-    measured = tuple(value * factor for value in shape.grid)
     if shape.measure.angular and not scope.kind.turns:
-        return measured
-    low, high = min(shape.grid), max(shape.grid)
-    return tuple(sorted((*shape.grid, *(value for value in measured if not low <= value <= high))))
+        return tuple(value * factor for value in shape.grid)
+    return extended(shape.grid, factor)
+
+
+def extended(grid: tuple[float, ...], factor: float) -> tuple[float, ...]:
+    """A grid, and where it lies beyond that the same grid times a factor; in order."""
+    low, high = min(grid), max(grid)
+    return tuple(sorted((*grid, *(value * factor for value in grid if not low <= value * factor <= high))))
