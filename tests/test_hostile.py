@@ -125,6 +125,13 @@ def test_units_that_are_too_much_are_refused_at_once(unit):
     assert len(str(error.value)) < 500
 
 
+@pytest.mark.parametrize("unit", ["1e200**2*m", "m/1e-200**2", "m/sqrt(0)", "m/1e-320"])
+def test_powers_that_no_number_holds_are_no_unit(unit):
+    """Found by fuzzing: an OverflowError and a ZeroDivisionError."""
+    with pytest.raises(InputError, match="allowed: a number with a unit"):
+        parse(f"1 {unit}", "m", "rig: x")
+
+
 @pytest.mark.parametrize("unit", ["mW**0", "m**0", "s^0*m"])
 def test_powers_of_nothing_are_no_fault_of_the_bench(unit):
     """Found by fuzzing: pint ends the first two in a KeyError."""
