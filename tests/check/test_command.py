@@ -12,6 +12,7 @@ from bench.cli.common import WRITTEN
 from bench.report.annotations import MOST, command
 from bench.report.junit import text
 from bench.trace.write import write
+from tests.hostile import room_for
 from tests.identify.motions import Truth, recording
 
 BASE = ("check", "--rig", "rig.toml", "--baseline", "base.toml")
@@ -46,6 +47,19 @@ def test_an_axis_that_is_the_same(axis):
     status, printed, _ = axis(*BASE, "now.csv")
     assert status == 0
     assert "The same" in printed
+
+
+def test_an_update_on_a_full_disk_leaves_the_baseline_as_it_was(axis):
+    before = Path("base.toml").read_bytes()
+    write(again(2), Path("now.csv"))
+    update = ("check", "now.csv", *BASE[1:], "--update", "--without-names")
+    with room_for(len(before) // 2):
+        status, _, told = axis(*update)
+    assert (status, told.splitlines()[-1].split("; ")[0]) == (2, "bench: base.toml: cannot be written (File too large)")
+    assert Path("base.toml").read_bytes() == before
+    assert {path.name for path in Path.cwd().iterdir()} == {"base.toml", "before.csv", "now.csv", "rig.toml"}
+    assert axis(*update)[0] == 0
+    assert Path("base.toml").read_bytes() != before
 
 
 def test_an_axis_that_has_changed(axis):
