@@ -7,6 +7,8 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from bench.assets import asset
 from bench.cli import main
@@ -93,6 +95,20 @@ def test_a_result_that_is_no_number_is_refused():
     for content, place in (({"a": {"b": [1.0, float("nan")]}}, r"a\.b\[1\]"), ({"c": (float("inf"),)}, r"c\[0\]")):
         with pytest.raises(UndeterminedError, match=place):
             json_text(content)
+
+
+FINITE = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@given(
+    st.recursive(
+        st.none() | st.booleans() | st.integers() | FINITE | st.text(),
+        lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
+    ),
+    st.booleans(),
+)
+def test_any_result_comes_back_from_json(content, ascii_only):
+    assert parse_json(json_text({"content": content}, ascii_only), "x.json") == {"content": content}
 
 
 DEEP = "[" * 5000 + "]" * 5000

@@ -1,14 +1,18 @@
 """`bench check` as a user has it: statuses, JUnit, annotations, and text from files that stays text."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from bench.cli.common import WRITTEN
+from bench.names import plain
 from bench.report.annotations import MOST, command
 from bench.report.junit import text
 from bench.trace.write import write
@@ -216,3 +220,25 @@ def test_a_simulator_that_moves_otherwise_is_a_change(bench):
     status, printed, _ = bench("check", "--simulated", "a/model.toml", "--baseline", "m.toml")
     assert status == 3
     assert "response torque" in printed
+
+
+@given(st.text())
+def test_any_text_comes_back_from_junit(said):
+    """But for the two characters that XML has not, and such as are written out."""
+    element = ElementTree.Element("failure", {"message": text(said)})
+    element.text = text(said)
+    again = ElementTree.fromstring(ElementTree.tostring(element, encoding="unicode").encode())
+    expected = re.sub("[\ufffe\uffff]", "", plain(said))
+    assert (again.text or "", again.get("message")) == (expected, expected)
+
+
+@given(st.text(), st.text())
+def test_any_text_comes_back_from_an_annotation(said, file):
+    """Taken apart as a runner of GitHub's does."""
+    line = command("error", said, {"file": file})
+    assert "\n" not in line and "\r" not in line
+    head, message = line.removeprefix("::error ").split("::", 1)
+    properties = dict(one.split("=", 1) for one in head.split(","))
+    unescaped = properties["file"].replace("%3A", ":").replace("%2C", ",")
+    for coded, plainly in ((message, said), (unescaped, file)):
+        assert coded.replace("%0D", "\r").replace("%0A", "\n").replace("%25", "%") == plain(plainly)
