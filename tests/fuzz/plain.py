@@ -27,7 +27,7 @@ MEMORY = 1 << 31
 WORDS = [
     *(b"", b"\0", b"\n", b"\r\n", b" ", b"\t", b",", b";", b".", b'"', b"'", b"[", b"]", b"(", b"{", b"}", b"<"),
     *(b"<!--", b"&", b"=", b"**", b"/", b"^", b"-", b"#", b"\xff", b"\xef\xbb\xbf", "²".encode(), "µ".encode()),
-    *(b"nan", b"inf", b"-0", b"1e400", b"1e-400", b"1e200", b"9" * 20, b"\xff" * 4, b"\0\0\0\x80"),
+    *(b"nan", b"inf", b"-0", b"1e400", b"1e-400", b"1e200", b"9" * 20, b"9" * 400, b"\xff" * 4, b"\0\0\0\x80"),
 ]  # fmt: skip
 _TOKENS = re.compile(rb"\w+|\W")
 
