@@ -12,6 +12,9 @@ from typing import Any
 from bench.errors import InputError, UndeterminedError
 from bench.files import read_text
 
+#: What Python says of an integer beyond 4300 digits is advice to a programmer.
+TOO_MANY_DIGITS = "holds an integer of thousands of digits"
+
 
 def read_toml(path: str | Path, kind: str) -> dict[str, Any]:
     """Tables of a TOML file.
@@ -28,8 +31,10 @@ def read_toml(path: str | Path, kind: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except RecursionError as error:
         raise InputError(path, "its tables are nested too deep", f"allowed: {kind} (TOML)") from error
-    except ValueError as error:  # also of an integer of more digits than Python reads
+    except tomllib.TOMLDecodeError as error:
         raise InputError(path, f"not TOML ({error})", f"allowed: {kind} in UTF-8 TOML") from error
+    except ValueError as error:
+        raise InputError(path, TOO_MANY_DIGITS, f"allowed: {kind} (TOML)") from error
 
 
 def parse_json(text: str, where: object) -> Any:  # noqa: ANN401
@@ -46,7 +51,7 @@ def parse_json(text: str, where: object) -> Any:  # noqa: ANN401
     except RecursionError as error:
         raise InputError(where, "the JSON is nested too deep", "allowed: a few levels") from error
     except ValueError as error:
-        raise InputError(where, f"the JSON holds a number that is none ({error})", "allowed: whole JSON") from error
+        raise InputError(where, TOO_MANY_DIGITS, "allowed: numbers") from error
 
 
 def json_text(content: Mapping[str, Any], ascii_only: bool = True) -> str:

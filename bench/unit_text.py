@@ -170,7 +170,10 @@ def _parsed(text: str, wanted: tuple[str, ...]) -> tuple[float, tuple[tuple[str,
                 exponents[name] = exponents.get(name, 0) + power * exponent
             factor *= number**power
         else:
-            factor *= _number(match, refusal) ** (outer * sign)
+            try:
+                factor *= _number(match, refusal) ** (outer * sign)
+            except ArithmeticError as error:  # 1e200**2, 1/sqrt(0)
+                raise refusal from error
         sign = 1
     if groups or plain[-1] in "*/" or not (math.isfinite(factor) and factor > 0.0):
         raise refusal

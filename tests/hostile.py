@@ -1,6 +1,7 @@
 """The command line against hostile input: a run with its limits, and what every run owes."""
 
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -76,3 +77,14 @@ def cpu_seconds(most):
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         signal.signal(signal.SIGPROF, before)
+
+
+@contextmanager
+def room_for(size):
+    """No file that this process writes may have more bytes, as on a full disk."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)

@@ -58,6 +58,28 @@ def test_reading_takes_time_in_proportion(tmp_path, case):
             assert "\n" not in str(error)
 
 
+WIDE = "w" * 50_000
+WORDY = {
+    "unit": f"time [s],velocity [{WIDE}]\n0,1\n1,2\n",
+    "label without a unit": f"time [s],velocity {WIDE}\n0,1\n1,2\n",
+    "labels": f"{WIDE},{WIDE}2\n0,1\n1,2\n",
+    "label of a text": f"time [s],{WIDE} velocity [rad/s]\n0,{WIDE}\n1,2\n",
+    "text": f"time [s],velocity [rad/s]\n0,{WIDE}\n1,2\n",
+    "CODESYS": f"T\nP\nTimestamp(ms) {WIDE}\n0 {WIDE}\n1 2\n",
+    "EPOS": f"EPOS Studio Version:;3\r\n;{WIDE}\r\nms;{WIDE}\r\n0;{WIDE}\r\n1;2\r\n",
+    "TwinCAT": f"Name\tp\nStarttime of export\t132959733843760000\n\nName\t{WIDE}\nUnit\t{WIDE}\n\n0\t{WIDE}\n1\t2\n",
+}
+
+
+@pytest.mark.parametrize("case", WORDY)
+def test_what_is_wrong_is_said_in_a_line_of_bounded_length(tmp_path, monkeypatch, case):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "x").write_text(WORDY[case])
+    with pytest.raises(InputError) as error:
+        read("x")
+    assert "\n" not in str(error.value) and len(str(error.value)) < 1200
+
+
 TWINCAT = "Name\tp\nStarttime of export\t{}\n\nName\tvelocity\nUnit\trad/s\n\n0\t1\n1\t2\n"
 
 
@@ -123,6 +145,13 @@ def test_units_that_are_too_much_are_refused_at_once(unit):
         with pytest.raises(InputError) as error:
             parse(f"1 {unit}", "m", "rig: x")
     assert len(str(error.value)) < 500
+
+
+@pytest.mark.parametrize("unit", ["1e200**2*m", "m/1e-200**2", "m/sqrt(0)", "m/1e-320"])
+def test_powers_that_no_number_holds_are_no_unit(unit):
+    """Found by fuzzing: an OverflowError and a ZeroDivisionError."""
+    with pytest.raises(InputError, match="allowed: a number with a unit"):
+        parse(f"1 {unit}", "m", "rig: x")
 
 
 @pytest.mark.parametrize("unit", ["mW**0", "m**0", "s^0*m"])

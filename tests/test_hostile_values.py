@@ -3,9 +3,12 @@
 import json
 import re
 import sys
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from bench.assets import asset
 from bench.cli import main
@@ -15,6 +18,8 @@ from bench.plant.model_file import load_model, read_table
 from bench.plant.s_curve import s_curve
 from bench.rig.rig import Rig, load_rig
 from bench.structured import json_text, parse_json
+from bench.trace.inspect import inspect, to_json
+from bench.trace.read import read_recording
 from bench.trace.stream import stream
 from tests.hostile import columns, cpu_seconds, csv_of
 
@@ -46,6 +51,33 @@ def test_magnitudes_that_no_axis_has_are_refused(tmp_path, case):
         identify(stream(tmp_path / "run.csv"), rig)
 
 
+@pytest.mark.parametrize("changed", ["time", "position", "velocity", "current"])
+@pytest.mark.parametrize("samples", [1, 2, 33])
+def test_inspect_takes_numbers_at_the_end_of_what_there_is(tmp_path, changed, samples):
+    """Before, it warned of overflows of its own."""
+    table = {name: 0.1 * np.arange(40) for name in ("time", "position", "velocity", "current")}
+    table[changed][7 : 7 + samples] = 1.7e308 if changed == "time" else 1.7e308 * (-1.0) ** np.arange(samples)
+    rows = "\n".join(",".join(map(repr, map(float, row))) for row in zip(*table.values(), strict=True))
+    (tmp_path / "run.csv").write_text(f"time [s],position [rad],velocity [rad/s],current [A]\n{rows}\n")
+    try:
+        to_json(inspect(tmp_path / "run.csv"))
+    except InputError as error:
+        assert changed == "time" and "\n" not in str(error)
+
+
+@pytest.mark.parametrize("key", ["timestamp", "position", "speed", "load", "input_volts", "temp", "goal_position"])
+@pytest.mark.parametrize("value", [10**400, -(10**400), "1", None, True, float("nan"), float("inf")])
+def test_numbers_of_a_json_recording_that_are_none(tmp_path, key, value):
+    """An integer may have 4300 digits, of which a float holds 308."""
+    good = dict.fromkeys(("position", "speed", "load", "input_volts", "temp", "goal_position"), 1)
+    entries = [{"timestamp": 0.1 * k, **good} for k in range(12)]
+    entries[3][key] = value
+    (tmp_path / "run.json").write_text(json.dumps({"mass": 1, "entries": entries}))
+    not_a_number = not isinstance(value, float) or key == "load"
+    with pytest.raises(InputError, match=rf"entries\[3\].{key}: found") if not_a_number else nullcontext():
+        read_recording(tmp_path / "run.json")
+
+
 @pytest.mark.parametrize("case", IMPOSSIBLE)
 def test_json_never_holds_nan(tmp_path, monkeypatch, case):
     (tmp_path / "run.csv").write_text(csv_of(*IMPOSSIBLE[case]))
@@ -63,6 +95,20 @@ def test_a_result_that_is_no_number_is_refused():
     for content, place in (({"a": {"b": [1.0, float("nan")]}}, r"a\.b\[1\]"), ({"c": (float("inf"),)}, r"c\[0\]")):
         with pytest.raises(UndeterminedError, match=place):
             json_text(content)
+
+
+FINITE = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@given(
+    st.recursive(
+        st.none() | st.booleans() | st.integers() | FINITE | st.text(),
+        lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
+    ),
+    st.booleans(),
+)
+def test_any_result_comes_back_from_json(content, ascii_only):
+    assert parse_json(json_text({"content": content}, ascii_only), "x.json") == {"content": content}
 
 
 DEEP = "[" * 5000 + "]" * 5000
@@ -90,7 +136,7 @@ def test_toml_that_is_none(tmp_path, case, load):
 
 
 def test_json_that_is_none():
-    for text, words in ((DEEP * 40, "too deep"), ("1" * 5000, "number that is none"), ("{", "line 1")):
+    for text, words in ((DEEP * 40, "too deep"), ("1" * 5000, "integer of thousands of digits"), ("{", "line 1")):
         with pytest.raises(InputError, match=words):
             parse_json("[" * 100_000 if words == "too deep" else text, "x.json")
 

@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bench import unit_registry
@@ -25,6 +25,20 @@ from bench.usual_units import USUAL_UNITS
 )
 def test_a_value_with_its_unit_becomes_si(text, unit, value):
     assert parse(text, unit, "rig.toml: key") == pytest.approx(value, rel=1e-12)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_any_value_comes_back(value):
+    assert parse(f"{value!r} N*m", "N*m", "rig.toml: key") == value
+
+
+@given(st.text(st.sampled_from("0123456789.eE+-*/^()²⁻³√ mkgNsradA°%µ±"), max_size=30))
+@example("1 1e200**2*m")
+def test_any_text_is_a_value_or_refused_in_a_line(text):
+    try:
+        assert math.isfinite(parse(text, "N*m", "rig.toml: key"))
+    except InputError as error:
+        assert "\n" not in str(error)
 
 
 @pytest.mark.parametrize("text", ["", "5", "kg", "1,2 kg", "[1] kg", "5 m", "1e999 kg", "nan kg", "5 bananas", 5, None])

@@ -113,7 +113,8 @@ def uncertain(fitted: Fit) -> Uncertain:
     scores = np.add.reduceat(jacobian * (weight * fitted.left)[:, None], edges[:-1])
     scores += np.outer(count, noise @ numbers)
     place, known = fitted.theta.size, _known(fitted, slots)
-    least = np.divide(fitted.floor, known, out=np.zeros(known.size), where=known > 0.0)
+    instants = np.array([fitted.terms[index].effect.shapes[k].quantity.instant for index, k in slots], dtype=bool)
+    least = np.divide(fitted.floor, known, out=np.zeros(known.size), where=instants & (known > 0.0))
     seen = np.linalg.norm(jacobian, axis=0) >= np.pad(least, (place, 0))
     told = np.ix_(seen, seen)
     gram = ((jacobian.T * weight) @ jacobian)[told]
@@ -139,7 +140,8 @@ def uncertain(fitted: Fit) -> Uncertain:
 def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
     """Standard errors of the shapes (s,) that no noise shows, as of an instant between two rows.
 
-    A shape that within its own changes the torque by less than noise does is known by it alone: no row moves with it.
+    An instant that within its own changes the torque by less than noise does is known by it alone, as no row moves with
+    it. What it is of another shape, the tick of a lag or the drift of a position, comes beside what noise makes of it.
     """
     errors = [term.effect.shape_errors(term.shape, fitted.scope, fitted.time) for term in fitted.terms]
     return np.array([errors[index][k] for index, k in slots])

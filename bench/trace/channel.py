@@ -10,6 +10,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.names import short
 
 _ELEMENT = re.compile(r"\S\[\d+\]")
 
@@ -53,9 +54,9 @@ class Channel:
     def place(self, sample: int | None = None) -> str:
         """Where a value stands, for messages: file, line (or sample, counted from 0) and column."""
         if sample is None:
-            return f"{self.origin}: column '{self.label}'"
+            return f"{self.origin}: column '{short(self.label)}'"
         row = f"sample {self.start + sample}" if self.line is None else f"line {self.line + sample}"
-        return f"{self.origin}: {row}, column '{self.label}'"
+        return f"{self.origin}: {row}, column '{short(self.label)}'"
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,5 +124,5 @@ def _number(text: str, place: Callable[[int], str], sample: int) -> float:
     try:
         return float(word)
     except ValueError as error:
-        found = f"found {text.strip()!r}" if word else "found an empty cell"
+        found = f"found {short(text.strip())!r}" if word else "found an empty cell"
         raise InputError(place(sample), found, "allowed: a number") from error

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from bench.errors import InputError
+from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.how import HowToRead
 from bench.trace.known_names import is_index, plain_name, scale_in, signal_of, unit_of
@@ -221,8 +222,9 @@ def _index(recording: Recording, columns: Mapping[str, str]) -> Channel | None:
 
 def missing(recording: Recording, what: str, then: str | None = None) -> InputError:
     """What to say about a column that is not in the file."""
-    labels = [channel.label for channel in recording.channels]
-    shown = ", ".join(labels[:12]) + (f" and {len(labels) - 12} more" if len(labels) > 12 else "")
+    labels = [short(channel.label) for channel in recording.channels[:12]]
+    more = len(recording.channels) - len(labels)
+    shown = ", ".join(labels) + (f" and {more} more" if more else "")
     return InputError(
         f"{recording.origin}: {what}",
         "not in the file",

@@ -200,8 +200,9 @@ def _summary(name: str, unit: str, column: str, values: Array, recorded: Array) 
 
 
 def _resolution(values: Array) -> float | None:
-    steps = np.abs(np.diff(values))
-    steps = steps[steps > 0.0]
+    with np.errstate(over="ignore"):  # of numbers at the end of what there is
+        steps = np.abs(np.diff(values))
+    steps = steps[(steps > 0.0) & (steps < np.inf)]
     return float(steps.min()) if steps.size else None
 
 

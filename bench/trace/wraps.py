@@ -32,6 +32,8 @@ SURE, EXACT = 4.0, 3e-3
 TURNS, POWERS = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0), range(8, 33)
 #: Steps looked at together: few enough for the processor's cache.
 PIECE = 1 << 16
+#: A position beyond it - rad (m) - is none, which the checks say; its differences and their sums would overflow.
+FARTHEST = 1e150
 #: Steps beyond this share of the period may be one turn more or less.
 HALF = 0.45
 
@@ -128,6 +130,8 @@ class Unwrapping:
         Raises:
             InputError: it spans more than its period, or moves by more than half of one a sample.
         """
+        if position.size and not np.abs(position).max() < FARTHEST:
+            return position, None
         before = self.last.shape[1]
         joined = np.concatenate([self.last[0], position]) if before else position
         times = np.concatenate([self.last[1], time]) if before else time

@@ -3,6 +3,8 @@
 from dataclasses import replace
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from bench.check.baseline import read_baseline, write_baseline
 from bench.check.measured import Measured
@@ -21,6 +23,30 @@ def test_a_state_comes_back(tmp_path):
     text = (tmp_path / "b.toml").read_text(encoding="utf-8")
     assert 'value = "0.0613 N*m"' in text
     assert text.count("not told by fewer than two recordings") == 7
+
+
+FINITE = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@given(FINITE, st.floats(1e-300, 1e300), st.text(st.characters(exclude_categories=["Cs"])))
+def test_any_number_and_any_name_come_back(tmp_path_factory, value, error, name):
+    """Numbers to nine digits, which are more than any comparison needs."""
+    before = state()
+    friction = Measured(value, "N*m", error, 31.2, 5, error)
+    traces = [{"file": name, "sha256": name}]
+    before = replace(
+        before,
+        quantities={**before.quantities, "coulomb_friction_torque": friction},
+        provenance={"version": name, "traces": traces, name or "empty": name},
+        rig={"kind": "rotary", name or "empty": name},
+    )
+    path = tmp_path_factory.mktemp("named") / "b.toml"
+    write_baseline(path, before)
+    again = read_baseline(path)
+    found = again.quantities["coulomb_friction_torque"]
+    for there, here in ((value, found.value), (error, found.std_error), (error, found.spread)):
+        assert here == pytest.approx(there, rel=1e-8, abs=0.0)
+    assert (again.provenance, again.rig) == (before.provenance, before.rig)
 
 
 def test_a_model_comes_back(tmp_path):

@@ -1,17 +1,22 @@
 """`bench check` as a user has it: statuses, JUnit, annotations, and text from files that stays text."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from bench.cli.common import WRITTEN
+from bench.names import plain
 from bench.report.annotations import MOST, command
 from bench.report.junit import text
 from bench.trace.write import write
+from tests.hostile import room_for
 from tests.identify.motions import Truth, recording
 
 BASE = ("check", "--rig", "rig.toml", "--baseline", "base.toml")
@@ -46,6 +51,19 @@ def test_an_axis_that_is_the_same(axis):
     status, printed, _ = axis(*BASE, "now.csv")
     assert status == 0
     assert "The same" in printed
+
+
+def test_an_update_on_a_full_disk_leaves_the_baseline_as_it_was(axis):
+    before = Path("base.toml").read_bytes()
+    write(again(2), Path("now.csv"))
+    update = ("check", "now.csv", *BASE[1:], "--update", "--without-names")
+    with room_for(len(before) // 2):
+        status, _, told = axis(*update)
+    assert (status, told.splitlines()[-1].split("; ")[0]) == (2, "bench: base.toml: cannot be written (File too large)")
+    assert Path("base.toml").read_bytes() == before
+    assert {path.name for path in Path.cwd().iterdir()} == {"base.toml", "before.csv", "now.csv", "rig.toml"}
+    assert axis(*update)[0] == 0
+    assert Path("base.toml").read_bytes() != before
 
 
 def test_an_axis_that_has_changed(axis):
@@ -202,3 +220,25 @@ def test_a_simulator_that_moves_otherwise_is_a_change(bench):
     status, printed, _ = bench("check", "--simulated", "a/model.toml", "--baseline", "m.toml")
     assert status == 3
     assert "response torque" in printed
+
+
+@given(st.text())
+def test_any_text_comes_back_from_junit(said):
+    """But for the two characters that XML has not, and such as are written out."""
+    element = ElementTree.Element("failure", {"message": text(said)})
+    element.text = text(said)
+    again = ElementTree.fromstring(ElementTree.tostring(element, encoding="unicode").encode())
+    expected = re.sub("[\ufffe\uffff]", "", plain(said))
+    assert (again.text or "", again.get("message")) == (expected, expected)
+
+
+@given(st.text(), st.text())
+def test_any_text_comes_back_from_an_annotation(said, file):
+    """Taken apart as a runner of GitHub's does."""
+    line = command("error", said, {"file": file})
+    assert "\n" not in line and "\r" not in line
+    head, message = line.removeprefix("::error ").split("::", 1)
+    properties = dict(one.split("=", 1) for one in head.split(","))
+    unescaped = properties["file"].replace("%3A", ":").replace("%2C", ",")
+    for coded, plainly in ((message, said), (unescaped, file)):
+        assert coded.replace("%0D", "\r").replace("%0A", "\n").replace("%25", "%") == plain(plainly)

@@ -27,18 +27,18 @@ class Told:
     about: str = ""
 
 
-def full_disk(command: Command, folder: Path) -> Told:
+def full_disk(command: Command, folder: Path, shares: Sequence[float] = SHARES) -> Told:
     """Write where one file (RLIMIT_FSIZE) or, as root, the whole file system (a small tmpfs) has no room for it all."""
     make_inputs(folder)
     out, environment, told = folder / "out", dict(os.environ), Told()
     if finished(command.line, folder, environment).returncode:
         return Told(1, ["a run without a limit failed"])
     before, sizes = hashes(out), [path.stat().st_size for path in out.rglob("*") if path.is_file()]
-    for share in SHARES:
+    for share in shares:
         limit = int(share * max(sizes))
         _refused(command, folder, environment, before, told, f"files of {limit} bytes", limit)
     if os.geteuid() == 0:
-        for share in SHARES[1:]:
+        for share in filter(None, shares):
             room = max(4096, int(share * sum(sizes)) // 4096 * 4096)
             shutil.rmtree(out)
             out.mkdir()
@@ -85,6 +85,8 @@ def _refused(
         told.faults.append(f"{what}: left {sorted(strays)}")
     if before is not None and (gone := set(before) - files(out)):
         told.faults.append(f"{what}: {sorted(gone)} lost")
+    if before is not None and len(before) == 1 and done.returncode and hashes(out) != before:
+        told.faults.append(f"{what}: refused, and its only output is another one")
 
 
 def read_only(command: Command, folder: Path) -> Told:

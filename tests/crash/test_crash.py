@@ -1,4 +1,4 @@
-"""A few kills of one command, and what the long run (`python -m tests.crash`) judges by."""
+"""A few kills and faults of one command, and what the long run (`python -m tests.crash`) judges by."""
 
 import gzip
 import re
@@ -8,7 +8,7 @@ import pytest
 
 from tests.crash.__main__ import options
 from tests.crash.commands import COMMANDS
-from tests.crash.faults import read_only, two_writers
+from tests.crash.faults import full_disk, read_only, two_writers
 from tests.crash.kills import EACH, Trial
 from tests.crash.look import left, whole
 from tests.hostile import ROOT, bound_by_permissions
@@ -35,6 +35,12 @@ def test_a_kill_just_before_the_output_takes_its_name_leaves_it_under_way_and_th
     assert len(left(trial.out)) == 1
     trial.end(clear=False)
     assert trial.tally.faults == []
+
+
+def test_a_full_disk_is_told_in_one_line_and_leaves_what_was_there(folder):
+    told = full_disk(COMMANDS["export"], folder, shares=(0.0, 0.6))
+    assert told.faults == []
+    assert told.runs >= 2  # and a third on a small file system, where root may mount one
 
 
 @pytest.mark.skipif(bound_by_permissions() is None, reason="root, and no setpriv")

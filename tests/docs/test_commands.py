@@ -30,7 +30,7 @@ for module in sys.argv[1:]:
     told[module] = printed.getvalue()
 print(json.dumps(told))
 """
-MEASURING = re.compile(r"python -m (tests\.\w+)")
+MEASURING = re.compile(r"python -m (tests\.[\w.]*\w)")
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,9 @@ import math
 
 import numpy as np
 import pytest
+import tomli_w
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from bench.assets import asset
 from bench.errors import InputError
@@ -32,6 +35,14 @@ def test_the_embedded_rig_loads_with_motor_from_the_catalogue():
     constant = rig.motor.torque_per_ampere
     assert constant.torque(np.array([1.8, 5.7])) == pytest.approx([1.4, 3.5])
     assert rig.motor.rotor_inertia == pytest.approx(0.25e-4)
+
+
+@given(name=st.text(st.characters(exclude_categories=["Cs"])), constant=st.floats(1e-9, 1e9))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_any_name_and_value_come_back(rig, name, constant):
+    written = tomli_w.dumps({"name": name, "kind": "rotary", "motor": {"torque_constant": f"{constant!r} N*m/A"}})
+    read = rig(written, head="")
+    assert (read.name, read.motor.torque_constant) == (name, constant)
 
 
 def test_every_catalogue_value_has_a_source():

@@ -6,10 +6,13 @@ voltage is load/885 * input_volts (Robotis XL330 manual, present PWM; github.com
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.names import short
 from bench.structured import parse_json
 from bench.trace.channel import Channel, Recording
 from bench.trace.source import Source
@@ -39,7 +42,7 @@ def read(source: Source) -> Recording:
     if not isinstance(entries, list) or not entries:
         raise InputError(f"{source.path}: entries", "found none", "allowed: a list of samples")
     raw = {key: _numbers(entries, key, source.path) for key in _KEYS}
-    if np.abs(raw["load"]).max() > _LARGEST_LOAD:
+    if not np.abs(raw["load"]).max() <= _LARGEST_LOAD:  # nor nan
         sample = int(np.abs(raw["load"]).argmax())
         raise InputError(
             f"{source.path}: entries[{sample}].load", f"found {raw['load'][sample]:g}", "allowed: a number of 16 bits"
@@ -63,6 +66,7 @@ def read(source: Source) -> Recording:
 def _numbers(entries: list, key: str, path: str) -> Array:
     values = [entry.get(key) if isinstance(entry, dict) else None for entry in entries]
     for sample, value in enumerate(values):
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise InputError(f"{path}: entries[{sample}].{key}", f"found {value!r}", "allowed: a number")
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not number or (isinstance(value, int) and abs(value) > sys.float_info.max):
+            raise InputError(f"{path}: entries[{sample}].{key}", f"found {short(repr(value))}", "allowed: a number")
     return np.array(values, dtype=np.float64)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 
 from bench.errors import InputError
+from bench.names import short
 from bench.trace.channel import Channel, Recording, float_values
 from bench.trace.readers.lab_units import LAB_UNITS
 from bench.trace.source import Source
@@ -50,7 +51,7 @@ def read(source: Source) -> Recording:
         raise InputError(source.path, "found a header and no samples", "allowed: at least two samples")
     columns = []
     for name, texts in zip(("time", *names), zip(*rows, strict=True), strict=True):
-        place = f"{source.path}: column '{name}'"
+        place = f"{source.path}: column '{short(name)}'"
         columns.append(float_values(texts, lambda sample, place=place: f"{place}, line {first + sample}"))
     time = Channel("time", header[2], columns[0], source.path, line=first)
     channels = tuple(

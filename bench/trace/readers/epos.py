@@ -10,6 +10,7 @@ import re
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.names import short
 from bench.trace.channel import Channel, Recording, float_values
 from bench.trace.source import Source
 
@@ -78,7 +79,7 @@ def _rows(lines: list[str], first: int, width: int, path: str) -> tuple[list[lis
 def _column(texts: tuple[str, ...], numbers: list[int], name: str, path: str) -> Array:
     label = name or "time"
     decimal_point = [text.replace(",", ".") for text in texts]
-    return float_values(decimal_point, lambda sample: f"{path}: line {numbers[sample]}, column '{label}'")
+    return float_values(decimal_point, lambda sample: f"{path}: line {numbers[sample]}, column '{short(label)}'")
 
 
 def _metadata(lines: list[str]) -> dict[str, str]:

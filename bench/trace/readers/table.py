@@ -14,6 +14,7 @@ import pyarrow.compute
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.columns import parse_columns
 from bench.trace.readers.moments import seconds
@@ -239,7 +240,7 @@ def _of_text(channel: Channel, column: pa.ChunkedArray, decimal: str) -> Channel
         return replace(channel, values=pc.cast(plain, pa.float64()).to_numpy())
     except pa.ArrowInvalid:
         sample = next(n for n, text in enumerate(plain.to_pylist()) if not _is_float(text))
-        found = f"found {texts[sample].as_py()!r}"
+        found = f"found {short(texts[sample].as_py())!r}"
         return replace(channel, defect=InputError(channel.place(sample), found, "allowed: a number"))
 
 

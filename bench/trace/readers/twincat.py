@@ -18,6 +18,7 @@ import pyarrow as pa
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.names import short
 from bench.trace.channel import Channel, Recording, with_shared_times
 from bench.trace.readers.columns import parse_columns
 from bench.trace.source import Source, decode
@@ -116,7 +117,7 @@ def _first_fault(rows: list[bytes], width: int, separator: str, decimal: str, li
             except ValueError:
                 if row.strip() != b"EOF":
                     place = f"{source.path}: line {number}, cell {column}"
-                    return InputError(place, f"found {cell.strip()!r}", "allowed: a number")
+                    return InputError(place, f"found {short(cell.strip())!r}", "allowed: a number")
     return InputError(source.path, "found cells that are no numbers", "allowed: numbers")
 
 

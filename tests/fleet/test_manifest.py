@@ -1,0 +1,49 @@
+"""Whatever names and numbers a manifest carries, the fleet's table has them as they were."""
+
+import csv
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from bench.fleet.manifest import read_manifest
+from bench.fleet.plan import Planned
+from bench.fleet.table import tabulate, write_table
+
+NAMES = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1)
+#: Of a CSV, whose cells have no line ends, and are numbers where they look like numbers.
+WORDS = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1).map(lambda text: f"n{text}")
+NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
+FREELY = settings(max_examples=50, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+
+
+def through(tmp_path, manifest):
+    """Its columns, as they come back from the fleet's table."""
+    refusal = {"status": "refused", "reason": "none"}
+    planned = Planned("", None, refusal, {"version": "1", "rig_sha256": None, "options": {}})
+    table = tabulate(manifest, [planned] * len(manifest), [refusal] * len(manifest))
+    write_table(tmp_path / "fleet.parquet", table)
+    return pq.read_table(tmp_path / "fleet.parquet").select(manifest.table.column_names).to_pydict()
+
+
+@FREELY
+@given(st.lists(st.tuples(NAMES, NAMES, NAMES, NUMBERS), min_size=1, max_size=5))
+def test_a_parquet_manifest(tmp_path, rows):
+    file, rig, note, time = (list(column) for column in zip(*rows, strict=True))
+    columns = {"file": file, "rig": rig, "axis": note, "note": note, "time": time}
+    pq.write_table(pa.table(columns), tmp_path / "m.parquet")
+    manifest = read_manifest(tmp_path / "m.parquet")
+    assert manifest.table.to_pydict() == columns
+    assert manifest.text("note") == note and manifest.times.tolist() == time
+    assert through(tmp_path, manifest) == columns
+
+
+@FREELY
+@given(st.lists(st.tuples(WORDS, WORDS, WORDS, NUMBERS), min_size=1, max_size=5))
+def test_a_csv_manifest(tmp_path, rows):
+    with (tmp_path / "m.csv").open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows([("file", "rig", "note", "time"), *((*words, repr(time)) for *words, time in rows)])
+    manifest = read_manifest(tmp_path / "m.csv")
+    assert [tuple(row.values())[:4] for row in manifest.table.to_pylist()] == rows
+    assert through(tmp_path, manifest)["note"] == [row[2] for row in rows]
