@@ -215,3 +215,56 @@ def test_more_noise_widens_the_intervals_of_what_errs(recordings, found):
         ratio = here.effects[0].parameters[quantity].std_error / parameter.std_error
         print(f"{name} {quantity}: {ratio:.2f} times as wide")
         assert ratio > 1.2, quantity
+
+
+#: What no revolution counts for, so that it is the same behind a gear.
+WITHOUT_A_TURN = [
+    *("torque_offset", "stribeck_friction", "quadratic_drag"),
+    *(
+        pytest.param(name, marks=pytest.mark.slow)
+        for name in (
+            "presliding_friction",
+            "elastic_coupling",
+            "current_loop_lag",
+            "torsion_spring",
+            "load_torque_event",
+        )
+    ),
+]
+#: Powers of the gear's ratio by which values of a rig are larger on its output; all others have none.
+BEHIND_A_GEAR = {
+    **dict.fromkeys(("torque_constant", "back_emf_constant"), 1),
+    **dict.fromkeys(("rotor_inertia", "velocity_gain", "integral_gain", "inertia_feedforward"), 2),
+}
+
+
+def times(text, number):
+    """A value of a rig's table, which has a unit, times a number."""
+    value, unit = text.split(" ", 1)
+    return f"{float(value) * number!r} {unit}"
+
+
+@pytest.mark.parametrize("name", WITHOUT_A_TURN)
+@pytest.mark.parametrize("ratio", [100.0, 0.1])
+def test_a_joint_behind_a_gear_has_the_same_names(recordings, found, name, ratio):
+    """Its speeds are a hundredth, its torque a hundredfold: of what the motor has, as the joint's own numbers."""
+    one = recordings[name]
+    trace, table = one.traces[0], {**one.table}
+    for part in ("motor", "drive"):
+        table[part] = {key: times(text, ratio ** BEHIND_A_GEAR[key]) if key in BEHIND_A_GEAR else text
+                       for key, text in table[part].items()}  # fmt: skip
+    signals = {key: values / (ratio if "rad" in trace.units[key] else 1.0) for key, values in trace.signals.items()}
+    here = diagnose(Trace(trace.time, signals, trace.units, "behind a gear"), Rig.of(table, "geared"))
+    there = found(name)
+    assert ([effect.name for effect in here.effects], here.verdict) == ([name], there.verdict)
+    inertia = "moment_of_inertia"
+    expected = ratio**2 * there.parameters[inertia].value
+    assert here.parameters[inertia].value == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", [WITHOUT_A_TURN[1], *WITHOUT_A_TURN[3:6]])
+@pytest.mark.parametrize("slower", [10.0, 0.1])
+def test_an_axis_ten_times_as_slow_or_fast_has_the_same_names(recordings, name, slower):
+    """A gantry and a stage; of its numbers the test above tells, for a clock that changes less than the filter may."""
+    rig, trace = in_units(recordings[name], {"[time]": slower, "[mass]": slower**2})
+    assert [effect.name for effect in diagnose(trace, rig).effects] == [name]
