@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -39,3 +40,9 @@ def short(text: str, most: int = 200) -> str:
         return text
     half = (most - 5) // 2
     return f"{text[:half]} ... {text[-half:]}"
+
+
+def nearest(name: str, names: list[str]) -> str:
+    """`, did you mean ...?` for a mistyped name, or nothing when no known name is near."""
+    match = difflib.get_close_matches(name, names, n=1)
+    return f", did you mean '{match[0]}'?" if match else ""

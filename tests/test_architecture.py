@@ -18,17 +18,7 @@ PAGE_MAKERS = sorted((ROOT / "docs" / "_ext").glob("*.py"))
 LAYERS = (
     {"errors", "names", "bounds", "files", "structured", "assets", "allocation"},
     {"jobs"},
-    {
-        "units",
-        "usual_units",
-        "unit_registry",
-        "unit_grammar",
-        "unit_names",
-        "unit_text",
-        "axis_kind",
-        "arrays",
-        "statistics",
-    },
+    {"units", "axis_kind", "arrays", "statistics"},
     {"trace"},
     {"rig"},
     {"checks"},

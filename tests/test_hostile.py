@@ -19,9 +19,9 @@ from bench.lab.flights import read_flights
 from bench.trace.channel import split_label
 from bench.trace.read import read, read_recording
 from bench.trace.stream import stream
-from bench.unit_grammar import LONGEST, require_unit
 from bench.units import dimensionality, parse
-from bench.usual_units import USUAL_UNITS
+from bench.units.grammar import LONGEST, require_unit
+from bench.units.usual import USUAL_UNITS
 from tests.hostile import TABLE, columns, cpu_seconds
 
 ROWS = TABLE.split("\n", 1)[1]

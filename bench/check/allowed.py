@@ -15,8 +15,9 @@ from bench.check.measured import Measured
 from bench.check.state import TORQUE_GAP, VELOCITY_GAP, State
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError
+from bench.names import nearest
 from bench.rig.rig import Rig
-from bench.units import nearest, parse
+from bench.units import parse
 
 _SHARE = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
 #: Margins where the rig states none, as shares of the baseline's value.

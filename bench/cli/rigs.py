@@ -18,9 +18,9 @@ def rigs(
     """List the rigs that are shipped, copy one, or say which commands a rig suffices for and all that is missing."""
     from bench.assets import asset
     from bench.files import write_text
+    from bench.names import nearest
     from bench.rig.rig import load_rig
     from bench.rig.suffices import lacking, without_constant
-    from bench.units import nearest
 
     shipped = {path.stem: path for path in sorted(asset("data", "rigs").glob("*.toml"))}
     if name is None:

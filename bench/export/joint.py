@@ -20,10 +20,10 @@ import numpy as np
 
 from bench.effects.mjcf import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.errors import InputError
+from bench.names import nearest
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import STICKING_IMPEDANCE
 from bench.plant.model_file import StoredModel
-from bench.units import nearest
 
 #: What makes an actuator what it is, but for its name, its joint and its gear.
 ACTUATOR = (

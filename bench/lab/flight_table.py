@@ -11,8 +11,8 @@ import numpy as np
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.readers.mat import load
-from bench.unit_text import in_pints_words
 from bench.units import convert, dimensionality
+from bench.units.text import spelled_for_pint
 
 Cells = list[str]
 
@@ -189,7 +189,7 @@ def _by_flight_number(columns: Sequence[Column], table: Array, points: list[Arra
 def _metres(column: Column, values: Array, where: str) -> Array:
     if column.unit is None:
         return values
-    unit = in_pints_words(column.unit)
+    unit = spelled_for_pint(column.unit)
     try:
         known = dimensionality(unit) == "[length]"
     except ValueError:

@@ -13,6 +13,7 @@ from bench.files import read_text
 from bench.lab.rig import lab_rig
 from bench.lab.run import Run, run_of
 from bench.lab.sources import Sources, embedded
+from bench.names import nearest
 from bench.plant.truth import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.structured import parse_json
@@ -22,7 +23,6 @@ from bench.trace.choose import choose
 from bench.trace.how import how_to_read
 from bench.trace.read import read_recording
 from bench.trace.readers import READERS
-from bench.units import nearest
 
 WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"
 #: Signals that the tasks need.

@@ -9,9 +9,9 @@ from typing import Any
 
 from bench.errors import InputError
 from bench.lab.answers import ASKED
+from bench.names import nearest
 from bench.structured import parse_json
-from bench.unit_text import in_pints_words
-from bench.units import nearest
+from bench.units.text import spelled_for_pint
 
 ENDINGS = (".csv", ".json")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
@@ -134,4 +134,4 @@ def _unit(text: str) -> str:
     plain = text.strip().strip("[]")
     if plain in ("1", "-", "dimensionless"):
         return "dimensionless"
-    return in_pints_words(plain).translate(_SIGNS)
+    return spelled_for_pint(plain).translate(_SIGNS)

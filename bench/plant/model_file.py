@@ -25,11 +25,11 @@ from bench.effects.kinds import Winding
 from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.errors import InputError
 from bench.files import write_text
+from bench.names import nearest
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import FLOOR, AxisParameters, parameter_quantities, set_masses
 from bench.plant.mounting import DIRECT, Mounting
 from bench.structured import read_toml
-from bench.units import nearest
 
 SCHEMA = "bench.model/1"
 #: Step that the exported MuJoCo model runs at - s.

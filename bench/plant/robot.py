@@ -23,6 +23,7 @@ from mujoco.batch import Batch
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.files import read_bytes
+from bench.names import nearest
 from bench.rig.load import Load
 from bench.rig.rig import Rig
 from bench.trace.assemble import assemble
@@ -32,7 +33,6 @@ from bench.trace.known import with_known
 from bench.trace.read import read_recording
 from bench.trace.time_base import interpolate
 from bench.trace.trace import Trace
-from bench.units import nearest
 
 #: Poses evaluated at once, which bounds memory.
 TOGETHER = 4096

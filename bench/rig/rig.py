@@ -11,7 +11,7 @@ from pydantic import Field, ValidationError, model_validator
 from bench.arrays import Array
 from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
-from bench.names import short
+from bench.names import nearest, short
 from bench.rig.catalogue import catalogue_motor
 from bench.rig.check import Check
 from bench.rig.drive import Drive
@@ -24,7 +24,6 @@ from bench.structured import read_toml
 from bench.trace.known import less_known
 from bench.trace.possible import require_possible
 from bench.trace.trace import Trace
-from bench.units import nearest
 
 
 class TraceNotes(Table):

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from bench.errors import InputError
+from bench.names import nearest
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.how import HowToRead
 from bench.trace.known_names import is_index, plain_name, scale_in, signal_of, unit_of
 from bench.trace.signals import SI_UNITS
-from bench.unit_text import Scale
-from bench.units import nearest
+from bench.units.text import Scale
 
 #: Signals of which one that can be read is enough: the others are then left out where they cannot.
 ENOUGH = (("velocity", "position"), ("torque", "force", "current"))

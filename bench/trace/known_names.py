@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from bench.errors import InputError
 from bench.trace.signals import RELATIVE_TORQUE, SI_UNITS
-from bench.unit_text import Scale, UnitError, scale_of
+from bench.units.text import Scale, UnitError, scale_of
 
 #: Besides its own name; compared in lower case, with `_` as a space, after the last dot of a PLC path.
 ALIASES: dict[str, tuple[str, ...]] = {

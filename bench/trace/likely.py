@@ -16,7 +16,7 @@ from bench.trace.channel import Channel
 from bench.trace.known_names import is_index, signal_of, unit_of, wanted_units
 from bench.trace.makers import makers_unit
 from bench.trace.signals import SI_UNITS
-from bench.unit_text import UnitError, is_unit, scale_of
+from bench.units.text import UnitError, is_unit, scale_of
 
 #: Words of names in the languages that drives speak, and letters of the field.
 WORDS: dict[str, str] = {

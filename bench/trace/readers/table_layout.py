@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from bench.trace.channel import split_label
 from bench.trace.known_names import unit_of
 from bench.trace.readers.moments import is_moment
-from bench.unit_text import is_unit
+from bench.units.text import is_unit
 
 BLANKS = " "
 SEPARATORS = ("\t", ";", ",", BLANKS)

@@ -1,8 +1,8 @@
-"""The units that rig files and recordings are mostly written in, as pint reads them.
+"""The most common units of rig files and recordings, with what pint makes of them.
 
-Importing pint and building its registry costs 0.2 s of CPU, a quarter of what `bench identify` took with them. A unit
-whose text stands here needs neither; every other text, and every conversion but the one to SI, is pint's. A test holds
-each row against pint.
+Importing pint and building its registry costs 0.2 s of CPU, a quarter of the run time of `bench identify`. A unit in
+this table needs neither; all others, and every conversion except to SI, go through pint. A test compares each row with
+pint.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 
 class UsualUnit(NamedTuple):
-    """What pint says of a unit.
+    """A unit as pint reads it.
 
     Attributes:
-        factor: by which a number in it becomes one in SI.
+        factor: to SI.
         dimensionality: as pint writes it.
-        base_units: names of the units it is made of, without prefixes, separated by blanks.
+        base_units: names of the units it is made of, without prefixes, separated by spaces.
     """
 
     factor: float

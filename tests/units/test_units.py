@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench import unit_registry
 from bench.errors import InputError
-from bench.units import base_units, convert, dimensionality, nearest, parse
-from bench.usual_units import USUAL_UNITS
+from bench.names import nearest
+from bench.units import base_units, convert, dimensionality, parse, registry
+from bench.units.usual import USUAL_UNITS
 
 
 @pytest.mark.parametrize(
@@ -55,10 +55,10 @@ def test_a_mistyped_name_gets_its_neighbour():
 
 @pytest.mark.parametrize("unit", USUAL_UNITS)
 def test_a_usual_unit_is_what_pint_says_it_is(unit):
-    assert dimensionality(unit) == unit_registry.dimensionality(unit)
-    assert base_units(unit) == unit_registry.base_units(unit)
+    assert dimensionality(unit) == registry.dimensionality(unit)
+    assert base_units(unit) == registry.base_units(unit)
     for to, wanted in USUAL_UNITS.items():
         if wanted.dimensionality == USUAL_UNITS[unit].dimensionality:
-            factor, offset = unit_registry.affine(unit, to)
+            factor, offset = registry.affine(unit, to)
             assert offset == 0.0
             assert convert(np.ones(1), unit, to)[0] == factor

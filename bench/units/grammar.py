@@ -1,7 +1,7 @@
-"""Texts that may be a unit: short, shallow, of small exponents; what is not gets no further than here.
+"""Limits on a unit's text before pint sees it: length, depth of brackets, size of exponents.
 
-pint evaluates whatever arithmetic stands in a text: `m**9**9**9` never ends, thousands of brackets are a recursion
-each, and a name of thousands of letters is held against every prefix and suffix. What pint reads stays pint's.
+pint evaluates any arithmetic in a text: `m**9**9**9` never ends, each bracket is a recursion, and a name of thousands
+of letters is compared with every prefix and suffix.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 
-#: Characters of a unit and brackets in one another; `kg*m**2/s**3/A**2` has 17 and none.
+#: Characters of a unit and depth of its brackets; `kg*m**2/s**3/A**2` has 17 and none.
 LONGEST, DEEPEST = 120, 6
 #: The largest exponent, and the largest product of all; that of `kg*m**2/s**3/A**2` is 12.
 STEEPEST, STEEPEST_OF_ALL = 12.0, 1000.0
@@ -22,7 +22,7 @@ _RAISED = "\0"
 
 
 def require_unit(text: str) -> None:
-    """ValueError, which says why, if a text is too much for a unit."""
+    """Raise ValueError with the reason if a text exceeds a limit."""
     if len(text) > LONGEST:
         raise ValueError(f"a unit of {len(text)} characters; allowed: {LONGEST}")
     if not text.isprintable():

@@ -1,4 +1,4 @@
-"""pint's registry, by which every unit is read; `bench.units` asks it for what is not among the usual ones."""
+"""pint's registry: reads every unit that is not in the table of usual ones."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from tokenize import TokenError
 
 import pint
 
-from bench.unit_grammar import require_unit
+from bench.units.grammar import require_unit
 
 #: What pint raises on texts that are no unit.
 _NO_UNIT = (
@@ -29,7 +29,7 @@ def _registry() -> pint.UnitRegistry:
     return registry
 
 
-#: In this order dimensions are written; pint's own depends on how the unit is put together.
+#: Order in which dimensions are written; pint's own depends on how the unit was composed.
 _ORDER = ("[mass]", "[length]", "[time]", "[current]", "[temperature]", "[substance]", "[luminosity]")
 
 

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from bench.unit_text import UnitError, scale_of
-from bench.usual_units import USUAL_UNITS
+from bench.units.text import UnitError, scale_of
+from bench.units.usual import USUAL_UNITS
 
 TURN, RPM, DEG = 2 * math.pi, math.pi / 30, math.pi / 180
 OUNCE, POUND, GRAVITY = 0.028349523125, 0.45359237, 9.80665  # NIST SP 811, appendix B

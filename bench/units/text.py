@@ -1,8 +1,9 @@
 """Units as people and recorders write them: `1/min`, `U/min`, `°/s`, `Nm`, `oz-in`, `Arms`, `0.229 rpm`, `turn/4096/s`.
 
-A text is a product of numbers and names, each with a whole exponent: parts joined by `*`, `/`, a blank, or a hyphen or
-point between names, left to right. Numbers become a factor; names become those that pint knows. What has two meanings
-is refused with both: a speed in `1/s` or `Hz` may be radians or revolutions, a count is what only the user knows.
+A text is a product of numbers and names, each with an integer exponent, read from left to right; `*`, `/`, a blank, or
+a hyphen or point between names separates them. Numbers become a factor, names those that pint knows. An ambiguous unit
+is refused and both meanings are named: a speed in `1/s` or `Hz` may be radians or revolutions; what a count is worth,
+only the user knows.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ import re
 from dataclasses import dataclass
 from functools import cache
 
-from bench.unit_names import ATOMS, COUNTS, ELECTRICAL, TRANSLATED, WHOLE
+from bench.units.conversion import affine, base_units, dimensionality
+from bench.units.names import ATOMS, COUNTS, ELECTRICAL, TRANSLATED, WHOLE
 
 #: No recorder writes a longer one, nor higher powers.
 _LONGEST, _HIGHEST, _LARGEST_POWER = 80, 9, 64
@@ -73,8 +75,6 @@ def scale_of(text: str, wanted: tuple[str, ...]) -> Scale:
     Raises:
         UnitError: no unit, none of those wanted, or one of two meanings.
     """
-    from bench.units import dimensionality  # which parses rigs with this module
-
     factor, names = _parsed(text, wanted)
     unit = _spelled(names)
     try:
@@ -104,8 +104,6 @@ def _allowed(wanted: tuple[str, ...]) -> str:
 
 
 def _affine(factor: float, unit: str, si: str) -> Scale:
-    from bench.units import affine
-
     slope, offset = affine(unit, si)
     if offset and factor != 1.0:
         raise UnitError(f"found '{factor:g} {unit}'", f"allowed: {unit} without a factor, or {si}")
@@ -125,8 +123,6 @@ def _turning(text: str, si: str, names: tuple[tuple[str, int], ...]) -> float:
 
 
 def _base(names: tuple[tuple[str, int], ...]) -> frozenset[str]:
-    from bench.units import base_units
-
     return frozenset().union(*(base_units(name) for name, _ in names)) if names else frozenset()
 
 
@@ -237,9 +233,7 @@ def _spelled(names: tuple[tuple[str, int], ...]) -> str:
 
 @cache
 def is_unit(text: str) -> bool:
-    """Whether a text is a unit, though perhaps one that only the user can tell."""
-    from bench.units import dimensionality
-
+    """Whether a text is a unit, ambiguous ones included."""
     try:
         _, names = _parsed(text, ())
         dimensionality(_spelled(names))
@@ -250,8 +244,8 @@ def is_unit(text: str) -> bool:
     return bool(names)
 
 
-def in_pints_words(text: str) -> str:
-    """A unit text as pint writes it, e.g. `N*m` for `Nm`; as it is where it is no unit, or has a factor."""
+def spelled_for_pint(text: str) -> str:
+    """A unit in pint's spelling, e.g. `N*m` for `Nm`; unchanged if it is no unit or has a factor."""
     try:
         factor, names = _parsed(text, ())
     except UnitError:
