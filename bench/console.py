@@ -56,13 +56,13 @@ def write_json(path: Path, text: str) -> None:
 @contextmanager
 def told_in_json(path: Path | None, schema: str) -> Iterator[None]:
     """Write what the gate found of a recording that cannot answer, before the error goes its way."""
-    from bench.checks.gate import UnanswerableError
+    from bench.gate.gate import UnanswerableError
 
     try:
         yield
     except UnanswerableError as error:
         if path is not None:
-            from bench.report.checks import refusal_json
+            from bench.report.gate import refusal_json
 
             write_json(path, refusal_json(schema, error.checks, str(error)))
         raise

@@ -21,7 +21,7 @@ LAYERS = (
     {"units", "axis_kind", "arrays", "statistics"},
     {"trace"},
     {"rig"},
-    {"checks"},
+    {"gate"},
     {"effects"},
     {"plant"},
     {"balance"},

@@ -19,10 +19,10 @@ from bench.check.conditions import conditions
 from bench.check.measured import Measured
 from bench.check.same_rig import rig_values
 from bench.check.state import TORQUE_GAP, VELOCITY_GAP, Gap, NamedHere, Shows, State
-from bench.checks.gate import passed
 from bench.diagnose.diagnosis import POLICY, Diagnosis, diagnose
 from bench.diagnose.found import NamedEffect
 from bench.diagnose.recordings import Recordings
+from bench.gate.gate import passed
 from bench.identify.estimate import Alone
 from bench.identify.regression import identify
 from bench.rig.rig import Rig

@@ -40,10 +40,10 @@ def diagnose(
     figures: FiguresOption = Figures.PNG,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
-    from bench.checks.gate import spoken
     from bench.diagnose.diagnosis import diagnose as run_diagnosis
     from bench.effects.present import named
     from bench.files import held
+    from bench.gate.gate import spoken
     from bench.report.diagnosis import SCHEMA, diagnosis_json, diagnosis_table, write_diagnosis
     from bench.report.progress import progress
     from bench.report.provenance import provenance

@@ -29,8 +29,8 @@ def friction(
     report: ReportOption = None,
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
-    from bench.checks.gate import spoken
     from bench.friction_map.map import friction_map
+    from bench.gate.gate import spoken
     from bench.report.friction import SCHEMA, draw_friction, friction_json, friction_table
     from bench.rig.rig import load_rig
     from bench.trace.read import read

@@ -61,8 +61,8 @@ def identify(
     figures: FiguresOption = Figures.PNG,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
-    from bench.checks.gate import spoken
     from bench.files import held
+    from bench.gate.gate import spoken
     from bench.identify.estimate import RefusedEstimateError
     from bench.report.estimate import SCHEMA, estimate_json
     from bench.report.provenance import provenance
@@ -134,7 +134,7 @@ def _estimate(
     traces: list[Path], of: Subject, estimator: Estimator, refine: bool, cutoff: float | None
 ) -> tuple[Estimate, Refinement | None]:
     """Estimate by the method asked for, and what polishing did to it."""
-    from bench.checks.gate import passed
+    from bench.gate.gate import passed
 
     rig, trace = of.rig, traces[0]
     if estimator is Estimator.LAB:

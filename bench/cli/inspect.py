@@ -21,8 +21,8 @@ def inspect(
     report: ReportOption = None,
 ) -> None:
     """Say what a recording holds: every column, what it is likely to be, rate, holes, signals with their range."""
-    from bench.checks.gate import gate
-    from bench.report.checks import checks_json, checks_table
+    from bench.gate.gate import gate
+    from bench.report.gate import checks_json, checks_table
     from bench.report.inspection import table
     from bench.rig.rig import load_rig
     from bench.trace.assemble import assemble

@@ -8,7 +8,6 @@ from dataclasses import replace
 from bench.axis_kind import INERTIA
 from bench.balance.fit import Fit
 from bench.balance.quantities import uncertain
-from bench.checks.gate import joined, passed
 from bench.diagnose.add.add import add
 from bench.diagnose.gap.gap import gap
 from bench.diagnose.name.name import name
@@ -17,6 +16,7 @@ from bench.diagnose.recordings import Recordings
 from bench.diagnose.show.show import Diagnosis, show
 from bench.diagnose.show.suspicions import suspicions
 from bench.diagnose.where.where import where
+from bench.gate.gate import joined, passed
 from bench.identify.determined import require_masses, require_significant
 from bench.identify.load_inertia import load_inertia
 from bench.rig.rig import Rig

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bench.balance.parameter import Parameter
-from bench.checks.check import Check
 from bench.errors import UndeterminedError
+from bench.gate.check import Check
 
 
 @dataclass(frozen=True)

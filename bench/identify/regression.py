@@ -17,9 +17,9 @@ from bench.balance.hypothesis import Hypothesis
 from bench.balance.normal_equations import BLOCKS, NormalEquations, join
 from bench.balance.parameter import Parameter
 from bench.balance.rows import Rows
-from bench.checks.check import Check
-from bench.checks.gate import PARTS, gate, joined, passed, require
 from bench.errors import UndeterminedError
+from bench.gate.check import Check
+from bench.gate.gate import PARTS, gate, joined, passed, require
 from bench.identify.cutoffs import TERMS, choose
 from bench.identify.determined import left_open, only_direction, require_determined, require_inertia, require_sound
 from bench.identify.estimate import Estimate, RefusedEstimateError, Residual

@@ -23,8 +23,8 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.balance.normal_equations import NormalEquations, join, solved
 from bench.balance.parameter import Parameter
-from bench.checks.gate import joined
 from bench.errors import InputError, UndeterminedError
+from bench.gate.gate import joined
 from bench.identify.between import ALARM, Excess, between, excess, told_apart
 from bench.identify.determined import left_open, only_direction, require_determined, require_sound
 from bench.identify.estimate import Between, Estimate, RefusedEstimateError, Residual

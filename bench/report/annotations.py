@@ -16,7 +16,7 @@ from pathlib import Path
 
 from bench.check.compare import Checked
 from bench.check.comparison import CHANGED, Comparison
-from bench.check.told import headline
+from bench.check.wording import headline
 from bench.files import read_text
 from bench.names import plain
 from bench.report.check import says

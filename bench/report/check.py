@@ -13,7 +13,7 @@ from bench.check.compare import Checked
 from bench.check.comparison import SAME, Comparison
 from bench.check.measured import Measured
 from bench.check.state import Gap, NamedHere, State
-from bench.check.told import READ, headline, read, told
+from bench.check.wording import READ, headline, read, told
 from bench.structured import json_text
 
 SCHEMA = "bench.check/1"

@@ -17,10 +17,10 @@ from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where.where import Where
 from bench.files import held, write_text
 from bench.plant.model_file import model_toml, model_xml, tables_toml
-from bench.report.checks import checks_json
 from bench.report.diagnosis_figures import gaps_figure, where_figure
 from bench.report.estimate import between_json, parameters_json, recordings_json
 from bench.report.figures import save
+from bench.report.gate import checks_json
 from bench.report.page.blocks import File
 from bench.report.page.folder import write_page
 from bench.report.pages.diagnosis import diagnosis_page

@@ -14,7 +14,7 @@ from rich.table import Table
 from bench.axis_kind import AxisKind
 from bench.balance.parameter import Parameter
 from bench.identify.estimate import Alone, Between, Estimate
-from bench.report.checks import checks_json
+from bench.report.gate import checks_json
 from bench.structured import json_text
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s

@@ -13,8 +13,8 @@ from rich.table import Table
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS
 from bench.effects.catalogue import catalogue
 from bench.friction_map.map import CHANCE, FrictionMap
-from bench.report.checks import checks_json
 from bench.report.figures import MEASURED, MODELLED, REST, in_style, legend_above, save_as_named, title_figure
+from bench.report.gate import checks_json
 from bench.report.page.numbers import unit_text
 from bench.report.pages.tables import effort_word
 from bench.structured import json_text

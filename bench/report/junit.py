@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from bench.check.compare import Checked
 from bench.check.comparison import CHANGED, UNDECIDED
-from bench.check.told import headline, told
+from bench.check.wording import headline, told
 from bench.names import plain
 
 #: Characters that XML 1.0 does not have at all, escaped or not.

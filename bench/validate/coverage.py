@@ -11,7 +11,7 @@ import numpy as np
 from scipy import stats
 
 from bench.validate.run import Run
-from bench.validate.told import TERMS, Told
+from bench.validate.score import TERMS, Told
 
 #: Levels of the intervals that are held against the truth.
 LEVELS = (0.5, 0.8, 0.95)

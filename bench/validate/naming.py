@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from bench.validate.coverage import Share
 from bench.validate.run import Run
-from bench.validate.told import Named
+from bench.validate.score import Named
 
 #: Verdicts, as the contract has them.
 EXPLAINED, UNEXPLAINED = "explained", "unexplained_remainder"

@@ -14,7 +14,7 @@ from bench.trace.trace import Trace
 from bench.validate.case import Case
 from bench.validate.plan import Plan
 from bench.validate.record import record
-from bench.validate.told import Named, Told, base, of_effects
+from bench.validate.score import Named, Told, base, of_effects
 
 #: Runs simulated side by side in one piece of work: more cost no less each.
 TOGETHER = 64

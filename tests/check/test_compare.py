@@ -7,7 +7,7 @@ import pytest
 from bench.check.allowed import Allowed
 from bench.check.compare import compare
 from bench.check.measured import Measured
-from bench.check.told import headline
+from bench.check.wording import headline
 from bench.errors import InputError
 from bench.rig.rig import Rig
 from tests.check.states import Told, named, state

@@ -6,8 +6,8 @@ import pickle
 import numpy as np
 import pytest
 
-from bench.checks.gate import spoken
 from bench.errors import InputError
+from bench.gate.gate import spoken
 from bench.identify.regression import identify
 from bench.rig.rig import Rig, load_rig
 from bench.rig.values import tolerance_of

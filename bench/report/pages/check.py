@@ -7,7 +7,7 @@ from typing import Any
 
 from bench.check.compare import Checked
 from bench.check.comparison import CHANGED, SAME, UNDECIDED, Comparison
-from bench.check.told import headline, told
+from bench.check.wording import headline, told
 from bench.names import short
 from bench.report.check import cells
 from bench.report.page.blocks import (

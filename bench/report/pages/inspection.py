@@ -7,7 +7,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Literal
 
-from bench.checks.check import Check
+from bench.gate.check import Check
 from bench.report.page.blocks import Answer, AnyBlock, Column, Page, Paragraph, Points, Section, Table, Tone
 from bench.report.page.numbers import number, unit_text, words
 from bench.report.page.samples import Grid

@@ -8,7 +8,7 @@ from typing import Any
 
 from bench import __version__
 from bench.balance.parameter import Parameter
-from bench.checks.check import Check
+from bench.gate.check import Check
 from bench.identify.estimate import Alone, Between
 from bench.report.page.blocks import Column, Points, Section, Series, Table
 from bench.report.page.numbers import interval, number, unit_text, words

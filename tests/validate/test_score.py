@@ -13,7 +13,7 @@ from bench.validate.coverage import LEVELS, Coverage, Group, Share, coverage
 from bench.validate.naming import NOTHING, NOTHING_MISSING, REFUSED, naming
 from bench.validate.plan import Plan
 from bench.validate.run import drawn
-from bench.validate.told import Named, Told
+from bench.validate.score import Named, Told
 from tests.validate.population import Short
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bench.checks.check import Check, absent
+from bench.gate.check import Check, absent
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

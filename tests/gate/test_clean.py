@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from bench.checks.gate import gate
-from tests.checks.clean import independent, public, real, shared_cases
+from bench.gate.gate import gate
 from tests.diagnose.command import started
+from tests.gate.clean import independent, public, real, shared_cases
 from tests.shared import SHARED, needs_shared
 
 

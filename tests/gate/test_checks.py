@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from bench.checks import effort, losses, signals, timing, velocity, wraps
-from bench.checks.gate import CHECKS, STEADY, UnanswerableError, gate, joined, passed, spoken
 from bench.errors import InputError
+from bench.gate import effort, losses, signals, timing, velocity, wraps
+from bench.gate.gate import CHECKS, STEADY, UnanswerableError, gate, joined, passed, spoken
 from bench.identify.regression import identify
 from bench.trace.trace import Trace
-from tests.checks.damage import changed, doubled, keeping, losing, stale, with_samples, without
+from tests.gate.damage import changed, doubled, keeping, losing, stale, with_samples, without
 from tests.independent.axes import PLAIN
 
 NAMES = [

@@ -1,4 +1,4 @@
-"""What each check measures on recordings that are sound, beside its thresholds: `python -m tests.checks`."""
+"""What each check measures on recordings that are sound, beside its thresholds: `python -m tests.gate`."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import typer
 
-from bench.checks import effort, losses, timing, velocity
-from bench.checks.balance import balance, effort_of
-from bench.checks.parts import speed_of, stretches
+from bench.gate import effort, losses, timing, velocity
+from bench.gate.balance import balance, effort_of
+from bench.gate.parts import speed_of, stretches
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-from tests.checks.clean import independent, public, real, shared_cases
+from tests.gate.clean import independent, public, real, shared_cases
 
 
 def measures(trace: Trace, rig: Rig) -> Iterator[tuple[str, float]]:

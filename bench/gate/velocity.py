@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.checks.check import Check, absent
-from bench.checks.parts import resolution_of, stretches
+from bench.gate.check import Check, absent
+from bench.gate.parts import resolution_of, stretches
 from bench.rig.rig import Rig
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
@@ -24,7 +24,7 @@ NAME = "velocity_is_derivative_of_position"
 #: Samples a span.
 SPAN = 20
 #: Deviation of the ratio from one that is told, and that is refused. Clean recordings reach 0.06, the smallest wrong
-#: scale met is 0.4 (`python -m tests.checks`).
+#: scale met is 0.4 (`python -m tests.gate`).
 TOLD, REFUSED = 0.02, 0.1
 #: Remainder, as share of the displacements, that is refused; clean recordings reach 0.15.
 REMAINDER = 0.4

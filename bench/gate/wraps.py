@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bench.checks.check import Check, absent
+from bench.gate.check import Check, absent
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from bench.trace.wraps import Wraps, jumps, period_of, undone

@@ -8,9 +8,9 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
-from bench.checks.balance import balance, effort_of
-from bench.checks.check import Check, absent
-from bench.checks.parts import speed_of, stretches
+from bench.gate.balance import balance, effort_of
+from bench.gate.check import Check, absent
+from bench.gate.parts import speed_of, stretches
 from bench.rig.rig import Rig
 from bench.trace.trace import HOLE, TimeBase, Trace
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import rms
-from bench.checks.balance import EFFORTS, balance, effort_of
-from bench.checks.check import Check, absent
-from bench.checks.parts import resolution_of, speed_of
+from bench.gate.balance import EFFORTS, balance, effort_of
+from bench.gate.check import Check, absent
+from bench.gate.parts import resolution_of, speed_of
 from bench.rig.rig import Rig
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bench.trace.write import write
-from tests.checks.damage import changed, losing
 from tests.diagnose.command import started
+from tests.gate.damage import changed, losing
 from tests.independent.axes import PLAIN
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.checks.parts import speed_of, stretches
+from bench.gate.parts import speed_of, stretches
 from bench.rig.rig import Rig
 from bench.trace.known import less_known
 from bench.trace.noise import white_noise

@@ -9,7 +9,7 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
-from bench.checks.check import Check
+from bench.gate.check import Check
 from bench.structured import json_text
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from bench.checks.balance import Balance, balance, effort_of
-from bench.checks.check import Check, absent
+from bench.gate.balance import Balance, balance, effort_of
+from bench.gate.check import Check, absent
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
 NAME = "effort_follows_motion"
 #: Share of the effort that motion (and position) must explain, and below which it is told. The least of any clean
-#: recording is 0.48 (`python -m tests.checks`).
+#: recording is 0.48 (`python -m tests.gate`).
 REFUSED, TOLD = 0.3, 0.45
 #: Effort less loud than this many times its noise tells neither way.
 AUDIBLE = 3.0

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from bench.axis_kind import INERTIA
-from bench.checks import constants, effort, losses, signals, timing, velocity, wraps
-from bench.checks.check import STATUSES, Check
 from bench.errors import BenchError, InputError, UndeterminedError
+from bench.gate import constants, effort, losses, signals, timing, velocity, wraps
+from bench.gate.check import STATUSES, Check
 from bench.rig.rig import Rig
 from bench.trace.possible import require_possible
 from bench.trace.trace import Trace

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
-from bench.checks.check import Check, absent
-from bench.checks.parts import resolution_of
+from bench.gate.check import Check, absent
+from bench.gate.parts import resolution_of
 from bench.rig.rig import Rig
 from bench.trace.time_base import counted, interpolate
 from bench.trace.trace import HOLE, Trace
@@ -35,7 +35,7 @@ WHOLE = 0.3
 #: Steps below this share of their RMS are too short for a loss to show, or to matter.
 SLOW = 0.05
 #: Share of lost and repeated samples that is refused, with speed and without: up to it J stays within 1 %
-#: (`tests/checks/test_losses.py`).
+#: (`tests/gate/test_losses.py`).
 MOST, MOST_BLIND = 0.01, 0.0005
 #: Looks at the recording, each after what the last one found was put right: a jump hides others close by.
 PASSES = 3
