@@ -141,11 +141,6 @@ def build_spec(parameters: AxisParameters, timestep: float, load: Load | None = 
     return spec
 
 
-def build_model(parameters: AxisParameters, timestep: float, load: Load | None = None) -> mujoco.MjModel:
-    """Compiled model of an axis with a bare torque input, the actuator `drive`; arguments as `build_spec`."""
-    return build_spec(parameters, timestep, load).compile()
-
-
 def _set_inertia(spec: mujoco.MjSpec, parameters: AxisParameters) -> None:
     parts = {MOTOR: parameters.motor_inertia, LOAD: parameters.inertia - parameters.motor_inertia}
     for name, inertia in parts.items():
