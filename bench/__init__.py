@@ -46,7 +46,7 @@ __all__ = [
 __version__ = "0.1.0"
 
 #: Module that each name comes from; a test holds it against the imports above, which are what type checkers read.
-_HOMES = {
+_MODULES = {
     "Checked": "bench.check.compare",
     "Diagnosis": "bench.diagnose.show.show",
     "Effects": "bench.export.effects",
@@ -74,12 +74,12 @@ class _FrontDoor(ModuleType):
     """
 
     def __getattr__(self, name: str) -> object:
-        if name not in _HOMES:
+        if name not in _MODULES:
             raise AttributeError(f"module 'bench' has no attribute '{name}'")
-        return getattr(import_module(_HOMES[name]), name)
+        return getattr(import_module(_MODULES[name]), name)
 
     def __setattr__(self, name: str, value: object) -> None:
-        if not (name in _HOMES and isinstance(value, ModuleType)):
+        if not (name in _MODULES and isinstance(value, ModuleType)):
             super().__setattr__(name, value)
 
     def __dir__(self) -> list[str]:

@@ -53,7 +53,7 @@ class AxisKind:
             MISALIGNMENT: "misalignment",
         }[term]
 
-    def spoken(self, term: str) -> str:
+    def in_words(self, term: str) -> str:
         """The same in words, e.g. `moment of inertia`."""
         return self.parameter(term).replace("_", " ")
 

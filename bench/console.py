@@ -54,7 +54,7 @@ def write_json(path: Path, text: str) -> None:
 
 
 @contextmanager
-def told_in_json(path: Path | None, schema: str) -> Iterator[None]:
+def refusal_as_json(path: Path | None, schema: str) -> Iterator[None]:
     """Write what the gate found of a recording that cannot answer, before the error goes its way."""
     from bench.gate.gate import UnanswerableError
 
@@ -83,13 +83,13 @@ def console() -> Console:
     return found if found.is_terminal else PlainConsole(highlight=False, markup=False, emoji=False, width=110)
 
 
-def tell_warnings(warnings: Iterable[str]) -> None:
+def print_warnings(warnings: Iterable[str]) -> None:
     """A line on standard error for each warning."""
     for warning in warnings:
         typer.echo(plain(f"warning: {warning}"), err=True)
 
 
-def tell_files(files: Iterable[Path]) -> None:
+def print_files(files: Iterable[Path]) -> None:
     """A line for each file written."""
     for path in files:
         typer.echo(plain(f"wrote {path}"))

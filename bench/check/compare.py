@@ -67,7 +67,8 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     family = len(baseline.quantities) + len(names) + len(pairs) + silent
     sure = all(one.chance <= rate / family for one in names)
     views = [*_views(state, under, sure)]
-    comparisons = [*_of_quantities(baseline, views, allowed, bool(moved)), *_untold(baseline, state), *pairs, *names]
+    quantities = [*_of_quantities(baseline, views, allowed, bool(moved)), *_missing_now(baseline, state)]
+    comparisons = [*quantities, *pairs, *names]
     if rig:
         comparisons = [replace(one, chance=1.0, held_back="the rig is not that of the baseline") for one in comparisons]
     chances = holm(np.array([one.chance for one in comparisons]), silent)
@@ -75,7 +76,7 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     answered.sort(key=lambda one: (RESULTS.index(one.result), one.chance))
     by_name = {one.name: one for one in answered}
     return Checked(
-        result=_together(answered, baseline, state),
+        result=_overall(answered, baseline, state),
         comparisons=tuple(answered),
         baseline=baseline,
         now=state,
@@ -141,7 +142,7 @@ def _of_quantities(baseline: State, views: Sequence[View], allowed: Allowed, mov
         yield Comparison.of(name, before.unit, values, differences, margin, held_back=held_back, least_chance=least)
 
 
-def _untold(baseline: State, now: State) -> Iterator[Comparison]:
+def _missing_now(baseline: State, now: State) -> Iterator[Comparison]:
     """What the baseline knows and the recordings now do not tell."""
     for name, before in baseline.quantities.items():
         if name not in now.quantities:
@@ -161,7 +162,7 @@ def _silent(baseline: State, now: State) -> int:
     return len(set(catalogue()) - {effect.name for effect in (*baseline.effects, *now.effects)})
 
 
-def _together(answered: list[Comparison], baseline: State, now: State) -> str:
+def _overall(answered: list[Comparison], baseline: State, now: State) -> str:
     """One answer: a verdict that alone differs is on the edge of its threshold, and decides nothing."""
     results = {one.result for one in answered}
     if CHANGED in results:

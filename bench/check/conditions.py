@@ -38,8 +38,8 @@ def conditions(traces: Sequence[Trace], rig: Rig, cutoff: float) -> dict[str, Me
         "sample_period": "s",
     }
     found = np.mean([_of(trace, rig) for trace in traces], axis=0).tolist()
-    told = {name: Measured(value, unit, 0.0) for (name, unit), value in zip(units.items(), found, strict=True)}
-    return told | {"cutoff": Measured(cutoff, "Hz", 0.0)}
+    measured = {name: Measured(value, unit, 0.0) for (name, unit), value in zip(units.items(), found, strict=True)}
+    return measured | {"cutoff": Measured(cutoff, "Hz", 0.0)}
 
 
 def _of(trace: Trace, rig: Rig) -> list[float]:
@@ -57,11 +57,11 @@ def _of(trace: Trace, rig: Rig) -> list[float]:
 
 def unlike(baseline: Mapping[str, Measured], now: Mapping[str, Measured]) -> list[str]:
     """A line for each condition that differs."""
-    told = []
+    lines = []
     for name in baseline:
         if name in FOLLOWING or name not in now:
             continue
         before, after = baseline[name].value, now[name].value
         if not before / ALIKE <= after <= before * ALIKE:
-            told.append(f"{name.replace('_', ' ')}: {before:.4g} -> {after:.4g} {baseline[name].unit}")
-    return told
+            lines.append(f"{name.replace('_', ' ')}: {before:.4g} -> {after:.4g} {baseline[name].unit}")
+    return lines

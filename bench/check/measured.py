@@ -40,12 +40,12 @@ class Measured:
         The degrees of freedom are those at which Student's t reaches as far as the interval of 95 % does. Of several
         recordings the error is that of one of them: the root of their mean variance.
         """
-        told = [one for one in alone if math.isfinite(one.std_error)]
-        if len(told) < 2:
+        known = [one for one in alone if math.isfinite(one.std_error)]
+        if len(known) < 2:
             return cls(found.value, found.unit, found.std_error, _degrees(found))
-        error = float(np.sqrt(np.mean([one.std_error**2 for one in told])))
-        spread = float(np.std([one.value for one in told], ddof=1))
-        return cls(found.value, found.unit, error, min(map(_degrees, told)), len(told), spread)
+        error = float(np.sqrt(np.mean([one.std_error**2 for one in known])))
+        spread = float(np.std([one.value for one in known], ddof=1))
+        return cls(found.value, found.unit, error, min(map(_degrees, known)), len(known), spread)
 
 
 def _degrees(found: Parameter) -> float:

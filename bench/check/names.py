@@ -54,7 +54,7 @@ def matched(baseline: State, now: State) -> Matched:
     """Pairs of one effect, then pairs that are each other's `ambiguous_with`, then what is left."""
     before, after = lasting(baseline), lasting(now)
     both = _paired(before, after, lambda one, other: one.same(other))
-    renamed = _paired(before, after, lambda one, other: one.told_as(other))
+    renamed = _paired(before, after, lambda one, other: one.indistinguishable_from(other))
     return Matched(tuple(both), tuple(renamed), tuple(before), tuple(after))
 
 
@@ -85,11 +85,11 @@ def of_both(
     """
     for before, after in pairs:
         for key in before.compared.keys() & after.compared.keys():
-            told, baseline, now = f"{before.name}.{key}", before.compared[key], after.compared[key]
-            between = allowed.between_of(told, baseline)
+            key_in_full, baseline, now = f"{before.name}.{key}", before.compared[key], after.compared[key]
+            between = allowed.between_of(key_in_full, baseline)
             difference = Difference.of(baseline, now, between, beside * between)
-            margin = allowed.margin_of(told, baseline, state)
-            name = told if before.name == before.label else f"{before.label}: {key}"
+            margin = allowed.margin_of(key_in_full, baseline, state)
+            name = key_in_full if before.name == before.label else f"{before.label}: {key}"
             yield Comparison.of(name, baseline.unit, (baseline.value, now.value), [difference], margin)
 
 

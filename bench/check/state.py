@@ -64,7 +64,7 @@ class NamedHere:
             bool(np.isclose(a[1], b[1], rtol=SAME_WAVE, atol=0.0)) for a, b in pairs
         )
 
-    def told_as(self, other: NamedHere) -> bool:
+    def indistinguishable_from(self, other: NamedHere) -> bool:
         """Whether a recording cannot tell the two apart."""
         return self.name in other.ambiguous_with or other.name in self.ambiguous_with
 
@@ -72,10 +72,10 @@ class NamedHere:
     def compared(self) -> dict[str, Measured]:
         """Quantities that tell a change: no angles and instants, whose zero means nothing, and nothing whole."""
         whole = {slot.quantity.name for slot, _ in self.whole}
-        told = [q.name for q in self.effect.quantities if not (q.angle or q.instant or q.name in whole)]
+        names = [q.name for q in self.effect.quantities if not (q.angle or q.instant or q.name in whole)]
         return {
             name: self.quantities[name]
-            for name in told
+            for name in names
             if name in self.quantities and np.isfinite(self.quantities[name].std_error)
         }
 

@@ -11,7 +11,7 @@ from bench.check.response import RESPONSE_TORQUE
 from bench.check.state import GAPS, NamedHere
 
 #: Units that people read otherwise, with the factor.
-READ = {"rad": ("deg", 180.0 / math.pi)}
+DISPLAYED = {"rad": ("deg", 180.0 / math.pi)}
 #: What changes where something else does.
 FOLLOWING = frozenset({*GAPS, RESPONSE_TORQUE})
 
@@ -24,7 +24,7 @@ def headline(checked: Checked) -> str:
         return "The same: no quantity differs by more than its margin"
     if checked.rig:
         return f"Undecided, as the rig differs: {'; '.join(checked.rig)}"
-    open_ = [told(one, checked) for one in checked.comparisons if one.result != SAME]
+    open_ = [described(one, checked) for one in checked.comparisons if one.result != SAME]
     if checked.baseline.verdict != checked.now.verdict:
         verdicts = (one.replace("_", " ") for one in (checked.baseline.verdict, checked.now.verdict))
         open_.append(f"the verdict is {' -> '.join(verdicts)}")
@@ -37,7 +37,7 @@ def _changes(checked: Checked) -> list[str]:
     changed = [one for one in checked.comparisons if one.result == CHANGED]
     changed.sort(key=lambda one: not one.effect)
     parts = [one for one in changed if one.name not in FOLLOWING] or changed
-    return [told(one, checked) for one in parts]
+    return [described(one, checked) for one in parts]
 
 
 def _sentence(parts: list[str]) -> str:
@@ -45,7 +45,7 @@ def _sentence(parts: list[str]) -> str:
     return f"{joined[:1].upper()}{joined[1:]}"
 
 
-def told(one: Comparison, checked: Checked) -> str:
+def described(one: Comparison, checked: Checked) -> str:
     """One comparison in words."""
     label = one.name.replace("_", " ").replace(".", " ")
     effect = next((effect for effect, found in (*checked.appeared, *checked.gone) if found is one), None)
@@ -53,8 +53,8 @@ def told(one: Comparison, checked: Checked) -> str:
         return f"{label} {_came_or_went(one)}: {_values(effect)}{_why(one)}"
     if one.baseline is None or one.now is None:
         return f"{label} cannot be compared{_why(one)}"
-    before, after = read(one.baseline, one.unit), read(one.now, one.unit)
-    unit = unit_of(one.unit)
+    before, after = formatted(one.baseline, one.unit), formatted(one.now, one.unit)
+    unit = displayed_unit(one.unit)
     share = f" ({100.0 * (one.now / one.baseline - 1.0):+.3g} %)" if one.baseline else ""
     if one.result == CHANGED:
         verb = "rose" if one.now > one.baseline else "fell"
@@ -71,37 +71,37 @@ def _came_or_went(one: Comparison) -> str:
 
 def _why(one: Comparison) -> str:
     """Why a comparison is not decided, or how sure it is that an effect appeared."""
-    unit = unit_of(one.unit)
+    unit = displayed_unit(one.unit)
     if one.held_back:
         return f", but {one.held_back}"
     if one.effect == "appeared" and one.differences:
-        makes, least = read(one.now or 0.0, one.unit), read(one.margin, one.unit)
+        makes, least = formatted(one.now or 0.0, one.unit), formatted(one.margin, one.unit)
         seen = "would have shown" if one.result == CHANGED else "may have hidden"
         return f" ({makes}{unit} RMS, where the baseline {seen} {least}{unit})"
     bounds = one.difference95
     if one.result != CHANGED and one.result != SAME and bounds is not None:
-        reach = 0.5 * (bounds[1] - bounds[0])
-        return f", known to ± {read(reach, one.unit)}{unit} against a margin of {read(one.margin, one.unit)}{unit}"
+        reach, margin = (formatted(value, one.unit) for value in (0.5 * (bounds[1] - bounds[0]), one.margin))
+        return f", known to ± {reach}{unit} against a margin of {margin}{unit}"
     return ""
 
 
 def _values(effect: NamedHere) -> str:
     """Quantities of an effect, but for angles, whose zero means nothing, and what its label says."""
     counted = {slot.quantity.name for slot, _ in effect.whole}
-    told = [q.name for q in effect.effect.quantities if not q.angle and q.name not in counted]
-    return ", ".join(f"{name.replace('_', ' ')} {with_unit(effect.quantities[name])}" for name in told)
+    names = [q.name for q in effect.effect.quantities if not q.angle and q.name not in counted]
+    return ", ".join(f"{name.replace('_', ' ')} {with_unit(effect.quantities[name])}" for name in names)
 
 
 def with_unit(found: Measured) -> str:
     """A value as people read it."""
-    return f"{read(found.value, found.unit)}{unit_of(found.unit)}"
+    return f"{formatted(found.value, found.unit)}{displayed_unit(found.unit)}"
 
 
-def unit_of(unit: str) -> str:
+def displayed_unit(unit: str) -> str:
     """The unit behind a number, as people read it."""
-    return "" if unit == "dimensionless" else f" {READ[unit][0] if unit in READ else unit}"
+    return "" if unit == "dimensionless" else f" {DISPLAYED[unit][0] if unit in DISPLAYED else unit}"
 
 
-def read(value: float, unit: str) -> str:
+def formatted(value: float, unit: str) -> str:
     """A number in the unit that people read."""
-    return f"{value * (READ[unit][1] if unit in READ else 1.0):.4g}"
+    return f"{value * (DISPLAYED[unit][1] if unit in DISPLAYED else 1.0):.4g}"

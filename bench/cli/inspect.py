@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import AxisOption, JsonOption, ReportOption, console, tell_files, write_json
+from bench.console import AxisOption, JsonOption, ReportOption, console, print_files, write_json
 
 
 def inspect(
@@ -57,4 +57,4 @@ def inspect(
         console().print(table(found))
         if checks:
             console().print(checks_table(checks))
-        tell_files(files)
+        print_files(files)

@@ -70,6 +70,6 @@ def require_weight(recordings: Recordings, fitted: Fit) -> None:
     """
     kind = recordings.rig.axis_kind
     found = uncertain(fitted).base(recordings.base_units)
-    told = suspicions(recordings.trace, recordings.rig, {})
-    require_significant(found[kind.parameter(INERTIA)], kind, told)
-    require_masses(found | load_inertia(found, recordings.rig), kind, told)
+    suspected = suspicions(recordings.trace, recordings.rig, {})
+    require_significant(found[kind.parameter(INERTIA)], kind, suspected)
+    require_masses(found | load_inertia(found, recordings.rig), kind, suspected)

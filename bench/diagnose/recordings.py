@@ -99,6 +99,6 @@ class Recordings:
 
 def _mended(trace: Trace, rig: Rig, effect: Effect, found: Detected) -> Trace:
     """A recording with a fault of its sensor undone; without the faulty signal where that stays wrong all the same."""
-    if found.mends or rig.asks_for_speed(trace):
+    if found.mends or rig.needs_speed(trace):
         return effect.corrected(trace, found.values)
     return trace.without(effect.faulty_signal)

@@ -60,7 +60,7 @@ class Effects:
         """
         running = self._run(model, data)
         if self.stored.model.stepped:
-            if running.drive.asked:
+            if running.drive.needs_forces:
                 mujoco.mj_forward(model, data)
             running.prepare()
         mujoco.mj_step(model, data)
@@ -78,7 +78,7 @@ class Effects:
         running = self._run(model, data)
         if running.time == data.time:
             return  # mj_forward calls it too
-        if running.drive.asked:
+        if running.drive.needs_forces:
             mujoco.mj_fwdActuation(model, data)
         running.prepare()
         dof = model.joint(self.joint).dofadr[0]
@@ -133,7 +133,7 @@ class Copies:
 
     def step(self) -> None:
         """Advance all copies by one step with the effects."""
-        if self._drive.asked:
+        if self._drive.needs_forces:
             self._batch.forward()
         demand = self._drive.torque(self._control, self._force)
         time = np.asarray(self._time).reshape(-1)
@@ -180,7 +180,7 @@ class Drive:
         return cls(model.actuator_ctrladr[chosen], chosen, model.actuator_gear[chosen, 0] / ratio, gains, limits)
 
     @property
-    def asked(self) -> bool:
+    def needs_forces(self) -> bool:
         """Whether MuJoCo has to make the forces before they are known: that of a servo, of a winding."""
         return bool(np.isnan(self.gains).any())
 

@@ -199,8 +199,8 @@ def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
     try:
         return spec.compile()
     except ValueError as error:
-        said = " ".join(str(error).split())
-        raise InputError("the MJCF", f"MuJoCo refuses it: {said}", "allowed: what MuJoCo compiles") from error
+        reason = " ".join(str(error).split())
+        raise InputError("the MJCF", f"MuJoCo refuses it: {reason}", "allowed: what MuJoCo compiles") from error
 
 
 def _scaled(values: np.ndarray, ratio: float) -> np.ndarray:

@@ -31,8 +31,8 @@ def read_mjcf(path: Path) -> mujoco.MjSpec:
     try:
         return mujoco.MjSpec.from_file(str(path))
     except (ValueError, OSError) as error:
-        said = " ".join(reason(error).split())
-        raise InputError(path, f"MuJoCo does not read it: {said}", "allowed: MJCF") from error
+        message = " ".join(reason(error).split())
+        raise InputError(path, f"MuJoCo does not read it: {message}", "allowed: MJCF") from error
 
 
 def robot_with(path: Path, joint: str, stored: StoredModel, out: Path, share: Share | None) -> tuple[str, Carried]:

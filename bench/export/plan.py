@@ -51,13 +51,13 @@ class Planned:
 
     profile: str
     motion: References
-    tells: Mapping[str, Parameter]
+    expected: Mapping[str, Parameter]
     reason: str = ""
 
     @property
     def worst(self) -> float:
         """Largest standard error of what it tells, over the value; infinite where it tells nothing."""
-        shares = [found.std_error / abs(found.value) for found in self.tells.values() if found.value]
+        shares = [found.std_error / abs(found.value) for found in self.expected.values() if found.value]
         return max((share for share in shares if np.isfinite(share)), default=np.inf) if not self.reason else np.inf
 
 

@@ -142,8 +142,8 @@ def _parameters(found: Mapping[str, Parameter]) -> Plain:
 
 def _checks(checks: Sequence[Check]) -> list[Plain]:
     """Those that did not pass."""
-    told = [check for check in checks if check.status in ("warn", "fail")]
-    return [{"name": c.name, "status": c.status, "found": c.found, "advice": c.advice} for c in told]
+    notable = [check for check in checks if check.status in ("warn", "fail")]
+    return [{"name": c.name, "status": c.status, "found": c.found, "advice": c.advice} for c in notable]
 
 
 def _number(value: float) -> float | None:

@@ -10,13 +10,13 @@ from bench.trace.trace import Trace
 NAME = "effort_follows_motion"
 #: Share of the effort that motion (and position) must explain, and below which it is told. The least of any clean
 #: recording is 0.48 (`python -m tests.gate`).
-REFUSED, TOLD = 0.3, 0.45
+REFUSED, WARNED = 0.3, 0.45
 #: Effort less loud than this many times its noise tells neither way.
 AUDIBLE = 3.0
 #: Share by which position must explain more than motion to be what the effort follows.
 MORE = 0.3
 
-ALLOWED = f"inertia, friction and position explain {TOLD:.0%} of the effort at least, with positive inertia"
+ALLOWED = f"inertia, friction and position explain {WARNED:.0%} of the effort at least, with positive inertia"
 
 
 def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
@@ -35,11 +35,11 @@ def _judged(fitted: Balance, name: str) -> Check:
     by_motion, by_position = max(fitted.by_motion, 0.0), max(fitted.by_position, 0.0)
     inertia, _, coulomb, _ = fitted.theta
     explained = f"motion explains {by_motion:.0%} of {name}, with position {by_position:.0%}"
-    if by_position < TOLD and fitted.audible < AUDIBLE:
+    if by_position < WARNED and fitted.audible < AUDIBLE:
         found = f"{explained}; {name} is {fitted.audible:.1f} times its noise"
         advice = "no torque signal, or accelerations too small for it: record harder ones"
         return Check(NAME, "warn", found, ALLOWED, advice)
-    if by_position > TOLD and inertia < 0.0 and coulomb < 0.0 and fitted.power < 0.0:
+    if by_position > WARNED and inertia < 0.0 and coulomb < 0.0 and fitted.power < 0.0:
         found = f"{explained}, yet inertia and friction are negative: torque and motion have opposite signs"
         advice = "count both the same way (a leading - in the rig's [trace.columns] turns one)"
         return Check(NAME, "fail", found, ALLOWED, advice)
@@ -48,7 +48,7 @@ def _judged(fitted: Balance, name: str) -> Check:
         return Check(NAME, "fail", explained, ALLOWED, advice, unanswerable=True)
     if by_position - by_motion > MORE:
         advice = "likeliest gravity or a spring acts: tell the load in the rig, or let bench diagnose find it"
-        return Check(NAME, "pass" if by_position > TOLD else "warn", explained, ALLOWED, advice)
-    if by_position < TOLD:
+        return Check(NAME, "pass" if by_position > WARNED else "warn", explained, ALLOWED, advice)
+    if by_position < WARNED:
         return Check(NAME, "warn", explained, ALLOWED, "bench diagnose may tell what else acts")
     return Check(NAME, "pass", explained, ALLOWED)

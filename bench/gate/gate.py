@@ -106,7 +106,7 @@ def _error(failed: Check, checks: tuple[Check, ...], trace: Trace) -> BenchError
     if not failed.unanswerable:
         allowed = f"allowed: {failed.allowed}; {failed.advice}"
         return InputError(f"{trace.origin}: {failed.name}", f"found: {failed.found}", allowed)
-    wanted = trace.axis_kind.spoken(INERTIA)
+    wanted = trace.axis_kind.in_words(INERTIA)
     error = UnanswerableError(wanted, f"{trace.origin}: {failed.name}: {failed.found}", failed.advice)
     error.checks = checks
     return error
@@ -126,11 +126,11 @@ def joined(parts: Sequence[Sequence[Check]]) -> tuple[Check, ...]:
 
 def _worst(same: Sequence[Check]) -> Check:
     silent = [one for one in same if one.status == "not_applicable" or (one.status == "fail" and one.unanswerable)]
-    told = [one for one in same if one not in silent] or silent
-    return min(told, key=lambda one: STATUSES.index(one.status))
+    answered = [one for one in same if one not in silent] or silent
+    return min(answered, key=lambda one: STATUSES.index(one.status))
 
 
-def spoken(checks: Sequence[Check]) -> list[str]:
+def warnings_of(checks: Sequence[Check]) -> list[str]:
     """A line for every warning."""
     return [
         f"{check.name}: {check.found}; {check.advice}" if check.advice else f"{check.name}: {check.found}"

@@ -99,20 +99,20 @@ def damage_of(trace: Trace) -> Damage:
     missing = np.zeros(len(trace) - 1, dtype=np.int64)
     if "position" in trace:
         parts = [part for part in trace.segments if part.stop - part.start >= SHORTEST]
-        told = [_told_apart(trace, part) for part in parts]
-        if told:
+        steps_of_parts = [_beyond_motion(trace, part) for part in parts]
+        if steps_of_parts:
             limit = max(
-                STANDS_OUT * float(np.percentile(np.concatenate([np.abs(jump) for jump, _ in told]), 95.0)),
+                STANDS_OUT * float(np.percentile(np.concatenate([np.abs(jump) for jump, _ in steps_of_parts]), 95.0)),
                 STEPS * resolution_of(trace["position"]),
             )
-            least = SLOW * rms(np.concatenate([step for _, step in told]))
-            for part, (jump, step) in zip(parts, told, strict=True):
+            least = SLOW * rms(np.concatenate([step for _, step in steps_of_parts]))
+            for part, (jump, step) in zip(parts, steps_of_parts, strict=True):
                 alone = _alone(jump) if "velocity" not in trace else True
-                missing[part.start : part.stop - 1] = _whole(jump, step, limit, least) * alone
+                missing[part.start : part.stop - 1] = _whole_steps(jump, step, limit, least) * alone
     return Damage(missing, _repeated(trace))
 
 
-def _told_apart(trace: Trace, part: slice) -> tuple[Array, Array]:
+def _beyond_motion(trace: Trace, part: slice) -> tuple[Array, Array]:
     """What each step of the position has beyond the motion's, and the motion's step - rad (m) - (n - 1,) each."""
     steps = np.diff(trace["position"][part])
     if "velocity" not in trace:
@@ -130,7 +130,7 @@ def _median(values: Array) -> Array:
     return median_filter(values, WINDOW, mode="nearest")
 
 
-def _whole(jump: Array, step: Array, limit: float, least: float) -> NDArray[np.int64]:
+def _whole_steps(jump: Array, step: Array, limit: float, least: float) -> NDArray[np.int64]:
     """How many steps of the motion a jump is, 0 where it is none."""
     sure = (np.abs(jump) > limit) & (np.abs(step) > least)
     ratio = np.divide(jump, step, out=np.zeros_like(jump), where=sure).clip(-jump.size, jump.size)
@@ -182,6 +182,6 @@ def repaired(trace: Trace, damage: Damage) -> Trace:
     base = trace.time_base
     if base is not None:
         holes = np.flatnonzero(gap > HOLE + 1.0)
-        told = tuple((float(time[k]), float(gap[k] * period)) for k in holes)
-        base = replace(base, holes=told, interpolated=base.interpolated + filled.size)
+        steps_of_parts = tuple((float(time[k]), float(gap[k] * period)) for k in holes)
+        base = replace(base, holes=steps_of_parts, interpolated=base.interpolated + filled.size)
     return replace(trace, time=np.concatenate([time, between])[order], signals=signals, time_base=base)

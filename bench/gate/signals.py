@@ -104,16 +104,16 @@ def _runs(standing: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.int
 
 def clips(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
     """Whether a signal stands at the end of its range; the recording stays as it is."""
-    told: list[Check] = []
+    faults: list[Check] = []
     names = [name for name in ("current", "torque", "force", "velocity") if name in trace]
     for name in names:
         for side in (1.0, -1.0):
             found = _clipped(trace, rig, name, side)
             if found is not None:
-                told.append(found)
+                faults.append(found)
     if not names:
         return trace, absent(CLIPS, "no speed or effort is recorded", ALLOWED_CLIPS)
-    worst = next((one for one in told if one.status == "fail"), told[0] if told else None)
+    worst = next((one for one in faults if one.status == "fail"), faults[0] if faults else None)
     return trace, worst or Check(CLIPS, "pass", "none found", ALLOWED_CLIPS)
 
 
@@ -130,12 +130,12 @@ def _clipped(trace: Trace, rig: Rig | None, name: str, side: float) -> Check | N
         return None
     found = f"{share:.1%} of {name} stand at exactly {side * top:.4g} {trace.units[name]}"
     advice = "the end of its range? What lies beyond is lost: record with a wider range, or move more gently"
-    lost = name != "velocity" and _asks_for_more(trace, rig, name, standing, side)
+    lost = name != "velocity" and _more_demanded(trace, rig, name, standing, side)
     status = "fail" if lost else "warn"
     return Check(CLIPS, status, found, ALLOWED_CLIPS, advice, unanswerable=True)
 
 
-def _asks_for_more(trace: Trace, rig: Rig | None, name: str, standing: NDArray[np.bool_], side: float) -> bool:
+def _more_demanded(trace: Trace, rig: Rig | None, name: str, standing: NDArray[np.bool_], side: float) -> bool:
     """Whether the motion, by what the other windows say of the axis, takes more effort than stands there."""
     found = effort_of(trace, rig)
     fitted = balance(trace, found[0], SHORT) if found is not None and found[1] == name else None

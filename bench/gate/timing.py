@@ -85,7 +85,7 @@ def rate(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
         return trace, Check(RATE, "fail", found, ALLOWED_RATE, f"record faster, or {unit}", unanswerable=True)
     heavy = _heavy(trace, rig)
     if heavy is not None:
-        found = f"{told}, which makes {trace.axis_kind.spoken(INERTIA)} {heavy:.3g} times the motor's own"
+        found = f"{told}, which makes {trace.axis_kind.in_words(INERTIA)} {heavy:.3g} times the motor's own"
         return trace, Check(RATE, "fail", found, f"below {HEAVY:g} times", f"{unit}, of current and of speed")
     return trace, Check(RATE, "pass", told, ALLOWED_RATE)
 

@@ -20,7 +20,7 @@ def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
     if "position" not in trace:
         return trace, absent(NAME, "no position is recorded", ALLOWED)
     if trace.wraps is not None:
-        return trace, _told(trace, trace.wraps)
+        return trace, _undone(trace, trace.wraps)
     position = trace["position"]
     places = jumps(position, trace.time)
     if not places.size:
@@ -36,9 +36,9 @@ def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
     wraps = Wraps(period, int(places.size))
     wrapping = [name for name in ("position", "position_reference") if name in trace]
     repaired = trace.with_signals({name: undone(trace[name], period) for name in wrapping}, {})
-    return replace(repaired, wraps=wraps), _told(trace, wraps)
+    return replace(repaired, wraps=wraps), _undone(trace, wraps)
 
 
-def _told(trace: Trace, wraps: Wraps) -> Check:
+def _undone(trace: Trace, wraps: Wraps) -> Check:
     found = f"position wraps at {wraps.period:.5g} {trace.units['position']}; {wraps.count} wraps undone"
     return Check(NAME, "pass", found, ALLOWED)

@@ -96,7 +96,7 @@ def widened(found: Parameter, apart: Excess, own: Sequence[Parameter]) -> Parame
     return replace(found, std_error=math.hypot(found.std_error, more), ci95=interval)
 
 
-def told_apart(name: str, own: Sequence[Parameter]) -> str:
+def spread_warning(name: str, own: Sequence[Parameter]) -> str:
     """That recordings differ in a quantity by more than they know of their own errors."""
     low, high = min(each.value for each in own), max(each.value for each in own)
     return (

@@ -69,16 +69,17 @@ class Tried:
         hypothesis = with_hum(fit(rows, plain(rows))).hypothesis
         equations = equations_of(rows, hypothesis).coarsened(BLOCKS)
         open_terms = left_open(equations, rig.axis_kind)
-        told = np.array([term not in open_terms for term in TERMS])
+        undetermined = np.array([term in open_terms for term in TERMS])
         theta, half_widths = np.full(3, np.nan), np.full(3, np.nan)
-        if told.any():
+        if not undetermined.all():
             found = solved_with_shift(equations, rows, rig.offset and only_direction(equations) is None)
             misfit = Left.of(rows, hypothesis, found).misfit(found)
             theta, half_widths = _of_base(found.theta), _of_base(np.hypot(found.reach * found.errors, misfit))
-        return cls(rows, hypothesis, equations, np.where(told, theta, np.nan), np.where(told, half_widths, np.nan))
+        theta[undetermined] = half_widths[undetermined] = np.nan
+        return cls(rows, hypothesis, equations, theta, half_widths)
 
     @property
-    def tells(self) -> bool:
+    def determines_inertia(self) -> bool:
         """Whether it tells the inertia."""
         return bool(np.isfinite(self.half_widths[0]))
 
@@ -122,8 +123,8 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> Chosen:
     highest = Tried.of(Rows.of(first, rig, cutoff=cutoff), rig)
     if cutoff is not None:
         return Chosen(highest, np.zeros(3))
-    telling = [tried for tried in (highest, *_lower(first, rig, highest)) if tried.tells]
-    return _chosen(telling, rig.axis_kind) if telling else Chosen(highest, np.zeros(3))
+    usable = [tried for tried in (highest, *_lower(first, rig, highest)) if tried.determines_inertia]
+    return _chosen(usable, rig.axis_kind) if usable else Chosen(highest, np.zeros(3))
 
 
 def _lower(first: Trace, rig: Rig, highest: Tried) -> Iterator[Tried]:
@@ -137,21 +138,21 @@ def _lower(first: Trace, rig: Rig, highest: Tried) -> Iterator[Tried]:
             return
 
 
-def _chosen(telling: Sequence[Tried], kind: AxisKind) -> Chosen:
+def _chosen(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
     """The one to rely on, of estimates from high to low cut-off."""
-    accepted = [telling[-1]]
-    for tried in telling[-2::-1]:
+    accepted = [usable[-1]]
+    for tried in usable[-2::-1]:
         if not all(tried.agrees(lower) for lower in accepted):
             break
         accepted.append(tried)
-    rejected = telling[: len(telling) - len(accepted)]
+    rejected = usable[: len(usable) - len(accepted)]
     beyond = rejected[-1] if rejected else accepted[-1]
     doubts = [_doubt(tried, beyond, accepted[:k]) for k, tried in enumerate(accepted)]
     wide = [float(np.hypot(tried.half_widths[0], off[0])) for tried, off in zip(accepted, doubts, strict=True)]
     best = int(np.argmin(wide))
     if not rejected and wide[best] >= NARROWER * wide[-1]:
         best = len(accepted) - 1
-    warnings = (_moves(accepted[best], telling, kind),) if rejected else ()
+    warnings = (_moves(accepted[best], usable, kind),) if rejected else ()
     return Chosen(accepted[best], doubts[best], warnings)
 
 
@@ -162,11 +163,11 @@ def _doubt(taken: Tried, beyond: Tried, lower: Sequence[Tried]) -> Array:
     return np.nan_to_num(np.fmin.reduce([moved, *room]))
 
 
-def _moves(taken: Tried, telling: Sequence[Tried], kind: AxisKind) -> str:
+def _moves(taken: Tried, usable: Sequence[Tried], kind: AxisKind) -> str:
     """That a quantity moves with the cut-off, and how."""
-    away = [np.abs(tried.theta - taken.theta) / np.hypot(tried.half_widths, taken.half_widths) for tried in telling]
+    away = [np.abs(tried.theta - taken.theta) / np.hypot(tried.half_widths, taken.half_widths) for tried in usable]
     term = int(np.argmax(np.nan_to_num(away).max(axis=0)))
-    course = ", ".join(f"{tried.theta[term]:.4g} at {tried.cutoff:.3g} Hz" for tried in telling)
+    course = ", ".join(f"{tried.theta[term]:.4g} at {tried.cutoff:.3g} Hz" for tried in usable)
     return (
         f"{kind.parameter([*TERMS][term])} moves with the filter's cut-off ({course}): taken at {taken.cutoff:.3g} Hz, "
         "its interval counts what it may still be off; bench diagnose may tell why"

@@ -54,7 +54,7 @@ def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
     require_inertia(equations, kind)
     side = only_direction(equations)
     if side is not None:
-        name = f"{kind.spoken(COULOMB)} apart from {kind.spoken(OFFSET)}"
+        name = f"{kind.in_words(COULOMB)} apart from {kind.in_words(OFFSET)}"
         raise UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
     require_friction(equations, kind)
 
@@ -79,7 +79,7 @@ def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
     least = ROWS_PER_COLUMN * equations.noise.shape[0]
     if equations.count < least:
         reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
-        raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])
+        raise UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
     _require_excited(equations, INERTIA, kind)
 
 
@@ -102,7 +102,7 @@ def _require_excited(equations: NormalEquations, column: str, kind: AxisKind) ->
     share = independent_share(equations, column, [term for term in (INERTIA, VISCOUS, COULOMB) if term != column])
     if not share >= INDEPENDENT_SHARE:
         reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
-        raise UndeterminedError(kind.spoken(column), reason, RECORD[column])
+        raise UndeterminedError(kind.in_words(column), reason, RECORD[column])
 
 
 def independent_share(equations: NormalEquations, column: str, others: Sequence[str]) -> float:
@@ -114,7 +114,7 @@ def independent_share(equations: NormalEquations, column: str, others: Sequence[
     return float(matrix[0, 0] - matrix[0, 1:] @ np.linalg.lstsq(matrix[1:, 1:], matrix[1:, 0], rcond=1e-9)[0])
 
 
-def require_significant(inertia: Parameter, kind: AxisKind, told: Sequence[str] = ()) -> None:
+def require_significant(inertia: Parameter, kind: AxisKind, suspicions: Sequence[str]) -> None:
     """UndeterminedError unless the interval of the inertia lies away from zero; the effort may be anything's then.
 
     Args:
@@ -124,11 +124,11 @@ def require_significant(inertia: Parameter, kind: AxisKind, told: Sequence[str] 
     """
     low, high = inertia.ci95
     if low <= 0.0 <= high:
-        reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero", *told])
-        raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])
+        reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero", *suspicions])
+        raise UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
 
 
-def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, told: Sequence[str] = ()) -> None:
+def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]) -> None:
     """UndeterminedError where the inertia, or the load's, is negative as far as its interval reaches.
 
     Args:
@@ -142,10 +142,10 @@ def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, told: Se
             low, high = found.ci95
             reason = f"it comes out negative, {found.value:.3g} {found.unit} ({low:.3g} to {high:.3g})"
             advice = {kind.inertia: TURNED, ARMATURE: LINKS}.get(name, SMALLER)
-            raise UndeterminedError(name.replace("_", " "), "; ".join([reason, *told]), advice)
+            raise UndeterminedError(name.replace("_", " "), "; ".join([reason, *suspicions]), advice)
 
 
-def require_sound(estimate: Estimate, kind: AxisKind, told: Sequence[str] = ()) -> None:
+def require_sound(estimate: Estimate, kind: AxisKind, suspicions: Sequence[str]) -> None:
     """UndeterminedError where numbers were found that identify nothing.
 
     An inertia that may be zero or is negative, a load's that is negative, or a model that explains less than half of
@@ -156,8 +156,8 @@ def require_sound(estimate: Estimate, kind: AxisKind, told: Sequence[str] = ()) 
         kind: of the axis.
         told: what else is suspicious about the recording, and may be why.
     """
-    require_masses(estimate.parameters, kind, told)
-    require_significant(estimate[kind.inertia], kind, told)
+    require_masses(estimate.parameters, kind, suspicions)
+    require_significant(estimate[kind.inertia], kind, suspicions)
     if estimate.explained < LEAST_EXPLAINED:
         share = f"the model explains {max(estimate.explained, 0.0):.0%} of the {kind.effort}'s variance"
-        raise UndeterminedError(f"{kind.spoken(INERTIA)} and friction", "; ".join([share, *told]), EXPLAINED)
+        raise UndeterminedError(f"{kind.in_words(INERTIA)} and friction", "; ".join([share, *suspicions]), EXPLAINED)

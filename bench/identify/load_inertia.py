@@ -18,15 +18,15 @@ def load_inertia(parameters: Mapping[str, Parameter], rig: Rig) -> dict[str, Par
     if inertia is not None and rig.load is not None and rig.load.link_inertia is not None:
         square, links = rig.load.gear_ratio**2, rig.load.link_inertia
         low, high = (bound * square - links for bound in inertia.ci95)
-        told = Parameter(inertia.value * square - links, inertia.unit, inertia.std_error * square, (low, high))
-        return {ARMATURE: told}
+        load = Parameter(inertia.value * square - links, inertia.unit, inertia.std_error * square, (low, high))
+        return {ARMATURE: load}
     if inertia is None or rig.motor.rotor_inertia is None or inertia.unit != "kg*m**2":
         return {}
     value, square = _beyond(inertia.value, rig), _beyond(1.0, rig) - _beyond(0.0, rig)
     low, high = (value + (bound - inertia.value) * square for bound in inertia.ci95)
-    told = Parameter(value, inertia.unit, inertia.std_error * square, (low, high))
+    load = Parameter(value, inertia.unit, inertia.std_error * square, (low, high))
     moved = (_beyond(inertia.value, other) - value for other in rig.within_tolerance())
-    return {"load_moment_of_inertia": told.widened(*moved)}
+    return {"load_moment_of_inertia": load.widened(*moved)}
 
 
 def _beyond(inertia: float, rig: Rig) -> float:

@@ -74,8 +74,8 @@ class Member:
             found, reason = refusal.estimate, str(refusal)
         except UndeterminedError as refusal:
             return cls(gathered, own, Alone(origin, {}, str(refusal)), along, scales, tolerances, ())
-        told = {name: one for name, one in found.parameters.items() if name != kind.inertia or not _holds_zero(one)}
-        return cls(gathered, own, Alone(origin, told, reason), along, scales, tolerances, found.warnings)
+        kept = {name: one for name, one in found.parameters.items() if name != kind.inertia or not _holds_zero(one)}
+        return cls(gathered, own, Alone(origin, kept, reason), along, scales, tolerances, found.warnings)
 
     @property
     def _shared(self) -> list[int]:
@@ -133,10 +133,10 @@ class Member:
         found = self.solved.covariance[np.ix_(self._shared, self._shared)]
         names = [kind.parameter(term) for term in (INERTIA, VISCOUS, COULOMB, OFFSET)][: len(self._shared)]
         errors = np.sqrt(np.maximum(np.diag(found), 1e-300)).tolist()
-        told = self.own
+        own = self.own
         scales = np.array(
             [
-                (told[name].std_error / error, half_width(told[name]) / error) if name in told else self.scales
+                (own[name].std_error / error, half_width(own[name]) / error) if name in own else self.scales
                 for name, error in zip(names, errors, strict=True)
             ]
         )

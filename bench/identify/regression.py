@@ -139,8 +139,8 @@ def solve(gathered: Gathered, rig: Rig) -> Estimate:
         require_sound(estimate, kind, (*gathered.warnings, *_remaining(estimate)))
     except UndeterminedError as refusal:
         unknown = {kind.parameter(term) for term in left_open(gathered.equations, kind)}
-        told = {name: value for name, value in estimate.parameters.items() if name not in unknown}
-        raise RefusedEstimateError(refusal, replace(estimate, parameters=told)) from refusal
+        determined = {name: value for name, value in estimate.parameters.items() if name not in unknown}
+        raise RefusedEstimateError(refusal, replace(estimate, parameters=determined)) from refusal
     return estimate
 
 
@@ -150,8 +150,8 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
     more = np.sqrt(left.misfit(found) ** 2 + doubt**2 + gathered.tolerance**2)
     parameters = parameters_of(found, kind, unit, more)
     for term, away in zip(TERMS, gathered.hinted, strict=True):
-        told = parameters[kind.parameter(term)]
-        parameters[kind.parameter(term)] = told.reaching(told.value + float(away))
+        parameter = parameters[kind.parameter(term)]
+        parameters[kind.parameter(term)] = parameter.reaching(parameter.value + float(away))
     parameters |= load_inertia(parameters, rig)
     chosen = equations.select(found.columns)
     power, squares = max(chosen.residual_power(found.theta), 0.0), float(chosen.power.sum())
@@ -179,7 +179,7 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
     return replace(estimate, warnings=(*estimate.warnings, *_remaining(estimate)))
 
 
-def parameters_of(found: Solved, kind: AxisKind, effort_unit: str, more: Array | None = None) -> dict[str, Parameter]:
+def parameters_of(found: Solved, kind: AxisKind, effort_unit: str, more: Array) -> dict[str, Parameter]:
     """J, K_w, K_0, misalignment and, where it was fitted, offset of a solution, with their intervals.
 
     Args:
@@ -188,13 +188,12 @@ def parameters_of(found: Solved, kind: AxisKind, effort_unit: str, more: Array |
         effort_unit: N*m, N, or what the rig allows.
         more: how far intervals of 95 % have to reach beside what the covariance says (p,).
     """
-    more = np.zeros(found.theta.size) if more is None else more
     parameters = {}
     for term, place in (TERMS | {MISALIGNMENT: layout.MISALIGNMENT} | ({OFFSET: -1} if found.offset else {})).items():
         value, error, beside = (float(numbers[place]) for numbers in (found.theta, found.errors, more))
         interval = (value - found.reach * error, value + found.reach * error)
-        told = Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
-        parameters[kind.parameter(term)] = told.widened(beside)
+        parameter = Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
+        parameters[kind.parameter(term)] = parameter.widened(beside)
     return parameters
 
 

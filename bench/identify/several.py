@@ -25,7 +25,7 @@ from bench.balance.normal_equations import NormalEquations, join, solved
 from bench.balance.parameter import Parameter
 from bench.errors import InputError, UndeterminedError
 from bench.gate.gate import joined
-from bench.identify.between import ALARM, Excess, between, excess, told_apart
+from bench.identify.between import ALARM, Excess, between, excess, spread_warning
 from bench.identify.determined import left_open, only_direction, require_determined, require_sound
 from bench.identify.estimate import Between, Estimate, RefusedEstimateError, Residual
 from bench.identify.load_inertia import load_inertia
@@ -74,7 +74,7 @@ def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutof
         cutoff=min(smooth.cutoff for smooth in filters),
         source=" and ".join(sorted({one.rows.conditioning.source for one in gathered})),
         warnings=(
-            *(f"{member.alone.origin}: {told}" for member in members for told in member.warnings),
+            *(f"{member.alone.origin}: {warning}" for member in members for warning in member.warnings),
             *(f"{member.alone.origin} alone: {member.alone.reason}" for member in members if member.alone.reason),
             *_differences(members, excesses, kind),
             *_offset(gathered, members, rig),
@@ -90,17 +90,18 @@ def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutof
 
 def _sound(estimate: Estimate, whole: NormalEquations, apart: Excess, kind: AxisKind) -> Estimate:
     """The estimate, if the recordings together determine it and it can be one; `apart`: by how much inertia differs."""
-    told = []
+    suspicions = []
     if apart.variance:
         unit = estimate[kind.inertia].unit
-        told = [f"it differs from recording to recording by {math.sqrt(apart.variance):.2g} {unit}, and few are given"]
+        spread = f"{math.sqrt(apart.variance):.2g} {unit}"
+        suspicions = [f"it differs from recording to recording by {spread}, and few are given"]
     try:
         require_determined(whole, kind)
-        require_sound(estimate, kind, told)
+        require_sound(estimate, kind, suspicions)
     except UndeterminedError as refusal:
         unknown = {kind.parameter(term) for term in left_open(whole, kind)}
-        told = {name: found for name, found in estimate.parameters.items() if name not in unknown}
-        raise RefusedEstimateError(refusal, replace(estimate, parameters=told)) from refusal
+        determined = {name: found for name, found in estimate.parameters.items() if name not in unknown}
+        raise RefusedEstimateError(refusal, replace(estimate, parameters=determined)) from refusal
     return estimate
 
 
@@ -204,13 +205,13 @@ def _residual(members: Sequence[Member], left: float, unit: str) -> Residual:
 
 def _differences(members: Sequence[Member], excesses: Mapping[str, Excess], kind: AxisKind) -> Iterator[str]:
     """Warnings: in what the recordings differ, and of what nobody can say whether they do."""
-    told = [term for term, found in excesses.items() if found.chance < ALARM / len(excesses)]
-    for term in told:
+    differing = [term for term, found in excesses.items() if found.chance < ALARM / len(excesses)]
+    for term in differing:
         name = kind.parameter(term)
         values = [m.alone.parameters[name] for m in members if name in m.alone.parameters]
-        yield told_apart(name, values or [member.along for member in members if member.along is not None])
+        yield spread_warning(name, values or [member.along for member in members if member.along is not None])
     silent = [kind.parameter(term) for term, found in excesses.items() if not found.degrees and term != OFFSET]
-    if told and silent:
+    if differing and silent:
         yield (
             f"no two recordings tell {' or '.join(silent)} alike, so the interval does not count how recordings "
             "differ in it: record each direction twice"
@@ -228,7 +229,7 @@ def _offset(gathered: Sequence[Gathered], members: Sequence[Member], rig: Rig) -
     if abs(value) > reach:
         unit = kind.parameter_unit(OFFSET, gathered[0].effort_unit)
         yield (
-            f"the recordings hold a {kind.spoken(OFFSET)} of {value:.3g} ± {reach:.2g} {unit}, which was not fitted: "
+            f"the recordings hold a {kind.in_words(OFFSET)} of {value:.3g} ± {reach:.2g} {unit}, which was not fitted: "
             "set `offset = true` in the rig, or give --offset"
         )
 
@@ -237,7 +238,7 @@ def _between(members: Sequence[Member], kind: AxisKind) -> dict[str, Between]:
     """Of each quantity that at least two recordings tell alone; the shift is not the axis'."""
     own = [member.own for member in members]
     found = {
-        name: [told[name] for told in own if name in told] for name in dict.fromkeys(n for told in own for n in told)
+        name: [each[name] for each in own if name in each] for name in dict.fromkeys(n for each in own for n in each)
     }
     found.pop(kind.parameter(MISALIGNMENT), None)
     return {name: between(values) for name, values in found.items() if len(values) > 1}

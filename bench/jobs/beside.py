@@ -153,5 +153,5 @@ def _answer(work: Callable[[Any], Any], item: object) -> bytes:
 def raised(error: Exception) -> Failure:
     """What to say of an exception that the work did not foresee."""
     last = traceback.extract_tb(error.__traceback__)[-1]
-    told = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    return Failure("failed", f"{told} (at {Path(last.filename).name}:{last.lineno})")
+    reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    return Failure("failed", f"{reason} (at {Path(last.filename).name}:{last.lineno})")

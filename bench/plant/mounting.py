@@ -29,7 +29,7 @@ class Mounting:
         return cls(float(load.gear_ratio), load.disk_mass, load.link_inertia or 0.0)
 
     @property
-    def told(self) -> dict[str, float]:
+    def stated(self) -> dict[str, float]:
         """Values other than those of an axis without gear and robot, by name - SI."""
         return {f.name: getattr(self, f.name) for f in fields(self) if getattr(self, f.name) != f.default}
 

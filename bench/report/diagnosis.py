@@ -152,7 +152,7 @@ def _step(step: Shrunk) -> dict[str, Any]:
 
 def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
     """Effects with their quantities, and the gaps they closed."""
-    caption = [f"verdict: {diagnosis.verdict.replace('_', ' ')}", *(f"  {said}" for said in diagnosis.because)]
+    caption = [f"verdict: {diagnosis.verdict.replace('_', ' ')}", *(f"  {reason}" for reason in diagnosis.because)]
     caption += _at_fault(diagnosis)
     for name, gap in (("torque", diagnosis.torque), ("velocity", diagnosis.velocity)):
         for recording, pair in (("recording", gap.identify), ("holdout", gap.holdout)):

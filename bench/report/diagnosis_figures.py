@@ -93,9 +93,9 @@ def _dots(axes: Axes, values: np.ndarray, gap: Gap) -> None:
             axes.plot(values[:, k], places, marker, ms=6.0, color=colour, label=recording)
     axes.axvline(floor, color="#8a94a0", lw=1.2, ls="--", zorder=0.8, label="noise floor")
     for place, row in zip(places, values, strict=True):
-        told = "  ".join(number(value, digits=3) if math.isfinite(value) else "–" for value in row)
+        figures = "  ".join(number(value, digits=3) if math.isfinite(value) else "–" for value in row)
         beside = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center", "fontsize": 8}
-        axes.annotate(told, (1.0, place), (6.0, 0.0), **beside)
+        axes.annotate(figures, (1.0, place), (6.0, 0.0), **beside)
     shown = values[np.isfinite(values) & (values > 0.0)]
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))

@@ -111,10 +111,10 @@ def recordings_table(estimate: Estimate) -> Table:
     for name in names:
         table.add_column(f"{name.replace('_', ' ')}\n{estimate[name].unit}", justify="right")
     for alone in estimate.recordings:
-        told = [alone.parameters.get(name) for name in names]
+        found_alone = [alone.parameters.get(name) for name in names]
         values = [
             "-" if found is None else f"{found.value:.4g} ± {0.5 * (found.ci95[1] - found.ci95[0]):.2g}"
-            for found in told
+            for found in found_alone
         ]
         table.add_row(Path(alone.origin).name, *values)
     following = [estimate.between[name].predictive95 for name in names]

@@ -65,8 +65,8 @@ def _named(one: Named) -> dict[str, Any]:
 
 
 def _concern(one: Concern) -> dict[str, Any]:
-    told = {"axis": one.axis, "kind": one.kind, "recordings": one.count, "of": one.of}
-    return {**told, "file": one.file, "reason": one.reason}
+    counts = {"axis": one.axis, "kind": one.kind, "recordings": one.count, "of": one.of}
+    return {**counts, "file": one.file, "reason": one.reason}
 
 
 def fleet_tables(fleet: Fleet) -> Iterator[Table | str]:

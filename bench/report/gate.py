@@ -39,6 +39,6 @@ def checks_table(checks: Sequence[Check]) -> Table:
         table.add_column(heading, no_wrap=True)
     table.add_column("found")
     for check in checks:
-        told = f"{check.found}: {check.advice}" if check.status in ("warn", "fail") and check.advice else check.found
-        table.add_row(check.name, check.status.replace("_", " "), Text(told))
+        text = f"{check.found}: {check.advice}" if check.status in ("warn", "fail") and check.advice else check.found
+        table.add_row(check.name, check.status.replace("_", " "), Text(text))
     return table

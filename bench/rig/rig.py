@@ -147,7 +147,7 @@ class Rig(Table):
         gravity = self.load.gravity_torque(trace["position"])
         return (effort, unit) if gravity is None else (effort - gravity, unit)
 
-    def asks_for_speed(self, trace: Trace) -> bool:
+    def needs_speed(self, trace: Trace) -> bool:
         """Whether the effort in a trace is made of a voltage less what the speed induces, kT*(U - Ke*w)/R."""
         if {self.axis_kind.effort, "current"} & set(trace.signals):
             return False

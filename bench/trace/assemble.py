@@ -12,7 +12,7 @@ from bench.trace.time_base import regular
 from bench.trace.trace import Trace
 
 
-def assemble(recording: Recording, told: Mapping[str, str] | HowToRead | None = None) -> Trace:
+def assemble(recording: Recording, given: Mapping[str, str] | HowToRead | None = None) -> Trace:
     """Trace of a recording.
 
     Args:
@@ -25,7 +25,7 @@ def assemble(recording: Recording, told: Mapping[str, str] | HowToRead | None = 
         InputError: a column missing, ambiguous, without unit or of the wrong dimension; no time; values that are not
             finite; times that run backwards or stand twice too often.
     """
-    how = how_to_read(told)
+    how = how_to_read(given)
     chosen, notes = choose(recording, how)
     found = in_si(chosen, recording, how)
     dropped = unused(chosen, recording)

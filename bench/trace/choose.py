@@ -100,8 +100,8 @@ def _require(recording: Recording, chosen: Mapping[str, Chosen], faults: dict[st
         if "time" in faults:
             raise faults["time"]
         if chosen:
-            told = 'give its sample_period = "1 ms" in the rig\'s [trace], or its column: time = "column [unit]"'
-            raise missing(recording, "column 'time'", told)
+            advice = 'give its sample_period = "1 ms" in the rig\'s [trace], or its column: time = "column [unit]"'
+            raise missing(recording, "column 'time'", advice)
     for group in ENOUGH:
         if not any(signal in chosen for signal in group):
             for signal in group:
@@ -111,21 +111,21 @@ def _require(recording: Recording, chosen: Mapping[str, Chosen], faults: dict[st
 
 def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes: list[str]) -> Chosen | None:
     """The channel of a signal; None where the recording has none."""
-    told = columns.get(signal)
+    given = columns.get(signal)
     channel, unit, sign = None, None, 1.0
-    if told is not None:
-        sign = -1.0 if told.strip().startswith("-") else 1.0
-        name, unit = split_label(told.strip().removeprefix("-"))
+    if given is not None:
+        sign = -1.0 if given.strip().startswith("-") else 1.0
+        name, unit = split_label(given.strip().removeprefix("-"))
         channel = _named(recording, signal, name)
     named = channel is not None
     if channel is None:
         channel, sign, unit = _known(recording, signal), 1.0, None
-        if channel is None and told is not None:
-            raise missing(recording, f"column '{told.strip().lstrip('-')}'")
+        if channel is None and given is not None:
+            raise missing(recording, f"column '{given.strip().lstrip('-')}'")
         if channel is None:
             return None
-        if told is not None:
-            notes.append(f"{signal} read from '{channel.label}', as the file has no '{told}'")
+        if given is not None:
+            notes.append(f"{signal} read from '{channel.label}', as the file has no '{given}'")
     if channel.defect is not None:
         raise channel.defect
     scale = _scale(recording, signal, channel, unit, notes)
@@ -136,10 +136,10 @@ def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes
     return Chosen(channel, scale, sign)
 
 
-def _scale(recording: Recording, signal: str, channel: Channel, told: str | None, notes: list[str]) -> Scale:
+def _scale(recording: Recording, signal: str, channel: Channel, given: str | None, notes: list[str]) -> Scale:
     if channel.moments:
         return scale_in(signal, channel.unit or "s", channel.place())
-    unit = unit_of(told or channel.unit)
+    unit = unit_of(given or channel.unit)
     usual = recording.usual_units.get(signal)
     if unit is None and usual is not None:
         unit = usual
@@ -208,8 +208,8 @@ def _one(recording: Recording, signal: str, matches: list[Channel]) -> Channel:
 
 def _index(recording: Recording, columns: Mapping[str, str]) -> Channel | None:
     """The column that counts samples: the time that tells no unit, or one of such a name."""
-    told = columns.get("time")
-    named = _named(recording, "time", split_label(told)[0]) if told is not None else None
+    given = columns.get("time")
+    named = _named(recording, "time", split_label(given)[0]) if given is not None else None
     if named is not None and named.defect is None:
         return named
     for channel in recording.channels:

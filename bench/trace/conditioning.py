@@ -114,7 +114,7 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
     longest = max(part.stop - part.start for part in trace.segments)
     if longest < 8 * least.margin:
         raise UndeterminedError(
-            trace.axis_kind.spoken(INERTIA),
+            trace.axis_kind.in_words(INERTIA),
             f"the longest stretch without a hole has {longest} samples",
             f"at least {8 * least.margin} samples without a hole",
         )

@@ -41,8 +41,8 @@ class How:
     axis: str | None = None
 
 
-def how_to_read(told: Mapping[str, str] | HowToRead | None) -> HowToRead:
+def how_to_read(given: Mapping[str, str] | HowToRead | None) -> HowToRead:
     """Columns alone, or nothing, as `HowToRead`."""
-    if told is None:
+    if given is None:
         return How()
-    return How(told) if isinstance(told, Mapping) else told
+    return How(given) if isinstance(given, Mapping) else given

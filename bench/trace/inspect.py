@@ -145,16 +145,16 @@ def inspect_recording(recording: Recording, how: HowToRead) -> Inspection:
     try:
         chosen, _ = choose(recording, how)
         trace = assemble(recording, how)
-    except InputError as asked:
+    except InputError as error:
         if how.columns:
             raise
-        told = _columns(recording, {}, how)
+        summaries = _columns(recording, {}, how)
         return Inspection(
             recording.origin,
             recording.format,
-            told,
+            summaries,
             axes_of(recording.channels),
-            str(asked),
+            str(error),
             metadata=dict(recording.metadata),
             notes=recording.notes,
         )

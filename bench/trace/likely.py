@@ -168,7 +168,7 @@ def _guess(signal: str, channel: Channel, unit: str | None, parts: list[str], wh
     if unit is None and not channel.moments:
         known = makers_unit(channel.name)
         if known is not None and known.signal == signal:
-            return Likely(signal, known.unit, (*why, known.says), weight + 0.5)
+            return Likely(signal, known.unit, (*why, known.note), weight + 0.5)
     return Likely(signal, unit, tuple(why), weight)
 
 

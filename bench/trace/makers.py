@@ -17,7 +17,7 @@ class MakersColumn:
 
     signal: str
     unit: str | None
-    says: str
+    note: str
 
 
 _DYNAMIXEL = "as Dynamixel's X series has it (control table in Robotis' e-manual); check your model's"

@@ -110,8 +110,8 @@ class Unwrapping:
         told: period that the user tells - rad (m); None where it is to be found.
     """
 
-    def __init__(self, told: float | None) -> None:
-        self.period, self.turned, self.count, self.last = told, 0.0, 0, np.empty((2, 0))
+    def __init__(self, period: float | None) -> None:
+        self.period, self.turned, self.count, self.last = period, 0.0, 0, np.empty((2, 0))
 
     def __call__(
         self, position: Array, time: Array, speed: Array | None, count: float, place: Callable[[int | None], str]

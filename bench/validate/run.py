@@ -14,7 +14,7 @@ from bench.trace.trace import Trace
 from bench.validate.case import Case
 from bench.validate.plan import Plan
 from bench.validate.record import record
-from bench.validate.score import Named, Told, base, of_effects
+from bench.validate.score import Named, Scored, base, of_effects
 
 #: Runs simulated side by side in one piece of work: more cost no less each.
 TOGETHER = 64
@@ -46,7 +46,7 @@ class Run:
     severity: float
     status: Status = "done"
     reason: str = ""
-    told: tuple[Told, ...] = ()
+    scored: tuple[Scored, ...] = ()
     named: Named | None = None
 
 
@@ -92,7 +92,7 @@ def identified(run: Run, case: Case, trace: Trace) -> Run:
         estimate, status, reason = refused.estimate, "refused", str(refused)
     except BenchError as refused:
         return replace(run, status="refused", reason=str(refused))
-    return replace(run, status=status, reason=reason, told=tuple(base("identify", case, estimate.parameters)))
+    return replace(run, status=status, reason=reason, scored=tuple(base("identify", case, estimate.parameters)))
 
 
 def diagnosed(run: Run, case: Case, trace: Trace) -> Run:
@@ -101,8 +101,8 @@ def diagnosed(run: Run, case: Case, trace: Trace) -> Run:
         found = diagnose(trace, case.rig)
     except BenchError as refused:
         return replace(run, named=Named(missed=case.hidden, reason=str(refused)))
-    told = (*run.told, *base("diagnose", case, found.parameters), *of_effects(case, found))
-    return replace(run, told=told, named=Named.of(found.verdict, found.effects, case.hidden))
+    scored = (*run.scored, *base("diagnose", case, found.parameters), *of_effects(case, found))
+    return replace(run, scored=scored, named=Named.of(found.verdict, found.effects, case.hidden))
 
 
 def drawn(case: Case) -> Run:

@@ -20,7 +20,7 @@ TERMS = (INERTIA, VISCOUS, COULOMB)
 
 
 @dataclass(frozen=True)
-class Told:
+class Scored:
     """One quantity that is told, beside the truth.
 
     Attributes:
@@ -55,7 +55,7 @@ class Told:
         return bool(low <= self.true <= high)
 
 
-def base(by: str, case: Case, parameters: Mapping[str, Parameter]) -> Iterator[Told]:
+def base(by: str, case: Case, parameters: Mapping[str, Parameter]) -> Iterator[Scored]:
     """J, K_w and K_0, those that are told.
 
     Args:
@@ -67,25 +67,25 @@ def base(by: str, case: Case, parameters: Mapping[str, Parameter]) -> Iterator[T
     for term, true in zip(TERMS, truth, strict=True):
         name = case.rig.axis_kind.parameter(term)
         if name in parameters:
-            yield Told(by, "", term, true, true, parameters[name])
+            yield Scored(by, "", term, true, true, parameters[name])
 
 
-def of_effects(case: Case, diagnosis: Diagnosis) -> Iterator[Told]:
+def of_effects(case: Case, diagnosis: Diagnosis) -> Iterator[Scored]:
     """Quantities of the effects that are named and hidden; not whole numbers, which have no interval."""
     hidden = {effect.name: effect.quantities(case.axis) for effect in case.effects}
     for named in diagnosis.effects:
         truth = hidden.pop(named.name, {})
         angles = {quantity.name for quantity in named.effect.quantities if quantity.angle}
         for name, parameter in named.parameters.items():
-            if name in truth and parameter.std_error > 0.0 and name not in _whole(named.effect):
+            if name in truth and parameter.std_error > 0.0 and name not in _integers(named.effect):
                 true = truth[name]
                 if name in angles:
                     true = parameter.value + math.remainder(true - parameter.value, 2.0 * np.pi)
                 scale = 1.0 if name in angles or true == 0.0 else abs(true)
-                yield Told("diagnose", named.name, name, true, scale, parameter)
+                yield Scored("diagnose", named.name, name, true, scale, parameter)
 
 
-def _whole(effect: Effect) -> set[str]:
+def _integers(effect: Effect) -> set[str]:
     return {shape.quantity.name for shape in effect.shapes if shape.whole}
 
 
@@ -112,11 +112,11 @@ class Named:
         """Names held against what is hidden; one that is given twice is hidden once."""
         left, false = list(hidden), []
         for effect in named:
-            meant = next((name for name in (effect.name, *effect.ambiguous_with) if name in left), None)
-            if meant is None:
+            matched = next((name for name in (effect.name, *effect.ambiguous_with) if name in left), None)
+            if matched is None:
                 false.append(effect.name)
             else:
-                left.remove(meant)
+                left.remove(matched)
         return cls(verdict, tuple(effect.name for effect in named), tuple(false), tuple(left))
 
     @property

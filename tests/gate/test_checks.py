@@ -5,7 +5,7 @@ import pytest
 
 from bench.errors import InputError
 from bench.gate import effort, losses, signals, timing, velocity, wraps
-from bench.gate.gate import CHECKS, STEADY, UnanswerableError, gate, joined, passed, spoken
+from bench.gate.gate import CHECKS, STEADY, UnanswerableError, gate, joined, passed, warnings_of
 from bench.identify.regression import identify
 from bench.trace.trace import Trace
 from tests.gate.damage import changed, doubled, keeping, losing, stale, with_samples, without
@@ -30,7 +30,7 @@ def test_the_gate_has_the_contracts_checks_and_a_sound_recording_passes_all(soun
     assert {check.name for check in gated.checks} == set(NAMES)
     assert {check.status for check in gated.checks} == {"pass"}
     assert gated.trace is sound
-    assert spoken(gated.checks) == []
+    assert warnings_of(gated.checks) == []
 
 
 def test_without_a_rig_the_gate_asks_the_signals_alone(sound):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.gate.gate import spoken
+from bench.gate.gate import warnings_of
 from bench.identify.regression import identify
 from bench.rig.rig import Rig, load_rig
 from bench.rig.values import tolerance_of
@@ -98,7 +98,7 @@ def test_constants_of_two_motors_are_told(constant, back_emf, told):
     found = identify(recording(np.random.default_rng(2)), rig(torque_constant=constant, back_emf_constant=back_emf))
     check = next(check for check in found.checks if check.name == "motor_constants_agree")
     assert check.status == ("warn" if told else "pass")
-    assert any("back-EMF constant" in warning for warning in spoken(found.checks)) == told
+    assert any("back-EMF constant" in warning for warning in warnings_of(found.checks)) == told
 
 
 def test_intervals_reach_as_far_as_constants_disagree():

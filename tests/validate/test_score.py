@@ -13,7 +13,7 @@ from bench.validate.coverage import LEVELS, Coverage, Group, Share, coverage
 from bench.validate.naming import NOTHING, NOTHING_MISSING, REFUSED, naming
 from bench.validate.plan import Plan
 from bench.validate.run import drawn
-from bench.validate.score import Named, Told
+from bench.validate.score import Named, Scored
 from tests.validate.population import Short
 
 
@@ -31,7 +31,7 @@ def test_an_interval_of_any_level_is_a_students(degrees, level):
 
 
 def test_a_share_of_true_values_from_an_array_counts_in_whole_numbers_that_json_writes():
-    told = [Told("diagnose", "", "inertia", np.float64(3.0), 3.0, parameter(3.0, 0.2))] * 2
+    told = [Scored("diagnose", "", "inertia", np.float64(3.0), 3.0, parameter(3.0, 0.2))] * 2
     found = Coverage.of("diagnose", Group("nulls", 2, True), "inertia", told)
     assert [type(share.count) for share in found.inside] == [int] * len(LEVELS)
 
@@ -46,7 +46,7 @@ def test_coverage_of_what_is_as_uncertain_as_it_says_is_nominal(degrees):
     rng = np.random.default_rng(1)
     error = np.sqrt(rng.chisquare(degrees, 4000) / degrees)
     told = [
-        Told("identify", "", "inertia", 1.0, 1.0, parameter(1.0 + 0.1 * z, 0.1 * s, stats.t.ppf(0.975, degrees)))
+        Scored("identify", "", "inertia", 1.0, 1.0, parameter(1.0 + 0.1 * z, 0.1 * s, stats.t.ppf(0.975, degrees)))
         for z, s in zip(rng.standard_normal(4000), error, strict=True)
     ]
     found = Coverage.of("identify", Group("g", 4100, True), "inertia", told)
@@ -91,7 +91,7 @@ def test_names_are_held_against_what_is_hidden(given, hidden, false, missed):
 
 def runs():
     plain = drawn(Plan(5, population=Short()).case(0))
-    told = Told("diagnose", "", "inertia", 1.0, 1.0, parameter(1.05, 0.1))
+    told = Scored("diagnose", "", "inertia", 1.0, 1.0, parameter(1.05, 0.1))
     right = Named("explained", ("unbalance",))
     return (
         replace(plain, named=Named("nothing_missing"), told=(told,)),

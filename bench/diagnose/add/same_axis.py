@@ -15,7 +15,7 @@ from bench.balance.rows import Rows
 from bench.statistics import NORMAL95
 
 #: What J, K_w and K_0 of one axis may differ by from recording to recording, as factor, before that is told.
-TOLD = (1.01, 1.3, 1.1)
+REPORTED = (1.01, 1.3, 1.1)
 #: The same from day to day, before it is another axis: inertia by the motor's constant, a few percent between cold and
 #: warm magnets; dry and viscous friction by the lubricant's temperature. On the shared cases J of the two recordings of
 #: an axis agrees within 0.6 %, K_0 within 15 %; of two axes only one pair in 39 within 2 %.
@@ -74,22 +74,22 @@ def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> Same
     here, there = fit(fitted.rows, lasting), fit(other, lasting)
     own, others = uncertain(here).base(units), uncertain(there).base(units)
     differs, apart, vague = [], [], True
-    for k, (name, spoken) in enumerate(zip(units, ("inertia", "viscous friction", "Coulomb friction"), strict=True)):
+    for k, (name, label) in enumerate(zip(units, ("inertia", "viscous friction", "Coulomb friction"), strict=True)):
         if not own[name].value > 0.0:
             continue
         ratio = others[name].value / own[name].value
         error = float(np.hypot(own[name].std_error * ratio, others[name].std_error)) / own[name].value
         vague = vague and not (k == 0 and error < VAGUE)
-        if not _within(TOLD[k], ratio, error):
+        if not _within(REPORTED[k], ratio, error):
             differs.append(Difference(name, own[name], others[name]))
         if not _within(FOREIGN[k], ratio, error):
-            apart.append(f"{ratio:.3g} times the {spoken} (± {NORMAL95 * error:.2g})")
+            apart.append(f"{ratio:.3g} times the {label} (± {NORMAL95 * error:.2g})")
     left, least = _left(there), _left(here)
     if left > max(LEFT, MORE * least):
         apart.append(f"{left:.0%} of its torque unexplained by the effects found, {least:.1%} of the recording's")
     if apart:
-        told = f"the holdout recording has {' and '.join(apart)}: another axis? It was not used as proof"
-        return SameAxis(False, tuple(differs), (told,))
+        message = f"the holdout recording has {' and '.join(apart)}: another axis? It was not used as proof"
+        return SameAxis(False, tuple(differs), (message,))
     return SameAxis(None if vague or differs else True, tuple(differs))
 
 

@@ -37,9 +37,9 @@ def considered(recordings: Recordings, suspects: Suspects, added: Added) -> tupl
     found = []
     for effect in catalogue().values():
         shares = [share for trial in trials if (share := trial.share(effect)) is not None]
-        told = _spoken(named[effect]) if effect in named else _against(effect, recordings, suspects, added, trials)
+        reason = _evidence(named[effect]) if effect in named else _against(effect, recordings, suspects, added, trials)
         last = trials[-1].share(effect) if len(trials) > 1 and effect not in named else None
-        found.append(Considered(effect, effect in named, shares[0] if shares else None, last, told))
+        found.append(Considered(effect, effect in named, shares[0] if shares else None, last, reason))
     order = list(named)
     taken = sorted((one for one in found if one.taken), key=lambda one: order.index(one.effect))
     return (*taken, *sorted((one for one in found if not one.taken), key=lambda one: -(one.alone or 0.0)))
@@ -77,6 +77,6 @@ def trials_of(searched: Searched) -> list[Trial]:
     return found
 
 
-def _spoken(named: NamedEffect) -> str:
+def _evidence(named: NamedEffect) -> str:
     """The figures that speak for an effect."""
     return ", ".join(f"{key.replace('_', ' ')} {value:.3g}" for key, value in named.evidence.items()) or "named"

@@ -43,13 +43,13 @@ def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
         Shrunk(
             stage.effect,
             tuple(rms(course.torque_left[k]) for course in shown),
-            tuple(_rms_told(course.velocity_left[k]) for course in shown),
+            tuple(_rms_known(course.velocity_left[k]) for course in shown),
         )
         for k, stage in enumerate(added.extension.stages)
     ]
 
 
-def _rms_told(left: NDArray[np.float32] | None) -> float:
+def _rms_known(left: NDArray[np.float32] | None) -> float:
     """RMS where a model says something."""
     return math.nan if left is None else rms(left[np.isfinite(left)].astype(np.float64))
 

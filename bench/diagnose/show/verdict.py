@@ -118,10 +118,10 @@ class Undetermined:
                 found = named.parameters.get(quantity.name)
                 itself = np.pi if quantity.angle else float(time[-1] - time[0]) if quantity.instant else None
                 if found is not None and half(found) > (abs(found.value) if itself is None else itself):
-                    return f"{named.name}: {_told(quantity.name, found)} is not determined"
+                    return f"{named.name}: {_with_interval(quantity.name, found)} is not determined"
         for name, (found, torque) in shown.friction.items():
             if half(found) > abs(found.value) and half(found) * torque > shown.torque.noise_floor:
-                return f"{_told(name, found)} is not determined"
+                return f"{_with_interval(name, found)} is not determined"
         return ""
 
 
@@ -133,7 +133,7 @@ class NegativeFriction:
         """Which one."""
         for name, (found, torque) in shown.friction.items():
             if found.value < 0.0 and (found.ci95[1] < 0.0 or -found.value * torque > shown.torque.noise_floor):
-                return f"{_told(name, found)} is negative"
+                return f"{_with_interval(name, found)} is negative"
         return ""
 
 
@@ -172,7 +172,7 @@ OBJECTIONS: tuple[Objection, ...] = (
 
 def verdict(shown: Shown) -> tuple[str, list[str]]:
     """What the diagnosis comes to, and what speaks against its being all."""
-    against = [said for objection in OBJECTIONS if (said := objection.against(shown))]
+    against = [objected for objection in OBJECTIONS if (objected := objection.against(shown))]
     if against:
         return "unexplained_remainder", against
     return ("explained" if shown.effects else "nothing_missing"), []
@@ -183,5 +183,5 @@ def half(found: Parameter) -> float:
     return 0.5 * (found.ci95[1] - found.ci95[0])
 
 
-def _told(name: str, found: Parameter) -> str:
+def _with_interval(name: str, found: Parameter) -> str:
     return f"{name.replace('_', ' ')} ({found.value:.3g} ± {half(found):.2g} {found.unit})"

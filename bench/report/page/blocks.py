@@ -5,6 +5,7 @@ All text in it is text: a name from a file is shown, whatever it holds, and neve
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -223,6 +224,11 @@ class Answer(Block):
 
     question: str
     answer: str
+
+
+def answered(answers: Mapping[str, str]) -> tuple[Answer, ...]:
+    """Questions with their answers, as a page lists them."""
+    return tuple(Answer(question=question, answer=answer) for question, answer in answers.items())
 
 
 class Page(Block):

@@ -30,11 +30,11 @@ def number(value: float, unit: str = "", digits: int = 4) -> str:
     """A value with its unit."""
     if not math.isfinite(value):
         return "not known"
-    told = f"{value:.{digits}g}"
-    if "e" in told:
-        mantissa, power = told.split("e")
-        told = f"{mantissa}·10{str(int(power)).translate(_RAISED)}"
-    return f"{_minus(told)}{SPACE}{unit_text(unit)}".strip()
+    text = f"{value:.{digits}g}"
+    if "e" in text:
+        mantissa, power = text.split("e")
+        text = f"{mantissa}·10{str(int(power)).translate(_RAISED)}"
+    return f"{_minus(text)}{SPACE}{unit_text(unit)}".strip()
 
 
 def interval(found: Parameter, unit: bool = True) -> str:
@@ -47,15 +47,15 @@ def interval(found: Parameter, unit: bool = True) -> str:
     power = 3 * math.floor(math.log10(size) / 3) if size > 0.0 and not SMALL <= size < LARGE else 0
     scale = 10.0**power
     decimals = min(max(0, 1 - math.floor(math.log10(half / scale))), MOST_DECIMALS)
-    told = f"{_minus(f'{found.value / scale:.{decimals}f}')}{SPACE}±{SPACE}{half / scale:.{decimals}f}"
+    text = f"{_minus(f'{found.value / scale:.{decimals}f}')}{SPACE}±{SPACE}{half / scale:.{decimals}f}"
     if power:
-        told = f"({told})·10{str(power).translate(_RAISED)}"
-    return f"{told}{SPACE}{shown}".strip()
+        text = f"({text})·10{str(power).translate(_RAISED)}"
+    return f"{text}{SPACE}{shown}".strip()
 
 
-def _minus(told: str) -> str:
+def _minus(text: str) -> str:
     """A number with a minus sign rather than a hyphen."""
-    return told.replace("-", "−")
+    return text.replace("-", "−")
 
 
 def share(value: float) -> str:

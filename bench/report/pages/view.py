@@ -111,5 +111,5 @@ def _graph(shown: SideBySide) -> TimeGraph:
             ("position", kind.length_unit, shown.ghost, shown.position),
         )
     ]
-    told = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
-    return time_graph("Over time.", told, shown.time, signals, part=PART)
+    alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
+    return time_graph("Over time.", alternative, shown.time, signals, part=PART)

@@ -145,8 +145,8 @@ def _is_sample(line: str, separator: str, kinds: tuple[str, ...]) -> bool:
     if len(cells) != len(kinds):
         return False
     numeric = [cell for cell, kind in zip(cells, kinds, strict=True) if kind != "text"]
-    told = sum(cell in EMPTY or is_number(cell) for cell in numeric)
-    return told > 0.5 * len(numeric) and any(is_number(cell) for cell in numeric)
+    numbers = sum(cell in EMPTY or is_number(cell) for cell in numeric)
+    return numbers > 0.5 * len(numeric) and any(is_number(cell) for cell in numeric)
 
 
 def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:
