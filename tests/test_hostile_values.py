@@ -2,13 +2,11 @@
 
 import json
 import re
-import sys
 
 import numpy as np
 import pytest
 
 from bench.assets import asset
-from bench.cli import main
 from bench.errors import InputError, UndeterminedError
 from bench.identify.regression import identify
 from bench.plant.model_file import load_model, read_table
@@ -16,6 +14,7 @@ from bench.plant.s_curve import s_curve
 from bench.rig.rig import Rig, load_rig
 from bench.structured import json_text, parse_json
 from bench.trace.stream import stream
+from tests.command import bench
 from tests.hostile import columns, cpu_seconds, csv_of
 
 
@@ -47,14 +46,12 @@ def test_magnitudes_that_no_axis_has_are_refused(tmp_path, case):
 
 
 @pytest.mark.parametrize("case", IMPOSSIBLE)
-def test_json_never_holds_nan(tmp_path, monkeypatch, case):
+def test_json_never_holds_nan(tmp_path, case):
     (tmp_path / "run.csv").write_text(csv_of(*IMPOSSIBLE[case]))
-    monkeypatch.setattr(sys, "argv", ["bench", "inspect", str(tmp_path / "run.csv"), "--json", str(tmp_path / "x")])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    assert stop.value.code in (0, 1, 2)
-    assert (tmp_path / "x").exists() is (stop.value.code == 0)
-    if stop.value.code == 0:
+    status = bench("inspect", tmp_path / "run.csv", "--json", tmp_path / "x").status
+    assert status in (0, 1, 2)
+    assert (tmp_path / "x").exists() is (status == 0)
+    if status == 0:
         content = json.loads((tmp_path / "x").read_text(), parse_constant=pytest.fail)
         assert content["schema"]
 

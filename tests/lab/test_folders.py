@@ -2,14 +2,12 @@
 
 import json
 import shutil
-import sys
 
 import numpy as np
 import pytest
 import scipy.io
 
 from bench.assets import asset
-from bench.cli import main
 from bench.lab import course as course_module
 from bench.lab.flights import read_flights
 from bench.lab.recordings import Recordings
@@ -17,6 +15,7 @@ from bench.lab.rig import lab_rig
 from bench.lab.sources import Sources
 from bench.report import lab as report
 from bench.trace.read import read
+from tests.command import bench
 
 TRACES = asset("data", "traces")
 NAMES = ("JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc")
@@ -227,18 +226,15 @@ def quick(monkeypatch):
 
 
 @pytest.mark.parametrize(("state", "missing", "words"), STATES, ids=lambda value: getattr(value, "__name__", ""))
-def test_a_students_folder(state, missing, words, tmp_path, monkeypatch, capsys, quick, done):
+def test_a_students_folder(state, missing, words, tmp_path, quick, done):
     folder = tmp_path / "data"
     folder.mkdir()
     for name in NAMES:
         shutil.copy(TRACES / f"{name}.trace", folder)
     shutil.copytree(TRACES / "catapult", folder / "catapult", ignore=shutil.ignore_patterns("*.json"))
     state(folder)
-    monkeypatch.setattr(sys, "argv", ["bench", "lab", "--data", str(folder), "--out", str(tmp_path / "out")])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    printed = capsys.readouterr()
-    assert stop.value.code == (1 if missing >= RECORDED else 0), printed.err
+    printed = bench("lab", "--data", folder, "--out", tmp_path / "out")
+    assert printed.status == (1 if missing >= RECORDED else 0), printed.err
     assert "Traceback" not in printed.out + printed.err
     content = json.loads((tmp_path / "out" / "lab.json").read_text(encoding="utf-8"))
     tasks = {task["key"]: task for task in content["tasks"]}
