@@ -18,6 +18,7 @@ from bench.trace.read import read
 from tests.command import bench
 
 TRACES = asset("data", "traces")
+SI = "time [s];velocity [rad/s];current [A]"
 NAMES = ("JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc")
 ON_FRICTION = {"7", "8", "9", "range", "tracking"}
 RECORDED = {"1", "5", "6", "10"} | ON_FRICTION
@@ -31,11 +32,14 @@ def signals(folder, name):
     return trace.time, trace["velocity"], trace["current"]
 
 
+def lines(*columns, separator=";", decimal="."):
+    """Rows of numbers (n,) each as text."""
+    rows = zip(*columns, strict=True)
+    return "".join(separator.join(f"{value:.6g}".replace(".", decimal) for value in row) + "\n" for row in rows)
+
+
 def table(path, header, *columns, decimal="."):
-    rows = "\n".join(
-        ";".join(f"{value:.6g}".replace(".", decimal) for value in row) for row in zip(*columns, strict=True)
-    )
-    path.write_text(f"{header}\n{rows}\n", encoding="utf-8")
+    path.write_text(f"{header}\n{lines(*columns, decimal=decimal)}", encoding="utf-8")
 
 
 def as_it_is(folder):
@@ -45,7 +49,7 @@ def as_it_is(folder):
 def wrong_sign(folder):
     for name in NAMES:
         time, velocity, current = signals(folder, name)
-        table(folder / f"{name}.csv", "time [s];velocity [rad/s];current [A]", time, velocity, -current)
+        table(folder / f"{name}.csv", SI, time, velocity, -current)
 
 
 def wrong_sign_turned_by_the_advice(folder):
@@ -59,7 +63,7 @@ def one_way(folder):
     forward &= velocity > 20.0
     shifted = np.abs(velocity[forward]), current[forward] + 0.05 / 0.75
     rows = np.arange(forward.sum()) * 1e-3
-    table(folder / "JLoadAndFriction.csv", "time [s];velocity [rad/s];current [A]", rows, *shifted)
+    table(folder / "JLoadAndFriction.csv", SI, rows, *shifted)
 
 
 def german_names(folder):
@@ -102,14 +106,14 @@ def a_rig_of_another_motor(folder):
 
 def two_samples(folder):
     (folder / "MaxAcc.trace").unlink()
-    table(folder / "MaxAcc.csv", "time [s];velocity [rad/s];current [A]", [0.0, 0.001], [0.0, 1.0], [0.0, 1.0])
+    table(folder / "MaxAcc.csv", SI, [0.0, 0.001], [0.0, 1.0], [0.0, 1.0])
 
 
 def at_rest(folder):
     time, velocity, current = signals(folder, "JLoadAndFriction")
-    table(folder / "JLoadAndFriction.csv", "time [s];velocity [rad/s];current [A]", time, 0.0 * velocity, 0.0 * current)
+    table(folder / "JLoadAndFriction.csv", SI, time, 0.0 * velocity, 0.0 * current)
     time, velocity, current = signals(folder, "JLoadWithoutFriction")
-    table(folder / "JLoadWithoutFriction.csv", "time [s];velocity [rad/s];current [A]", time, 0.0 * velocity, current)
+    table(folder / "JLoadWithoutFriction.csv", SI, time, 0.0 * velocity, current)
 
 
 def damaged(folder):
@@ -135,35 +139,31 @@ def flights(folder):
     return points
 
 
-def flights_in_another_order(folder):
+def a_file_each(folder, ending, text):
+    """Flights in files of their own, as `text` of y - m -, z - m - and time - s - has them."""
     points = flights(folder)
     (folder / "catapult").mkdir()
     for k, flight in enumerate(points):
-        time = 0.02 * np.arange(len(flight))
-        table(folder / "catapult" / f"{k:02}.csv", "z [mm];y [mm];t [s]", 1e3 * flight[:, 1], 1e3 * flight[:, 0], time)
+        content = text(*flight.T, 0.02 * np.arange(len(flight)))
+        (folder / "catapult" / f"{k:02}.{ending}").write_text(content)
+
+
+def flights_in_another_order(folder):
+    a_file_each(folder, "csv", lambda y, z, t: "z [mm];y [mm];t [s]\n" + lines(1e3 * z, 1e3 * y, t))
 
 
 def flights_y_z_t(folder):
-    points = flights(folder)
-    (folder / "catapult").mkdir()
-    for k, flight in enumerate(points):
-        time = 0.02 * np.arange(len(flight))
-        text = "\n".join(f"{y:.6g},{z:.6g},{t:.6g}" for (y, z), t in zip(flight, time, strict=True))
-        (folder / "catapult" / f"{k:02}.csv").write_text(f"y,z,t\n{text}\n")
+    a_file_each(folder, "csv", lambda y, z, t: "y,z,t\n" + lines(y, z, t, separator=","))
+
+
+def flights_with_blanks_and_decimal_commas(folder):
+    a_file_each(folder, "txt", lambda y, z, t: "y [m]  z [m]\n\n" + lines(y, z, separator="  ", decimal=",") + "\n")
 
 
 def flights_side_by_side(folder):
     points = flights(folder)
     header = ";".join(f"y{k} [m];z{k} [m]" for k in range(1, 11))
     table(folder / "Katapult.csv", header, *(side for flight in points for side in flight.T), decimal=",")
-
-
-def flights_with_blanks_and_decimal_commas(folder):
-    points = flights(folder)
-    (folder / "catapult").mkdir()
-    for k, flight in enumerate(points):
-        text = "\n".join(f"{y:.6f}  {z:.6f}".replace(".", ",") for y, z in flight)
-        (folder / "catapult" / f"{k:02}.txt").write_text(f"y [m]  z [m]\n\n{text}\n\n")
 
 
 def flights_in_mat(folder):
