@@ -1,4 +1,4 @@
-"""The baseline on disk: TOML that lies in version control and reads well in a diff.
+"""The baseline on disk: TOML for version control, readable in a diff.
 
 schema = "bench.baseline/1"
 source = "recordings"
@@ -36,10 +36,9 @@ from bench.structured import read_toml
 
 SCHEMA = "bench.baseline/1"
 HEAD = "# What `bench check` holds the axis against. `bench check --update` writes it anew: look at the difference.\n"
-#: Written in the place of a spread that nobody knows.
+#: Written instead of an unknown spread.
 NO_SPREAD = "not told by fewer than two recordings"
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?: (.+))?")
-#: Characters of a file name or digest, and of a text in it.
 _ALLOWED = "allowed: as bench check --update wrote it"
 
 

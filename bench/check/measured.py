@@ -1,4 +1,4 @@
-"""A quantity as one state of an axis tells it: value, error, and how recordings differ in it."""
+"""A quantity in one state of an axis: value, standard error, and spread between recordings."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ class Measured:
     Attributes:
         value: in `unit`.
         unit: SI.
-        std_error: standard error of one recording like these by its own noise; 0 of a number that is exact - unit.
-        degrees: of freedom that this error was read from; inf where it is known.
-        recordings: that tell the quantity alone.
-        spread: standard deviation of what they tell alone, their own errors included; None of fewer than two - unit.
+        std_error: standard error of one such recording from its own noise; 0 if exact - unit.
+        degrees: of freedom of this error; inf if it is known.
+        recordings: number of recordings that determine the quantity alone.
+        spread: standard deviation of their estimates, own errors included; None for fewer than two - unit.
     """
 
     value: float
@@ -35,10 +35,10 @@ class Measured:
 
     @classmethod
     def of(cls, found: Parameter, alone: Sequence[Parameter] = ()) -> Measured:
-        """A quantity with its interval, and what each of several recordings tells of it alone.
+        """From a quantity with its interval, and from its estimates by each of several recordings alone.
 
-        The degrees of freedom are those at which Student's t reaches as far as the interval of 95 % does. Of several
-        recordings the error is that of one of them: the root of their mean variance.
+        The degrees of freedom are those at which Student's t gives the width of the interval of 95 %. Of several
+        recordings the error is the root mean square of theirs.
         """
         known = [one for one in alone if math.isfinite(one.std_error)]
         if len(known) < 2:

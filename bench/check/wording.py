@@ -1,4 +1,4 @@
-"""A check in sentences of the field: what changed, by how much, and how sure that is."""
+"""The result of a check in sentences: what changed, by how much, and how certain that is."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from bench.check.measured import Measured
 from bench.check.response import RESPONSE_TORQUE
 from bench.check.state import GAPS, NamedHere
 
-#: Units that people read otherwise, with the factor.
+#: Units shown in another one, with the factor.
 DISPLAYED = {"rad": ("deg", 180.0 / math.pi)}
-#: What changes where something else does.
+#: Quantities that change as a consequence of others.
 FOLLOWING = frozenset({*GAPS, RESPONSE_TORQUE})
 
 
 def headline(checked: Checked) -> str:
-    """What changed, in one line; that nothing did, or why nobody can tell."""
+    """What changed, in one line; or that nothing did, or why it is undecided."""
     if checked.result == CHANGED:
         return _sentence(_changes(checked))
     if checked.result == SAME:
@@ -33,7 +33,7 @@ def headline(checked: Checked) -> str:
 
 
 def _changes(checked: Checked) -> list[str]:
-    """What changed: names, then parameters; gaps where nothing else says why they did."""
+    """What changed: names, then parameters; gaps only if nothing else did."""
     changed = [one for one in checked.comparisons if one.result == CHANGED]
     changed.sort(key=lambda one: not one.effect)
     parts = [one for one in changed if one.name not in FOLLOWING] or changed
@@ -70,7 +70,7 @@ def _came_or_went(one: Comparison) -> str:
 
 
 def _why(one: Comparison) -> str:
-    """Why a comparison is not decided, or how sure it is that an effect appeared."""
+    """Why a comparison is undecided, or how certain it is that an effect appeared."""
     unit = displayed_unit(one.unit)
     if one.held_back:
         return f", but {one.held_back}"
@@ -86,22 +86,22 @@ def _why(one: Comparison) -> str:
 
 
 def _values(effect: NamedHere) -> str:
-    """Quantities of an effect, but for angles, whose zero means nothing, and what its label says."""
+    """Quantities of an effect, without angles, whose zero is arbitrary, and without those in its label."""
     counted = {slot.quantity.name for slot, _ in effect.whole}
     names = [q.name for q in effect.effect.quantities if not q.angle and q.name not in counted]
     return ", ".join(f"{name.replace('_', ' ')} {with_unit(effect.quantities[name])}" for name in names)
 
 
 def with_unit(found: Measured) -> str:
-    """A value as people read it."""
+    """A value with its unit, for display."""
     return f"{formatted(found.value, found.unit)}{displayed_unit(found.unit)}"
 
 
 def displayed_unit(unit: str) -> str:
-    """The unit behind a number, as people read it."""
+    """The unit behind a number, for display; empty for a dimensionless one."""
     return "" if unit == "dimensionless" else f" {DISPLAYED[unit][0] if unit in DISPLAYED else unit}"
 
 
 def formatted(value: float, unit: str) -> str:
-    """A number in the unit that people read."""
+    """A number in the unit for display."""
     return f"{value * (DISPLAYED[unit][1] if unit in DISPLAYED else 1.0):.4g}"

@@ -110,10 +110,9 @@ def two_samples(folder):
 
 
 def at_rest(folder):
-    time, velocity, current = signals(folder, "JLoadAndFriction")
-    table(folder / "JLoadAndFriction.csv", SI, time, 0.0 * velocity, 0.0 * current)
-    time, velocity, current = signals(folder, "JLoadWithoutFriction")
-    table(folder / "JLoadWithoutFriction.csv", SI, time, 0.0 * velocity, current)
+    for name, factor in (("JLoadAndFriction", 0.0), ("JLoadWithoutFriction", 1.0)):
+        time, velocity, current = signals(folder, name)
+        table(folder / f"{name}.csv", SI, time, 0.0 * velocity, factor * current)
 
 
 def damaged(folder):
@@ -128,9 +127,8 @@ def nothing_usable(folder):
 
 
 def empty(folder):
-    nothing_usable(folder)
-    for path in folder.iterdir():
-        path.unlink()
+    shutil.rmtree(folder)
+    folder.mkdir()
 
 
 def flights(folder):
