@@ -23,7 +23,7 @@ from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
 Progress = Callable[[float], None]
-#: How names are decided on, unless another policy is given.
+#: Default policy of naming.
 POLICY = Policy()
 
 
@@ -43,7 +43,7 @@ def diagnose(
         holdout: another recording of it, not used to fit.
         excluded: effects that are not tried.
         progress: called with the share done.
-        policy: that decides on names.
+        policy: rules that decide on names.
 
     Raises:
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
@@ -63,10 +63,10 @@ def diagnose(
 
 
 def require_weight(recordings: Recordings, fitted: Fit) -> None:
-    """Refuse effects that leave no inertia which the recording tells, before a model is made of them.
+    """Refuse effects with which the recording no longer determines the inertia, before a model is made of them.
 
     Raises:
-        UndeterminedError: its interval holds zero, or it or the load's is negative.
+        UndeterminedError: the interval of the inertia contains zero, or it or the load's is negative.
     """
     kind = recordings.rig.axis_kind
     found = uncertain(fitted).base(recordings.base_units)

@@ -1,9 +1,9 @@
-"""A coarse torque balance over windows of a recording: enough to ask whether effort and motion belong together.
+"""A coarse torque balance over windows of a recording, to decide whether effort and motion belong together.
 
-    mean effort = J*(change of speed)/(window) + K_w*mean speed + K_0*mean sgn(speed) + M_0 (+ what hangs on position)
+    mean effort = J*(change of speed)/(window) + K_w*mean speed + K_0*mean sgn(speed) + M_0 (+ terms of position)
 
-Integrals over windows need no derivative and no filter, so nothing has to be chosen from the recording before it is
-known to be sound.
+Integrals over windows need no derivative and no filter, so nothing is chosen from a recording before it is known to be
+sound.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from bench.trace.known import less_known
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
-#: Samples a window: motions and noises differ, the length that explains most is taken.
+#: Lengths of windows tried - samples -; the one that explains most is taken.
 LENGTHS = (4, 16, 64, 256)
-#: Windows that a comparison needs.
+#: Least number of windows.
 LEAST = 60
-#: Columns of the motion alone; behind them, those of position.
+#: Number of columns of motion; those of position follow.
 MOTION = 4
 EFFORTS = ("torque", "force", "current", "voltage")
 
@@ -57,7 +57,7 @@ class Balance:
 
 
 def effort_of(trace: Trace, rig: Rig | None) -> tuple[Array, str] | None:
-    """What drives the axis, and what it is called: as the rig has it, else the first signal that may be it."""
+    """Effort and its name: by the rig, else the first signal of EFFORTS; None without one."""
     names = [name for name in EFFORTS if name in trace]
     if not names:
         return None
@@ -69,7 +69,7 @@ def effort_of(trace: Trace, rig: Rig | None) -> tuple[Array, str] | None:
 
 
 def balance(trace: Trace, effort: Array, lengths: Sequence[int] = LENGTHS) -> Balance | None:
-    """The balance over the windows that explain most; None where the recording is too short for any.
+    """The balance over windows of the length that explains most; None if the recording is too short.
 
     Args:
         trace: the recording.
@@ -107,7 +107,7 @@ def _fitted(columns: Array, effort: Array) -> tuple[float, Array]:
 
 @dataclass(frozen=True)
 class _Summed:
-    """A stretch as running sums, from which means over windows of any length are differences.
+    """Running sums over a stretch, whose differences give means over windows of any length.
 
     Attributes:
         start: its first sample.

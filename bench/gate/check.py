@@ -1,4 +1,4 @@
-"""What one look at a recording found."""
+"""The result of one check of a recording."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ STATUSES: tuple[Status, ...] = ("fail", "warn", "pass", "not_applicable")
 
 @dataclass(frozen=True)
 class Check:
-    """One check of a recording, passed or not.
+    """Result of a check.
 
     Attributes:
-        name: of the contract.
-        status: `fail` ends an identification, `warn` is told.
+        name: of the check.
+        status: `fail` ends an identification, `warn` is printed.
         found: in the recording.
         allowed: what would pass.
-        advice: what to do; empty where there is nothing to do.
-        unanswerable: whether a fail means that a sound recording cannot answer, rather than that it is wrong.
+        advice: what to do; empty if nothing.
+        unanswerable: whether a failed recording is sound, and only insufficient.
     """
 
     name: str
@@ -32,11 +32,11 @@ class Check:
 
 
 def absent(name: str, found: str, allowed: str) -> Check:
-    """A check that this recording gives no occasion for.
+    """A check that does not apply to this recording.
 
     Args:
         name: of the check.
         found: why not.
-        allowed: what it would hold the recording to.
+        allowed: what would pass.
     """
     return Check(name, "not_applicable", found, allowed)

@@ -11,7 +11,7 @@ ALLOWED = "kT is Ke, 3/2 or sqrt(3) of it, as Ke is meant, within their toleranc
 
 
 def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
-    """Hold the two against each other; the recording stays as it is."""
+    """Compare the two; the recording is unchanged."""
     if rig is None or rig.motor.back_emf_constant is None or rig.motor.torque_per_ampere is None:
         return trace, absent(NAME, "not both are stated", ALLOWED)
     found = rig.motor.disagreement

@@ -1,4 +1,4 @@
-"""Does the effort follow the motion, and if not, what is it likeliest to be instead?"""
+"""Does the effort follow the motion? If not: what it probably is instead."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
 NAME = "effort_follows_motion"
-#: Share of the effort that motion (and position) must explain, and below which it is told. The least of any clean
-#: recording is 0.48 (`python -m tests.gate`).
+#: Shares of the effort, explained by motion and position, below which a recording fails, and warns. The least of any
+#: sound recording is 0.48 (`python -m tests.gate`).
 REFUSED, WARNED = 0.3, 0.45
-#: Effort less loud than this many times its noise tells neither way.
+#: Effort below this many times its noise is inconclusive.
 AUDIBLE = 3.0
-#: Share by which position must explain more than motion to be what the effort follows.
+#: Share that position must explain beyond motion for effort to follow position.
 MORE = 0.3
 
 ALLOWED = f"inertia, friction and position explain {WARNED:.0%} of the effort at least, with positive inertia"
 
 
 def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
-    """Hold effort against motion; the recording stays as it is."""
+    """Compare effort with motion; the recording is unchanged."""
     found = effort_of(trace, rig)
     if found is None or not {"position", "velocity"} & set(trace.signals):
         return trace, absent(NAME, "not both effort and motion are recorded", ALLOWED)

@@ -1,4 +1,4 @@
-"""The gate before any fit: every check, in order, each seeing what the ones before have put right."""
+"""The gate before any fit: all checks in order, each on the recording as the previous ones have repaired it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from bench.trace.trace import Trace
 
 Looks = tuple[Callable[[Trace, Rig | None], tuple[Trace, Check]], ...]
 
-#: What repairs comes before what judges.
+#: Checks that repair come before those that only judge.
 CHECKS: Looks = (
     signals.moves,
     timing.regular,
@@ -28,20 +28,20 @@ CHECKS: Looks = (
     effort.check,
     constants.check,
 )
-#: Not of a recording at one steady speed: it may never change, say the same twice, and its effort follows no motion.
+#: Checks that do not apply at one steady speed: signals may stay the same, and effort follows no motion.
 UNSTEADY = (signals.moves, losses.check, timing.rate, signals.resolution, effort.check)
 STEADY = tuple(check for check in CHECKS if check not in UNSTEADY)
-#: Of a later part of a recording: what can go wrong there, not what holds for all of it.
+#: Checks of a later part of a recording: what can go wrong there, without what holds for all of it.
 PARTS = tuple(
     check for check in CHECKS if check not in (timing.rate, signals.resolution, effort.check, constants.check)
 )
 
 
 class UnanswerableError(UndeterminedError):
-    """A sound recording that cannot answer.
+    """A sound recording that does not allow the identification.
 
     Attributes:
-        checks: all of them, for whoever writes them down.
+        checks: all of them.
     """
 
     checks: tuple[Check, ...] = ()
@@ -49,10 +49,10 @@ class UnanswerableError(UndeterminedError):
 
 @dataclass(frozen=True)
 class Gated:
-    """A recording behind the gate.
+    """A recording that went through the gate.
 
     Attributes:
-        trace: put right where that was possible.
+        trace: repaired where possible.
         checks: in the order of CHECKS.
     """
 
@@ -61,15 +61,15 @@ class Gated:
 
 
 def gate(trace: Trace, rig: Rig | None = None, looks: Looks = CHECKS) -> Gated:
-    """Run every check on a recording.
+    """Run checks on a recording.
 
     Args:
         trace: the recording, or a part of one.
-        rig: of the axis, where it is known.
+        rig: of the axis, if known.
         looks: the checks to run.
 
     Raises:
-        InputError: rig and recording do not fit together, or a value is one that no axis has.
+        InputError: rig and recording do not fit together, or a value that no axis can have.
     """
     require_possible(trace)
     found = []
@@ -113,9 +113,9 @@ def _error(failed: Check, checks: tuple[Check, ...], trace: Trace) -> BenchError
 
 
 def joined(parts: Sequence[Sequence[Check]]) -> tuple[Check, ...]:
-    """Checks of a recording from those of its parts: of each the worst, but what only some parts cannot answer.
+    """Checks of a recording from those of its parts: the worst of each, without parts that are only unanswerable.
 
-    A part in which the axis stands still answers nothing, and says nothing against the others.
+    A part in which the axis stands still is no evidence against the others.
 
     Args:
         parts: the first with every check.
@@ -131,7 +131,7 @@ def _worst(same: Sequence[Check]) -> Check:
 
 
 def warnings_of(checks: Sequence[Check]) -> list[str]:
-    """A line for every warning."""
+    """A line for each check that warns."""
     return [
         f"{check.name}: {check.found}; {check.advice}" if check.advice else f"{check.name}: {check.found}"
         for check in checks

@@ -1,4 +1,4 @@
-"""Does the position wrap? A reader undoes what plainly does; here what it left, and recordings that no reader saw."""
+"""Does the position wrap? Readers undo clear wraps; here the rest, and recordings that no reader made."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ALLOWED = "a position that runs on, or wraps by one period"
 
 
 def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
-    """The recording with its position running on."""
+    """The recording with its wraps undone."""
     if "position" not in trace:
         return trace, absent(NAME, "no position is recorded", ALLOWED)
     if trace.wraps is not None:

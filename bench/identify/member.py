@@ -1,4 +1,4 @@
-"""One of several recordings that are fitted together: what it knows of the axis, and what it tells alone."""
+"""One of several recordings that are fitted together: its information about the axis, and its estimate alone."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class Member:
     Attributes:
         gathered: its normal equations.
         solved: its own fit, with the columns that all recordings share and its own shift and hum.
-        alone: what it tells by itself.
-        along: where it moves in one direction only, its friction that way, in which any offset is; else None.
-        scales: standard error and half width of an interval of 95 % of what it does not tell alone, over the standard
-            error that `solved` has.
-        tolerances: how far J, K_w, K_0 and offset may be off by the rig's tolerances.
+        alone: its estimate alone.
+        along: if it moves in one direction only, its friction in that direction, offset included; else None.
+        scales: standard error and half width at 95 % of parameters that it does not determine alone, over the
+            standard error in `solved`.
+        tolerances: half widths of J, K_w, K_0 and offset from the rig's tolerances.
         warnings: of its own fit.
     """
 
@@ -48,7 +48,7 @@ class Member:
 
     @classmethod
     def of(cls, gathered: Gathered, rig: Rig) -> Member:
-        """A recording by itself, so far as it tells anything alone.
+        """The fit of one recording alone.
 
         Raises:
             InputError: rig and recording do not fit together.
@@ -88,7 +88,7 @@ class Member:
 
     @property
     def power(self) -> float:
-        """Sum of the squared residuals of its own fit - the effort's unit squared."""
+        """Sum of squared residuals of its own fit - the effort's unit squared."""
         return max(self.equations.residual_power(self.solved.theta), 0.0)
 
     @property
@@ -98,9 +98,9 @@ class Member:
 
     @property
     def matrix(self) -> Array:
-        """Normal equations' matrix of these, beside its own shift and hum, with no power below zero (s, s).
+        """Matrix of the normal equations of these, its own shift and hum eliminated, positive semidefinite (s, s).
 
-        Where noise makes more of a column than was expected of it alone, the recording knows nothing of that column.
+        A column with less power than expected from its noise carries no information.
         """
         at, equations, shared = layout.MISALIGNMENT, self.equations, self._shared
         whole, gram, noise = equations.matrix, equations.gram.sum(axis=0), equations.count * equations.noise
@@ -113,7 +113,7 @@ class Member:
 
     @cached_property
     def own(self) -> dict[str, Parameter]:
-        """What it tells alone, less what the rig's tolerances make of it, which are the same in all recordings."""
+        """Its estimate alone, without the rig's tolerances, which are common to all recordings."""
         found = dict(self.alone.parameters)
         for name, reach in self.tolerances.items():
             if name in found:
@@ -124,7 +124,7 @@ class Member:
         return found
 
     def known(self, kind: AxisKind) -> Array:
-        """What it knows of these: `matrix` over the variance that its covariance shows on the mean (s, s)."""
+        """Its information about these: `matrix` over the mean variance implied by its covariance (s, s)."""
         matrix, (covariance, _) = self.matrix, self.covariance(kind)
         return matrix * matrix.shape[0] / max(float(np.trace(matrix @ covariance)), 1e-300)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.lab.text import text_of
 from bench.trace.readers.mat import load
 from bench.units import convert, dimensionality
 from bench.units.text import spelled_for_pint
@@ -56,7 +57,9 @@ def flights_of_text(content: bytes, where: str) -> FoundFlights:
     Raises:
         InputError: no table of points y, z; names line or column.
     """
-    lines = [(k, line.strip("\r\n")) for k, line in enumerate(_text(content).splitlines(), 1) if line.strip(" ;,\t\r")]
+    lines = [
+        (k, line.strip("\r\n")) for k, line in enumerate(text_of(content).splitlines(), 1) if line.strip(" ;,\t\r")
+    ]
     header = next((k for k, (_, line) in enumerate(lines) if not re.search(r"[^\W\dEe_]", _without_nan(line))), None)
     if header is None:
         raise InputError(where, "found no line of numbers", f"allowed: at least three points, {_ADVICE}")
@@ -84,15 +87,6 @@ def flights_of_mat(content: bytes, where: str) -> FoundFlights:
 
 
 _ADVICE = "y and z on each line, named in the first one: y [m],z [m]"
-
-
-def _text(content: bytes) -> str:
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return content.decode("utf-16", errors="replace")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("latin-1")
 
 
 def _without_nan(line: str) -> str:
