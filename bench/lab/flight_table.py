@@ -57,9 +57,8 @@ def flights_of_text(content: bytes, where: str) -> FoundFlights:
     Raises:
         InputError: no table of points y, z; names line or column.
     """
-    lines = [
-        (k, line.strip("\r\n")) for k, line in enumerate(text_of(content).splitlines(), 1) if line.strip(" ;,\t\r")
-    ]
+    text = text_of(content).splitlines()
+    lines = [(k, line.strip("\r\n")) for k, line in enumerate(text, 1) if line.strip(" ;,\t\r")]
     header = next((k for k, (_, line) in enumerate(lines) if not re.search(r"[^\W\dEe_]", _without_nan(line))), None)
     if header is None:
         raise InputError(where, "found no line of numbers", f"allowed: at least three points, {_ADVICE}")

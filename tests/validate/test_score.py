@@ -31,8 +31,8 @@ def test_an_interval_of_any_level_is_a_students(degrees, level):
 
 
 def test_a_share_of_true_values_from_an_array_counts_in_whole_numbers_that_json_writes():
-    told = [Scored("diagnose", "", "inertia", np.float64(3.0), 3.0, parameter(3.0, 0.2))] * 2
-    found = Coverage.of("diagnose", Group("nulls", 2, True), "inertia", told)
+    scored = [Scored("diagnose", "", "inertia", np.float64(3.0), 3.0, parameter(3.0, 0.2))] * 2
+    found = Coverage.of("diagnose", Group("nulls", 2, True), "inertia", scored)
     assert [type(share.count) for share in found.inside] == [int] * len(LEVELS)
 
 
@@ -45,11 +45,11 @@ def test_an_interval_that_is_wide_beside_its_covariance_scales_as_a_normal_ones(
 def test_coverage_of_what_is_as_uncertain_as_it_says_is_nominal(degrees):
     rng = np.random.default_rng(1)
     error = np.sqrt(rng.chisquare(degrees, 4000) / degrees)
-    told = [
+    scored = [
         Scored("identify", "", "inertia", 1.0, 1.0, parameter(1.0 + 0.1 * z, 0.1 * s, stats.t.ppf(0.975, degrees)))
         for z, s in zip(rng.standard_normal(4000), error, strict=True)
     ]
-    found = Coverage.of("identify", Group("g", 4100, True), "inertia", told)
+    found = Coverage.of("identify", Group("g", 4100, True), "inertia", scored)
     assert found.told == 4000
     for level, share in zip(LEVELS, found.inside, strict=True):
         low, high = share.bounds
@@ -91,12 +91,12 @@ def test_names_are_held_against_what_is_hidden(given, hidden, false, missed):
 
 def runs():
     plain = drawn(Plan(5, population=Short()).case(0))
-    told = Scored("diagnose", "", "inertia", 1.0, 1.0, parameter(1.05, 0.1))
+    scored = Scored("diagnose", "", "inertia", 1.0, 1.0, parameter(1.05, 0.1))
     right = Named("explained", ("unbalance",))
     return (
-        replace(plain, named=Named("nothing_missing"), told=(told,)),
+        replace(plain, named=Named("nothing_missing"), scored=(scored,)),
         replace(plain, named=Named("explained", ("backlash",), ("backlash",))),
-        replace(plain, hidden=("unbalance",), named=right, told=(told,)),
+        replace(plain, hidden=("unbalance",), named=right, scored=(scored,)),
         replace(plain, hidden=("unbalance",), named=Named(missed=("unbalance",), reason="too short")),
     )
 
