@@ -7,10 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special
 
 from bench.balance.parameter import Parameter
-from bench.statistics import NORMAL95
 
 
 @dataclass(frozen=True)
@@ -42,16 +40,7 @@ class Measured:
         """
         known = [one for one in alone if math.isfinite(one.std_error)]
         if len(known) < 2:
-            return cls(found.value, found.unit, found.std_error, _degrees(found))
+            return cls(found.value, found.unit, found.std_error, found.degrees)
         error = float(np.sqrt(np.mean([one.std_error**2 for one in known])))
         spread = float(np.std([one.value for one in known], ddof=1))
-        return cls(found.value, found.unit, error, min(map(_degrees, known)), len(known), spread)
-
-
-def _degrees(found: Parameter) -> float:
-    """Degrees of freedom of an interval of 95 %; inf where it is a normal distribution's."""
-    half = 0.5 * (found.ci95[1] - found.ci95[0])
-    reach = half / found.std_error if found.std_error > 0.0 else NORMAL95
-    if not reach > NORMAL95 * (1.0 + 1e-6):
-        return math.inf
-    return float(special.stdtridf(0.975, reach))
+        return cls(found.value, found.unit, error, min(one.degrees for one in known), len(known), spread)

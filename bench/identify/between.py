@@ -54,7 +54,7 @@ def excess(groups: Sequence[Sequence[Parameter]]) -> Excess:
     apart, expected, degrees = 0.0, 0.0, 0
     for group in groups:
         values = np.array([found.value for found in group])
-        weights = 1.0 / np.maximum([half_width(found) / NORMAL95 for found in group], 1e-150) ** 2
+        weights = 1.0 / np.maximum([found.half_width / NORMAL95 for found in group], 1e-150) ** 2
         if values.size < 2:
             continue
         apart += float(weights @ (values - weights @ values / weights.sum()) ** 2)
@@ -74,7 +74,7 @@ def between(found: Sequence[Parameter]) -> Between:
     """
     values = np.array([each.value for each in found])
     spread, mean = float(np.std(values, ddof=1)), float(np.mean(values))
-    own = float(np.sqrt(np.mean([half_width(each) ** 2 for each in found])))
+    own = float(np.sqrt(np.mean([each.half_width**2 for each in found])))
     reach = max(float(special.stdtrit(values.size - 1, 0.975)) * spread, own) * math.sqrt(1.0 + 1.0 / values.size)
     return Between(spread, (mean - reach, mean + reach))
 
@@ -89,9 +89,9 @@ def widened(found: Parameter, apart: Excess, own: Sequence[Parameter]) -> Parame
     """
     if not apart.variance:
         return found
-    weights = 1.0 / (np.array([half_width(each) / NORMAL95 for each in own]) ** 2 + apart.variance)
+    weights = 1.0 / (np.array([each.half_width / NORMAL95 for each in own]) ** 2 + apart.variance)
     more = math.sqrt(apart.variance * float(weights @ weights)) / float(weights.sum())
-    reach = math.hypot(half_width(found), apart.reach * more)
+    reach = math.hypot(found.half_width, apart.reach * more)
     interval = (found.value - reach, found.value + reach)
     return replace(found, std_error=math.hypot(found.std_error, more), ci95=interval)
 
@@ -103,8 +103,3 @@ def spread_warning(name: str, own: Sequence[Parameter]) -> str:
         f"the recordings differ in {name} by more than their own intervals say ({low:.4g} to {high:.4g} "
         f"{own[0].unit}): the joint interval counts it, `between` says what the next one may tell"
     )
-
-
-def half_width(found: Parameter) -> float:
-    """Half width of the interval of 95 % - the parameter's unit."""
-    return 0.5 * (found.ci95[1] - found.ci95[0])

@@ -14,7 +14,6 @@ from bench.balance import layout
 from bench.balance.normal_equations import NormalEquations, solved
 from bench.balance.parameter import Parameter
 from bench.errors import UndeterminedError
-from bench.identify.between import half_width
 from bench.identify.determined import only_direction
 from bench.identify.estimate import Alone, RefusedEstimateError
 from bench.identify.regression import Gathered, parameters_of, solve
@@ -67,7 +66,7 @@ class Member:
             more = np.hypot(misfit, np.pad(gathered.doubt, (0, misfit.size - gathered.doubt.size)))
             along = parameters_of(bare, kind, gathered.effort_unit, more)[kind.parameter(COULOMB)]
             error = max(float(bare.errors[layout.COULOMB]), 1e-300)
-            scales = along.std_error / error, half_width(along) / error
+            scales = along.std_error / error, along.half_width / error
         try:
             found, reason = solve(gathered, rig), ""
         except RefusedEstimateError as refusal:
@@ -118,7 +117,7 @@ class Member:
         for name, reach in self.tolerances.items():
             if name in found:
                 before = found[name]
-                half = math.sqrt(max(half_width(before) ** 2 - reach**2, 0.0))
+                half = math.sqrt(max(before.half_width**2 - reach**2, 0.0))
                 error = math.sqrt(max(before.std_error**2 - (reach / NORMAL95) ** 2, 0.0))
                 found[name] = replace(before, std_error=error, ci95=(before.value - half, before.value + half))
         return found
@@ -136,7 +135,7 @@ class Member:
         own = self.own
         scales = np.array(
             [
-                (own[name].std_error / error, half_width(own[name]) / error) if name in own else self.scales
+                (own[name].std_error / error, own[name].half_width / error) if name in own else self.scales
                 for name, error in zip(names, errors, strict=True)
             ]
         )

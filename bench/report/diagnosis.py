@@ -195,7 +195,7 @@ def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
     for name, parameters, ambiguous in rows:
         label = f"{name} (or {', '.join(ambiguous)})" if ambiguous else name
         for quantity, found in parameters.items():
-            reach = f"{0.5 * (found.ci95[1] - found.ci95[0]):.2g}"
+            reach = f"{found.half_width:.2g}"
             table.add_row(label, quantity.replace("_", " "), f"{found.value:.5g}", reach, found.unit)
             label = ""
     return table

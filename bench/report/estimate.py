@@ -112,10 +112,7 @@ def recordings_table(estimate: Estimate) -> Table:
         table.add_column(f"{name.replace('_', ' ')}\n{estimate[name].unit}", justify="right")
     for alone in estimate.recordings:
         found_alone = [alone.parameters.get(name) for name in names]
-        values = [
-            "-" if found is None else f"{found.value:.4g} ± {0.5 * (found.ci95[1] - found.ci95[0]):.2g}"
-            for found in found_alone
-        ]
+        values = ["-" if found is None else f"{found.value:.4g} ± {found.half_width:.2g}" for found in found_alone]
         table.add_row(Path(alone.origin).name, *values)
     following = [estimate.between[name].predictive95 for name in names]
     table.add_row("the next one (95 %)", *(f"{low:.4g} to {high:.4g}" for low, high in following))
@@ -157,7 +154,7 @@ def estimate_table(estimate: Estimate, title: str, truth: Mapping[str, float] | 
     for name, found in estimate.parameters.items():
         known = truth.get(name) if truth else None
         compared = (f"{known:.5g}", f"{found.value / known - 1.0:+.3%}") if known else ("", "")
-        reach = f"{0.5 * (found.ci95[1] - found.ci95[0]):.2g}"
+        reach = f"{found.half_width:.2g}"
         row = [name.replace("_", " "), f"{found.value:.5g}", reach, *(compared if truth else ()), found.unit]
         table.add_row(*row)
     return table

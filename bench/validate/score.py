@@ -47,7 +47,7 @@ class Scored:
     @property
     def half_width(self) -> float:
         """Of the interval of 95 %, over the scale."""
-        return 0.5 * (self.parameter.ci95[1] - self.parameter.ci95[0]) / self.scale
+        return self.parameter.half_width / self.scale
 
     def inside(self, level: float) -> bool:
         """Whether the interval of a level holds the truth."""

@@ -117,10 +117,10 @@ class Undetermined:
             for quantity in named.effect.quantities:
                 found = named.parameters.get(quantity.name)
                 itself = np.pi if quantity.angle else float(time[-1] - time[0]) if quantity.instant else None
-                if found is not None and half(found) > (abs(found.value) if itself is None else itself):
+                if found is not None and found.half_width > (abs(found.value) if itself is None else itself):
                     return f"{named.name}: {_with_interval(quantity.name, found)} is not determined"
         for name, (found, torque) in shown.friction.items():
-            if half(found) > abs(found.value) and half(found) * torque > shown.torque.noise_floor:
+            if found.half_width > abs(found.value) and found.half_width * torque > shown.torque.noise_floor:
                 return f"{_with_interval(name, found)} is not determined"
         return ""
 
@@ -178,10 +178,5 @@ def verdict(shown: Shown) -> tuple[str, list[str]]:
     return ("explained" if shown.effects else "nothing_missing"), []
 
 
-def half(found: Parameter) -> float:
-    """Half of the interval of 95 % - the parameter's unit."""
-    return 0.5 * (found.ci95[1] - found.ci95[0])
-
-
 def _with_interval(name: str, found: Parameter) -> str:
-    return f"{name.replace('_', ' ')} ({found.value:.3g} ± {half(found):.2g} {found.unit})"
+    return f"{name.replace('_', ' ')} ({found.value:.3g} ± {found.half_width:.2g} {found.unit})"

@@ -40,7 +40,7 @@ def number(value: float, unit: str = "", digits: int = 4) -> str:
 def interval(found: Parameter, unit: bool = True) -> str:
     """A parameter with half of its interval of 95 %, both to the second digit of that half."""
     shown = unit_text(found.unit) if unit else ""
-    half = 0.5 * (found.ci95[1] - found.ci95[0])
+    half = found.half_width
     if not math.isfinite(half) or half <= 0.0:
         return f"{number(found.value, digits=5)}{SPACE}{shown}".strip()
     size = abs(found.value)
