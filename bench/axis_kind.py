@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bench.errors import InputError
+from bench.names import words
 from bench.units import Quantity
 
 #: Terms of the equation M = J*alpha + K_w*omega + K_0*sgn(omega) + M_0 - tau*dM/dt that an identification finds.
@@ -55,7 +56,11 @@ class AxisKind:
 
     def in_words(self, term: str) -> str:
         """The same in words, e.g. `moment of inertia`."""
-        return self.parameter(term).replace("_", " ")
+        return words(self.parameter(term))
+
+    def base_parameters(self, effort_unit: str | None = None) -> dict[str, str]:
+        """Names of J, K_w and K_0 with their units; `effort_unit` as of `parameter_unit`."""
+        return {self.parameter(term): self.parameter_unit(term, effort_unit) for term in (INERTIA, VISCOUS, COULOMB)}
 
     def parameter_unit(self, term: str, effort_unit: str | None = None) -> str:
         """Unit of the coefficient of a term, e.g. kg*m**2 of INERTIA, or A*s**2/rad where the effort stands in A.

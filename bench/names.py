@@ -18,6 +18,11 @@ def plain(text: str) -> str:
     return _OBEYED.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
 
 
+def words(name: str) -> str:
+    """A name of the bench in words, e.g. `moment of inertia` for `moment_of_inertia`."""
+    return name.replace("_", " ")
+
+
 def cell(text: str) -> str:
     """The text as a cell of a CSV that no spreadsheet takes for a formula: an apostrophe stands before one."""
     formula = text[:1] in ("=", "+", "-", "@", "\t", "\r") and _NUMBER.fullmatch(text) is None

@@ -112,7 +112,7 @@ def _stated(text: str, baseline: Measured, where: str) -> float:
 
 
 def _require_known(name: str, allowed: Allowed, where: str) -> None:
-    own = [allowed.kind.parameter(term) for term in (INERTIA, VISCOUS, COULOMB)] + [TORQUE_GAP, VELOCITY_GAP]
+    own = [*allowed.kind.base_parameters(), TORQUE_GAP, VELOCITY_GAP]
     of_effects = [f"{effect.name}.{q.name}" for effect in catalogue().values() for q in effect.quantities]
     if name not in own and name not in of_effects:
         known = f"{', '.join(own)}, or EFFECT.QUANTITY as in bench effects"

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.balance.fit import Fit, fit
 from bench.balance.hum import with_hum
 from bench.balance.hypothesis import Hypothesis, Term
@@ -99,7 +98,7 @@ def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
     traces = [passed(trace, rig).trace for trace in traces]
     found = identify(traces, rig)
     kind, fitted = rig.axis_kind, balance(join(traces), rig, Hypothesis())
-    names = [kind.parameter(term) for term in (INERTIA, VISCOUS, COULOMB)]
+    names = [*kind.base_parameters()]
     gap = _torque_gap(fitted, found.residual.unit)
     state = State(
         source="recordings",

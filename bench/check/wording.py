@@ -9,6 +9,7 @@ from bench.check.comparison import CHANGED, SAME, Comparison
 from bench.check.measured import Measured
 from bench.check.response import RESPONSE_TORQUE
 from bench.check.state import GAPS, NamedHere
+from bench.names import words
 
 #: Units shown in another one, with the factor.
 DISPLAYED = {"rad": ("deg", 180.0 / math.pi)}
@@ -26,7 +27,7 @@ def headline(checked: Checked) -> str:
         return f"Undecided, as the rig differs: {'; '.join(checked.rig)}"
     open_ = [described(one, checked) for one in checked.comparisons if one.result != SAME]
     if checked.baseline.verdict != checked.now.verdict:
-        verdicts = (one.replace("_", " ") for one in (checked.baseline.verdict, checked.now.verdict))
+        verdicts = (words(one) for one in (checked.baseline.verdict, checked.now.verdict))
         open_.append(f"the verdict is {' -> '.join(verdicts)}")
     motion = [f"motion or sampling differ ({', '.join(checked.conditions)})"] if checked.conditions else []
     return f"Undecided: {'; '.join([*motion, *open_])}"
@@ -47,7 +48,7 @@ def _sentence(parts: list[str]) -> str:
 
 def described(one: Comparison, checked: Checked) -> str:
     """One comparison in words."""
-    label = one.name.replace("_", " ").replace(".", " ")
+    label = words(one.name).replace(".", " ")
     effect = next((effect for effect, found in (*checked.appeared, *checked.gone) if found is one), None)
     if effect is not None:
         return f"{label} {_came_or_went(one)}: {_values(effect)}{_why(one)}"

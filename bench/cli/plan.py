@@ -9,7 +9,7 @@ import typer
 
 from bench.console import RigOption, console, print_files
 from bench.files import write_text
-from bench.names import plain
+from bench.names import plain, words
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -56,7 +56,7 @@ def _table(best: Planned) -> Table:
     for name in ("quantity", "expected", "standard error", "unit"):
         table.add_column(name, justify="left" if name in ("quantity", "unit") else "right")
     for name, found in best.expected.items():
-        table.add_row(name.replace("_", " "), f"{found.value:.4g}", f"{found.std_error:.2g}", found.unit)
+        table.add_row(words(name), f"{found.value:.4g}", f"{found.std_error:.2g}", found.unit)
     return table
 
 

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from bench.arrays import Array
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.balance.fit import Fit, fit
 from bench.balance.rows import Rows
 from bench.diagnose.gap.decidable import require_another, require_decidable, require_samples
@@ -93,8 +92,7 @@ class Recordings:
     @property
     def base_units(self) -> dict[str, str]:
         """Names of J, K_w and K_0 on this kind of axis, with their units."""
-        kind = self.rig.axis_kind
-        return {kind.parameter(term): kind.parameter_unit(term, self.unit) for term in (INERTIA, VISCOUS, COULOMB)}
+        return self.rig.axis_kind.base_parameters(self.unit)
 
 
 def _mended(trace: Trace, rig: Rig, effect: Effect, found: Detected) -> Trace:

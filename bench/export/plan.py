@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.balance.fit import fit
 from bench.balance.hypothesis import Hypothesis
 from bench.balance.parameter import Parameter
@@ -24,6 +23,7 @@ from bench.diagnose.name.candidates import candidates
 from bench.effects.effect import Effect
 from bench.effects.present import Present
 from bench.errors import InputError, UndeterminedError
+from bench.names import words
 from bench.plant.limits import MotionLimits
 from bench.plant.plant import Plant
 from bench.plant.profiles import PROFILES, full_torque, plan
@@ -86,7 +86,7 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
         found.append(_planned(name, motion, trace, rig, effect))
     found.sort(key=lambda each: each.worst)
     if not np.isfinite(found[0].worst):
-        what = "inertia and friction" if effect is None else effect.name.replace("_", " ")
+        what = "inertia and friction" if effect is None else words(effect.name)
         raise UndeterminedError(what, f"no profile tells it: {found[0].reason}", "nothing yet: state more of the rig")
     return found
 
@@ -94,7 +94,7 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
 def _planned(name: str, motion: References, trace: Trace, rig: Rig, effect: Effect | None) -> Planned:
     """What a simulated recording tells of the effect, or of inertia and friction."""
     kind = rig.axis_kind
-    units = {kind.parameter(term): kind.parameter_unit(term) for term in (INERTIA, VISCOUS, COULOMB)}
+    units = kind.base_parameters()
     try:
         rows = Rows.of(trace, rig)
     except UndeterminedError as error:

@@ -13,6 +13,7 @@ from bench.balance.parameter import Parameter
 from bench.balance.rows import ONE_WAY
 from bench.errors import UndeterminedError
 from bench.identify.estimate import Estimate
+from bench.names import words
 
 #: Least number of rows for each column of the regression.
 ROWS_PER_COLUMN = 20
@@ -142,7 +143,7 @@ def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, suspicio
             low, high = found.ci95
             reason = f"it comes out negative, {found.value:.3g} {found.unit} ({low:.3g} to {high:.3g})"
             advice = {kind.inertia: TURNED, ARMATURE: LINKS}.get(name, SMALLER)
-            raise UndeterminedError(name.replace("_", " "), "; ".join([reason, *suspicions]), advice)
+            raise UndeterminedError(words(name), "; ".join([reason, *suspicions]), advice)
 
 
 def require_sound(estimate: Estimate, kind: AxisKind, suspicions: Sequence[str]) -> None:

@@ -14,6 +14,7 @@ from bench.balance import layout
 from bench.balance.normal_equations import NormalEquations, solved
 from bench.balance.parameter import Parameter
 from bench.errors import UndeterminedError
+from bench.identify.cutoffs import TERMS
 from bench.identify.determined import only_direction
 from bench.identify.estimate import Alone, RefusedEstimateError
 from bench.identify.regression import Gathered, parameters_of, solve
@@ -56,8 +57,7 @@ class Member:
         own = solved_with_shift(equations, gathered.rows, rig.offset)
         along, scales = None, (1.0, own.reach)
         one_way = only_direction(equations) is not None  # no offset was fitted then: it is in the friction
-        places = {INERTIA: layout.INERTIA, VISCOUS: layout.VISCOUS, COULOMB: layout.COULOMB}
-        places |= {OFFSET: layout.COULOMB if one_way else -1} if own.offset else {}
+        places = TERMS | ({OFFSET: layout.COULOMB if one_way else -1} if own.offset else {})
         tolerances = {kind.parameter(term): float(gathered.tolerance[place]) for term, place in places.items()}
         tolerances |= {"load_moment_of_inertia": tolerances[kind.inertia]}
         if one_way:

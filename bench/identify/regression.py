@@ -156,8 +156,8 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
     chosen = equations.select(found.columns)
     power, squares = max(chosen.residual_power(found.theta), 0.0), float(chosen.power.sum())
     if squares == 0.0:
-        quantity = kind.parameter(INERTIA).replace("_", " ")
-        raise UndeterminedError(quantity, "the effort is zero throughout", "the motor's current or torque too")
+        reason = "the effort is zero throughout"
+        raise UndeterminedError(kind.in_words(INERTIA), reason, "the motor's current or torque too")
     mean = float(equations.moment[:, -1].sum()) / equations.count
     smooth = gathered.rows.conditioning.filter
     estimate = Estimate(

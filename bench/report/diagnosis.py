@@ -16,6 +16,7 @@ from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where.where import Where
 from bench.files import held, write_text
+from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report.diagnosis_figures import gaps_figure, where_figure
 from bench.report.estimate import between_json, parameters_json, recordings_json
@@ -196,7 +197,7 @@ def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
         label = f"{name} (or {', '.join(ambiguous)})" if ambiguous else name
         for quantity, found in parameters.items():
             reach = f"{found.half_width:.2g}"
-            table.add_row(label, quantity.replace("_", " "), f"{found.value:.5g}", reach, found.unit)
+            table.add_row(label, words(quantity), f"{found.value:.5g}", reach, found.unit)
             label = ""
     return table
 

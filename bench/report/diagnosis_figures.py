@@ -12,8 +12,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from bench.diagnose.found import Gap, Profile
 from bench.diagnose.show.show import Diagnosis
 from bench.diagnose.where.where import Where
+from bench.names import words
 from bench.report.figures import MEASURED, MODELLED, NOISE, REST, in_style, legend_above, title_figure
-from bench.report.page.numbers import number, share, unit_text, words
+from bench.report.page.numbers import number, share, unit_text
 from bench.report.pages.tables import coordinate_word
 
 #: Empty space beside the outermost dots of a gap - factor on a logarithmic axis.

@@ -14,6 +14,7 @@ from rich.table import Table
 from bench.axis_kind import AxisKind
 from bench.balance.parameter import Parameter
 from bench.identify.estimate import Alone, Between, Estimate
+from bench.names import words
 from bench.report.gate import checks_json
 from bench.structured import json_text
 
@@ -155,6 +156,6 @@ def estimate_table(estimate: Estimate, title: str, truth: Mapping[str, float] | 
         known = truth.get(name) if truth else None
         compared = (f"{known:.5g}", f"{found.value / known - 1.0:+.3%}") if known else ("", "")
         reach = f"{found.half_width:.2g}"
-        row = [name.replace("_", " "), f"{found.value:.5g}", reach, *(compared if truth else ()), found.unit]
+        row = [words(name), f"{found.value:.5g}", reach, *(compared if truth else ()), found.unit]
         table.add_row(*row)
     return table

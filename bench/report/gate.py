@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from bench.gate.check import Check
+from bench.names import words
 from bench.structured import json_text
 
 
@@ -40,5 +41,5 @@ def checks_table(checks: Sequence[Check]) -> Table:
     table.add_column("found")
     for check in checks:
         text = f"{check.found}: {check.advice}" if check.status in ("warn", "fail") and check.advice else check.found
-        table.add_row(check.name, check.status.replace("_", " "), Text(text))
+        table.add_row(check.name, words(check.status), Text(text))
     return table

@@ -13,8 +13,9 @@ from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.identify.estimate import Estimate
 from bench.identify.modelled import modelled_effort
+from bench.names import words
 from bench.report.figures import MEASURED, MODELLED, NOISE, REST, in_style, legend_above, thinned, title_figure
-from bench.report.page.numbers import interval, unit_text, words
+from bench.report.page.numbers import interval, unit_text
 from bench.report.pages.tables import effort_word
 from bench.trace.motion import Motion
 

@@ -65,11 +65,6 @@ def share(value: float) -> str:
     return f"{100.0 * value:.0f}{SPACE}%" if not 0.0 < value < 0.1 else f"{100.0 * value:.2g}{SPACE}%"
 
 
-def words(name: str) -> str:
-    """A name of the contract in words."""
-    return name.replace("_", " ")
-
-
 def sentence(text: str) -> str:
     """A text with a capital at its beginning."""
     return text[:1].upper() + text[1:]

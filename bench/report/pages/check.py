@@ -8,7 +8,7 @@ from typing import Any
 from bench.check.compare import Checked
 from bench.check.comparison import CHANGED, SAME, UNDECIDED, Comparison
 from bench.check.wording import described, headline
-from bench.names import short
+from bench.names import short, words
 from bench.report.check import cells
 from bench.report.page.blocks import (
     Answer,
@@ -25,7 +25,7 @@ from bench.report.page.blocks import (
     Tone,
     answered,
 )
-from bench.report.page.numbers import number, sentence, share, unit_text, words
+from bench.report.page.numbers import number, sentence, share, unit_text
 from bench.report.pages.tables import effort_word
 
 COLOURS: dict[str, Colour] = {CHANGED: "model", UNDECIDED: "ink", SAME: "left"}

@@ -12,6 +12,7 @@ from bench.arrays import Array
 from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Course, Profile
 from bench.diagnose.where.where import Where
+from bench.names import words
 from bench.report.page.blocks import (
     Axes,
     Chart,
@@ -25,7 +26,7 @@ from bench.report.page.blocks import (
     Series,
     Table,
 )
-from bench.report.page.numbers import number, sentence, share, unit_text, words
+from bench.report.page.numbers import number, sentence, share, unit_text
 from bench.report.page.scripted import TimeGraph
 from bench.report.pages.over_time import Measured, time_graph
 from bench.report.pages.tables import (

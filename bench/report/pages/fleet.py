@@ -10,7 +10,7 @@ from bench.fleet.change import expected
 from bench.fleet.changed import ALARM, Changed
 from bench.fleet.fleet import TABLE, Fleet
 from bench.fleet.summary import STATUSES, Summary
-from bench.names import short
+from bench.names import short, words
 from bench.report.page.blocks import (
     Answer,
     AnyBlock,
@@ -27,7 +27,7 @@ from bench.report.page.blocks import (
     Tone,
     answered,
 )
-from bench.report.page.numbers import SPACE, number, sentence, share, unit_text, words
+from bench.report.page.numbers import SPACE, number, sentence, share, unit_text
 from bench.statistics import NORMAL95
 
 #: Rows of a table, charts, and recordings in one of them: a page of a large fleet stays small, the table has all.

@@ -11,9 +11,10 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, VISCOUS
 from bench.friction_map.curve import Curve
 from bench.friction_map.map import CHANCE, FrictionMap
+from bench.names import words
 from bench.report.friction import base_values, effect_values
 from bench.report.page.blocks import Answer, Axes, Chart, Column, Page, Section, Series, Table, answered
-from bench.report.page.numbers import number, sentence, share, unit_text, words
+from bench.report.page.numbers import number, sentence, share, unit_text
 from bench.report.pages.tables import checks_section, effort_word, origin
 
 #: Speeds at which a curve is drawn, in each direction.

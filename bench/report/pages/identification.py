@@ -14,8 +14,9 @@ from bench.diagnose.name.rules import Remainder
 from bench.diagnose.where.where import LEAST, bins_of, means_in
 from bench.identify.estimate import Estimate
 from bench.identify.modelled import modelled_effort
+from bench.names import words
 from bench.report.page.blocks import Answer, Axes, Chart, Downloads, File, Page, Section, Series, answered
-from bench.report.page.numbers import interval, number, share, unit_text, words
+from bench.report.page.numbers import interval, number, share, unit_text
 from bench.report.page.scripted import TimeGraph
 from bench.report.pages.over_time import Measured, time_graph
 from bench.report.pages.tables import (

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Literal
 
 from bench.gate.check import Check
+from bench.names import words
 from bench.report.page.blocks import Answer, AnyBlock, Column, Page, Paragraph, Points, Section, Table, Tone, answered
-from bench.report.page.numbers import number, unit_text, words
+from bench.report.page.numbers import number, unit_text
 from bench.report.page.samples import Grid
 from bench.report.page.scripted import Curve, Panel, TimeGraph
 from bench.report.pages.tables import checks_section, origin

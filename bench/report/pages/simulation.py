@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from bench.axis_kind import INERTIA
 from bench.effects.present import Present
+from bench.names import words
 from bench.plant.model import parameter_quantities
 from bench.plant.simulate import Simulated
 from bench.plant.truth import Truth
 from bench.report.page.blocks import Answer, Column, Downloads, File, Page, Paragraph, Section, Table
-from bench.report.page.numbers import number, unit_text, words
+from bench.report.page.numbers import number, unit_text
 from bench.report.page.scripted import TimeGraph
 from bench.report.pages.over_time import Measured, time_graph
 from bench.report.pages.tables import origin

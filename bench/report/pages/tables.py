@@ -10,8 +10,9 @@ from bench import __version__
 from bench.balance.parameter import Parameter
 from bench.gate.check import Check
 from bench.identify.estimate import Alone, Between
+from bench.names import words
 from bench.report.page.blocks import Column, Points, Section, Series, Table
-from bench.report.page.numbers import interval, number, unit_text, words
+from bench.report.page.numbers import interval, number, unit_text
 
 
 def effort_word(unit: str) -> str:

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from bench.names import words
 from bench.report.confusion import Confusion
 from bench.report.page.blocks import (
     Answer,
@@ -22,7 +23,7 @@ from bench.report.page.blocks import (
     Table,
     answered,
 )
-from bench.report.page.numbers import number, sentence, share, unit_text, words
+from bench.report.page.numbers import number, sentence, share, unit_text
 from bench.report.pages.tables import origin
 from bench.report.sheet import Sheet
 from bench.report.validation import SYMBOLS, TITLES, bounded, by_name, covered, determined, names, outcomes

@@ -8,8 +8,9 @@ from bench.axis_kind import INERTIA, KINDS
 from bench.diagnose.add.refine import NULL
 from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.show.show import Diagnosis
+from bench.names import words
 from bench.report.page.blocks import Answer, answered
-from bench.report.page.numbers import interval, number, sentence, share, unit_text, words
+from bench.report.page.numbers import interval, number, sentence, share, unit_text
 from bench.report.pages.tables import coordinate_word, effort_word
 
 
