@@ -20,6 +20,7 @@ from bench.balance.quantities import uncertain
 from bench.balance.rows import Rows
 from bench.balance.shapes import shaped
 from bench.diagnose.name.candidates import candidates
+from bench.diagnose.show.next_experiment import LONG_ENOUGH
 from bench.effects.effect import Effect
 from bench.effects.present import Present
 from bench.errors import InputError, UndeterminedError
@@ -32,21 +33,19 @@ from bench.plant.simulate import simulate
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-#: Least duration of a recording that tells anything - s: a shorter profile is repeated.
-LONG_ENOUGH = 4.0
-#: Profiles that ask for more than the motor has serve another end.
+#: Profiles to choose from: not the one that demands more than the motor has.
 PLANNED = tuple(name for name, profile in PROFILES.items() if profile is not full_torque)
 
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """A motion and what it will tell.
+    """A motion, and the errors to expect from its recording.
 
     Attributes:
         profile: its name.
         motion: at the drive's ticks, repeated until it is long enough.
-        tells: quantities with the errors to expect, by name.
-        reason: why it tells nothing; empty where it does.
+        expected: quantities with the errors to expect, by name.
+        reason: why it determines nothing; empty if it does.
     """
 
     profile: str
@@ -56,13 +55,13 @@ class Planned:
 
     @property
     def worst(self) -> float:
-        """Largest standard error of what it tells, over the value; infinite where it tells nothing."""
+        """Largest relative standard error; infinite if it determines nothing."""
         shares = [found.std_error / abs(found.value) for found in self.expected.values() if found.value]
         return max((share for share in shares if np.isfinite(share)), default=np.inf) if not self.reason else np.inf
 
 
 def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
-    """Every profile that the rig can follow, the one that tells best first.
+    """Every profile that the rig can follow, the most accurate first.
 
     Args:
         rig: with `[drive]` and `[simulation]`, which is what is expected of axis and sensors.

@@ -1,4 +1,4 @@
-"""Why each effect of the catalogue was taken or was not: what search, doubts and held-out motion said of it."""
+"""Why each effect of the catalogue was accepted or rejected, by search, doubts and held-out motion."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from bench.effects.effect import Effect
 
 @dataclass(frozen=True)
 class Trial:
-    """A round of the search: what was fitted, what was tried beside it, and what was taken up; None in the last."""
+    """A round of the search: the fit, the effects tried, and the one accepted; None in the last."""
 
     beside: Fit
     candidates: tuple[Candidate, ...]
     taken: Effect | None
 
     def share(self, effect: Effect) -> float | None:
-        """Of the squared gap that an effect would take; None if it was not tried."""
+        """Share of the squared gap that an effect explains; None if it was not tried."""
         gains = [candidate.gain for candidate in self.candidates if candidate.term.effect is effect]
         return max(0.0, *gains) / max(self.beside.squares, 1e-300) if gains else None
 
 
 def considered(recordings: Recordings, suspects: Suspects, added: Added) -> tuple[Considered, ...]:
-    """All effects: those taken in the order in which they were added, then the others, what explains most first."""
+    """All effects: those accepted in the order of addition, then the others by the share they explain."""
     trials = trials_of(suspects.searched)
     named = {one.effect: one for one in added.refined.effects}
     found = []
@@ -67,7 +67,7 @@ def _against(effect: Effect, recordings: Recordings, suspects: Suspects, added: 
 
 
 def trials_of(searched: Searched) -> list[Trial]:
-    """Rounds of a search, the last one without an effect taken up."""
+    """Rounds of a search; the last one accepts no effect."""
     found = []
     for before, step in zip(searched.steps, searched.steps[1:], strict=False):
         new = [term.effect for term in step.fitted.terms if term.effect not in {t.effect for t in before.fitted.terms}]
@@ -78,5 +78,5 @@ def trials_of(searched: Searched) -> list[Trial]:
 
 
 def _evidence(named: NamedEffect) -> str:
-    """The figures that speak for an effect."""
+    """The figures that support an effect."""
     return ", ".join(f"{key.replace('_', ' ')} {value:.3g}" for key, value in named.evidence.items()) or "named"
