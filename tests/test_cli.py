@@ -241,7 +241,7 @@ def test_two_samples_are_too_few_and_say_so(bench, tmp_path):
     assert "samples" in err
 
 
-def test_a_hole_is_told_and_not_bridged(bench, tmp_path):
+def test_a_hole_is_reported_and_not_bridged(bench, tmp_path):
     csv(tmp_path / "run.csv", HEAD + "\n".join([*ROWS[:1000], *ROWS[1200:]]) + "\n")
     status, out, _ = bench("inspect", "run.csv")
     assert status == 0

@@ -233,7 +233,7 @@ def test_out_of_memory_is_one_line(monkeypatch):
     assert err == "bench: out of memory; give less at a time, or a machine with more\n"
 
 
-def test_a_zip_of_a_version_that_nobody_has_is_told_in_one_line(tmp_path):
+def test_a_zip_of_a_version_that_nobody_has_is_reported_in_one_line(tmp_path):
     """Found by fuzzing: the archive's directory asks for version 25.5."""
     file = io.BytesIO()
     np.savez(file, **dict(zip(("time_s", "velocity_rad_s", "current_A"), columns(20), strict=True)))

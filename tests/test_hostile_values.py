@@ -107,13 +107,13 @@ RIG_TEXT = asset("data", "rigs", "sh30701p.toml").read_text()
         ("position_gain", "1e300 1/s", "control_period must be below"),
     ],
 )
-def test_periods_in_the_wrong_unit_are_told(tmp_path, key, value, words):
+def test_periods_in_the_wrong_unit_are_reported(tmp_path, key, value, words):
     path = tmp_path / "rig.toml"
     path.write_text(re.sub(rf"^{key} = .*", f'{key} = "{value}"', RIG_TEXT, flags=re.MULTILINE))
     with pytest.raises(InputError, match=words):
         load_rig(path)
 
 
-def test_motions_that_take_for_ever_are_told():
+def test_motions_that_take_for_ever_are_reported():
     with cpu_seconds(4.0), pytest.raises(InputError, match=r"takes 1e\+12 periods of the drive"):
         s_curve([1e9], [1.0], 1e-3)

@@ -26,12 +26,12 @@ def inspect(
     from bench.report.inspection import table
     from bench.rig.rig import load_rig
     from bench.trace.assemble import assemble
-    from bench.trace.how import How
     from bench.trace.inspect import inspect_recording, to_json
     from bench.trace.read import read_recording
+    from bench.trace.reading_options import GivenOptions
 
     axis = load_rig(rig).on_axis(axis_name) if rig else None
-    how = axis.trace if axis is not None else How(axis=axis_name)
+    how = axis.trace if axis is not None else GivenOptions(axis=axis_name)
     recording = read_recording(file)
     found = inspect_recording(recording, how)
     trace = None if found.asks is not None else assemble(recording, how)

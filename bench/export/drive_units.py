@@ -11,7 +11,7 @@ from bench.arrays import Array
 from bench.export.feedforward import Feedforward, Table
 from bench.rig.rig import Rig
 from bench.trace.channel import split_label
-from bench.trace.known_names import scale_in
+from bench.trace.signal_names import scale_in
 from bench.trace.signals import unit_on
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.gate.parts import speed_of, stretches
 from bench.rig.rig import Rig
-from bench.trace.known import less_known
+from bench.trace.known_torque import less_known
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 

@@ -10,7 +10,7 @@ from bench.errors import BenchError, InputError, UndeterminedError
 from bench.gate import constants, effort, losses, signals, timing, velocity, wraps
 from bench.gate.check import STATUSES, Check
 from bench.rig.rig import Rig
-from bench.trace.possible import require_possible
+from bench.trace.plausible import require_plausible
 from bench.trace.trace import Trace
 
 Looks = tuple[Callable[[Trace, Rig | None], tuple[Trace, Check]], ...]
@@ -71,7 +71,7 @@ def gate(trace: Trace, rig: Rig | None = None, looks: Looks = CHECKS) -> Gated:
     Raises:
         InputError: rig and recording do not fit together, or a value that no axis can have.
     """
-    require_possible(trace)
+    require_plausible(trace)
     found = []
     for look in looks:
         trace, one = look(trace, rig)

@@ -21,8 +21,8 @@ from bench.rig.peak_curve import PeakCurve
 from bench.rig.simulation import Simulation
 from bench.rig.values import Table, Time, Wrap, tolerance_of
 from bench.structured import read_toml
-from bench.trace.known import less_known
-from bench.trace.possible import require_possible
+from bench.trace.known_torque import less_known
+from bench.trace.plausible import require_plausible
 from bench.trace.trace import Trace
 
 
@@ -105,7 +105,7 @@ class Rig(Table):
             InputError: the trace holds none of the signals, one of a magnitude that no axis has, or motor and trace
                 disagree on the kind of axis.
         """
-        require_possible(trace)
+        require_plausible(trace)
         if trace.axis_kind != self.axis_kind and ("velocity" in trace or "position" in trace):
             found = f"found a {trace.axis_kind.name} axis"
             raise InputError(trace.origin, found, f"allowed: a {self.kind} one, as {self.source} says")

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 
 from bench.trace.channel import Recording
 from bench.trace.choose import Chosen, choose
-from bench.trace.how import HowToRead, how_to_read
 from bench.trace.in_si import in_si
+from bench.trace.reading_options import ReadingOptions, reading_options
 from bench.trace.time_base import regular
 from bench.trace.trace import Trace
 
 
-def assemble(recording: Recording, given: Mapping[str, str] | HowToRead | None = None) -> Trace:
+def assemble(recording: Recording, given: Mapping[str, str] | ReadingOptions | None = None) -> Trace:
     """Trace of a recording.
 
     Args:
@@ -25,7 +25,7 @@ def assemble(recording: Recording, given: Mapping[str, str] | HowToRead | None =
         InputError: a column missing, ambiguous, without unit or of the wrong dimension; no time; values that are not
             finite; times that run backwards or stand twice too often.
     """
-    how = how_to_read(given)
+    how = reading_options(given)
     chosen, notes = choose(recording, how)
     found = in_si(chosen, recording, how)
     dropped = unused(chosen, recording)

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from bench.errors import InputError
 from bench.names import nearest
 from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.how import HowToRead
-from bench.trace.known_names import is_index, plain_name, scale_in, signal_of, unit_of
+from bench.trace.reading_options import ReadingOptions
+from bench.trace.signal_names import is_index, plain_name, scale_in, signal_of, unit_of
 from bench.trace.signals import SI_UNITS
 from bench.units.text import Scale
 
@@ -33,7 +33,7 @@ class Chosen:
     sign: float = 1.0
 
 
-def choose(recording: Recording, how: HowToRead) -> tuple[dict[str, Chosen], tuple[str, ...]]:
+def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, Chosen], tuple[str, ...]]:
     """Channel of every signal, `time` among them where the recording is a table, and what had to be assumed.
 
     Raises:
@@ -93,7 +93,9 @@ def axes_of(channels: Iterable[Channel]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(channel.axis for channel in channels if channel.axis is not None))
 
 
-def _require(recording: Recording, chosen: Mapping[str, Chosen], faults: dict[str, InputError], how: HowToRead) -> None:
+def _require(
+    recording: Recording, chosen: Mapping[str, Chosen], faults: dict[str, InputError], how: ReadingOptions
+) -> None:
     """Raise the first fault that leaves a trace without what it needs."""
     timed = "time" in chosen or any(choice.channel.time is not None for choice in chosen.values())
     if not timed and how.sample_period is None:

@@ -13,7 +13,7 @@ from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, GaussianFilter
-from bench.trace.known import less_known
+from bench.trace.known_torque import less_known
 from bench.trace.noise import TOP, resolution, white_noise
 from bench.trace.rounding import common_step, rounding_spectrum
 from bench.trace.signals import KNOWN_MOMENTUM

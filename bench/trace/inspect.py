@@ -16,11 +16,11 @@ from bench.structured import json_text
 from bench.trace.assemble import assemble
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import Chosen, axes_of, choose, of_axis
-from bench.trace.how import HowToRead, how_to_read
 from bench.trace.in_si import in_si
-from bench.trace.known_names import scale_in
 from bench.trace.likely import Likely, likely_signals
 from bench.trace.read import read_recording
+from bench.trace.reading_options import ReadingOptions, reading_options
+from bench.trace.signal_names import scale_in
 from bench.trace.trace import Trace
 
 SCHEMA = "bench.inspect/1"
@@ -126,7 +126,7 @@ class Inspection:
         return tuple(column.suggestion for column in self.columns if column.suggestion is not None)
 
 
-def inspect(path: str | Path, columns: Mapping[str, str] | HowToRead | None = None) -> Inspection:
+def inspect(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = None) -> Inspection:
     """Look into a recording.
 
     Args:
@@ -137,10 +137,10 @@ def inspect(path: str | Path, columns: Mapping[str, str] | HowToRead | None = No
         InputError: no table or container that the bench knows; a column that the rig names is not there, or has no
             unit. A file that needs a rig to be read is no error here.
     """
-    return inspect_recording(read_recording(path), how_to_read(columns))
+    return inspect_recording(read_recording(path), reading_options(columns))
 
 
-def inspect_recording(recording: Recording, how: HowToRead) -> Inspection:
+def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
     """See `inspect`."""
     try:
         chosen, _ = choose(recording, how)
@@ -161,7 +161,7 @@ def inspect_recording(recording: Recording, how: HowToRead) -> Inspection:
     return _of_trace(recording, chosen, trace, how)
 
 
-def _of_trace(recording: Recording, chosen: Mapping[str, Chosen], trace: Trace, how: HowToRead) -> Inspection:
+def _of_trace(recording: Recording, chosen: Mapping[str, Chosen], trace: Trace, how: ReadingOptions) -> Inspection:
     recorded = in_si(chosen, recording, how).signals
     base = trace.time_base
     assert base is not None  # a trace that was read has one
@@ -205,7 +205,7 @@ def _resolution(values: Array) -> float | None:
     return float(steps.min()) if steps.size else None
 
 
-def _columns(recording: Recording, chosen: Mapping[str, Chosen], how: HowToRead) -> tuple[ColumnSummary, ...]:
+def _columns(recording: Recording, chosen: Mapping[str, Chosen], how: ReadingOptions) -> tuple[ColumnSummary, ...]:
     """Every column of the axis in numbers, with what it is read as or likely to be."""
     channels = of_axis(recording, how.axis)
     read = {id(choice.channel): signal for signal, choice in chosen.items()}

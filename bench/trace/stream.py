@@ -16,10 +16,10 @@ from bench.errors import InputError
 from bench.names import readable
 from bench.trace.channel import Recording
 from bench.trace.choose import choose
-from bench.trace.how import HowToRead, how_to_read
 from bench.trace.in_si import InSI, in_si
 from bench.trace.read import read
 from bench.trace.readers.parquet import DAMAGE, FORMAT, MAGIC, WIDTH, channel_of, damaged, is_moment
+from bench.trace.reading_options import ReadingOptions, reading_options
 from bench.trace.time_base import regular
 from bench.trace.trace import Trace
 from bench.trace.wraps import Unwrapping
@@ -33,7 +33,7 @@ JOINT = 0.01
 
 def stream(
     path: str | Path,
-    columns: Mapping[str, str] | HowToRead | None = None,
+    columns: Mapping[str, str] | ReadingOptions | None = None,
     chunk: int = CHUNK,
 ) -> Iterator[Trace]:
     """Consecutive traces of at most `chunk` samples (one more at the end), which together are the recording.
@@ -50,7 +50,7 @@ def stream(
     Raises:
         InputError: as `read` does, while iterating.
     """
-    how = how_to_read(columns)
+    how = reading_options(columns)
     if _is_parquet(Path(path)) and how.sample_period is None and not _counts_from_first_moment(str(path)):
         return _parquet(str(path), how, chunk)
     return cut(read(path, columns), chunk)
@@ -102,7 +102,7 @@ def cut(trace: Trace, chunk: int = CHUNK) -> Iterator[Trace]:
         start = stop
 
 
-def _parquet(path: str, how: HowToRead, chunk: int) -> Iterator[Trace]:
+def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
     keep_freed_memory()
     try:
         with pq.ParquetFile(path, memory_map=True) as file:

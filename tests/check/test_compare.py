@@ -65,7 +65,7 @@ def test_the_rig_file_says_what_matters():
         ({"between": {"moment_of_inertia": "-1 kg*m**2"}}, "zero or above"),
     ],
 )
-def test_a_wrong_margin_is_told_where_it_stands(table, message):
+def test_a_wrong_margin_is_reported_where_it_stands(table, message):
     with pytest.raises(InputError, match=message):
         checked(state(), state(), **table)
 
@@ -76,7 +76,7 @@ def test_a_stricter_rate_alarms_later():
     assert checked(state(), now, rate=1e-6).result == "undecided"
 
 
-def test_another_rig_is_told_and_decides_nothing():
+def test_another_rig_is_reported_and_decides_nothing():
     now = replace(state({"moment_of_inertia": 1.5}), rig={"kind": "rotary", "motor.torque_constant": "0.9"})
     found = checked(state(), now)
     assert found.result == "undecided"
@@ -169,7 +169,7 @@ def test_another_unit_is_not_compared():
     assert results(checked(state(), replace(now, quantities=quantities)))["moment_of_inertia"] == "undecided"
 
 
-def test_what_is_not_told_now_is_not_called_the_same():
+def test_what_is_not_determined_now_is_not_called_the_same():
     now = state()
     observed = {name: one for name, one in now.quantities.items() if name != "coulomb_friction_torque"}
     found = checked(state(), replace(now, quantities=observed))

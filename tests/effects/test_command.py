@@ -42,7 +42,7 @@ def test_linear_axes_take_metres_and_newtons():
         ("cogging_torque:amplitude=inf", "finite"),
     ],
 )
-def test_what_cannot_be_read_is_said(text, says):
+def test_what_cannot_be_read_is_reported(text, says):
     with pytest.raises(InputError, match=says):
         parse_effect(text)
 

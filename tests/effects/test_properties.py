@@ -131,7 +131,7 @@ def test_what_happens_in_one_recording_only_is_absent_for_a_while(effect):
 
 
 @every
-def test_several_of_a_repeatable_one_are_told_apart(effect):
+def test_several_of_a_repeatable_one_are_distinguished(effect):
     if not effect.repeatable:
         return
     assert effect.overrides("columns")

@@ -24,7 +24,7 @@ def test_what_excludes_another_is_excluded_by_it(effect):
 
 
 @every
-def test_what_cannot_be_told_from_another_is_not_told_by_it(effect):
+def test_ambiguity_is_mutual(effect):
     for scope in SCOPES:
         for name in effect.ambiguous(scope):
             assert effect.name in EFFECTS[name].ambiguous(scope)

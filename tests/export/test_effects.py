@@ -162,7 +162,7 @@ def test_a_servo_of_ones_own_is_asked_for_its_torque():
     assert force > 0.1
 
 
-def test_what_cannot_be_stepped_is_told():
+def test_what_cannot_be_stepped_is_reported():
     simulation = mujoco.MjModel.from_xml_string(ARM)
     effects = bench.Effects(stored(), "ellbow")
     with pytest.raises(InputError, match="found none of that name; allowed: shoulder, elbow, slide"):

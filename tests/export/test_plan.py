@@ -45,7 +45,7 @@ def test_the_errors_expected_are_those_that_come(planned):
         assert 0.4 < ratio < 1.8
 
 
-def test_one_that_is_asked_for_is_told(monkeypatch):
+def test_one_that_is_asked_for_is_reported(monkeypatch):
     """Of two motions, the one that passes the speeds at which friction falls slowly enough."""
     monkeypatch.setattr("bench.export.plan.PLANNED", ("speed_staircase", "identification"))
     wanted = Present.of("stribeck_friction", {"static_friction": 0.12, "stribeck_velocity": 2.0})

@@ -156,7 +156,7 @@ def test_the_axis_that_changed_is_named_with_its_day(found):
     assert changed.chance < 0.01
 
 
-def test_who_needs_a_person_is_told_gravest_first(found):
+def test_who_needs_a_person_is_reported_gravest_first(found):
     told = [(one.axis, one.kind, one.count, one.of) for one in found[0].summary.concerns]
     assert told == [
         ("press 2", "failed", 1, 4),

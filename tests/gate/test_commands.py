@@ -27,7 +27,7 @@ def test_a_recording_that_cannot_answer_leaves_its_checks(bench, sound, tmp_path
     assert {check["name"]: check["status"] for check in left["checks"]}["signal_moves"] == "fail"
 
 
-def test_a_warning_is_told_and_stands_in_the_json(bench, sound, tmp_path, capsys):
+def test_a_warning_is_reported_and_stands_in_the_json(bench, sound, tmp_path, capsys):
     write(losing(sound, 0.002), tmp_path / "run.csv")
     assert bench("identify", "run.csv", "--rig", "rig.toml", "--json", "found.json") == 0
     assert "lost_samples" in capsys.readouterr().err

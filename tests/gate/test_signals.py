@@ -43,7 +43,7 @@ def test_a_current_at_the_drives_own_limit_is_true(sound, rig):
 
 
 @pytest.mark.parametrize(("steps", "status"), [(0.5, "fail"), (4.0, "warn"), (50.0, "pass")])
-def test_coarse_steps_are_told(sound, rig, steps, status):
+def test_coarse_steps_are_reported(sound, rig, steps, status):
     step = np.std(sound["current"]) / steps
     rounded = changed(sound, current=np.round(sound["current"] / step) * step)
     assert signals.resolution(rounded, rig)[1].status == status

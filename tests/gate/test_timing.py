@@ -10,7 +10,7 @@ from bench.trace.trace import Trace
 from tests.gate.damage import changed, keeping, with_samples
 
 
-def test_times_that_jitter_are_told_and_irregular_ones_refused(sound, rig):
+def test_times_that_jitter_are_reported_and_irregular_ones_refused(sound, rig):
     rng = np.random.default_rng(0)
     jittering = sound.time + rng.uniform(-2e-4, 2e-4, len(sound))
     read = Trace.from_arrays({"time": jittering, **sound.signals}, {"time": "s", **sound.units})

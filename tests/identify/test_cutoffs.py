@@ -50,7 +50,7 @@ def test_noise_that_the_drive_feeds_back_moves_the_cut_off_and_leaves_the_inerti
     assert np.mean(np.abs(error) < width) >= 0.8
 
 
-def test_it_is_told_where_the_estimate_moves():
+def test_it_is_reported_where_the_estimate_moves():
     truth, trace = fed_back(np.random.default_rng(2), gain=0.3, speed=0.04, duration=8.0)
     found = identify(trace, RIG)
     (told,) = [warning for warning in found.warnings if "moves with the filter's cut-off" in warning]
@@ -103,7 +103,7 @@ def test_misfit_counts_in_the_interval(kind):
     assert np.mean(inside, axis=0)[0] >= 0.9
 
 
-def test_the_share_explained_is_told():
+def test_the_share_explained_is_reported():
     trace = recording(np.random.default_rng(6))
     found = identify(trace, RIG)
     assert found.explained == pytest.approx(1.0 - (found.residual.relative) ** 2, abs=2e-3)

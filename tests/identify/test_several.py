@@ -80,7 +80,7 @@ def test_runs_of_one_direction_determine_together_what_neither_does_alone(tmp_pa
     assert np.mean(held) >= 0.75
 
 
-def test_an_offset_that_was_not_asked_for_is_told():
+def test_an_offset_that_was_not_asked_for_is_reported():
     runs = [moving_at(side * np.array([20.0, 60.0]), seed, offset=0.02) for seed, side in enumerate((1.0, -1.0))]
     assert any("torque offset of 0.02" in told and "--offset" in told for told in identify(runs, RIG).warnings)
     assert not any("--offset" in told for told in identify(runs, OFFSET).warnings)
@@ -191,7 +191,7 @@ def test_recordings_that_are_alike_leave_the_joint_interval_as_narrow_as_their_n
     assert told <= 5
 
 
-def test_recordings_that_differ_are_told_and_widen_the_interval():
+def test_recordings_that_differ_are_reported_and_widen_the_interval():
     rng = np.random.default_rng(11)
     runs = [recording(rng, Truth(inertia=Truth.inertia * factor)) for factor in (0.97, 1.0, 1.03)]
     found = identify(runs, RIG)

@@ -258,7 +258,7 @@ def test_units_are_checked(tmp_path, known, rows, verdict, word):
         ("a.csv", "quantity,value,unit\nstudent,7,\nJ,22,4,kg*cm**2\n", ["line 3", "cells"]),
     ],
 )
-def test_a_bad_form_is_told_and_the_others_are_graded(tmp_path, known, name, text, words):
+def test_a_bad_form_is_reported_and_the_others_are_graded(tmp_path, known, name, text, words):
     (tmp_path / "in").mkdir()
     (tmp_path / "in" / name).write_text(text)
     (tmp_path / "in" / "good.csv").write_text("quantity,value,unit\nstudent,7,\nJ,1,\n")

@@ -118,7 +118,7 @@ def test_a_page_made_anew_is_the_same(bench, tmp_path):
         (lambda page: page | {"page": "bench.page/9"}, ["report.json: page", "bench.page/1"]),
     ],
 )
-def test_damage_is_told_in_one_line(bench, tmp_path, change, words):
+def test_damage_is_reported_in_one_line(bench, tmp_path, change, words):
     write_page(tmp_path / "out", page_full_of("x"))
     content = json.loads((tmp_path / "out" / DATA).read_text(encoding="utf-8"))
     (tmp_path / "out" / DATA).write_text(json.dumps(change(content)), encoding="utf-8")
@@ -128,7 +128,7 @@ def test_damage_is_told_in_one_line(bench, tmp_path, change, words):
         assert word in err
 
 
-def test_a_folder_without_a_page_is_told(bench, tmp_path):
+def test_a_folder_without_a_page_is_reported(bench, tmp_path):
     (tmp_path / "empty").mkdir()
     status, _, err = bench("report", "empty")
     assert (status, err.count("\n")) == (2, 1)

@@ -94,7 +94,7 @@ def test_datasheet_values_and_the_rotor_s_inertia_count_too():
         ("0.8 +/- 0.02 N*m/A", "0.74 +/- 0.07 V*s/rad", False),
     ],
 )
-def test_constants_of_two_motors_are_told(constant, back_emf, told):
+def test_constants_of_two_motors_are_reported(constant, back_emf, told):
     found = identify(recording(np.random.default_rng(2)), rig(torque_constant=constant, back_emf_constant=back_emf))
     check = next(check for check in found.checks if check.name == "motor_constants_agree")
     assert check.status == ("warn" if told else "pass")

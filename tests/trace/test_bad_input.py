@@ -129,7 +129,7 @@ def test_blank_lines_do_not_shift_the_lines_of_messages(tmp_path):
         read(path)
 
 
-def test_two_samples_are_read_and_told(tmp_path):
+def test_two_samples_are_read_and_reported(tmp_path):
     path = tmp_path / "run.csv"
     path.write_text(HEAD + ROWS[0] + ROWS[1])
     trace = read(path)
@@ -137,7 +137,7 @@ def test_two_samples_are_read_and_told(tmp_path):
     assert inspect(path).notes == trace.notes
 
 
-def test_a_hole_is_told(tmp_path):
+def test_a_hole_is_reported(tmp_path):
     path = tmp_path / "run.csv"
     path.write_text(HEAD + "".join(ROWS[:20] + ROWS[30:]))
     trace = read(path)
@@ -180,7 +180,7 @@ def test_parquet_without_rows_and_with_gaps(tmp_path):
         read(path)
 
 
-def test_damaged_mat_of_version_7_3_is_told(tmp_path):
+def test_damaged_mat_of_version_7_3_is_reported(tmp_path):
     path = tmp_path / "run.mat"
     path.write_bytes(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512) + b"\x89HDF\r\n\x1a\n" + bytes(600))
     with pytest.raises(InputError, match=r"the HDF5 file is truncated or damaged"):
@@ -237,7 +237,7 @@ def test_the_samples_are_good(samples, tmp_path, kind):
 
 @pytest.mark.parametrize("kind", ["gz", "parquet", "trace", "xml", "mat", "json"])
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.95])
-def test_truncated_files_are_told_as_such(samples, tmp_path, kind, share):
+def test_truncated_files_are_reported_as_such(samples, tmp_path, kind, share):
     path = tmp_path / f"run.{kind}"
     path.write_bytes(samples[kind][: int(share * len(samples[kind]))])
     with pytest.raises(InputError, match=r"truncated"):

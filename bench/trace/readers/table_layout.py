@@ -13,8 +13,8 @@ from collections import Counter
 from dataclasses import dataclass
 
 from bench.trace.channel import split_label
-from bench.trace.known_names import unit_of
 from bench.trace.readers.moments import is_moment
+from bench.trace.signal_names import unit_of
 from bench.units.text import is_unit
 
 BLANKS = " "

@@ -1,6 +1,6 @@
-"""Magnitudes that no servo axis has: a wrong unit, a damaged file, and numbers whose squares overflow or vanish.
+"""Magnitudes that no servo axis can have: a wrong unit, a damaged file, or numbers whose squares overflow or vanish.
 
-The bounds are far beyond any axis, so that what passes here may still be wrong; what does not is never right.
+The bounds are far beyond any axis: a value within them may be wrong, one outside them certainly is.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ LARGEST = {
     KNOWN_TORQUE: 1e12,
     KNOWN_MOMENTUM: 1e12,
 }
-#: A signal that never exceeds this vanishes in its square - SI.
+#: A signal that never exceeds this has a square that underflows - SI.
 SMALLEST = 1e-30
 #: Sample periods that a recording can have - s.
 SHORTEST, LONGEST = 1e-9, 1e6
 
 
-def require_possible(trace: Trace) -> None:
-    """InputError naming the first value beyond what a servo axis can have, or a signal that is next to nothing.
+def require_plausible(trace: Trace) -> None:
+    """Raise InputError for the first value beyond what a servo axis can have, or for a signal that is nearly zero.
 
-    A reference is bounded as the signal it is for.
+    A reference has the bounds of its signal.
     """
     for name, values in {"time": trace.time, **trace.signals}.items():
         unit, where = trace.units.get(name, "s"), f"{trace.origin}: {name}"

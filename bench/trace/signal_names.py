@@ -1,7 +1,6 @@
-"""Names under which recorders store the signals the bench knows, and the units those may stand in.
+"""Names under which recorders store known signals, and the units these may have.
 
-Conservative: a name is taken only as a whole and only when it can mean nothing else; everything else goes through the
-rig's `[trace.columns]`.
+Conservative: only whole and unambiguous names are recognised; everything else goes through the rig's `[trace.columns]`.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ from bench.errors import InputError
 from bench.trace.signals import RELATIVE_TORQUE, SI_UNITS
 from bench.units.text import Scale, UnitError, scale_of
 
-#: Besides its own name; compared in lower case, with `_` as a space, after the last dot of a PLC path.
+#: Other names of signals; compared in lower case, with `_` as a space, after the last dot of a PLC path.
 ALIASES: dict[str, tuple[str, ...]] = {
     "time": ("t", "timestamp", "zeit"),
     "position": ("actual position", "actpos", "lage", "position actual value"),
@@ -29,7 +28,7 @@ ALIASES: dict[str, tuple[str, ...]] = {
     "velocity_reference": ("reference velocity", "velocity demand value"),
     "torque_reference": ("reference torque", "torque demand value"),
 }
-#: Of columns that count samples.
+#: Names of columns that count samples.
 INDICES = frozenset(
     (
         "sample",

@@ -1,9 +1,9 @@
-"""Torque that is known to act on an axis beside its own inertia and friction: what the rest of a robot asks of it.
+"""Known torque on an axis in addition to its inertia and friction, such as that of the rest of a robot.
 
     M_known = r + dp/dt
 
-r - torque of all but accelerations - N*m (N); p - momentum, whose rate is the torque of accelerations - N*m*s (N*s).
-Parted so, no acceleration has to be had from the samples: the balance's own filter takes the rate.
+r - torque not due to acceleration - N*m (N); p - momentum, whose rate is the torque due to acceleration - N*m*s (N*s).
+In this form no acceleration is needed: the filter of the torque balance differentiates the momentum.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from bench.trace.trace import Trace
 
 
 def with_known(trace: Trace, torque: Array, momentum: Array, unit: str) -> Trace:
-    """A recording with what is known to act - unit, unit*s - (n,) each."""
+    """A recording with known torque and momentum - unit, unit*s - (n,) each."""
     signals = {KNOWN_TORQUE: torque, KNOWN_MOMENTUM: momentum}
     return trace.with_signals(signals, {KNOWN_TORQUE: unit, KNOWN_MOMENTUM: f"{unit}*s"})
 
 
 def known_column(trace: Trace, part: slice) -> Column:
-    """The torque that is known along a stretch, as a column of the torque balance; () where none is."""
+    """Known torque along a stretch as a column of the torque balance; () if there is none."""
     if KNOWN_TORQUE not in trace:
         return ()
     return (trace[KNOWN_TORQUE][part], 0), (trace[KNOWN_MOMENTUM][part], 1)
 
 
 def less_known(trace: Trace, effort: Array) -> Array:
-    """An effort less the torque that is known, sample by sample with the noise that has - (n,)."""
+    """An effort less the known torque, unfiltered - (n,)."""
     if KNOWN_TORQUE not in trace:
         return effort
     rate = np.zeros(len(trace))
