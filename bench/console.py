@@ -1,4 +1,4 @@
-"""What commands share: options that mean the same everywhere, and how results reach a person or a file."""
+"""What commands share: common options, and the output of results to a terminal or a file."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the resul
 
 
 def write_json(path: Path, text: str) -> None:
-    """Write JSON to a file in a folder that is there, or to standard output where `path` is -.
+    """Write JSON to a file in an existing folder, or to standard output if `path` is -.
 
     Raises:
         InputError: a place that cannot be written to.
@@ -55,7 +55,7 @@ def write_json(path: Path, text: str) -> None:
 
 @contextmanager
 def refusal_as_json(path: Path | None, schema: str) -> Iterator[None]:
-    """Write what the gate found of a recording that cannot answer, before the error goes its way."""
+    """Write the checks of a recording that the gate refuses as JSON; the error is passed on."""
     from bench.gate.gate import UnanswerableError
 
     try:
@@ -69,7 +69,7 @@ def refusal_as_json(path: Path | None, schema: str) -> Iterator[None]:
 
 
 def console() -> Console:
-    """Console no narrower than the bench's tables, so that a log shows them whole; names in them are no markup."""
+    """Console at least as wide as the bench's tables, also in a log; texts in them are no markup."""
     from rich.console import Console  # 0.04 s, which --version and --help need not pay
     from rich.text import Text
 

@@ -34,7 +34,7 @@ LAYERS = (
     {"demo"},
     {"console"},
     {"cli", "__main__"},
-    {"__init__"},  # the front door: `import bench`
+    {"__init__"},  # public names: `import bench`
 )
 
 

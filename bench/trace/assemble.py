@@ -17,9 +17,9 @@ def assemble(recording: Recording, given: Mapping[str, str] | ReadingOptions | N
 
     Args:
         recording: as a reader returned it.
-        told: signal (or `time`) -> column of the file with unit, e.g. `{"velocity": "-Axis1.ActVel [mm/s]"}`, a leading
-            `-` turns the sign; or all that a rig's `[trace]` tells. Signals not named here are taken from columns with
-            well-known names.
+        given: signal (or `time`) -> column of the file with unit, e.g. `{"velocity": "-Axis1.ActVel [mm/s]"}`, where a
+            leading `-` inverts the sign; or a rig's `[trace]`. Other signals are taken from columns with well-known
+            names.
 
     Raises:
         InputError: a column missing, ambiguous, without unit or of the wrong dimension; no time; values that are not

@@ -1,4 +1,4 @@
-"""Which channel of a recording is which signal, by the rig's columns first and by well-known names second."""
+"""Which channel of a recording is which signal: by the rig's columns first, by well-known names second."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def _serves_all(channel: Channel) -> bool:
 
 
 def axes_of(channels: Iterable[Channel]) -> tuple[str, ...]:
-    """Names of the axes that a recording tells apart, in its order."""
+    """Names of the axes of a recording, in its order."""
     return tuple(dict.fromkeys(channel.axis for channel in channels if channel.axis is not None))
 
 
@@ -209,7 +209,7 @@ def _one(recording: Recording, signal: str, matches: list[Channel]) -> Channel:
 
 
 def _index(recording: Recording, columns: Mapping[str, str]) -> Channel | None:
-    """The column that counts samples: the time that tells no unit, or one of such a name."""
+    """The column that counts samples: a time without a unit, or a column of such a name."""
     given = columns.get("time")
     named = _named(recording, "time", split_label(given)[0]) if given is not None else None
     if named is not None and named.defect is None:
@@ -222,7 +222,7 @@ def _index(recording: Recording, columns: Mapping[str, str]) -> Channel | None:
 
 
 def missing(recording: Recording, what: str, then: str | None = None) -> InputError:
-    """What to say about a column that is not in the file."""
+    """The error for a column that is not in the file."""
     labels = [channel.label for channel in recording.channels]
     shown = ", ".join(labels[:12]) + (f" and {len(labels) - 12} more" if len(labels) > 12 else "")
     return InputError(

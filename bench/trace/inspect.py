@@ -1,4 +1,4 @@
-"""What a recording holds, told before anyone identifies from it: every column and, where plain, the signals."""
+"""What a recording holds, before it is used: every column and, where they are clear, the signals."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class SignalSummary:
 
 @dataclass(frozen=True)
 class ColumnSummary:
-    """One column of the file as it stands there.
+    """One column of the file.
 
     Attributes:
         name, unit: as in the file.
@@ -56,10 +56,10 @@ class ColumnSummary:
         count: of its numbers.
         minimum, maximum, resolution: of its numbers, in the file's unit; None where it holds none, or never changes.
         rate: of its samples, where it has times of its own - Hz.
-        signal: that it is read as, or is likely to be; None where nothing speaks for one.
+        signal: that it is read as, or probably is; None if unknown.
         read: whether it is read as that.
-        why: what speaks for it.
-        suggestion: line for the rig's `[trace.columns]`, where it is not read.
+        why: the reasons.
+        suggestion: line for the rig's `[trace.columns]`, if it is not read.
     """
 
     name: str
@@ -78,13 +78,13 @@ class ColumnSummary:
 
 @dataclass(frozen=True)
 class Inspection:
-    """What a recording holds. Of one whose signals are not plain, only columns and `asks` are told.
+    """What a recording holds; only columns and `asks` if its signals are not clear.
 
     Attributes:
         origin, format: the file and what it is.
         columns: of the file, in its order.
-        axes: that the file tells apart.
-        asks: what keeps the file from being read as it is, and what to write; None where nothing does.
+        axes: of the file.
+        asks: why the file cannot be read as it is, and what to write; None if it can.
         samples: on the regular time base.
         segments: stretches between holes.
         start, duration: of the recording - s.

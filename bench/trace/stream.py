@@ -24,7 +24,7 @@ from bench.trace.time_base import regular
 from bench.trace.trace import Trace
 from bench.trace.wraps import Unwrapping
 
-#: Samples a chunk: small enough for the processor's cache, large enough to forget Python's share of the work.
+#: Samples of a chunk: few enough for the processor's cache, enough to make Python's overhead negligible.
 CHUNK = 1 << 17
 #: Deviation of the step from one chunk to the next, as share of the sample period, within which the second continues
 #: the first.
@@ -67,7 +67,7 @@ def _is_parquet(path: Path) -> bool:
 
 
 def _counts_from_first_moment(path: str) -> bool:
-    """Whether a Parquet file holds moments, which are read as times from the first one: no chunk knows it."""
+    """Whether a Parquet file holds timestamps, which count from the first one, unknown to later chunks."""
     try:
         return any(is_moment(field.type) for field in pq.read_schema(path))
     except DAMAGE:
@@ -90,7 +90,7 @@ def _continues(last: Trace | None, time: Array, period: float, origin: str) -> b
 
 
 def cut(trace: Trace, chunk: int = CHUNK) -> Iterator[Trace]:
-    """The same of a recording that is read already; arguments and what comes as of `stream`."""
+    """The same for a recording in memory; see `stream`."""
     start, last = 0, None
     while start < len(trace):
         stop = start + chunk if len(trace) - start > chunk + 1 else len(trace)
