@@ -1,4 +1,4 @@
-"""The kinds of axis, rotary and linear: what their quantities are called and in which SI units they stand."""
+"""The kinds of axis, rotary and linear: names and SI units of their quantities."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ INERTIA, VISCOUS, COULOMB, OFFSET, MISALIGNMENT = "inertia", "viscous", "coulomb
 
 @dataclass(frozen=True)
 class AxisKind:
-    """How an axis moves; whoever needs a name or a unit that depends on it asks here.
+    """How an axis moves, with the names and units that depend on it.
 
     Attributes:
-        name: as rig files, truths and models carry it.
-        turns: whether it moves by angles, so that a revolution brings it back.
+        name: in rig files, truths and models.
+        turns: whether its position is an angle.
         length_unit: of its position.
-        effort: what drives it, in words.
-        effort_unit: of that.
-        inertia: what resists acceleration, as results name it.
-        inertia_unit: of that.
+        effort: name of what drives it.
+        effort_unit: its unit.
+        inertia: name of its inertia in results.
+        inertia_unit: its unit.
     """
 
     name: str

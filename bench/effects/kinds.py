@@ -19,7 +19,7 @@ from bench.arrays import Array
 from bench.effects.effect import Effect
 from bench.effects.signals import Scope
 
-if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 Number = float | Array

@@ -1,4 +1,4 @@
-"""Put a model onto a joint of somebody else's MJCF: all that MuJoCo makes by itself, in the joint's own units.
+"""Put a model onto a joint of another MJCF: everything native to MuJoCo, in the joint's own units.
 
 A model is on the motor's side of its gear, a joint behind it. With i motor turns per turn of the joint, q_m = i*q:
 
@@ -95,7 +95,7 @@ class Carried:
 
 
 def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature | None = None) -> Carried:
-    """Put a model onto a joint of a robot, in the place of the armature, damping and friction that the joint had.
+    """Put a model onto a joint of a robot, instead of the joint's own armature, damping and friction.
 
     Args:
         spec: of the robot; changed.

@@ -35,7 +35,7 @@ ALLOWED = f"the same motion in both: 1 within {TOLD:.0%}, a lag aside"
 
 
 def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
-    """Hold the speed of a recording against its position; the recording stays as it is."""
+    """Compare the speed of a recording with its position; the recording is unchanged."""
     if not {"position", "velocity"} <= set(trace.signals):
         return trace, absent(NAME, "not both position and velocity are recorded", ALLOWED)
     found = compared(trace)

@@ -125,7 +125,7 @@ def serve(handle: int) -> None:
     Args:
         handle: of the pipe.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of the terminal: whoever waits for the result decides
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of the terminal: the waiting process decides
     with Connection(handle) as calls, Path(os.devnull).open("w") as nowhere:
         try:
             work, deadline = calls.recv()
@@ -133,7 +133,7 @@ def serve(handle: int) -> None:
             calls.send(raised(error))
             return
         calls.send(None)
-        with suppress(EOFError, ConnectionError):  # nobody is left to work for
+        with suppress(EOFError, ConnectionError):  # the parent is gone
             while True:
                 item = calls.recv()
                 faulthandler.dump_traceback_later(deadline + GRACE, exit=True, file=nowhere)

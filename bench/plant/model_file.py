@@ -39,7 +39,7 @@ MOUNTED = {"gear_ratio": "dimensionless", "load_mass": "kg", "link_inertia": "kg
 
 @dataclass(frozen=True)
 class StoredModel:
-    """A model with what is needed to hold it against a recording.
+    """A model with what is needed to compare it with a recording.
 
     Attributes:
         name: of the axis.

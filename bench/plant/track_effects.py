@@ -1,4 +1,4 @@
-"""Hold an axis with effects softly to a recording: its velocity against the recorded one is the velocity gap.
+"""An axis with effects tracks a recording with low gains: its velocity less the recorded one is the velocity gap.
 
 As `bench.plant.track`, with every effect where it acts: electronics on the recorded effort before the simulation,
 mechanisms in MuJoCo (by rollouts where all of them are native, else step by step), sensing on what comes out. What

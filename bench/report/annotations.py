@@ -25,7 +25,7 @@ from bench.report.check import sentences
 MOST = 10
 _LEVELS = {CHANGED: "error"}
 _SEVERITIES = {CHANGED: "major"}
-#: What makes markup of text, or a mention of somebody, after HTML's own.
+#: Characters of Markdown markup and mentions, other than in HTML entities.
 _MARKUP = re.compile(r"[\\`*_\[\]|~@!#](?!#?\w+;)")
 
 

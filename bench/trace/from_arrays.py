@@ -65,7 +65,7 @@ def trace_of(
 
 
 def _channels(signals: Arrays, origin: str) -> Iterator[Channel]:
-    """Columns with samples of their own, which nobody else can change."""
+    """Columns with copies of the samples, independent of the caller's arrays."""
     if isinstance(signals, Mapping):
         found = (_channel(label, values, origin) for label, values in signals.items())
     else:

@@ -177,7 +177,7 @@ def _counted(time: Channel, raw: Array, how: ReadingOptions) -> Clock:
 
 
 def _agreeing(clock: Clock, period: float, time: Channel, notes: list[str]) -> Clock:
-    """The clock, held against the sample period that the rig tells; that period's where the clock is too coarse.
+    """The clock, checked against the rig's sample period; times by that period if the clock is too coarse.
 
     Raises:
         InputError: they contradict each other.

@@ -71,7 +71,7 @@ def likely_signals(channels: Sequence[Channel]) -> dict[int, Likely]:
     numeric = {
         place: channel for place, channel in enumerate(channels) if channel.defect is None and channel.values.size > 1
     }
-    with np.errstate(over="ignore", invalid="ignore"):  # of magnitudes that no axis has: nothing speaks for them
+    with np.errstate(over="ignore", invalid="ignore"):  # implausible magnitudes give no reasons
         times = [place for place, channel in numeric.items() if _rises(channel.values)]
         derived = _derivatives(numeric, times)
     found = [

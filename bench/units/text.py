@@ -111,7 +111,7 @@ def _affine(factor: float, unit: str, si: str) -> Scale:
 
 
 def _turning(text: str, si: str, names: tuple[tuple[str, int], ...]) -> float:
-    """Radians in a unit that does not say what turns; per minute it is revolutions, otherwise nobody can know."""
+    """Radians of a unit without an angle: per minute it means revolutions, otherwise it is ambiguous."""
     if any(name == "min" for name, _ in names):
         minutes = sum(exponent for name, exponent in names if name == "min")
         return 2.0 * math.pi * 60.0**minutes

@@ -13,7 +13,7 @@ from scipy import stats
 from bench.validate.run import Run
 from bench.validate.score import TERMS, Scored
 
-#: Levels of the intervals that are held against the truth.
+#: Levels of the intervals that are compared with the truth.
 LEVELS = (0.5, 0.8, 0.95)
 #: Of bounds on a share.
 CONFIDENCE = 0.95
@@ -96,7 +96,7 @@ class Coverage:
 
     @classmethod
     def of(cls, by: str, group: Group, quantity: str, scored: Sequence[Scored]) -> Coverage:
-        """Of what runs tell of a quantity; nan where they tell nothing."""
+        """Coverage of a quantity; nan without estimates."""
         error, half = (np.array([getattr(one, name) for one in scored]) for name in ("error", "half_width"))
         several = len(scored) > 1
         spread = float(np.std(error, ddof=1)) if several else math.nan
@@ -120,7 +120,7 @@ class Coverage:
 
 
 def coverage(runs: Sequence[Run]) -> list[Coverage]:
-    """Each quantity that `identify` tells, then those of `diagnose`, over all groups of runs that there are."""
+    """Each quantity of `identify`, then of `diagnose`, over all groups of runs."""
     found = []
     for by in ("identify", "diagnose"):
         for name, whole, some in _groups(runs, by):

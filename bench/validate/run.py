@@ -1,4 +1,4 @@
-"""One run: a case is recorded, identified and, where asked for, diagnosed; what is told is held against the truth."""
+"""One run: a case is recorded, identified and, if wanted, diagnosed; results are compared with the truth."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def carried_out(piece: Piece) -> list[Run]:
 
 
 def judged(case: Case, made: Trace | BenchError, plan: Plan) -> Run:
-    """What the bench makes of a recording, held against its case."""
+    """Results on a recording, compared with its case."""
     run = drawn(case)
     if isinstance(made, BenchError):
         return replace(run, status="failed", reason=str(made))
@@ -85,7 +85,7 @@ def judged(case: Case, made: Trace | BenchError, plan: Plan) -> Run:
 
 
 def identified(run: Run, case: Case, trace: Trace) -> Run:
-    """With what `identify` tells, be it a refusal."""
+    """With the result of `identify`, or its refusal."""
     try:
         estimate, status, reason = identify(trace, case.rig), "done", ""
     except RefusedEstimateError as refused:
@@ -96,7 +96,7 @@ def identified(run: Run, case: Case, trace: Trace) -> Run:
 
 
 def diagnosed(run: Run, case: Case, trace: Trace) -> Run:
-    """With what `diagnose` tells, be it a refusal."""
+    """With the result of `diagnose`, or its refusal."""
     try:
         found = diagnose(trace, case.rig)
     except BenchError as refused:

@@ -1,4 +1,4 @@
-"""Quantities that are told, beside their true values; names that are given, beside what is hidden."""
+"""Estimated quantities beside their true values; names beside the hidden effects."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ TERMS = (INERTIA, VISCOUS, COULOMB)
 
 @dataclass(frozen=True)
 class Scored:
-    """One quantity that is told, beside the truth.
+    """One estimated quantity beside its true value.
 
     Attributes:
         by: identify or diagnose.
         effect: that it belongs to, empty for J, K_w and K_0.
         quantity: its name; of J, K_w and K_0 the term of the equation of motion.
-        true: an angle's within half a turn of what is told - the parameter's unit.
-        scale: that errors are told over: the true value's size; 1 of an angle or where that is zero.
-        parameter: what is told.
+        true: true value; of an angle within half a turn of the estimate - the parameter's unit.
+        scale: of errors: magnitude of the true value; 1 for an angle or zero.
+        parameter: the estimate.
     """
 
     by: str
@@ -41,22 +41,22 @@ class Scored:
 
     @property
     def error(self) -> float:
-        """Told less true, over the scale."""
+        """Estimate less true value, over the scale."""
         return (self.parameter.value - self.true) / self.scale
 
     @property
     def half_width(self) -> float:
-        """Of the interval of 95 %, over the scale."""
+        """Half width of the interval of 95 %, over the scale."""
         return self.parameter.half_width / self.scale
 
     def inside(self, level: float) -> bool:
-        """Whether the interval of a level holds the truth."""
+        """Whether the interval of a level contains the true value."""
         low, high = self.parameter.interval(level)
         return bool(low <= self.true <= high)
 
 
 def base(by: str, case: Case, parameters: Mapping[str, Parameter]) -> Iterator[Scored]:
-    """J, K_w and K_0, those that are told.
+    """J, K_w and K_0, as far as they are determined.
 
     Args:
         by: identify or diagnose.
@@ -71,7 +71,7 @@ def base(by: str, case: Case, parameters: Mapping[str, Parameter]) -> Iterator[S
 
 
 def of_effects(case: Case, diagnosis: Diagnosis) -> Iterator[Scored]:
-    """Quantities of the effects that are named and hidden; not whole numbers, which have no interval."""
+    """Quantities of the effects that are named and hidden, without integers, which have no interval."""
     hidden = {effect.name: effect.quantities(case.axis) for effect in case.effects}
     for named in diagnosis.effects:
         truth = hidden.pop(named.name, {})
@@ -91,13 +91,13 @@ def _integers(effect: Effect) -> set[str]:
 
 @dataclass(frozen=True)
 class Named:
-    """What a diagnosis says.
+    """The names of a diagnosis.
 
     Attributes:
         verdict: as the contract has it; empty if there is none.
-        names: that it gives.
-        false: of these, what is not hidden. A name counts as another that, by what is said, it is not told from.
-        missed: of what is hidden, what it does not name.
+        names: those given.
+        false: of these, those not hidden. A name matches effects that it is reported to be ambiguous with.
+        missed: hidden effects that are not named.
         reason: why there is no diagnosis.
     """
 
@@ -109,7 +109,7 @@ class Named:
 
     @classmethod
     def of(cls, verdict: str, named: Sequence[NamedEffect], hidden: Sequence[str]) -> Named:
-        """Names held against what is hidden; one that is given twice is hidden once."""
+        """Names compared with the hidden effects; a name that is given twice matches only one."""
         left, false = list(hidden), []
         for effect in named:
             matched = next((name for name in (effect.name, *effect.ambiguous_with) if name in left), None)
@@ -121,5 +121,5 @@ class Named:
 
     @property
     def exact(self) -> bool:
-        """Whether the names are those of what is hidden."""
+        """Whether the names are exactly those of the hidden effects."""
         return bool(self.verdict) and not self.false and not self.missed

@@ -1,4 +1,4 @@
-"""How several recordings of a diagnosis differ: the model that was found, fitted to each of them alone."""
+"""Differences between several recordings of a diagnosis: the model found, fitted to each of them alone."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Apart:
 
 
 def apart(recordings: Recordings, whole: Fit, parameters: Mapping[str, Parameter]) -> Apart:
-    """Hold the recordings against each other.
+    """Compare the recordings.
 
     Args:
         recordings: laid out.

@@ -1,4 +1,4 @@
-"""What a page is made of. A page is data: kept beside its HTML, it is made anew from there (`bench report`).
+"""The blocks of a page. A page is data, stored with its HTML, which can be regenerated from it (`bench report`).
 
 All text in it is text: a name from a file is shown, whatever it holds, and never obeyed.
 """

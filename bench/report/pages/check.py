@@ -41,7 +41,7 @@ def check_page(checked: Checked, title: str) -> Page:
 
     Args:
         checked: what was found.
-        title: what was held against what.
+        title: names of what is compared.
     """
     sections = [
         Section(key="comparisons", heading="What was compared", blocks=tuple(_compared(checked))),

@@ -1,4 +1,4 @@
-"""The page that shows a model moving: the simulated axis, the one it is held against as a ghost, and both over time."""
+"""The page with a model in motion: the simulated axis, the measured one as a ghost, and both over time."""
 
 from __future__ import annotations
 
