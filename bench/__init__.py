@@ -1,6 +1,6 @@
 """servobench: a physics-backed test bench for a servo axis.
 
-The front door: what most users need is a name of this module, and costs its import only when it is first asked for.
+The public names of the bench. Each is imported when it is first used, so that `import bench` is fast.
 """
 
 import sys
@@ -45,8 +45,8 @@ __all__ = [
 ]
 __version__ = "0.1.0"
 
-#: Module that each name comes from; a test holds it against the imports above, which are what type checkers read.
-_HOMES = {
+#: Module of each name; a test compares it with the imports above, which type checkers read.
+_MODULES = {
     "Checked": "bench.check.compare",
     "Diagnosis": "bench.diagnose.show.show",
     "Effects": "bench.export.effects",
@@ -63,27 +63,26 @@ _HOMES = {
 }
 
 
-class _FrontDoor(ModuleType):
-    """Loads a name when it is asked for, and keeps it though a package has the same one.
+class _LazyModule(ModuleType):
+    """Imports a name when it is first used, and keeps it although a package has the same one.
 
-    `identify`, `diagnose` and `check` are functions here and packages below. Loading a package, whoever does it first,
-    ends with the import system's `setattr(bench, "identify", <package>)`, after which `bench.identify(...)` would call
-    a module. That one binding is declined, so `bench.identify` is the function whatever was imported before or after,
-    while `from bench.identify.regression import ...` finds the package in `sys.modules` as ever. (Only the spelling
-    `import bench.identify.regression as r` is lost: it goes through the attribute.)
+    `identify`, `diagnose` and `check` are functions here and packages below. The import of such a package ends with
+    `setattr(bench, "identify", <package>)`, after which `bench.identify(...)` would call a module. This assignment is
+    ignored, so `bench.identify` is always the function, while `from bench.identify.regression import ...` finds the
+    package in `sys.modules`. (Only `import bench.identify.regression as r` does not work: it uses the attribute.)
     """
 
     def __getattr__(self, name: str) -> object:
-        if name not in _HOMES:
+        if name not in _MODULES:
             raise AttributeError(f"module 'bench' has no attribute '{name}'")
-        return getattr(import_module(_HOMES[name]), name)
+        return getattr(import_module(_MODULES[name]), name)
 
     def __setattr__(self, name: str, value: object) -> None:
-        if not (name in _HOMES and isinstance(value, ModuleType)):
+        if not (name in _MODULES and isinstance(value, ModuleType)):
             super().__setattr__(name, value)
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *__all__})
 
 
-sys.modules[__name__].__class__ = _FrontDoor
+sys.modules[__name__].__class__ = _LazyModule

@@ -1,10 +1,11 @@
-"""The kinds of axis, rotary and linear: what their quantities are called and in which SI units they stand."""
+"""The kinds of axis, rotary and linear: names and SI units of their quantities."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from bench.errors import InputError
+from bench.names import words
 from bench.units import Quantity
 
 #: Terms of the equation M = J*alpha + K_w*omega + K_0*sgn(omega) + M_0 - tau*dM/dt that an identification finds.
@@ -13,16 +14,16 @@ INERTIA, VISCOUS, COULOMB, OFFSET, MISALIGNMENT = "inertia", "viscous", "coulomb
 
 @dataclass(frozen=True)
 class AxisKind:
-    """How an axis moves; whoever needs a name or a unit that depends on it asks here.
+    """How an axis moves, with the names and units that depend on it.
 
     Attributes:
-        name: as rig files, truths and models carry it.
-        turns: whether it moves by angles, so that a revolution brings it back.
+        name: in rig files, truths and models.
+        turns: whether its position is an angle.
         length_unit: of its position.
-        effort: what drives it, in words.
-        effort_unit: of that.
-        inertia: what resists acceleration, as results name it.
-        inertia_unit: of that.
+        effort: name of what drives it.
+        effort_unit: its unit.
+        inertia: name of its inertia in results.
+        inertia_unit: its unit.
     """
 
     name: str
@@ -53,9 +54,13 @@ class AxisKind:
             MISALIGNMENT: "misalignment",
         }[term]
 
-    def spoken(self, term: str) -> str:
+    def in_words(self, term: str) -> str:
         """The same in words, e.g. `moment of inertia`."""
-        return self.parameter(term).replace("_", " ")
+        return words(self.parameter(term))
+
+    def base_parameters(self, effort_unit: str | None = None) -> dict[str, str]:
+        """Names of J, K_w and K_0 with their units; `effort_unit` as of `parameter_unit`."""
+        return {self.parameter(term): self.parameter_unit(term, effort_unit) for term in (INERTIA, VISCOUS, COULOMB)}
 
     def parameter_unit(self, term: str, effort_unit: str | None = None) -> str:
         """Unit of the coefficient of a term, e.g. kg*m**2 of INERTIA, or A*s**2/rad where the effort stands in A.

@@ -1,4 +1,4 @@
-"""How large the content of a file may be: of itself, and of what comes out of it where it is compressed.
+"""Limits on the size of a file's content, as stored and decompressed.
 
 A gzip holds up to a thousand times its size, a Parquet file of one repeated value or a zip far more; a few megabytes
 would fill the memory of any machine. Whatever expands asks here before, or while, it does.
@@ -21,7 +21,7 @@ _POWERS = {"": 0, "k": 1, "m": 2, "g": 3, "t": 4}
 
 @dataclass(frozen=True)
 class Bounds:
-    """What the content of one file may grow to.
+    """Limits on the content of one file.
 
     Attributes:
         size: bytes.
@@ -65,7 +65,7 @@ def bounded(size: str | None) -> Iterator[None]:
 
 @contextmanager
 def within(given: Bounds) -> Iterator[None]:
-    """Within the block these are in force, e.g. those of the process that asked for the work."""
+    """Apply these limits within the block, e.g. those of the process that requested the work."""
     token = _BOUNDS.set(given)
     try:
         yield
@@ -74,18 +74,18 @@ def within(given: Bounds) -> Iterator[None]:
 
 
 def bounds() -> Bounds:
-    """Those in force."""
+    """The limits in force."""
     return _BOUNDS.get()
 
 
 def require_size(where: object, size: float) -> None:
-    """InputError naming `where` if a content of `size` bytes is too large."""
+    """Raise InputError naming `where` if `size` bytes are too many."""
     if size > bounds().size:
         raise InputError(where, f"found {shown(size)}", f"allowed: at most {shown(bounds().size)}; {RAISE}")
 
 
 def require_expansion(where: object, size: float, stored: int) -> None:
-    """InputError naming `where` if a file of `stored` bytes may not expand to `size`."""
+    """Raise InputError naming `where` if a file of `stored` bytes must not expand to `size`."""
     if size > bounds().most(stored):
         raise too_much(where, stored, f"{shown(size)}")
 
@@ -124,7 +124,7 @@ def read_bounded(expanding: Readable, where: object, stored: int) -> bytes:
 
 
 def too_much(where: object, stored: int, found: str) -> InputError:
-    """What to say of a file of `stored` bytes that holds more than it may."""
+    """The error of a file of `stored` bytes that expands beyond its limit."""
     allowed = f"allowed: at most {shown(bounds().most(stored))} out of {shown(stored)}; {RAISE}"
     return InputError(where, f"expands to {found}", allowed)
 

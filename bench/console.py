@@ -1,4 +1,4 @@
-"""What commands share: options that mean the same everywhere, and how results reach a person or a file."""
+"""What commands share: common options, and the output of results to a terminal or a file."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the resul
 
 
 def write_json(path: Path, text: str) -> None:
-    """Write JSON to a file in a folder that is there, or to standard output where `path` is -.
+    """Write JSON to a file in an existing folder, or to standard output if `path` is -.
 
     Raises:
         InputError: a place that cannot be written to.
@@ -54,22 +54,22 @@ def write_json(path: Path, text: str) -> None:
 
 
 @contextmanager
-def told_in_json(path: Path | None, schema: str) -> Iterator[None]:
-    """Write what the gate found of a recording that cannot answer, before the error goes its way."""
-    from bench.checks.gate import UnanswerableError
+def refusal_as_json(path: Path | None, schema: str) -> Iterator[None]:
+    """Write the checks of a recording that the gate refuses as JSON; the error is passed on."""
+    from bench.gate.gate import UnanswerableError
 
     try:
         yield
     except UnanswerableError as error:
         if path is not None:
-            from bench.report.checks import refusal_json
+            from bench.report.gate import refusal_json
 
             write_json(path, refusal_json(schema, error.checks, str(error)))
         raise
 
 
 def console() -> Console:
-    """Console no narrower than the bench's tables, so that a log shows them whole; names in them are no markup."""
+    """Console at least as wide as the bench's tables, also in a log; texts in them are no markup."""
     from rich.console import Console  # 0.04 s, which --version and --help need not pay
     from rich.text import Text
 
@@ -83,13 +83,13 @@ def console() -> Console:
     return found if found.is_terminal else PlainConsole(highlight=False, markup=False, emoji=False, width=110)
 
 
-def tell_warnings(warnings: Iterable[str]) -> None:
+def print_warnings(warnings: Iterable[str]) -> None:
     """A line on standard error for each warning."""
     for warning in warnings:
         typer.echo(plain(f"warning: {warning}"), err=True)
 
 
-def tell_files(files: Iterable[Path]) -> None:
+def print_files(files: Iterable[Path]) -> None:
     """A line for each file written."""
     for path in files:
         typer.echo(plain(f"wrote {path}"))

@@ -22,7 +22,7 @@ class InputError(BenchError):
 
 
 class UndeterminedError(BenchError):
-    """The recording is sound but cannot answer: names the quantity, why, and what to record instead.
+    """A sound recording does not determine a quantity: names it, why, and what to record instead.
 
     Args:
         quantity: the physical quantity that stays undetermined.
@@ -38,6 +38,6 @@ class UndeterminedError(BenchError):
 
 
 class SimulationError(BenchError):
-    """A simulation diverged or was asked for something its model cannot do; never read as "does not fit"."""
+    """A simulation diverged, or its model cannot do what is requested; never interpreted as "does not fit"."""
 
     exit_status = 1

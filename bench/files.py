@@ -1,4 +1,4 @@
-"""Files at the edges of the bench: inputs are read whatever is wrong with them, outputs appear whole or not at all."""
+"""Input and output files: every fault of an input is a clear error, outputs appear whole or not at all."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from pathlib import Path
 from bench.bounds import require_size
 from bench.errors import InputError
 
-#: Device and number of each file that the command under way reads.
+#: Device and inode of each file that the running command reads.
 _INPUTS: ContextVar[frozenset[tuple[int, int]]] = ContextVar("inputs", default=frozenset())
-#: The same of each folder that it writes to alone.
+#: The same for each folder that it has locked for writing.
 _HELD: ContextVar[frozenset[tuple[int, int]]] = ContextVar("held", default=frozenset())
 #: Names of files that are being written.
 _UNDER_WAY = re.compile(r"\.bench-[0-9a-f]{12}-.*", re.DOTALL)
@@ -69,19 +69,19 @@ def read_text(path: str | Path, kind: str) -> str:
 
 
 def sha256(path: Path) -> str:
-    """Of a regular file as it lies there, in hexadecimal digits; raises as `read_bytes`, but for its size."""
+    """SHA-256 of a regular file in hexadecimal digits; raises as `read_bytes`, but for its size."""
     with _opened(path, "a file") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def reason(error: Exception) -> str:
-    """What the system says of a failure, without the path it repeats."""
+    """The system's message of an error, without the path."""
     return (isinstance(error, OSError) and error.strerror) or str(error) or type(error).__name__
 
 
 @contextmanager
 def keeping(inputs: Iterable[Path]) -> Iterator[None]:
-    """Within the block no output replaces one of these files, whatever path or link leads to it."""
+    """Within the block no output replaces one of these files, by any path or link."""
     token = _INPUTS.set(frozenset(filter(None, map(_identity, inputs))))
     try:
         yield
@@ -90,7 +90,7 @@ def keeping(inputs: Iterable[Path]) -> Iterator[None]:
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
-    """Device and number of a file; None where there is none, which whoever reads it will say."""
+    """Device and inode of a file; None if there is none, which reading it will report."""
     try:
         state = path.stat()
     except (OSError, ValueError):
@@ -99,7 +99,7 @@ def _identity(path: Path) -> tuple[int, int] | None:
 
 
 def require_writable(path: str | Path) -> Path:
-    """The file that an output goes to, links followed.
+    """The file of an output, links resolved.
 
     Raises:
         InputError: it is an input, a folder, a pipe or a device, or a loop of links leads to it.
@@ -191,7 +191,7 @@ def _remove_left(folder: Path) -> None:
 
 
 def _flush(path: Path) -> None:
-    """Have the system write a file, or the names in a folder, to the disk; folders only where it allows that."""
+    """Flush a file, or the names in a folder, to the disk; folders only where the system allows it."""
     if path.is_dir() and os.name != "posix":
         return
     handle = os.open(path, os.O_RDONLY)
@@ -203,7 +203,7 @@ def _flush(path: Path) -> None:
 
 @contextmanager
 def held(folder: Path) -> Iterator[None]:
-    """Make a folder and write to it alone: another run of the bench that does the same waits until this one is done.
+    """Make a folder and lock it for writing: another run of the bench waits until this one is done.
 
     Raises:
         InputError: it cannot be made.

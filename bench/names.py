@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -15,6 +16,11 @@ _NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?([eE][+-]?\d+)?")
 def plain(text: str) -> str:
     r"""The text with such characters written out, e.g. `\x1b`."""
     return _OBEYED.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
+
+
+def words(name: str) -> str:
+    """A name of the bench in words, e.g. `moment of inertia` for `moment_of_inertia`."""
+    return name.replace("_", " ")
 
 
 def cell(text: str) -> str:
@@ -39,3 +45,9 @@ def short(text: str, most: int = 200) -> str:
         return text
     half = (most - 5) // 2
     return f"{text[:half]} ... {text[-half:]}"
+
+
+def nearest(name: str, names: list[str]) -> str:
+    """`, did you mean ...?` for a mistyped name, or nothing when no known name is near."""
+    match = difflib.get_close_matches(name, names, n=1)
+    return f", did you mean '{match[0]}'?" if match else ""

@@ -1,4 +1,4 @@
-"""TOML and JSON from files, whatever is wrong with them; JSON that any reader takes."""
+"""TOML and JSON from files, with clear errors; and strictly valid JSON."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def parse_json(text: str, where: object) -> Any:  # noqa: ANN401
 
 
 def json_text(content: Mapping[str, Any], ascii_only: bool = True) -> str:
-    """A result as JSON, which has no nan and no infinity: what is not known is null in it.
+    """A result as JSON, which has no nan and no infinity: unknown values are null.
 
     Raises:
         UndeterminedError: a number of it is not finite.

@@ -18,20 +18,10 @@ PAGE_MAKERS = sorted((ROOT / "docs" / "_ext").glob("*.py"))
 LAYERS = (
     {"errors", "names", "bounds", "files", "structured", "assets", "allocation"},
     {"jobs"},
-    {
-        "units",
-        "usual_units",
-        "unit_registry",
-        "unit_grammar",
-        "unit_names",
-        "unit_text",
-        "axis_kind",
-        "arrays",
-        "statistics",
-    },
+    {"units", "axis_kind", "arrays", "statistics"},
     {"trace"},
     {"rig"},
-    {"checks"},
+    {"gate"},
     {"effects"},
     {"plant"},
     {"balance"},
@@ -44,7 +34,7 @@ LAYERS = (
     {"demo"},
     {"console"},
     {"cli", "__main__"},
-    {"__init__"},  # the front door: `import bench`
+    {"__init__"},  # public names: `import bench`
 )
 
 

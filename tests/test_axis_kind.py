@@ -34,7 +34,7 @@ def test_names_are_those_of_the_public_formats():
         "coulomb_friction_force",
         "force_offset",
     ]
-    assert ROTARY.spoken(INERTIA) == "moment of inertia"
+    assert ROTARY.in_words(INERTIA) == "moment of inertia"
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from bench.assets import asset
-from bench.cli import main
 from bench.trace.read import read
 from bench.trace.write import write
+from tests import command
 from tests.hostile import assert_one_line, bound_by_permissions, columns, csv_of, run
 from tests.identify.motions import recording
 
@@ -19,19 +19,11 @@ RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nr
 
 
 @pytest.fixture
-def bench(capsys, monkeypatch, tmp_path):
-    """Runs `bench` in a folder of its own and returns status, standard output and standard error."""
+def bench(monkeypatch, tmp_path):
+    """Runs `bench` in a folder of its own, which holds a rig file."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "rig.toml").write_text(RIG, encoding="utf-8")
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["bench", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        printed = capsys.readouterr()
-        return stop.value.code, printed.out, printed.err
-
-    return run
+    return command.bench
 
 
 @pytest.fixture(scope="module")
@@ -249,7 +241,7 @@ def test_two_samples_are_too_few_and_say_so(bench, tmp_path):
     assert "samples" in err
 
 
-def test_a_hole_is_told_and_not_bridged(bench, tmp_path):
+def test_a_hole_is_reported_and_not_bridged(bench, tmp_path):
     csv(tmp_path / "run.csv", HEAD + "\n".join([*ROWS[:1000], *ROWS[1200:]]) + "\n")
     status, out, _ = bench("inspect", "run.csv")
     assert status == 0

@@ -55,7 +55,7 @@ def test_the_examples_pass_their_tests(extras):
 
 def test_the_examples_are_what_they_declare(extras):
     names = [Path(name).stem.removeprefix("test_") for name in TESTS]
-    laws = [str(ROOT / "tests" / "effects" / f"test_{name}.py") for name in ("properties", "told")]
+    laws = [str(ROOT / "tests" / "effects" / f"test_{name}.py") for name in ("properties", "sensing", "reporting")]
     done = run(extras, "-m", "pytest", "-q", "-n", "0", "-p", "no:cacheprovider", *laws, "-k", " or ".join(names))
     assert done.returncode == 0, done.stdout + done.stderr
     assert " passed" in done.stdout

@@ -3,7 +3,6 @@
 import contextlib
 import gzip
 import io
-import sys
 import zipfile
 import zlib
 
@@ -13,15 +12,15 @@ import pyarrow.parquet as pq
 import pytest
 
 from bench.bounds import Bounds, bounded
-from bench.cli import main
 from bench.errors import InputError
 from bench.lab.flights import read_flights
 from bench.trace.channel import split_label
 from bench.trace.read import read, read_recording
 from bench.trace.stream import stream
-from bench.unit_grammar import LONGEST, require_unit
 from bench.units import dimensionality, parse
-from bench.usual_units import USUAL_UNITS
+from bench.units.grammar import LONGEST, require_unit
+from bench.units.usual import USUAL_UNITS
+from tests.command import bench
 from tests.hostile import TABLE, columns, cpu_seconds
 
 ROWS = TABLE.split("\n", 1)[1]
@@ -238,36 +237,32 @@ def test_an_option_raises_the_bound_and_lowers_it(tmp_path):
             pass
 
 
-def test_a_fault_of_the_bench_is_never_taken_for_bad_input(tmp_path, monkeypatch, capsys):
+def test_a_fault_of_the_bench_is_never_taken_for_bad_input(monkeypatch):
     def fails(*_):
         raise TypeError("nobody\nforesaw \x1b[31m this")
 
     monkeypatch.setattr("bench.trace.read.read_recording", fails)
     for more in ([], ["--debug"]):
-        monkeypatch.setattr(sys, "argv", ["bench", "inspect", "x.csv", *more])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        lines = capsys.readouterr().err.splitlines()
-        assert stop.value.code == 70
+        status, _, err = bench("inspect", "x.csv", *more)
+        lines = err.splitlines()
+        assert status == 70
         assert "a fault of the bench itself" in lines[-1] and "TypeError: nobody foresaw" in lines[-1]
         assert "\x1b" not in lines[-1]
         assert (len(lines) == 1) is (not more)
         assert ("--debug" in lines[-1]) is (not more)
 
 
-def test_out_of_memory_is_one_line(monkeypatch, capsys):
+def test_out_of_memory_is_one_line(monkeypatch):
     def fails(*_):
         raise MemoryError
 
     monkeypatch.setattr("bench.trace.read.read_recording", fails)
-    monkeypatch.setattr(sys, "argv", ["bench", "inspect", "x.csv"])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    assert stop.value.code == 70
-    assert capsys.readouterr().err == "bench: out of memory; give less at a time, or a machine with more\n"
+    status, _, err = bench("inspect", "x.csv")
+    assert status == 70
+    assert err == "bench: out of memory; give less at a time, or a machine with more\n"
 
 
-def test_a_zip_of_a_version_that_nobody_has_is_told_in_one_line(tmp_path):
+def test_a_zip_of_a_version_that_nobody_has_is_reported_in_one_line(tmp_path):
     """Found by fuzzing: the archive's directory asks for version 25.5."""
     file = io.BytesIO()
     np.savez(file, **dict(zip(("time_s", "velocity_rad_s", "current_A"), columns(20), strict=True)))

@@ -2,7 +2,6 @@
 
 import json
 import re
-import sys
 from contextlib import nullcontext
 
 import numpy as np
@@ -11,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bench.assets import asset
-from bench.cli import main
 from bench.errors import InputError, UndeterminedError
 from bench.identify.regression import identify
 from bench.plant.model_file import load_model, read_table
@@ -21,6 +19,7 @@ from bench.structured import json_text, parse_json
 from bench.trace.inspect import inspect, to_json
 from bench.trace.read import read_recording
 from bench.trace.stream import stream
+from tests.command import bench
 from tests.hostile import columns, cpu_seconds, csv_of
 
 
@@ -79,14 +78,12 @@ def test_numbers_of_a_json_recording_that_are_none(tmp_path, key, value):
 
 
 @pytest.mark.parametrize("case", IMPOSSIBLE)
-def test_json_never_holds_nan(tmp_path, monkeypatch, case):
+def test_json_never_holds_nan(tmp_path, case):
     (tmp_path / "run.csv").write_text(csv_of(*IMPOSSIBLE[case]))
-    monkeypatch.setattr(sys, "argv", ["bench", "inspect", str(tmp_path / "run.csv"), "--json", str(tmp_path / "x")])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    assert stop.value.code in (0, 1, 2)
-    assert (tmp_path / "x").exists() is (stop.value.code == 0)
-    if stop.value.code == 0:
+    status = bench("inspect", tmp_path / "run.csv", "--json", tmp_path / "x").status
+    assert status in (0, 1, 2)
+    assert (tmp_path / "x").exists() is (status == 0)
+    if status == 0:
         content = json.loads((tmp_path / "x").read_text(), parse_constant=pytest.fail)
         assert content["schema"]
 
@@ -156,13 +153,13 @@ RIG_TEXT = asset("data", "rigs", "sh30701p.toml").read_text()
         ("position_gain", "1e300 1/s", "control_period must be below"),
     ],
 )
-def test_periods_in_the_wrong_unit_are_told(tmp_path, key, value, words):
+def test_periods_in_the_wrong_unit_are_reported(tmp_path, key, value, words):
     path = tmp_path / "rig.toml"
     path.write_text(re.sub(rf"^{key} = .*", f'{key} = "{value}"', RIG_TEXT, flags=re.MULTILINE))
     with pytest.raises(InputError, match=words):
         load_rig(path)
 
 
-def test_motions_that_take_for_ever_are_told():
+def test_motions_that_take_for_ever_are_reported():
     with cpu_seconds(4.0), pytest.raises(InputError, match=r"takes 1e\+12 periods of the drive"):
         s_curve([1e9], [1.0], 1e-3)

@@ -9,9 +9,9 @@ from scipy import special
 
 from bench.statistics import NORMAL95
 
-#: Of the interval that is told.
+#: Level of the interval that is reported.
 LEVEL = 0.95
-#: Share by which a reach may exceed a normal distribution's and count as one: its degrees are beyond what can be told.
+#: Share by which a half width may exceed that of a normal distribution and still count as one.
 NORMAL = 1e-6
 
 
@@ -31,34 +31,42 @@ class Parameter:
     std_error: float
     ci95: tuple[float, float]
 
-    def interval(self, level: float) -> tuple[float, float]:
-        """The interval of another level - unit.
+    @property
+    def half_width(self) -> float:
+        """Half width of the 95 % interval - unit."""
+        return 0.5 * (self.ci95[1] - self.ci95[0])
 
-        Half width over standard error at 95 % is that of a Student's t, of as many degrees of freedom as give it; the
-        same t gives the other levels. Without correlation that matters and without `widened` those are the degrees of
-        the covariance; a wide margin beside the covariance is taken for a normal distribution's.
+    @property
+    def degrees(self) -> float:
+        """Degrees of freedom of the Student's t that has this half width; inf for a normal distribution."""
+        reach = self.half_width / self.std_error if self.std_error > 0.0 else NORMAL95
+        student = reach > NORMAL95 * (1.0 + NORMAL)
+        return float(special.stdtridf(0.5 + 0.5 * LEVEL, reach)) if student else math.inf
+
+    def interval(self, level: float) -> tuple[float, float]:
+        """The interval of another level - unit - by Student's t with the same degrees of freedom.
+
+        Without significant correlation and without `widened` those are the degrees of the covariance; a wide margin in
+        addition to the covariance is treated as normally distributed.
 
         Args:
             level: 0 to 1, both excluded.
         """
         if level == LEVEL or not self.std_error > 0.0:
             return self.ci95
-        reach = 0.5 * (self.ci95[1] - self.ci95[0]) / self.std_error
-        student = reach > NORMAL95 * (1.0 + NORMAL)
-        degrees = float(special.stdtridf(0.5 + 0.5 * LEVEL, reach)) if student else math.inf
-        share = float(special.stdtrit(degrees, 0.5 + 0.5 * level)) / reach
+        share = float(special.stdtrit(self.degrees, 0.5 + 0.5 * level)) / (self.half_width / self.std_error)
         low, high = (self.value + share * (bound - self.value) for bound in self.ci95)
         return low, high
 
     def widened(self, *by: float) -> Parameter:
-        """The same, its interval of 95 % wider by what else may move the value so far, independently - unit."""
+        """The same with independent errors of these half widths at 95 % added - unit."""
         reach = math.hypot(*by)
         low, high = (math.hypot(bound - self.value, reach) for bound in self.ci95)
         error = math.hypot(self.std_error, reach / NORMAL95)
         return replace(self, std_error=error, ci95=(self.value - low, self.value + high))
 
     def reaching(self, other: float) -> Parameter:
-        """The same, its interval as far as one around another value that may be the right one instead - unit."""
+        """The same, its interval extended to cover one around another possible value - unit."""
         away, (low, high) = other - self.value, self.ci95
         error = math.hypot(self.std_error, 0.5 * away)
         return replace(self, std_error=error, ci95=(min(low, low + away), max(high, high + away)))

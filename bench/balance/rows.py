@@ -17,7 +17,7 @@ from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
 from bench.trace.conditioning import Conditioning, condition, known_sign, raw_speed
 from bench.trace.filter import Column, GaussianFilter
-from bench.trace.known import known_column
+from bench.trace.known_torque import known_column
 from bench.trace.trace import Trace
 
 #: Widest filter - s: shapes of friction live in the milliseconds around a reversal.

@@ -1,6 +1,6 @@
-"""What counts as a change: margins below which none matters, and how recordings of one axis differ where few tell it.
+"""What counts as a change: margins below which no change matters, and the spread between recordings of one axis.
 
-Both come from `[check.margin]` and `[check.between]` of the rig, by quantity (`coulomb_friction_torque`,
+A rig states both in `[check.margin]` and `[check.between]`, by quantity (`coulomb_friction_torque`,
 `cogging_torque.amplitude`, `torque_gap`): a share of the baseline's value, "2 %", or a number with its unit.
 """
 
@@ -15,26 +15,26 @@ from bench.check.measured import Measured
 from bench.check.state import TORQUE_GAP, VELOCITY_GAP, State
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError
+from bench.names import nearest
 from bench.rig.rig import Rig
-from bench.units import nearest, parse
+from bench.units import parse
 
 _SHARE = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
-#: Margins where the rig states none, as shares of the baseline's value.
+#: Default margins, as shares of the baseline's value.
 MARGINS = {INERTIA: 0.005, VISCOUS: 0.15, COULOMB: 0.03, TORQUE_GAP: 0.25, VELOCITY_GAP: 0.5}
-#: Standard deviations between recordings where fewer than `difference.ENOUGH` tell them and the rig states none, as
-#: shares of the baseline's value: of an axis that is warm and moved alike. Several recordings say better.
+#: Default standard deviations between recordings, as shares of the baseline's value, for an axis that is warm and moves
+#: the same way each time. Used where the rig states none and fewer than `difference.ENOUGH` recordings show them.
 BETWEEN = {INERTIA: 0.001, VISCOUS: 0.03, COULOMB: 0.0075, TORQUE_GAP: 0.04, VELOCITY_GAP: 0.1}
-#: Standard deviation of the noise floor that a recording tells, as share: coloured noise is hard to tell from a gap.
+#: Relative standard deviation of a recording's noise floor: coloured noise is hard to separate from a gap.
 FLOOR = 0.12
-#: The same of quantities of effects, and of the torque that they make.
+#: Default margin, and standard deviation between recordings, of quantities of effects and of their torque.
 OF_EFFECTS, BETWEEN_OF_EFFECTS = 0.25, 0.05
-#: Share of the effort that a motion takes, below which what a parameter does to it matters to nobody.
+#: Share of the effort of a motion below which the contribution of a parameter does not matter.
 LEAST = 1e-3
-#: By how much more two recordings of an axis differ where motion or sampling do: times these standard deviations are,
-#: at 95 % and of two recordings, what `bench.diagnose.add.same_axis` allows from recording to recording (1 % of
-#: inertia, 30 % of viscous and 10 % of Coulomb friction).
+#: Factor on these standard deviations for recordings of different motion or sampling. For two recordings at 95 % it
+#: gives what `bench.diagnose.add.same_axis` allows (1 % of inertia, 30 % of viscous and 10 % of Coulomb friction).
 OTHER_MOTION = 5.0
-#: How much of the speed or acceleration of a motion a parameter's torque is made of.
+#: The quantity of a motion that a parameter's torque is proportional to.
 _MADE_OF = {INERTIA: "rms_acceleration", VISCOUS: "rms_speed"}
 
 
@@ -44,8 +44,8 @@ class Allowed:
 
     Attributes:
         kind: of the axis.
-        margin, between: stated, by quantity, as the rig has them.
-        source: that states them, for messages.
+        margin, between: as the rig states them, by quantity.
+        source: where they are stated, for messages.
     """
 
     kind: AxisKind
@@ -55,14 +55,14 @@ class Allowed:
 
     @classmethod
     def of(cls, rig: Rig | None, kind: AxisKind = ROTARY) -> Allowed:
-        """Those of a rig, or the presets where there is none.
+        """Those of a rig, or the defaults without one.
 
         Args:
             rig: of the axis.
-            kind: of the axis where there is no rig.
+            kind: of the axis, if there is no rig.
 
         Raises:
-            InputError: a quantity that there is not.
+            InputError: an unknown quantity.
         """
         if rig is None:
             return cls(kind)
@@ -75,12 +75,12 @@ class Allowed:
         return found
 
     def margin_of(self, name: str, baseline: Measured, state: State) -> float:
-        """Change of a quantity that does not matter - its unit.
+        """Change of a quantity below which it does not matter - its unit.
 
         Args:
             name: of the quantity.
             baseline: its value.
-            state: the baseline, whose motion tells what a parameter's torque comes to.
+            state: the baseline, whose motion gives the torque of a parameter.
         """
         if name in self.margin:
             return _stated(self.margin[name], baseline, f"{self.source}.margin.{name}")
@@ -112,7 +112,7 @@ def _stated(text: str, baseline: Measured, where: str) -> float:
 
 
 def _require_known(name: str, allowed: Allowed, where: str) -> None:
-    own = [allowed.kind.parameter(term) for term in (INERTIA, VISCOUS, COULOMB)] + [TORQUE_GAP, VELOCITY_GAP]
+    own = [*allowed.kind.base_parameters(), TORQUE_GAP, VELOCITY_GAP]
     of_effects = [f"{effect.name}.{q.name}" for effect in catalogue().values() for q in effect.quantities]
     if name not in own and name not in of_effects:
         known = f"{', '.join(own)}, or EFFECT.QUANTITY as in bench effects"

@@ -1,4 +1,4 @@
-"""The baseline on disk: TOML that lies in version control and reads well in a diff.
+"""The baseline on disk: TOML for version control, readable in a diff.
 
 schema = "bench.baseline/1"
 source = "recordings"
@@ -36,10 +36,9 @@ from bench.structured import read_toml
 
 SCHEMA = "bench.baseline/1"
 HEAD = "# What `bench check` holds the axis against. `bench check --update` writes it anew: look at the difference.\n"
-#: Written in the place of a spread that nobody knows.
-UNTOLD = "not told by fewer than two recordings"
+#: Written instead of an unknown spread.
+NO_SPREAD = "not told by fewer than two recordings"
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?: (.+))?")
-#: Characters of a file name or digest, and of a text in it.
 _ALLOWED = "allowed: as bench check --update wrote it"
 
 
@@ -85,7 +84,7 @@ def _measured(found: Measured) -> dict[str, Any]:
     if math.isfinite(found.degrees):
         table["degrees"] = round(found.degrees, 1)
     table["recordings"] = found.recordings
-    table["spread"] = UNTOLD if found.spread is None else _text(found.spread, found.unit)
+    table["spread"] = NO_SPREAD if found.spread is None else _text(found.spread, found.unit)
     return table
 
 
@@ -208,7 +207,7 @@ class _Reader:
             return Measured(value, unit, 0.0)
         error, _ = self.number(table, "std_error", where)
         degrees, count = table.get("degrees", math.inf), self.one(table, "recordings", int, where)
-        spread = None if table.get("spread", UNTOLD) == UNTOLD else self.number(table, "spread", where)[0]
+        spread = None if table.get("spread", NO_SPREAD) == NO_SPREAD else self.number(table, "spread", where)[0]
         if not (isinstance(degrees, float | int) and degrees > 0.0 and count > 0 and error >= 0.0):
             raise InputError(f"{self.source}: {where}", "found an error or a count below zero", _ALLOWED)
         return Measured(value, unit, error, float(degrees), count, spread)

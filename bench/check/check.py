@@ -1,4 +1,4 @@
-"""Check an axis, or the model of one, against what it was."""
+"""Check an axis, or a model of one, against its baseline."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bench.check.state import State
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-#: Rate at which an axis that has not changed raises an alarm, of all comparisons together.
+#: Probability of a false alarm of an unchanged axis, over all comparisons together.
 FALSE_ALARM_RATE = 0.01
 
 
@@ -23,17 +23,17 @@ def check(
     false_alarm_rate: float = FALSE_ALARM_RATE,
     progress: Callable[[float], None] = lambda share: None,
 ) -> Checked:
-    """Whether an axis is what it was; effects are looked for where the baseline has looked for them.
+    """Whether an axis still is as its baseline; effects are searched for if the baseline names them.
 
     Args:
         trace: a recording of the axis now, or a list of several.
         rig: of the axis.
-        baseline: what it was (`bench.check.baseline.read_baseline`).
-        false_alarm_rate: at which an axis that differs by no margin is called changed, of all comparisons together.
+        baseline: its earlier state (`bench.check.baseline.read_baseline`).
+        false_alarm_rate: probability that an axis within its margins is called changed, over all comparisons.
         progress: called with the share done.
 
     Raises:
-        UndeterminedError: the recording does not tell what the baseline knows.
+        UndeterminedError: the recording does not determine what the baseline holds.
         InputError: rig and recording do not fit together, or the baseline is that of a model.
     """
     require_source(baseline, "recordings")
@@ -48,7 +48,7 @@ def observe(
     Args:
         trace: a recording, or a list of several.
         rig: of the axis.
-        names: whether effects are looked for, which takes seconds; else parameters and residual alone.
+        names: whether effects are searched for, which takes seconds; else only parameters and residual.
         progress: called with the share done.
     """
     traces = [trace] if isinstance(trace, Trace) else list(trace)

@@ -1,4 +1,4 @@
-"""Hold two states of an axis against each other: quantities, names, gaps and verdict, with one false-alarm rate."""
+"""Compare two states of an axis: quantities, names, gaps and verdict, at one false-alarm rate for all of them."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class Checked:
         comparisons: of every quantity and name, worst first.
         baseline, now: the states.
         appeared, gone: effects that are named in one of the states only, with their comparisons.
-        rig, conditions: a line for each thing that differs in the rig, and in motion and sampling.
+        rig, conditions: a line for each difference in the rig, and in motion and sampling.
         false_alarm_rate: of all comparisons together.
-        family: comparisons that were made, those of effects that nobody named counted.
+        family: number of comparisons, including those of effects that neither state names.
     """
 
     result: str
@@ -52,9 +52,9 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
 
     Args:
         baseline: what it was.
-        now: what recordings, or a model, tell of it.
+        now: what it is by recordings, or by a model.
         allowed: margins and spreads.
-        rate: at which an axis that differs by no margin is called changed.
+        rate: probability that an axis that differs by no more than its margins is called changed.
     """
     state = now.state
     rig, moved = differing(baseline.rig, state.rig), unlike(baseline.conditions, state.conditions)
@@ -67,7 +67,8 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     family = len(baseline.quantities) + len(names) + len(pairs) + silent
     sure = all(one.chance <= rate / family for one in names)
     views = [*_views(state, under, sure)]
-    comparisons = [*_of_quantities(baseline, views, allowed, bool(moved)), *_untold(baseline, state), *pairs, *names]
+    quantities = [*_of_quantities(baseline, views, allowed, bool(moved)), *_missing_now(baseline, state)]
+    comparisons = [*quantities, *pairs, *names]
     if rig:
         comparisons = [replace(one, chance=1.0, held_back="the rig is not that of the baseline") for one in comparisons]
     chances = holm(np.array([one.chance for one in comparisons]), silent)
@@ -75,7 +76,7 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     answered.sort(key=lambda one: (RESULTS.index(one.result), one.chance))
     by_name = {one.name: one for one in answered}
     return Checked(
-        result=_together(answered, baseline, state),
+        result=_overall(answered, baseline, state),
         comparisons=tuple(answered),
         baseline=baseline,
         now=state,
@@ -90,11 +91,11 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
 
 @dataclass(frozen=True)
 class View:
-    """A quantity now, with the effects of one's own, of the baseline, or of both in turn.
+    """A quantity now, fitted with the effects of this state, of the baseline, or of each in turn.
 
     Attributes:
         name: of the quantity.
-        values: one or two.
+        values: one, or one for each set of effects.
         noise_floor: of a torque gap - N*m (N).
     """
 
@@ -109,15 +110,15 @@ def _views(now: State, under: Under | None, sure: bool) -> Iterator[View]:
     Args:
         now: the state.
         under: with the effects of the baseline; None where they are the same.
-        sure: whether all names that differ have surely come or gone. That changed the axis, and each state is told by
-            its own; a name on the edge has not, and a change has to show with both.
+        sure: whether all names that differ are significant. Then the axis changed, and each state is described by its
+            own effects; where a name is near its threshold, a change has to show with both sets.
     """
     for name, own in now.quantities.items():
-        if name == TORQUE_GAP:  # how much the effects of the baseline leave now, whatever else was found
+        if name == TORQUE_GAP:  # what the effects of the baseline leave now, whatever else was found
             floor = now.gaps["torque"].noise_floor if under is None else under.noise_floor
             yield View(name, (own if under is None else under.quantities[name],), floor)
         elif name == VELOCITY_GAP and under is not None:
-            continue  # of models with other effects, which are told apart by these
+            continue  # models with other effects are compared by these
         elif under is None or sure or name not in under.quantities:
             yield View(name, (own,))
         else:
@@ -141,15 +142,15 @@ def _of_quantities(baseline: State, views: Sequence[View], allowed: Allowed, mov
         yield Comparison.of(name, before.unit, values, differences, margin, held_back=held_back, least_chance=least)
 
 
-def _untold(baseline: State, now: State) -> Iterator[Comparison]:
-    """What the baseline knows and the recordings now do not tell."""
+def _missing_now(baseline: State, now: State) -> Iterator[Comparison]:
+    """Quantities of the baseline that the recordings now do not determine."""
     for name, before in baseline.quantities.items():
         if name not in now.quantities:
             yield Comparison.of(name, before.unit, (before.value, None), [], 0.0, held_back="it is not told now")
 
 
 def _louder(baseline: State, view: View) -> float:
-    """Chance that a torque gap over its noise floor differs as it does, were only the sensors louder than they were."""
+    """Probability of this difference of the torque gap over its noise floor, if only the sensors' noise had grown."""
     before = baseline.gaps["torque"]
     ratio, now = before.after / before.noise_floor, view.values[0].value / view.noise_floor
     shown = Difference(now - ratio, math.sqrt(2.0) * FLOOR * ratio, math.inf)
@@ -157,12 +158,12 @@ def _louder(baseline: State, view: View) -> float:
 
 
 def _silent(baseline: State, now: State) -> int:
-    """Effects of the catalogue that neither state names: they were looked for too."""
+    """Number of effects that neither state names: they were searched for too."""
     return len(set(catalogue()) - {effect.name for effect in (*baseline.effects, *now.effects)})
 
 
-def _together(answered: list[Comparison], baseline: State, now: State) -> str:
-    """One answer: a verdict that alone differs is on the edge of its threshold, and decides nothing."""
+def _overall(answered: list[Comparison], baseline: State, now: State) -> str:
+    """The overall result. A verdict that differs alone is near its threshold and decides nothing."""
     results = {one.result for one in answered}
     if CHANGED in results:
         return CHANGED

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from bench.check.difference import Difference
 
 SAME, CHANGED, UNDECIDED = "same", "changed", "undecided"
-#: From the worst to the best.
+#: From worst to best.
 RESULTS = (CHANGED, UNDECIDED, SAME)
 
 
@@ -19,13 +19,12 @@ class Comparison:
     Attributes:
         name: of the quantity, or of the effect whose torque it is.
         unit: of all numbers.
-        baseline, now: its values; None of an effect that is not there.
-        differences: now less baseline: one, or as each state's own effects have it where these differ; () where nobody
-            can tell.
-        margin: below which a difference does not matter.
-        effect: whose presence it tells: `appeared` or `gone`; empty of a quantity that both states have.
-        held_back: why it raises no alarm whatever it shows; empty where it may.
-        chance: of such a difference where none is larger than the margin, before the family is counted.
+        baseline, now: its values; None for an effect that is absent.
+        differences: now less baseline: one, or one for each state's effects where these differ; () if unknown.
+        margin: difference that does not matter - unit.
+        effect: `appeared` or `gone` if it is about the presence of an effect; else empty.
+        held_back: why it never raises an alarm; empty if it may.
+        chance: probability of such a difference if the true one is within the margin; uncorrected.
         result: `same`, `changed` or `undecided`.
     """
 
@@ -52,12 +51,12 @@ class Comparison:
         held_back: str = "",
         least_chance: float = 0.0,
     ) -> Comparison:
-        """A comparison with its chance: the largest of those of its differences, all of one sign.
+        """A comparison with its chance: the largest of its differences, if all have one sign.
 
         Args:
             name, unit, differences, margin, effect, held_back: as the attributes.
             values: in the baseline and now.
-            least_chance: of what has to differ beside.
+            least_chance: lower bound, of another quantity that has to differ too.
         """
         found = cls(name, unit, *values, tuple(differences), margin, effect, held_back)
         signs = {difference.value > 0.0 for difference in differences}
@@ -66,7 +65,7 @@ class Comparison:
         return replace(found, chance=max(least_chance, *(difference.chance(margin) for difference in differences)))
 
     def answered(self, rejected: bool) -> Comparison:
-        """With its result, given whether the family rejects that it is the same."""
+        """With its result; `rejected`: whether the corrected test rejects that it is the same."""
         if rejected:
             return replace(self, result=CHANGED)
         may = self.differences and not self.held_back and self.effect != "appeared"
@@ -75,11 +74,11 @@ class Comparison:
 
     @property
     def difference(self) -> Difference | None:
-        """The one that says least: the nearest to nothing of those that there are."""
+        """The smallest of its differences."""
         return min(self.differences, key=lambda one: abs(one.value), default=None)
 
     @property
     def difference95(self) -> tuple[float, float] | None:
-        """Interval of 95 % that holds all differences - unit."""
+        """Interval of 95 % around all differences - unit."""
         bounds = [one.interval(0.95) for one in self.differences]
         return (min(low for low, _ in bounds), max(high for _, high in bounds)) if bounds else None

@@ -1,4 +1,4 @@
-"""Under what conditions recordings were made: motion, sampling and cut-off, so that another motion is no other axis."""
+"""Conditions of recordings: motion, sampling and cut-off, so that another motion is not taken for another axis."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from bench.plant.track import measured_velocity
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-#: Factor within which conditions are alike.
+#: Factor within which conditions count as equal.
 ALIKE = 1.1
-#: Told, but set by nobody: an axis that has changed needs another effort, and the cut-off follows the noise.
+#: Recorded but not compared: a changed axis needs another effort, and the cut-off follows the noise.
 FOLLOWING = frozenset({"rms_effort", "cutoff"})
-#: Over which speed is averaged before its slope is taken - s.
+#: Window over which speed is averaged before it is differentiated - s.
 SMOOTH = 0.02
 
 
 def conditions(traces: Sequence[Trace], rig: Rig, cutoff: float) -> dict[str, Measured]:
-    """Conditions of recordings, the mean where they are several; SI.
+    """Conditions of recordings, their mean where there are several; SI.
 
     Args:
         traces: the recordings.
@@ -38,8 +38,8 @@ def conditions(traces: Sequence[Trace], rig: Rig, cutoff: float) -> dict[str, Me
         "sample_period": "s",
     }
     found = np.mean([_of(trace, rig) for trace in traces], axis=0).tolist()
-    told = {name: Measured(value, unit, 0.0) for (name, unit), value in zip(units.items(), found, strict=True)}
-    return told | {"cutoff": Measured(cutoff, "Hz", 0.0)}
+    measured = {name: Measured(value, unit, 0.0) for (name, unit), value in zip(units.items(), found, strict=True)}
+    return measured | {"cutoff": Measured(cutoff, "Hz", 0.0)}
 
 
 def _of(trace: Trace, rig: Rig) -> list[float]:
@@ -50,18 +50,18 @@ def _of(trace: Trace, rig: Rig) -> list[float]:
         if part.stop - part.start > 2 * width:
             smooth = np.convolve(speed[part], np.full(width, 1.0 / width), "valid")
             slopes.append(np.gradient(smooth, period))
-    top = float(np.quantile(np.abs(speed), 0.99))  # one glitch is no motion
+    top = float(np.quantile(np.abs(speed), 0.99))  # robust against one glitch
     duration = float(trace.time[-1] - trace.time[0])
     return [top, rms(speed), rms(np.concatenate(slopes)), rms(rig.net_effort(trace)[0]), duration, period]
 
 
 def unlike(baseline: Mapping[str, Measured], now: Mapping[str, Measured]) -> list[str]:
     """A line for each condition that differs."""
-    told = []
+    lines = []
     for name in baseline:
         if name in FOLLOWING or name not in now:
             continue
         before, after = baseline[name].value, now[name].value
         if not before / ALIKE <= after <= before * ALIKE:
-            told.append(f"{name.replace('_', ' ')}: {before:.4g} -> {after:.4g} {baseline[name].unit}")
-    return told
+            lines.append(f"{name.replace('_', ' ')}: {before:.4g} -> {after:.4g} {baseline[name].unit}")
+    return lines

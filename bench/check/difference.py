@@ -1,19 +1,19 @@
-"""The difference of two states in one quantity, and what may be said of it.
+"""The difference of two states in one quantity, and the tests on it.
 
     D = now - baseline ~ t(degrees) with variance  s_n**2/k_n + s_b**2/k_b + tau**2*(1/k_n + 1/k_b)
 
-s - own standard error of a recording; tau - standard deviation between recordings beyond it; k - recordings; n, b - now
-and baseline. This is the prediction interval of the next recording (G. J. Hahn, W. Q. Meeker, Statistical Intervals,
-1991, section 4.7): with one recording now it is 1 + 1/k_b times the variance of one. The degrees of freedom of the sum
-are Satterthwaite's (Biometrics Bulletin 2, 1946, 110-114).
+s - standard error of one recording; tau - additional standard deviation between recordings; k - number of recordings;
+n, b - now and baseline. This is the prediction interval of the next recording (G. J. Hahn, W. Q. Meeker, Statistical
+Intervals, 1991, section 4.7): with one recording now it is 1 + 1/k_b times the variance of one. The degrees of freedom
+of the sum are Satterthwaite's (Biometrics Bulletin 2, 1946, 110-114).
 
-Against a margin m three answers are possible, as D's interval lies inside, outside, or across its edge:
+Against a margin m there are three answers:
 
 - same: the interval of 90 % lies within (-m, m). Two one-sided tests at 5 % (D. J. Schuirmann, J. Pharmacokinetics and
   Biopharmaceutics 15, 1987, 657-680); that all quantities are the same is shown at 5 % without a correction, as
   each one has to be (R. L. Berger, Technometrics 24, 1982, 295-300).
-- changed: |D| is larger than m; its chance under |true D| <= m is at most `Difference.chance(m)`, and these are held
-  against the family's rate by `bench.statistics.holm`.
+- changed: |D| exceeds m; its probability if the true |D| <= m is at most `Difference.chance(m)`, which
+  `bench.statistics.holm` corrects for the number of comparisons.
 - undecided: neither.
 """
 
@@ -26,11 +26,11 @@ from scipy import special
 
 from bench.check.measured import Measured
 
-#: Recordings of a baseline from which on the spread between them is theirs alone, by Student's t. Of fewer it is the
-#: larger of what they show and what is stated: at 2 degrees of freedom and 30 comparisons at 1 % an interval reaches
-#: 55 standard deviations, at 4 it reaches 10.
+#: Number of recordings in a baseline from which on the spread is theirs alone, by Student's t. With fewer it is the
+#: larger of theirs and the stated one: at 2 degrees of freedom and 30 comparisons at 1 % an interval is 55 standard
+#: deviations wide on each side, at 4 it is 10.
 ENOUGH = 5
-#: Chance that a quantity which differs by more than its margin is called the same.
+#: Probability that a quantity that differs by more than its margin is called the same.
 NOT_EQUIVALENT = 0.05
 
 
@@ -54,7 +54,7 @@ class Difference:
         Args:
             baseline, now: the quantity in both states.
             between: stated standard deviation between recordings - unit.
-            beside: the same of what differs between the states for a known reason, as their motion - unit.
+            beside: the same for a known difference of the states, such as their motion - unit.
         """
         parts = [(now.std_error**2 / now.recordings, now.degrees)]
         shares = 1.0 / now.recordings + 1.0 / baseline.recordings
@@ -73,7 +73,7 @@ class Difference:
         return cls(now.value - baseline.value, math.sqrt(variance), degrees)
 
     def interval(self, level: float) -> tuple[float, float]:
-        """That holds the true difference with a probability."""
+        """Interval that contains the true difference with probability `level` - unit."""
         reach = _reach(self.degrees, level) * self.std_error
         return self.value - reach, self.value + reach
 
@@ -83,7 +83,7 @@ class Difference:
         return -margin < low and high < margin
 
     def chance(self, margin: float) -> float:
-        """That a true difference of at most a margin shows one this large, either way."""
+        """Probability of a difference this large, in either direction, if the true one is within a margin."""
         if self.std_error == 0.0:
             return float(abs(self.value) <= margin)
         sides = ((abs(self.value) + side * margin) / self.std_error for side in (-1.0, 1.0))
@@ -91,7 +91,7 @@ class Difference:
 
 
 def _tail(degrees: float, value: float) -> float:
-    """Chance that Student's t exceeds a value."""
+    """Probability that Student's t exceeds a value."""
     return float(special.ndtr(-value) if math.isinf(degrees) else special.stdtr(degrees, -value))
 
 

@@ -1,7 +1,7 @@
-"""A model of an axis as a state, and two of them held against each other.
+"""A model of an axis as a state, and the comparison of two of them.
 
-All is exact, so nothing is undecided: a quantity has changed if it differs by more than its margin, an effect is there
-or not. Values say what the file has; the response says what the simulator makes of it.
+All values are exact, so nothing is undecided: a quantity has changed if it differs by more than its margin, an effect
+is present or absent. Values show a change of the file, the response one of the simulator.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from bench.plant.model import parameter_quantities
 from bench.plant.model_file import SCHEMA, StoredModel, load_model, read_table
 from bench.units import Quantity
 
-#: Margins: of an angle - rad -, and of the response's torque as a share of its RMS.
+#: Margins: of an angle - rad -, and of the torque of the response as a share of its RMS.
 ANGLE, RESPONSE = 0.05, 0.01
 
 
@@ -38,8 +38,8 @@ def modelled(path: str | Path, baseline: State | None = None) -> State:
     """The state of a `model.toml` that `bench diagnose` wrote.
 
     Args:
-        path: of it.
-        baseline: whose run its response is to be had in; else one laid out for itself.
+        path: of the model.
+        baseline: whose run the response repeats; without one, a run laid out for the model.
 
     Raises:
         InputError: no such model.
@@ -105,7 +105,7 @@ def _pairs(
 def _of_value(
     name: str, before: Measured, after: Measured, allowed: Allowed, state: State, quantity: Quantity | None = None
 ) -> Comparison:
-    """Comparison of an exact value; of an angle the short way round."""
+    """Comparison of an exact value; angles by the shorter way round."""
     away, margin = after.value - before.value, allowed.margin_of(name, before, state)
     if quantity is not None and quantity.angle:
         away, margin = math.remainder(away, 2.0 * math.pi), ANGLE

@@ -1,9 +1,9 @@
-"""Names that came, went, or are told under another name: how sure each is, by the torque that the effect makes.
+"""Effects that appeared, are gone, or have another name: the significance of each, by the torque of the effect.
 
-A name is a threshold, and an effect near it is named in one recording and not in the next. So names are not compared:
-torques are. What a baseline did not name has an upper bound there - the torque from which on it would have been named,
-or that its residual may hide -, and only an effect that makes clearly more of it now has appeared. What it did name is
-looked for again, named or not.
+Naming is a threshold: an effect near it is named in one recording and not in the next. So torques are compared instead
+of names. For an effect that the baseline does not name there is an upper bound - the torque from which on it would have
+been named, or that the residual may hide -; it has appeared if its torque is clearly above that now. An effect that the
+baseline names is fitted again, named or not.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from bench.check.state import NamedHere, State
 
 @dataclass(frozen=True)
 class Matched:
-    """Effects of two states, held against each other.
+    """Effects of two states, matched.
 
     Attributes:
         both: pairs of one name.
-        renamed: pairs that a recording cannot tell apart.
+        renamed: pairs that a recording cannot distinguish.
         gone: those of the baseline that are not named now.
         appeared: those named now that the baseline does not have.
     """
@@ -40,28 +40,28 @@ class Matched:
         return not (self.renamed or self.gone or self.appeared)
 
     def others(self, baseline: State) -> list[tuple[NamedHere, NamedHere | None]]:
-        """Effects of the baseline, each with what it is now."""
+        """Effects of the baseline, each with its match now; None without one."""
         own = [*self.both]
         return [(effect, next((now for before, now in own if before is effect), None)) for effect in lasting(baseline)]
 
 
 def lasting(state: State) -> list[NamedHere]:
-    """Effects of a state that happen in every recording of the axis."""
+    """Effects of a state that occur in every recording of the axis."""
     return [effect for effect in state.effects if not effect.effect.occasional]
 
 
 def matched(baseline: State, now: State) -> Matched:
-    """Pairs of one effect, then pairs that are each other's `ambiguous_with`, then what is left."""
+    """Pairs of the same effect, then pairs that are `ambiguous_with` each other, then the rest."""
     before, after = lasting(baseline), lasting(now)
     both = _paired(before, after, lambda one, other: one.same(other))
-    renamed = _paired(before, after, lambda one, other: one.told_as(other))
+    renamed = _paired(before, after, lambda one, other: one.indistinguishable_from(other))
     return Matched(tuple(both), tuple(renamed), tuple(before), tuple(after))
 
 
 def _paired(
     before: list[NamedHere], after: list[NamedHere], alike: Callable[[NamedHere, NamedHere], bool]
 ) -> list[tuple[NamedHere, NamedHere]]:
-    """Takes pairs that are alike out of both lists."""
+    """Pairs that are alike, removed from both lists."""
     pairs = []
     for one in list(before):
         other = next((candidate for candidate in after if alike(one, candidate)), None)
@@ -81,22 +81,22 @@ def of_both(
         pairs: effects in the baseline and now.
         allowed: margins and spreads.
         state: the baseline.
-        beside: by how many of their spreads recordings differ where motion or sampling do.
+        beside: factor on the spread between recordings of different motion or sampling; 0 for the same.
     """
     for before, after in pairs:
         for key in before.compared.keys() & after.compared.keys():
-            told, baseline, now = f"{before.name}.{key}", before.compared[key], after.compared[key]
-            between = allowed.between_of(told, baseline)
+            key_in_full, baseline, now = f"{before.name}.{key}", before.compared[key], after.compared[key]
+            between = allowed.between_of(key_in_full, baseline)
             difference = Difference.of(baseline, now, between, beside * between)
-            margin = allowed.margin_of(told, baseline, state)
-            name = told if before.name == before.label else f"{before.label}: {key}"
+            margin = allowed.margin_of(key_in_full, baseline, state)
+            name = key_in_full if before.name == before.label else f"{before.label}: {key}"
             yield Comparison.of(name, baseline.unit, (baseline.value, now.value), [difference], margin)
 
 
 def of_torque(
     before: NamedHere, now: Measured | None, allowed: Allowed, unlike: str, name: str, effect: str
 ) -> Comparison:
-    """Comparison of the torque that an effect of the baseline makes now, whatever it is named."""
+    """Comparison of the torque of an effect of the baseline, whatever its name is now."""
     if before.torque is None or now is None:
         held_back = "the torque balance does not hold it, so its strength is not told"
         return Comparison.of(name, "", (None, None), [], 0.0, effect, held_back)
@@ -107,7 +107,7 @@ def of_torque(
 
 
 def of_appeared(after: NamedHere, baseline: State, allowed: Allowed, unlike: str) -> Comparison:
-    """Comparison of the torque of an effect that is named now with what the baseline's recording would have shown."""
+    """Comparison of the torque of an effect that is new with what the baseline's recording would have shown."""
     if after.torque is None or baseline.shows is None:
         held_back = "told by its signals alone, which do not say from when on the baseline would have shown it"
         return Comparison.of(after.label, "", (None, None), [], 0.0, "appeared", held_back)
@@ -123,7 +123,7 @@ def of_appeared(after: NamedHere, baseline: State, allowed: Allowed, unlike: str
 def of_names(
     found: Matched, torques: Mapping[int, Measured], baseline: State, allowed: Allowed, unlike: str
 ) -> Iterator[Comparison]:
-    """Comparisons of all names that are not the same in both states.
+    """Comparisons of all names that differ between the states.
 
     Args:
         found: effects of both states.

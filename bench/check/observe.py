@@ -1,4 +1,4 @@
-"""The state that recordings of an axis tell, by `identify` alone or by `diagnose` too."""
+"""The state of an axis from recordings, by `identify` alone or by `diagnose` too."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.balance.fit import Fit, fit
 from bench.balance.hum import with_hum
 from bench.balance.hypothesis import Hypothesis, Term
@@ -19,10 +18,10 @@ from bench.check.conditions import conditions
 from bench.check.measured import Measured
 from bench.check.same_rig import rig_values
 from bench.check.state import TORQUE_GAP, VELOCITY_GAP, Gap, NamedHere, Shows, State
-from bench.checks.gate import passed
 from bench.diagnose.diagnosis import POLICY, Diagnosis, diagnose
 from bench.diagnose.found import NamedEffect
 from bench.diagnose.recordings import Recordings
+from bench.gate.gate import passed
 from bench.identify.estimate import Alone
 from bench.identify.regression import identify
 from bench.rig.rig import Rig
@@ -30,17 +29,17 @@ from bench.trace.join import join
 from bench.trace.trace import Trace
 
 Progress = Callable[[float], None]
-#: Effects that another state has, and which of one's own each of them is.
+#: Effects of another state, each with its match in this one.
 Others = Sequence[tuple[NamedHere, NamedHere | None]]
 
 
 @dataclass(frozen=True)
 class Under:
-    """What recordings say with the effects of another state.
+    """Quantities of recordings fitted with the effects of another state.
 
     Attributes:
         quantities: by name.
-        torques: of those effects that the torque balance holds, by their `id`.
+        torques: of those effects that are in the torque balance, by their `id`.
         noise_floor: of the torque gap - N*m (N).
     """
 
@@ -51,11 +50,11 @@ class Under:
 
 @dataclass(frozen=True)
 class Observed:
-    """A state, and what it was read from.
+    """A state, and the fit behind it.
 
     Attributes:
         state: of the axis.
-        fitted: the torque balance with the effects that were found, through the filter that all states share.
+        fitted: the torque balance with the effects found, through the common filter of all states.
         base_units: names and units of J, K_w and K_0.
         unit: of the effort.
     """
@@ -66,13 +65,13 @@ class Observed:
     unit: str = ""
 
     def under(self, others: Others) -> Under:
-        """What the recording says with the effects of another state in the place of its own.
+        """The recording fitted with the effects of another state instead of its own.
 
-        A name that comes or goes moves J, K_w and K_0 with it: what is the same axis has to be so under both.
+        An effect that comes or goes changes J, K_w and K_0 with it: an unchanged axis agrees under both sets.
 
         Args:
-            others: effects of the other state. Those which are not one's own keep the shape they had there to begin
-                with; those which the torque balance does not hold are left out.
+            others: effects of the other state. Those without a match start from the shape they had there; those
+                outside the torque balance are left out.
         """
         own = self.fitted
         assert own is not None
@@ -90,16 +89,16 @@ class Observed:
 
 
 def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
-    """What `identify` tells of recordings: parameters, and how far the residual stands above the noise.
+    """State by `identify`: parameters, and the residual over its noise floor.
 
     Raises:
-        UndeterminedError: they do not determine a parameter.
+        UndeterminedError: the recordings do not determine a parameter.
         InputError: as `identify`.
     """
     traces = [passed(trace, rig).trace for trace in traces]
     found = identify(traces, rig)
     kind, fitted = rig.axis_kind, balance(join(traces), rig, Hypothesis())
-    names = [kind.parameter(term) for term in (INERTIA, VISCOUS, COULOMB)]
+    names = [*kind.base_parameters()]
     gap = _torque_gap(fitted, found.residual.unit)
     state = State(
         source="recordings",
@@ -113,7 +112,7 @@ def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
 
 
 def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda share: None) -> Observed:
-    """What `diagnose` tells of recordings: parameters beside the effects that are named, gaps and verdict.
+    """State by `diagnose`: parameters together with named effects, gaps and verdict.
 
     Raises:
         UndeterminedError, InputError: as `diagnose`.
@@ -146,10 +145,10 @@ def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda sha
 
 
 def balance(trace: Trace, rig: Rig, hypothesis: Hypothesis) -> Fit:
-    """The torque balance of a recording through the filter that all states share.
+    """The torque balance of a recording through the common filter of all states.
 
-    Which filter a recording chooses for itself depends on its noise, and what passes it of noise and of an effect's
-    torque on the filter.
+    The filter that a recording would choose by itself depends on its noise, and noise and torque of an effect behind it
+    depend on the filter: such states would not be comparable.
     """
     return with_hum(fit(Rows.of(trace, rig, width=WIDEST), hypothesis))
 
@@ -179,10 +178,10 @@ def _named(found: NamedEffect, fitted: Fit, index: int, unit: str) -> NamedHere:
 
 
 def _torque(fitted: Fit, index: int, unit: str) -> Measured:
-    """RMS torque of a term that the rest of the model does not explain in its place.
+    """RMS torque of a term that the rest of the model cannot explain.
 
-    Its square is what the term saves of the mean squared residual; its error that of an amplitude along one direction
-    of the rows, of which as many are independent as the filter leaves.
+    Its square is the reduction of the mean squared residual by the term; its error is that of one amplitude fitted to
+    the rows, of which the filter leaves only some independent.
     """
     less = fit(fitted.rows, fitted.hypothesis.without(index))
     saved = max(less.squares - fitted.squares, 0.0) / fitted.count
@@ -191,13 +190,13 @@ def _torque(fitted: Fit, index: int, unit: str) -> Measured:
 
 
 def _torque_gap(fitted: Fit, unit: str) -> Measured:
-    """RMS residual, read from as many independent rows as the filter leaves: r/sqrt(2*n)."""
+    """RMS residual r with its standard error, r/sqrt(2*n) with n independent rows behind the filter."""
     independent = fitted.count / fitted.rows.correlation
     return Measured(fitted.rms, unit, float(fitted.rms / np.sqrt(2.0 * independent)))
 
 
 def _shows(fitted: Fit) -> Shows:
-    """What is significant in a recording, and what its residual may hide: up to `Remainder.chi` it counts as noise."""
+    """Torque that is significant in a recording, and that its residual may hide: up to `Remainder.chi` it is noise."""
     significant = POLICY.significant.threshold(fitted, 1) / fitted.count
     hidden = max(fitted.chi, POLICY.remainder.chi) ** 2 - 1.0
     return Shows(float(np.sqrt(significant)), float(fitted.floor * np.sqrt(hidden)))
@@ -211,7 +210,7 @@ def _gaps(found: Diagnosis, fitted: Fit, unit: str) -> dict[str, Measured]:
 
 
 def _term(effect: NamedHere, mine: NamedHere | None, own: Fit, state: State) -> Term:
-    """The term of an effect: as this recording has it, else of the shape it had in the other."""
+    """The term of an effect: the one of this recording, else one of the shape in the other state."""
     if mine is not None:
         return own.terms[[one for one in state.effects if one.shape is not None].index(mine)]
     return Term(effect.effect, effect.shape or (), load=() if effect.on_load else None)

@@ -17,16 +17,16 @@ from bench.plant.plant import Plant
 from bench.plant.references import References
 from bench.plant.run import run
 
-#: Name of its comparison.
+#: Name of the comparison.
 RESPONSE_TORQUE = "response_torque"
-#: Of the run: length - s -, tick - s -, and of its speed: frequencies - Hz -, shares, time to fade in - s.
+#: Duration and tick of the run - s -; of its speed: frequencies - Hz -, shares of them, and fade-in - s.
 DURATION, TICK = 2.5, 250e-6
 FREQUENCIES, SHARES, FADE = (0.8, 3.1), (0.6, 0.4), 0.3
-#: Of the velocity loop - rad/s -: soft enough for a coupling behind the motor.
+#: Bandwidth of the velocity loop - rad/s -: low enough for a coupling behind the motor.
 BANDWIDTH = 30.0
-#: Torque that accelerates, in Coulomb frictions; and the acceleration at least - rad/s**2 (m/s**2).
+#: Accelerating torque over Coulomb friction; and the least acceleration by `turns` - rad/s**2 (m/s**2).
 OVER_FRICTION, LEAST = 3.0, {True: 50.0, False: 0.5}
-#: Instants at which the torque is kept.
+#: Number of instants at which the torque is kept.
 INSTANTS = 24
 
 
@@ -35,8 +35,8 @@ class Response:
     """A run of a model.
 
     Attributes:
-        inertia: that drive and speeds are laid out for - kg*m**2 (kg).
-        acceleration: the largest of the reference - rad/s**2 (m/s**2).
+        inertia: for which drive and speeds are laid out - kg*m**2 (kg).
+        acceleration: largest of the reference - rad/s**2 (m/s**2).
         torque: of the drive at INSTANTS of the run - N*m (N).
     """
 
@@ -50,7 +50,7 @@ def response(model: AxisModel, like: Response | None = None) -> Response:
 
     Args:
         model: of an axis.
-        like: a run with the same drive and speeds; else they are laid out for the model.
+        like: a run whose drive and speeds are used; without one they are laid out for the model.
 
     Raises:
         SimulationError: the model diverged.

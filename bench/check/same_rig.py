@@ -1,4 +1,4 @@
-"""Whether two states rest on the same rig: what identification reads of it, key by key."""
+"""Differences between the rigs of two states, in the keys that identification reads."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from bench.rig.rig import Rig
 from bench.rig.values import tolerance_of
 
 #: Tables and keys of a rig that no result depends on: its name, the truth of a simulation, what a check allows, and the
-#: drive, whose gains make the motion that is compared by itself.
+#: drive, whose effect on the motion is compared separately.
 BESIDE = frozenset({"name", "simulation", "check", "drive"})
 
 
 def rig_values(rig: Rig) -> dict[str, str]:
-    """What identification reads of a rig as text in SI, by dotted key."""
+    """The keys that identification reads of a rig, dotted, with their values as text in SI."""
     tables = {key: value for key, value in rig if key not in BESIDE and key != "source"}
     found = dict(_flat("", {key: value for key, value in tables.items() if value is not None}))
     if rig.drive is not None:

@@ -1,4 +1,4 @@
-"""The state of an axis: all that is compared, as one or several recordings tell it, or as a model has it."""
+"""The state of an axis, from recordings or from a model: everything that is compared."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from bench.check.measured import Measured
 from bench.check.response import Response
 from bench.effects.effect import Effect
 
-#: Quantities that are no parameter: gaps over their noise floors.
+#: Quantities that are not parameters: gaps over their noise floors.
 GAPS = TORQUE_GAP, VELOCITY_GAP = "torque_gap", "velocity_gap"
-#: Share by which the harmonics of two waves may differ to be one: that of a linear axis' pitch is read from the travel.
+#: Share by which the harmonics of two waves may differ and still be one: the pitch of a linear axis is fitted.
 SAME_WAVE = 0.01
 
 
 @dataclass(frozen=True)
 class NamedHere:
-    """An effect that a state has.
+    """An effect of a state.
 
     Attributes:
         effect: what it is.
         quantities: of it.
-        shape: in the torque balance, in the effect's order; None of one that the signals tell by themselves.
+        shape: in the torque balance, in the effect's order; None for one read directly from signals.
         on_load: whether it acts on the load behind a coupling.
-        torque: RMS torque that nothing else of the model explains - N*m (N); None where the balance does not hold it.
-        ambiguous_with: names that the recording cannot tell from it.
-        gain: squares that it saves over those of noise, what speaks for it; nan where the balance does not hold it.
+        torque: RMS torque that the rest of the model cannot explain - N*m (N); None outside the torque balance.
+        ambiguous_with: names of effects that the recording cannot distinguish from it.
+        gain: reduction of the squared residual over that of noise; nan outside the torque balance.
     """
 
     effect: Effect
@@ -54,7 +54,7 @@ class NamedHere:
 
     @property
     def whole(self) -> list[tuple[Any, float]]:
-        """Quantities of its shape that count whole things, with their values."""
+        """Integer quantities of its shape, with their values."""
         return [pair for pair in zip(self.effect.shapes, self.shape or (), strict=False) if pair[0].whole]
 
     def same(self, other: NamedHere) -> bool:
@@ -64,29 +64,29 @@ class NamedHere:
             bool(np.isclose(a[1], b[1], rtol=SAME_WAVE, atol=0.0)) for a, b in pairs
         )
 
-    def told_as(self, other: NamedHere) -> bool:
-        """Whether a recording cannot tell the two apart."""
+    def indistinguishable_from(self, other: NamedHere) -> bool:
+        """Whether a recording cannot distinguish the two."""
         return self.name in other.ambiguous_with or other.name in self.ambiguous_with
 
     @property
     def compared(self) -> dict[str, Measured]:
-        """Quantities that tell a change: no angles and instants, whose zero means nothing, and nothing whole."""
+        """Quantities that are compared: no angles and instants, whose zero is arbitrary, and no integers."""
         whole = {slot.quantity.name for slot, _ in self.whole}
-        told = [q.name for q in self.effect.quantities if not (q.angle or q.instant or q.name in whole)]
+        names = [q.name for q in self.effect.quantities if not (q.angle or q.instant or q.name in whole)]
         return {
             name: self.quantities[name]
-            for name in told
+            for name in names
             if name in self.quantities and np.isfinite(self.quantities[name].std_error)
         }
 
 
 @dataclass(frozen=True)
 class Gap:
-    """A gap with the effects that were found.
+    """A gap that remains with the effects found.
 
     Attributes:
         after: RMS - unit.
-        noise_floor: that noise alone leaves - unit.
+        noise_floor: RMS from noise alone - unit.
         unit: of both.
     """
 
@@ -97,18 +97,18 @@ class Gap:
 
 @dataclass(frozen=True)
 class Shows:
-    """What a recording would have shown, were it there.
+    """Smallest effects that a recording would have shown.
 
     Attributes:
-        torque: RMS torque from which on an effect of one number is significant - N*m (N).
-        left: RMS torque that may hide in what is left, named or not, for whatever reason - N*m (N).
+        torque: RMS torque from which on an effect with one parameter is significant - N*m (N).
+        left: RMS torque that the residual may hide - N*m (N).
     """
 
     torque: float
     left: float
 
     def named_from(self, numbers: int) -> float:
-        """RMS torque of an effect of so many numbers that the recording cannot have had - N*m (N)."""
+        """RMS torque of an effect with so many parameters that the recording would have shown - N*m (N)."""
         return max(self.torque * float(np.sqrt(numbers)), self.left)
 
 
@@ -117,15 +117,15 @@ class State:
     """The state of an axis.
 
     Attributes:
-        source: `recordings`, or `model` where a file of the simulation says all.
-        names: whether effects were asked for.
+        source: `recordings` or `model`.
+        names: whether effects were searched for.
         quantities: parameters and gaps by name.
         effects: in the order in which they were added.
         verdict: of the diagnosis; empty without names.
         gaps: by `torque` and `velocity`.
-        shows: what else the recording would have shown; None without names.
+        shows: smallest effects that the recording would have shown; None without names.
         conditions: motion, sampling and cut-off by name, SI (`bench.check.conditions`).
-        rig: what identification reads of the rig, by key (`bench.check.same_rig`).
+        rig: values that identification reads of the rig, by key (`bench.check.same_rig`).
         provenance: version, digests, options.
         response: of a model; None of recordings.
     """

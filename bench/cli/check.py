@@ -18,9 +18,9 @@ from bench.console import (
     JsonOption,
     ReportOption,
     console,
-    tell_files,
-    tell_warnings,
-    told_in_json,
+    print_files,
+    print_warnings,
+    refusal_as_json,
     write_json,
 )
 from bench.errors import InputError
@@ -79,7 +79,7 @@ def check(
         if update:
             _update(asked, not without_names)
             return
-        with told_in_json(json, "bench.check/1"):
+        with refusal_as_json(json, "bench.check/1"):
             checked = asked.checked(false_alarm_rate)
         _write(checked, asked, junit, json, report, form)
     raise typer.Exit(STATUS[checked.result])
@@ -182,12 +182,12 @@ def _update(asked: Asked, names: bool) -> None:
 
     state = asked.of_model(asked.simulated) if asked.simulated is not None else asked.observed(names).state
     write_baseline(asked.baseline, state)
-    tell_files([asked.baseline])
+    print_files([asked.baseline])
     count = len(asked.traces)
     if 0 < count < ENOUGH:
         told = "1 recording tells" if count == 1 else f"{count} recordings tell"
         advice = f"make the baseline of {ENOUGH} or more, or state it in [check.between] of the rig"
-        tell_warnings(
+        print_warnings(
             [f"{told} little of how recordings of this axis differ, so defaults count (docs/check.md): {advice}"]
         )
 
@@ -214,7 +214,7 @@ def _write(
     elif json != Path("-"):
         with _no_commands(form):
             console().print(check_table(checked, asked.title))
-            tell_files([path for path in (junit, json, report) if path is not None])
+            print_files([path for path in (junit, json, report) if path is not None])
     if form is Format.GITHUB:
         for line in github_lines(checked, asked.baseline):
             typer.echo(line)

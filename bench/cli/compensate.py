@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.console import RigOption, console, tell_files
+from bench.console import RigOption, console, print_files
 from bench.errors import InputError
 from bench.files import held, write_text
 from bench.names import plain
@@ -46,19 +46,19 @@ def compensate(
     motion = plan(profile, MotionLimits.from_rig(axis, stored.parameters, Cascade.from_rig(axis).control_period))
     reach = float(motion.position.min()), float(motion.position.max())
     with progress(f"tracking {profile}") as done:
-        told = feedforward(stored, float(np.abs(motion.velocity).max()), reach)
+        found = feedforward(stored, float(np.abs(motion.velocity).max()), reach)
         done(0.4)
         before = tracking(stored, axis, motion)
         done(0.7)
-        after = tracking(stored, axis, motion, told)
-    files = DriveUnits.of(axis).files(told)
+        after = tracking(stored, axis, motion, found)
+    files = DriveUnits.of(axis).files(found)
     with held(out):
         for name, text in files.items():
             write_text(out / name, text)
     console().print(_table(f"{axis.name}: {profile}", before, after, kind))
-    if told.left:
-        typer.echo(plain(f"left to the drive's feedback: {', '.join(told.left)}"))
-    tell_files(out / name for name in files)
+    if found.left:
+        typer.echo(plain(f"left to the drive's feedback: {', '.join(found.left)}"))
+    print_files(out / name for name in files)
 
 
 def _table(title: str, before: Tracking, after: Tracking, kind: AxisKind) -> Table:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import console, tell_files, tell_warnings
+from bench.console import console, print_files, print_warnings
 
 
 def demo(
@@ -21,5 +21,5 @@ def demo(
     with progress("demo") as done:
         result = run_demo(out, done)
     console().print(estimate_table(result.estimate, result.title, result.truth))
-    tell_warnings(result.estimate.warnings)
-    tell_files(result.files)
+    print_warnings(result.estimate.warnings)
+    print_files(result.files)

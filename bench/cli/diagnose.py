@@ -16,9 +16,9 @@ from bench.console import (
     JsonOption,
     TracesArgument,
     console,
-    tell_files,
-    tell_warnings,
-    told_in_json,
+    print_files,
+    print_warnings,
+    refusal_as_json,
     write_json,
 )
 from bench.names import in_a_row
@@ -40,10 +40,10 @@ def diagnose(
     figures: FiguresOption = Figures.PNG,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
-    from bench.checks.gate import spoken
     from bench.diagnose.diagnosis import diagnose as run_diagnosis
     from bench.effects.present import named
     from bench.files import held
+    from bench.gate.gate import warnings_of
     from bench.report.diagnosis import SCHEMA, diagnosis_json, diagnosis_table, write_diagnosis
     from bench.report.progress import progress
     from bench.report.provenance import provenance
@@ -53,7 +53,7 @@ def diagnose(
     excluded = frozenset(named(name, "--without").name for name in without or [])
     other = read(holdout) if holdout else None
     names = in_a_row(traces)
-    with told_in_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
+    with refusal_as_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
         recordings = [read(trace) for trace in traces]
         found = run_diagnosis(recordings, axis, other, excluded, done)
     options = {"without": sorted(excluded)} | ({"joint": joint, "at": at or []} if of.robot else {})
@@ -66,5 +66,5 @@ def diagnose(
             write_json(json, diagnosis_json(found, basis))
     if json != Path("-"):
         console().print(diagnosis_table(found, title))
-        tell_files(files)
-    tell_warnings([*found.warnings, *spoken(found.checks)])
+        print_files(files)
+    print_warnings([*found.warnings, *warnings_of(found.checks)])

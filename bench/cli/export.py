@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.console import tell_files
+from bench.console import print_files
 from bench.errors import InputError
 from bench.files import write_text
 from bench.names import plain
@@ -48,7 +48,7 @@ def export(
         write_text(out, text)
         for line in carried.lines:
             typer.echo(plain(line))
-    tell_files([out])
+    print_files([out])
 
 
 def _text(

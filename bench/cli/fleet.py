@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench import __version__
-from bench.console import JsonOption, console, tell_files, write_json
+from bench.console import JsonOption, console, print_files, write_json
 from bench.errors import UndeterminedError
 
 if TYPE_CHECKING:
@@ -42,19 +42,19 @@ def fleet(
     basis = {"version": __version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
     page = out / "fleet.html"
 
-    def tell(found: Fleet) -> None:
+    def write_page(found: Fleet) -> None:
         with keeping(found.manifest.inputs):
             write_text(out / SUMMARY, fleet_json(found, basis) + "\n")
             write_html(page, fleet_page(found, SUMMARY, basis))
 
     with progress(f"evaluating {manifest.name}") as done:
-        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, tell)
+        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, write_page)
     if json is not None:
         write_json(json, fleet_json(found, basis))
     if json != Path("-"):
         for part in fleet_tables(found):
             console().print(part)
-        tell_files([out / TABLE, out / SUMMARY, page])
+        print_files([out / TABLE, out / SUMMARY, page])
     if not found.summary.counts["done"]:
         reason = f"none of {len(found.manifest)} recordings gave a result"
         raise UndeterminedError("the fleet", reason, f"what the column `reason` of {out / TABLE} asks for")

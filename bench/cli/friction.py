@@ -13,9 +13,9 @@ from bench.console import (
     ReportOption,
     RigOption,
     console,
-    tell_files,
-    tell_warnings,
-    told_in_json,
+    print_files,
+    print_warnings,
+    refusal_as_json,
     write_json,
 )
 
@@ -29,14 +29,14 @@ def friction(
     report: ReportOption = None,
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
-    from bench.checks.gate import spoken
     from bench.friction_map.map import friction_map
+    from bench.gate.gate import warnings_of
     from bench.report.friction import SCHEMA, draw_friction, friction_json, friction_table
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
     axis = load_rig(rig).on_axis(axis_name)
-    with told_in_json(json, SCHEMA):
+    with refusal_as_json(json, SCHEMA):
         found = friction_map([read(trace, axis.trace) for trace in traces], axis)
     if out is not None:
         draw_friction(found, axis.name, out)
@@ -49,5 +49,5 @@ def friction(
         write_json(json, friction_json(found))
     if json != Path("-"):
         console().print(friction_table(found, axis.name))
-        tell_files([path for path in (out, report) if path is not None])
-    tell_warnings(spoken(found.checks))
+        print_files([path for path in (out, report) if path is not None])
+    print_warnings(warnings_of(found.checks))

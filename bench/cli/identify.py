@@ -20,9 +20,9 @@ from bench.console import (
     JsonOption,
     TracesArgument,
     console,
-    tell_files,
-    tell_warnings,
-    told_in_json,
+    print_files,
+    print_warnings,
+    refusal_as_json,
     write_json,
 )
 from bench.errors import InputError
@@ -61,8 +61,8 @@ def identify(
     figures: FiguresOption = Figures.PNG,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
-    from bench.checks.gate import spoken
     from bench.files import held
+    from bench.gate.gate import warnings_of
     from bench.identify.estimate import RefusedEstimateError
     from bench.report.estimate import SCHEMA, estimate_json
     from bench.report.provenance import provenance
@@ -74,21 +74,21 @@ def identify(
     options |= {"joint": joint, "at": at or []} if of.robot else {}
     basis = partial(provenance, rig, traces, options, None, mjcf)
     try:
-        with told_in_json(json, SCHEMA):
+        with refusal_as_json(json, SCHEMA):
             estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, cutoff)
     except RefusedEstimateError as refusal:
         if json is not None:
             write_json(json, estimate_json(refusal.estimate, None, str(refusal), basis()))
-        tell_warnings(refusal.estimate.warnings)
+        print_warnings(refusal.estimate.warnings)
         raise
     with nullcontext() if out is None else held(out):
         files = _write(out, traces, axis, estimate, refinement, basis(), of.whole, figures.ending)
         if json is not None:
             write_json(json, estimate_json(estimate, refinement, None, basis()))
     if json != Path("-"):
-        _tell(estimate, refinement, axis, in_a_row(traces))
-        tell_files(files)
-    tell_warnings([*estimate.warnings, *spoken(estimate.checks)])
+        _print(estimate, refinement, axis, in_a_row(traces))
+        print_files(files)
+    print_warnings([*estimate.warnings, *warnings_of(estimate.checks)])
 
 
 def _write(
@@ -109,7 +109,7 @@ def _write(
     return write_identification(out, traces, axis, estimate, refinement, basis, read, ending)
 
 
-def _tell(estimate: Estimate, refinement: Refinement | None, axis: Rig, names: str) -> None:
+def _print(estimate: Estimate, refinement: Refinement | None, axis: Rig, names: str) -> None:
     """Tables for a person."""
     from bench.report.estimate import estimate_table, recordings_table, refinement_line
 
@@ -134,7 +134,7 @@ def _estimate(
     traces: list[Path], of: Subject, estimator: Estimator, refine: bool, cutoff: float | None
 ) -> tuple[Estimate, Refinement | None]:
     """Estimate by the method asked for, and what polishing did to it."""
-    from bench.checks.gate import passed
+    from bench.gate.gate import passed
 
     rig, trace = of.rig, traces[0]
     if estimator is Estimator.LAB:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import AxisOption, JsonOption, ReportOption, console, tell_files, write_json
+from bench.console import AxisOption, JsonOption, ReportOption, console, print_files, write_json
 
 
 def inspect(
@@ -21,17 +21,17 @@ def inspect(
     report: ReportOption = None,
 ) -> None:
     """Say what a recording holds: every column, what it is likely to be, rate, holes, signals with their range."""
-    from bench.checks.gate import gate
-    from bench.report.checks import checks_json, checks_table
+    from bench.gate.gate import gate
+    from bench.report.gate import checks_json, checks_table
     from bench.report.inspection import table
     from bench.rig.rig import load_rig
     from bench.trace.assemble import assemble
-    from bench.trace.how import How
     from bench.trace.inspect import inspect_recording, to_json
     from bench.trace.read import read_recording
+    from bench.trace.reading_options import GivenOptions
 
     axis = load_rig(rig).on_axis(axis_name) if rig else None
-    how = axis.trace if axis is not None else How(axis=axis_name)
+    how = axis.trace if axis is not None else GivenOptions(axis=axis_name)
     recording = read_recording(file)
     found = inspect_recording(recording, how)
     trace = None if found.asks is not None else assemble(recording, how)
@@ -57,4 +57,4 @@ def inspect(
         console().print(table(found))
         if checks:
             console().print(checks_table(checks))
-        tell_files(files)
+        print_files(files)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import console, tell_files
+from bench.console import console, print_files
 from bench.names import plain
 
 
@@ -37,7 +37,7 @@ def lab(
     elif notebooks is not None:
         from bench.lab.notebooks import write_notebooks
 
-        tell_files(write_notebooks(notebooks))
+        print_files(write_notebooks(notebooks))
     elif students is not None or truth is not None:
         raise typer.BadParameter("--students goes with --record, --truth with --grade")
     else:
@@ -50,7 +50,7 @@ def _record(folder: Path, students: int | None, seed: int) -> None:
     from bench.report.progress import progress
 
     with progress("recording") as done:
-        tell_files(record(folder, seed, done) if students is None else record_class(folder, students, seed, done))
+        print_files(record(folder, seed, done) if students is None else record_class(folder, students, seed, done))
 
 
 def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
@@ -62,7 +62,7 @@ def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
     console().print(grades_table(graded))
     for error in bad:
         typer.echo(plain(f"not graded: {error}"), err=True)
-    tell_files(files[:2])
+    print_files(files[:2])
     if bad:
         raise typer.Exit(1)
 
@@ -74,6 +74,6 @@ def _report(data: Path | None, out: Path) -> None:
     with progress("lab course") as done:
         report = report_course(data, out, done)
     console().print(course_table(report.results))
-    tell_files(report.files)
+    print_files(report.files)
     if not report.usable:
         raise typer.Exit(1)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import AxisOption, RigOption, tell_files
+from bench.console import AxisOption, RigOption, print_files
 from bench.names import plain
 
 
@@ -25,5 +25,5 @@ def limits(
     axis = load_rig(rig).on_axis(axis_name)
     found = operating_range(read(trace, axis.trace), axis)
     draw_operating_range(found, out)
-    typer.echo(plain("\n".join(found.says)))
-    tell_files([out])
+    typer.echo(plain("\n".join(found.findings)))
+    print_files([out])

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.console import RigOption, console, tell_files
+from bench.console import RigOption, console, print_files
 from bench.files import write_text
-from bench.names import plain
+from bench.names import plain, words
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -44,7 +44,7 @@ def plan(
     write_text(out, best.motion.csv(period * 1e-3, *counted))
     console().print(_table(best))
     typer.echo(plain(_others(found)))
-    tell_files([out])
+    print_files([out])
 
 
 def _table(best: Planned) -> Table:
@@ -55,12 +55,12 @@ def _table(best: Planned) -> Table:
     table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
     for name in ("quantity", "expected", "standard error", "unit"):
         table.add_column(name, justify="left" if name in ("quantity", "unit") else "right")
-    for name, found in best.tells.items():
-        table.add_row(name.replace("_", " "), f"{found.value:.4g}", f"{found.std_error:.2g}", found.unit)
+    for name, found in best.expected.items():
+        table.add_row(words(name), f"{found.value:.4g}", f"{found.std_error:.2g}", found.unit)
     return table
 
 
 def _others(found: list[Planned]) -> str:
     """How well the other profiles tell the same, in a line."""
-    told = [f"{each.profile} {each.worst:.2%}" if not each.reason else f"{each.profile} nothing" for each in found]
-    return f"largest standard error over its value: {', '.join(told)}"
+    others = [f"{each.profile} {each.worst:.2%}" if not each.reason else f"{each.profile} nothing" for each in found]
+    return f"largest standard error over its value: {', '.join(others)}"

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
-from bench.console import AxisOption, ReportOption, tell_files, tell_warnings
+from bench.console import AxisOption, ReportOption, print_files, print_warnings
 from bench.files import read_text, write_text
 from bench.names import plain, readable
 
@@ -39,6 +39,6 @@ def replay(
             name=readable(model.name), about="the model", media="application/toml", content=read_text(model, "a model")
         )
         write_html(report, replay_page(replayed, f"{readable(model.name)} along {readable(trace.name)}", [file]))
-    typer.echo(plain(replayed.says))
-    tell_files([path for path in (out, report) if path is not None])
-    tell_warnings(replayed.warnings)
+    typer.echo(plain(replayed.summary))
+    print_files([path for path in (out, report) if path is not None])
+    print_warnings(replayed.warnings)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import tell_files
+from bench.console import print_files
 
 
 def report(
@@ -19,4 +19,4 @@ def report(
     """Make report.html of folders anew, from the report.json that lies in each."""
     from bench.report.page.folder import rebuild
 
-    tell_files(rebuild(folders, script))
+    print_files(rebuild(folders, script))

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import tell_files
+from bench.console import print_files
 from bench.errors import InputError
 
 
@@ -18,9 +18,9 @@ def rigs(
     """List the rigs that are shipped, copy one, or say which commands a rig suffices for and all that is missing."""
     from bench.assets import asset
     from bench.files import write_text
+    from bench.names import nearest
     from bench.rig.rig import load_rig
     from bench.rig.suffices import lacking, without_constant
-    from bench.units import nearest
 
     shipped = {path.stem: path for path in sorted(asset("data", "rigs").glob("*.toml"))}
     if name is None:
@@ -38,7 +38,7 @@ def rigs(
         if out.exists() and out.resolve() == path.resolve():
             raise InputError(out, "found the rig itself", "allowed: another file")
         write_text(out, path.read_text(encoding="utf-8"))
-        tell_files([out])
+        print_files([out])
     rig = load_rig(path)
     typer.echo(f"{rig.name}, {rig.kind}")
     for command, keys in lacking(rig).items():

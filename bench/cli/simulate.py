@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import ReportOption, tell_files
+from bench.console import ReportOption, print_files
 from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
@@ -45,4 +45,4 @@ def simulate(
         from bench.report.pages.simulation import simulation_page
 
         write_html(report, simulation_page(simulated, readable(out.name)))
-    tell_files([path for path in (out, truth, report) if path is not None])
+    print_files([path for path in (out, truth, report) if path is not None])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from bench.console import JsonOption, console, tell_files, write_json
+from bench.console import JsonOption, console, print_files, write_json
 from bench.errors import InputError
 from bench.plant.profile_names import DEFAULT, NAMES
 
@@ -64,7 +64,7 @@ def validate(
             console().print(determined(found.runs).table())
         for sheet in sheets(found):
             console().print(sheet.table())
-        tell_files(written)
+        print_files(written)
 
 
 def _write(out: Path, found: Validation, basis: dict[str, Any], command: str, own: bool) -> list[Path]:

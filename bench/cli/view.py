@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
-from bench.console import AxisOption, tell_files, tell_warnings
+from bench.console import AxisOption, print_files, print_warnings
 from bench.errors import InputError
 from bench.files import read_text
 from bench.names import readable
@@ -58,8 +58,8 @@ def view(
         with progress(f"rendering {video.name}") as done:
             write_video(video, shown, Scene.of(shown, of.rig.load), slowed, done)
     _write_page(out, shown, model, readable(profile if trace is None else trace.name), warnings)
-    tell_files([path for path in (out, video) if path is not None])
-    tell_warnings(warnings)
+    print_files([path for path in (out, video) if path is not None])
+    print_warnings(warnings)
 
 
 def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, list[str]]:

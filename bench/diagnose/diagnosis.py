@@ -8,7 +8,6 @@ from dataclasses import replace
 from bench.axis_kind import INERTIA
 from bench.balance.fit import Fit
 from bench.balance.quantities import uncertain
-from bench.checks.gate import joined, passed
 from bench.diagnose.add.add import add
 from bench.diagnose.gap.gap import gap
 from bench.diagnose.name.name import name
@@ -17,13 +16,14 @@ from bench.diagnose.recordings import Recordings
 from bench.diagnose.show.show import Diagnosis, show
 from bench.diagnose.show.suspicions import suspicions
 from bench.diagnose.where.where import where
+from bench.gate.gate import joined, passed
 from bench.identify.determined import require_masses, require_significant
 from bench.identify.load_inertia import load_inertia
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
 Progress = Callable[[float], None]
-#: How names are decided on, unless another policy is given.
+#: Default policy of naming.
 POLICY = Policy()
 
 
@@ -43,7 +43,7 @@ def diagnose(
         holdout: another recording of it, not used to fit.
         excluded: effects that are not tried.
         progress: called with the share done.
-        policy: that decides on names.
+        policy: rules that decide on names.
 
     Raises:
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
@@ -63,13 +63,13 @@ def diagnose(
 
 
 def require_weight(recordings: Recordings, fitted: Fit) -> None:
-    """Refuse effects that leave no inertia which the recording tells, before a model is made of them.
+    """Refuse effects with which the recording no longer determines the inertia, before a model is made of them.
 
     Raises:
-        UndeterminedError: its interval holds zero, or it or the load's is negative.
+        UndeterminedError: the interval of the inertia contains zero, or it or the load's is negative.
     """
     kind = recordings.rig.axis_kind
     found = uncertain(fitted).base(recordings.base_units)
-    told = suspicions(recordings.trace, recordings.rig, {})
-    require_significant(found[kind.parameter(INERTIA)], kind, told)
-    require_masses(found | load_inertia(found, recordings.rig), kind, told)
+    suspected = suspicions(recordings.trace, recordings.rig, {})
+    require_significant(found[kind.parameter(INERTIA)], kind, suspected)
+    require_masses(found | load_inertia(found, recordings.rig), kind, suspected)

@@ -18,10 +18,10 @@ class NamedEffect:
     """An effect that the recording shows.
 
     Attributes:
-        effect: what it is.
-        parameters: its quantities with interval.
-        ambiguous_with: names that this recording cannot tell from it.
-        evidence: figures that speak for it, by what they are.
+        effect: of the catalogue.
+        parameters: its quantities with intervals.
+        ambiguous_with: names of effects that this recording cannot distinguish from it.
+        evidence: figures that support it, by name.
     """
 
     effect: Effect
@@ -31,12 +31,12 @@ class NamedEffect:
 
     @property
     def name(self) -> str:
-        """Of the effect, as in the contract."""
+        """Name of the effect."""
         return self.effect.name
 
     @property
     def values(self) -> dict[str, float]:
-        """Of its quantities - SI."""
+        """Values of its quantities - SI."""
         return {key: parameter.value for key, parameter in self.parameters.items()}
 
 
@@ -46,9 +46,9 @@ class Gap:
 
     Attributes:
         unit: of all numbers.
-        noise_floor: what sensor noise alone leaves.
-        identify, holdout: (before, after) over all rows; None where it could not be had.
-        judged: share of the rows that the verdict is by, and what is left on them; None where it is by all.
+        noise_floor: expected RMS from sensor noise alone.
+        identify, holdout: (before, after) over all rows; None if not available.
+        judged: share of the rows that the verdict is based on, and the gap on them; None if it is all rows.
     """
 
     unit: str
@@ -64,7 +64,7 @@ class Rejected:
 
     Attributes:
         name: of the effect.
-        reason: what spoke against it.
+        reason: why.
     """
 
     name: str
@@ -78,7 +78,7 @@ class Shrunk:
     Attributes:
         effect: added last; empty for the bare axis.
         torque: of the recording, and of the holdout where there is one - N*m (N).
-        velocity: the same - rad/s (m/s); nan where it could not be had.
+        velocity: the same - rad/s (m/s); nan if not available.
     """
 
     effect: str
@@ -88,15 +88,15 @@ class Shrunk:
 
 @dataclass(frozen=True)
 class Course:
-    """One recording over time beside the model as it grew: what each of its steps leaves of speed and torque.
+    """One recording over time, with the residuals of the model after each addition.
 
     Attributes:
         name: `recording` or `holdout`.
         origin: of it.
         time: s - (n,).
         velocity: as measured - rad/s (m/s) - (n,).
-        velocity_left: measured less simulated, for each step (n,), nan where the model says nothing; None where there
-            is no model, or it diverged.
+        velocity_left: measured less simulated, for each step (n,), nan outside the model; None without a model, or
+            if it diverged.
         rows: index into the samples of each row of the torque balance (m,).
         torque: as measured, filtered - N*m (N) - (m,).
         torque_left: measured less modelled, for each step (m,).
@@ -119,10 +119,10 @@ class Profile:
     Attributes:
         coordinate: of `bench.diagnose.where`.
         unit: of it.
-        share: of the first gap's variance that it accounts for.
+        share: of the first gap's variance that it explains.
         centres: of its bins - unit - (b,).
-        before, after: mean of measured less modelled torque in each bin - N*m (N) - (b,); what lies between the two is
-            what the added effects account for.
+        before, after: mean of measured less modelled torque in each bin - N*m (N) - (b,), without and with the added
+            effects.
     """
 
     coordinate: str
@@ -135,14 +135,14 @@ class Profile:
 
 @dataclass(frozen=True)
 class Considered:
-    """An effect of the catalogue, and why it was taken or not.
+    """An effect of the catalogue, and why it was accepted or not.
 
     Attributes:
-        effect: what it is.
+        effect: of the catalogue.
         taken: whether it is in the model.
-        alone: share of the squared gap that it would take where it was tried first; None where it was not tried.
-        beside: share of what is left that it would take beside the others; None where it was not tried.
-        reason: for it, or against.
+        alone: share of the squared gap that it explains alone; None if it was not tried.
+        beside: share of the squared residual that it explains in addition to the others; None if it was not tried.
+        reason: for or against it.
     """
 
     effect: Effect

@@ -1,4 +1,4 @@
-"""The recordings of a diagnosis, laid out: one that is fitted, and one that is not."""
+"""The recordings of a diagnosis as rows of the torque balance: one that is fitted, and a holdout."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from bench.arrays import Array
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.balance.fit import Fit, fit
 from bench.balance.rows import Rows
 from bench.diagnose.gap.decidable import require_another, require_decidable, require_samples
@@ -19,15 +18,15 @@ from bench.trace.trace import Trace
 
 @dataclass(frozen=True)
 class Recordings:
-    """What a diagnosis reads.
+    """Input of a diagnosis.
 
     Attributes:
         rig: of the axis.
-        trace: the recording, or several as one.
-        seen: the same with faults of its sensors undone, as it is fitted.
-        holdout: another one, not fitted; None without one.
-        rows, other: both laid out.
-        detected: effects that the recording's signals show, of which the torque balance holds none.
+        trace: the recording, or several joined.
+        seen: the same with faults of its sensors corrected, as it is fitted.
+        holdout: another recording, not fitted; None without one.
+        rows, other: rows of both.
+        detected: effects outside the torque balance that the signals show directly.
     """
 
     rig: Rig
@@ -40,7 +39,7 @@ class Recordings:
 
     @classmethod
     def of(cls, trace: Trace | Sequence[Trace], rig: Rig, holdout: Trace | None) -> Recordings:
-        """Lay out the recordings and the holdout; a fault that the signals show by themselves is undone before.
+        """Rows of the recordings and of the holdout, after faults that the signals show directly are corrected.
 
         Raises:
             UndeterminedError: the recording is too short, too slow or too quiet to decide.
@@ -73,7 +72,7 @@ class Recordings:
         return cls(rig, trace, seen, holdout, rows, other, detected)
 
     def within_tolerance(self, fitted: Fit) -> list[Fit]:
-        """A balance of the whole recording fitted again with each of the rig's values at the end of its tolerance."""
+        """A balance of the whole recording, refitted with each of the rig's values at the end of its tolerance."""
         if fitted.rows is not self.rows:
             return []
         same = self.rows.conditioning
@@ -87,18 +86,17 @@ class Recordings:
 
     @property
     def current(self) -> Array | None:
-        """Current as it was recorded at the rows - A - (m,); None where another effort was."""
+        """Recorded current at the rows - A - (m,); None if another effort was recorded."""
         return self.seen["current"][self.rows.samples()] if "current" in self.seen else None
 
     @property
     def base_units(self) -> dict[str, str]:
         """Names of J, K_w and K_0 on this kind of axis, with their units."""
-        kind = self.rig.axis_kind
-        return {kind.parameter(term): kind.parameter_unit(term, self.unit) for term in (INERTIA, VISCOUS, COULOMB)}
+        return self.rig.axis_kind.base_parameters(self.unit)
 
 
 def _mended(trace: Trace, rig: Rig, effect: Effect, found: Detected) -> Trace:
-    """A recording with a fault of its sensor undone; without the faulty signal where that stays wrong all the same."""
-    if found.mends or rig.asks_for_speed(trace):
+    """A recording with a fault of its sensor corrected; without the faulty signal if that cannot be corrected."""
+    if found.mends or rig.needs_speed(trace):
         return effect.corrected(trace, found.values)
     return trace.without(effect.faulty_signal)

@@ -49,12 +49,12 @@ class Replay:
     warnings: tuple[str, ...] = ()
 
     @property
-    def says(self) -> str:
+    def summary(self) -> str:
         """Both gaps in one line; without the one that the model says nothing about."""
         torque = f"torque gap {_rms(self.torque - self.torque_simulated):.4g} of {_rms(self.torque):.4g}"
         velocity = f"velocity gap {_rms(self.velocity - self.velocity_simulated):.4g} of {_rms(self.velocity):.4g}"
-        told = f"{torque} {self.effort_unit}"
-        return f"{told}, {velocity} {self.speed_unit}" if np.isfinite(self.velocity_simulated).any() else told
+        gaps = f"{torque} {self.effort_unit}"
+        return f"{gaps}, {velocity} {self.speed_unit}" if np.isfinite(self.velocity_simulated).any() else gaps
 
     def csv(self) -> str:
         """The contract's CSV, empty cells where the model says nothing."""

@@ -20,7 +20,7 @@ from bench.effects.waves import amplitude_and_phase, followed
 from bench.trace.filter import Column
 from bench.units import Quantity
 
-if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 

@@ -48,8 +48,8 @@ class CurrentLoopLag(Electronics):
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """A lag of the speed, unless position tells that; and, as only the difference shows, one of the current."""
-        told = scope.source == "position" or {"position", "velocity"} <= scope.signals
-        return () if told else ("velocity_filter_lag", "current_filter_lag")
+        separable = scope.source == "position" or {"position", "velocity"} <= scope.signals
+        return () if separable else ("velocity_filter_lag", "current_filter_lag")
 
     def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """A lag of the speed by as much."""

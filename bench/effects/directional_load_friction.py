@@ -51,7 +51,7 @@ class DirectionalLoadFriction(Friction):
         return strengths[0] * signals.sign * np.abs(signals.torque + shape[0] * signals.load)
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
-        """None: only in the place of what it replaces."""
+        """None: it is only tried instead of what it replaces."""
         return []
 
     def in_place_of(self, fitted: Fitted) -> tuple[float, ...] | None:

@@ -1,9 +1,9 @@
-"""What an effect is: one piece of physics, or one fault of the measurement, with all that anybody has to know of it.
+"""An effect: one piece of physics, or one fault of the measurement, with everything the bench needs to know about it.
 
     motor torque = J*alpha + K_w*omega + K_0*sgn(omega) + sum over effects of strength_k * column_k(signals, shape)
 
-Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are profiled. An effect overrides what is
-not neutral in it; the rest of the bench asks the object. In a simulation: `bench.effects.kinds`.
+Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are searched. An effect overrides what is not
+neutral for it; the rest of the bench knows no effect by name. How effects act in a simulation: `bench.effects.kinds`.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ from bench.units import Quantity
 if TYPE_CHECKING:
     from bench.effects.kinds import Axis, Number
 
-#: Share of what stands above noise that an effect must explain (one alone explains 0.90, `tests.blind.margins`); that
-#: of a pitch that repeats so many half cycles over a linear axis' travel that no smooth error copies it.
+#: Share of the squared residual above noise that an effect must explain (see `tests.blind.margins`), and that of a
+#: pitch with more than MANY half cycles in a linear axis' travel, which no smooth error imitates.
 SHARE, PITCH_SHARE, MANY = 0.25, 0.1, 20.0
 
-#: What acts on the load behind a coupling: effect, its shape, its strengths over load inertia.
+#: An effect on the load behind a coupling: the effect, its shape, its strengths divided by the load inertia.
 Load = tuple["Effect", tuple[float, ...], tuple[float, ...]]
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """A shape of an effect that was tried beside a fit, and the squares it would take from the residual."""
+    """A shape of an effect, and by how much adding it to a fit would reduce the sum of squared residuals."""
 
     shape: tuple[float, ...]
     gain: float
@@ -45,11 +45,12 @@ class Proposal:
 
 @dataclass(frozen=True)
 class Detected:
-    """An effect read from signals that the torque balance does not hold.
+    """An effect read from signals directly, without the torque balance.
 
     Attributes:
-        values, errors, evidence: of its quantities, their half widths at 95 % - SI -, and figures that speak for it.
-        mends: whether undoing it leaves no more in the faulty signal than noise does.
+        values, errors: its quantities and their half widths at 95 % - SI.
+        evidence: the figures that support it.
+        mends: whether the faulty signal, once corrected, is wrong by no more than noise.
     """
 
     values: Mapping[str, float]
@@ -68,7 +69,7 @@ class FittedTerm(Protocol):
 
 
 class Fitted(Protocol):
-    """A torque balance fitted to a recording, as effects may ask it; see `bench.balance.fit.Fit`."""
+    """A torque balance fitted to a recording, as far as effects may use it; see `bench.balance.fit.Fit`."""
 
     @property
     def theta(self) -> Array: ...  # noqa: D102
@@ -96,34 +97,34 @@ class Fitted(Protocol):
 
 
 class Effect:
-    """Anything the catalogue lists.
+    """Base class of everything in the catalogue.
 
     Attributes:
         name: as in the contract.
         summary: one line.
         quantities: its parameters, with unit and bounds.
-        derived: what is reported beside them, and follows from them.
+        derived: quantities reported too, which follow from them.
         shapes: the nonlinear quantities, in the order in which all methods take them.
-        of_motion: whether its columns are accelerations, which a lag of the reported speed delays as J's.
-        copies_torque: whether its columns are made of the measured torque, and so hold its noise.
-        scales_friction: whether it multiplies the level of dry friction, what other effects add to it included.
-        carries_friction: whether it carries all of dry friction, what other effects add and scale included.
-        bounded: lowest and highest value at which a fit holds strengths, by their places.
+        of_motion: whether its columns are accelerations, which a lag of the reported speed delays as it does that of J.
+        copies_torque: whether its columns are computed from the measured torque, and so contain its noise.
+        scales_friction: whether it multiplies the level of dry friction, including what other effects add to it.
+        carries_friction: whether it replaces dry friction as a whole, including what other effects add and scale.
+        bounded: bounds of strengths in a fit, by their index.
         may_load: whether it may act on the load of a coupling rather than on the motor.
-        couples: whether it joins motor and load; an axis has one such effect.
-        turning_only: whether it has no meaning on a linear axis.
+        couples: whether it joins motor and load; an axis has at most one such effect.
+        turning_only: whether it is meaningless on a linear axis.
         of_speed_alone: whether its torque depends on speed alone.
-        repeatable: whether an axis may have several of it, each of another shape (harmonics, events).
-        occasional: whether it happens in one recording and not in another.
-        bursts: whether what it leaves unexplained comes in bursts.
+        repeatable: whether an axis may have several, each with another shape (harmonics, events).
+        occasional: whether it may occur in one recording and not in another.
+        bursts: whether the residual it leaves comes in bursts.
         biased_by_noise: whether noise of the motion biases its strength, and not only scatters it.
-        not_beside: names of effects beside which it is not sought, as a recording tells but one of them.
-        replaces: names of effects that it is tried in the place of, once nothing else explains more.
-        faulty_signal: name of the signal that `corrected` mends; empty if it mends none.
-        shows_under_drive: whether it shows where the drive runs the model, and hardly where the recording holds it.
-        tolerates: share of the first gap that may be left beside it, if it is unlike that of other effects.
+        not_beside: effects it is not searched together with, as a recording can identify only one of them.
+        replaces: effects that it is tried instead of, once no other addition explains more.
+        faulty_signal: the signal that `corrected` repairs; empty if none.
+        shows_under_drive: whether it is visible if the drive runs the model, and hardly if the recording tracks it.
+        tolerates: share of the first gap that may remain with it, if that differs from other effects.
         fixed_in_simulation: quantities that a fit by simulation leaves alone: whole numbers, instants between samples.
-        undiagnosed: why no recording names it; empty if one does, which a test carries out.
+        undiagnosed: why no recording can show it; empty if one can, which a test demonstrates.
     """
 
     name: ClassVar[str]
@@ -153,57 +154,57 @@ class Effect:
     undiagnosed: ClassVar[str] = ""
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Values of some quantities at which the effect is exactly absent."""
+        """Values of some quantities at which the effect is exactly absent - SI."""
         return {quantity.name: quantity.null for quantity in self.quantities if quantity.null is not None}
 
     def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """Values of quantities that need not be given."""
+        """Values of quantities that may be left out - SI."""
         return {quantity.name: quantity.preset for quantity in self.quantities if quantity.preset is not None}
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
-        """The recording as it is without this fault of its sensors."""
+        """The recording without this fault of its sensors."""
         return signals
 
     def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
-        """Lags to undo on the columns of motion, and on all others, where speed comes from `source` - s."""
+        """Lags to undo in columns of motion, and in all others, if speed comes from `source` - s."""
         return 0.0, 0.0
 
     def effort_lag(self, shape: Sequence[float]) -> float:
-        """Lag to undo on the reported effort - s."""
+        """Lag to undo in the reported effort - s."""
         return 0.0
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Resisting torque per unit of each strength - N*m (N) per unit, raw samples before the filter."""
+        """Resisting torque per unit of each strength - N*m (N) per unit - (n,), unfiltered."""
         return []
 
     def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
-        """Columns of several shapes, one shape after the other; `loads` act behind it if it couples."""
+        """Columns of several shapes, one after the other; `loads` act behind the effect if it couples."""
         return [column for shape in shapes for column in self.columns(signals, shape)]
 
     def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array | float:
-        """Dry friction beside Coulomb's, with its sign, that strengths make - the strengths' unit - (n,)."""
+        """Signed dry friction in addition to Coulomb friction, at these strengths - the strengths' unit - (n,)."""
         return 0.0
 
     def stiffness(self, strengths: Sequence[float]) -> float:
-        """Torque per position by which it pulls the load back - N*m/rad (N/m)."""
+        """Stiffness with which it pulls the load back - N*m/rad (N/m)."""
         return 0.0
 
     def load_inertia(self, strengths: Sequence[float]) -> float:
-        """Inertia behind it, if it couples - kg*m**2 (kg)."""
+        """Inertia of the load, if it couples - kg*m**2 (kg)."""
         return 0.0
 
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array | NDArray[np.complex128]:
-        """What white noise of the acceleration becomes in its first column, over angular frequency."""
+        """Transfer from acceleration to its first column at angular frequencies - rad/s (k,) -: (k,)."""
         return np.zeros_like(omega)
 
     def open_torque(self, fitted: Fitted, index: int) -> Array | None:
-        """Per row, how far its torque moves within what the recording does not tell - N*m (N) - (m,)."""
+        """By how much its torque is undetermined, in each row - N*m (N) - (m,); None: it is not."""
         return None
 
-    # How it is suspected.
+    # How a search finds it.
 
     def sought(self, scope: Scope) -> bool:
-        """Whether such a recording can show it in the torque balance."""
+        """Whether the torque balance of such a recording can show it."""
         return scope.kind.turns or not self.turning_only
 
     def grid(self, scope: Scope) -> list[tuple[float, ...]]:
@@ -211,24 +212,24 @@ class Effect:
         return list(product(*(places(shape, scope) for shape in self.shapes)))
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
-        """Shapes beside a fit, with what each would take from its residual; by default those of the grid."""
+        """Shapes to add to a fit, with the gain of each; by default those of the grid."""
         return fitted.tried(self, self.grid(fitted.scope))
 
     def in_place_of(self, fitted: Fitted) -> tuple[float, ...] | None:
-        """The likeliest shape beside a fit that lacks what this effect replaces."""
+        """Its most likely shape in a fit without the effects that it replaces."""
         return None
 
     def reach(self, shape: Sequence[float], k: int) -> float:
-        """How far a search of the k-th quantity goes at first; see `Shape.reach`."""
+        """First range of a search in the k-th shape quantity; see `Shape.reach`."""
         return self.shapes[k].reach
 
     def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
-        """Share of what stands above the noise floor that it must explain to be taken up."""
+        """Share of the squared residual above the noise floor that it must explain to be accepted."""
         pitches = [value for slot, value in zip(self.shapes, shape, strict=True) if is_pitch(slot, scope)]
         return PITCH_SHARE if any(value > MANY * scope.spacing for value in pitches) else SHARE
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
-        """Whether physics allows these values: every quantity within its bounds."""
+        """Whether every quantity lies within its physical bounds."""
         found = self.report(strengths, shape, base)
         return all(q.lower <= found[q.name] <= q.upper for q in self.quantities if q.name in found)
 
@@ -237,15 +238,15 @@ class Effect:
         return True
 
     def credible(self, shape: Sequence[float]) -> bool:
-        """Whether a search may end with this shape, which it may pass on its way."""
+        """Whether a search may end with this shape; it may always pass through it."""
         return True
 
     def wave_number(self, shape: Sequence[float]) -> float | None:
-        """Of its torque over position, if it is a wave - 1 (rad/m)."""
+        """Wave number of its torque over position - 1 (rad/m); None if it is no wave."""
         return None
 
     def simpler_forms(self) -> tuple[str, ...]:
-        """Names of effects that it becomes where some of its strengths are nil."""
+        """Names of the effects that it reduces to where some of its strengths are zero."""
         return ()
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
@@ -253,46 +254,46 @@ class Effect:
         return {slot.quantity.name: value for slot, value in zip(self.shapes, shape, strict=True)}
 
     def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
-        """Standard deviations of its shape that no noise shows: of an instant between rows at times (m,) - s."""
+        """Standard deviations of its shape beyond those from noise; `time` of the rows - s (m,)."""
         return [0.0] * len(self.shapes)
 
     def spread(self, fitted: Fitted, index: int) -> Array | None:
-        """Covariance of its free shapes beyond what scores tell, where the likelihood's curvature tells too little."""
+        """Covariance of its free shapes where the curvature of the likelihood does not give it; else None."""
         return None
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
-        """Names of effects that such a recording cannot tell from it."""
+        """Names of the effects that such a recording cannot distinguish from it."""
         return ()
 
-    # Where the torque balance does not hold it.
+    # Effects outside the torque balance.
 
     def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
-        """The effect read from signals directly, through a filter of a width - s; None if they do not show it."""
+        """The effect read directly from signals, smoothed by a filter of this width - s; None if not visible."""
         return None
 
     def corrected(self, trace: Trace, values: Mapping[str, float]) -> Trace:
-        """The recording with its fault undone."""
+        """The recording with the faulty signal corrected."""
         return trace
 
     def shown_in(self, trace: Trace, rig: Rig, values: Mapping[str, float]) -> Trace:
-        """The part of a recording in which it shows, if it `shows_under_drive`."""
+        """The part of a recording in which it is visible, if it `shows_under_drive`."""
         return trace
 
     def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float] | None:
-        """Values of an effect it is `ambiguous` with that looks the same in this motion; None if in every motion."""
+        """Values of an effect it is `ambiguous` with at which both look alike; None if they do in every motion."""
         return None
 
     def instead_of_dry_friction(self, torque: float) -> Mapping[str, float] | None:
-        """Values at which it looks as dry friction does in one direction, torque as signed there - N*m (N)."""
+        """Values at which it looks like dry friction of this signed torque - N*m (N) - in motion of one direction."""
         return None
 
     @property
     def kind(self) -> str:
-        """`physics`, or `measurement` of a sensor's fault."""
+        """`physics`, or `measurement` for a fault of a sensor."""
         return "physics"
 
     @classmethod
     def overrides(cls, hook: str) -> bool:
-        """Whether the effect has a hook of its own rather than the neutral one of its kind."""
+        """Whether the effect overrides a hook of its base class."""
         neutral: Any = next((vars(base)[hook] for base in cls.__mro__[::-1] if hook in vars(base)), None)
         return getattr(cls, hook, None) is not neutral

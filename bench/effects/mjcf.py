@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 

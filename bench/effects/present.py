@@ -11,7 +11,8 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
 from bench.effects.kinds import Axis
 from bench.errors import InputError
-from bench.units import Quantity, nearest, parse
+from bench.names import nearest
+from bench.units import Quantity, parse
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from bench.effects.signals import Base, Scope, Shape, Shapes, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
-if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 #: Level of sliding friction, as share of Coulomb's, below which a fit of others has lost its way.

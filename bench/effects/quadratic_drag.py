@@ -18,7 +18,7 @@ from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
-if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 

@@ -1,1 +1,1 @@
-"""A model taken along: into somebody else's MJCF, into his simulation, and into the drive."""
+"""Export of a model: into another MJCF, another simulation, or the drive."""

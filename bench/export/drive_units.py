@@ -11,7 +11,7 @@ from bench.arrays import Array
 from bench.export.feedforward import Feedforward, Table
 from bench.rig.rig import Rig
 from bench.trace.channel import split_label
-from bench.trace.known_names import scale_in
+from bench.trace.signal_names import scale_in
 from bench.trace.signals import unit_on
 
 
@@ -73,19 +73,19 @@ class DriveUnits:
         rows = np.column_stack(columns)[np.argsort(coordinate, kind="stable")]
         return "\n".join([",".join(head), *(",".join(f"{value:.9g}" for value in row) for row in rows.tolist())]) + "\n"
 
-    def inertia(self, told: Feedforward) -> Iterator[tuple[str, float, str]]:
+    def inertia(self, feedforward: Feedforward) -> Iterator[tuple[str, float, str]]:
         """The inertia's feed-forward: name, value and unit."""
-        yield "inertia_feedforward", told.inertia, self.rig.axis_kind.inertia_unit
+        yield "inertia_feedforward", feedforward.inertia, self.rig.axis_kind.inertia_unit
         constant = self.rig.motor.torque_per_ampere
         if constant is not None:
-            per = told.inertia / constant.constant / self.current.factor * self.velocity.factor
+            per = feedforward.inertia / constant.constant / self.current.factor * self.velocity.factor
             yield "current_per_acceleration", per, f"{self.current.text}/({self.velocity.text}/s)"
 
-    def files(self, told: Feedforward) -> dict[str, str]:
+    def files(self, feedforward: Feedforward) -> dict[str, str]:
         """Names and texts of the files that hold all of it."""
-        rows = [f"{name},{value:.9g},{unit}" for name, value, unit in self.inertia(told)]
+        rows = [f"{name},{value:.9g},{unit}" for name, value, unit in self.inertia(feedforward)]
         return {
             "inertia.csv": "\n".join(["name,value,unit", *rows]) + "\n",
-            "friction.csv": self.table("velocity", self.velocity, told.friction),
-            "cogging.csv": self.table("position", self.position, told.cogging),
+            "friction.csv": self.table("velocity", self.velocity, feedforward.friction),
+            "cogging.csv": self.table("position", self.position, feedforward.cogging),
         }

@@ -37,7 +37,7 @@ ONE_STAGE = (
 
 
 class Effects:
-    """Effects of a model that are not native, at a joint of somebody's simulation.
+    """Non-native effects of a model at a joint of another simulation.
 
     Args:
         model: path of a `model.toml`, or what `bench.plant.model_file.load_model` gives.
@@ -53,14 +53,14 @@ class Effects:
         self._running: _Running | None = None
 
     def step(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Advance a simulation by one step with the effects: in the place of `mujoco.mj_step(model, data)`.
+        """Advance a simulation by one step with the effects, instead of `mujoco.mj_step(model, data)`.
 
         Raises:
             InputError: the model has no such joint, or a Runge-Kutta integrator.
         """
         running = self._run(model, data)
         if self.stored.model.stepped:
-            if running.drive.asked:
+            if running.drive.needs_forces:
                 mujoco.mj_forward(model, data)
             running.prepare()
         mujoco.mj_step(model, data)
@@ -78,7 +78,7 @@ class Effects:
         running = self._run(model, data)
         if running.time == data.time:
             return  # mj_forward calls it too
-        if running.drive.asked:
+        if running.drive.needs_forces:
             mujoco.mj_fwdActuation(model, data)
         running.prepare()
         dof = model.joint(self.joint).dofadr[0]
@@ -88,7 +88,7 @@ class Effects:
             data.iefc_frictionloss[data.map_efc2iefc[rows]] = model.dof_frictionloss[dof]
 
     def _run(self, model: mujoco.MjModel, data: mujoco.MjData) -> _Running:
-        """The effects on a simulation; begun anew where it is another one, or its time runs back."""
+        """The effects on a simulation; restarted if it is another one, or its time decreases."""
         running = self._running
         if running is None or running.data is not data or running.model is not model or data.time < running.time:
             if running is not None:
@@ -107,7 +107,7 @@ class Effects:
 
 
 class Copies:
-    """Effects on all simulations of a batch; `step` in the place of `batch.step()`.
+    """Effects on all simulations of a batch; `step` instead of `batch.step()`.
 
     Args:
         batch: of copies.
@@ -133,7 +133,7 @@ class Copies:
 
     def step(self) -> None:
         """Advance all copies by one step with the effects."""
-        if self._drive.asked:
+        if self._drive.needs_forces:
             self._batch.forward()
         demand = self._drive.torque(self._control, self._force)
         time = np.asarray(self._time).reshape(-1)
@@ -180,8 +180,8 @@ class Drive:
         return cls(model.actuator_ctrladr[chosen], chosen, model.actuator_gear[chosen, 0] / ratio, gains, limits)
 
     @property
-    def asked(self) -> bool:
-        """Whether MuJoCo has to make the forces before they are known: that of a servo, of a winding."""
+    def needs_forces(self) -> bool:
+        """Whether MuJoCo has to compute forces first, as those of a servo or a winding."""
         return bool(np.isnan(self.gains).any())
 
     def torque(self, control: Array, force: Array) -> Array:

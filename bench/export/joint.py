@@ -1,4 +1,4 @@
-"""Put a model onto a joint of somebody else's MJCF: all that MuJoCo makes by itself, in the joint's own units.
+"""Put a model onto a joint of another MJCF: everything native to MuJoCo, in the joint's own units.
 
 A model is on the motor's side of its gear, a joint behind it. With i motor turns per turn of the joint, q_m = i*q:
 
@@ -20,10 +20,10 @@ import numpy as np
 
 from bench.effects.mjcf import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.errors import InputError
+from bench.names import nearest
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import STICKING_IMPEDANCE
 from bench.plant.model_file import StoredModel
-from bench.units import nearest
 
 #: What makes an actuator what it is, but for its name, its joint and its gear.
 ACTUATOR = (
@@ -95,7 +95,7 @@ class Carried:
 
 
 def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature | None = None) -> Carried:
-    """Put a model onto a joint of a robot, in the place of the armature, damping and friction that the joint had.
+    """Put a model onto a joint of a robot, instead of the joint's own armature, damping and friction.
 
     Args:
         spec: of the robot; changed.
@@ -199,8 +199,8 @@ def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
     try:
         return spec.compile()
     except ValueError as error:
-        said = " ".join(str(error).split())
-        raise InputError("the MJCF", f"MuJoCo refuses it: {said}", "allowed: what MuJoCo compiles") from error
+        reason = " ".join(str(error).split())
+        raise InputError("the MJCF", f"MuJoCo refuses it: {reason}", "allowed: what MuJoCo compiles") from error
 
 
 def _scaled(values: np.ndarray, ratio: float) -> np.ndarray:

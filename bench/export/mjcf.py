@@ -1,4 +1,4 @@
-"""MJCF with a model in it, as text: somebody's robot with its joint, or a file of the joint alone."""
+"""MJCF with a model as text: another robot with its joint, or a file of the joint alone."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from bench.plant.model_file import StoredModel
 
 #: The body of a file that holds the joint alone.
 BODY = "load"
-#: Of a joint whose motor nobody told: the body has it all.
+#: Of a joint whose motor is not known: the body has all of the inertia.
 UNKNOWN = Armature(0.0, "as the motor's inertia is not known")
 
 
@@ -31,8 +31,8 @@ def read_mjcf(path: Path) -> mujoco.MjSpec:
     try:
         return mujoco.MjSpec.from_file(str(path))
     except (ValueError, OSError) as error:
-        said = " ".join(reason(error).split())
-        raise InputError(path, f"MuJoCo does not read it: {said}", "allowed: MJCF") from error
+        message = " ".join(reason(error).split())
+        raise InputError(path, f"MuJoCo does not read it: {message}", "allowed: MJCF") from error
 
 
 def robot_with(path: Path, joint: str, stored: StoredModel, out: Path, share: Share | None) -> tuple[str, Carried]:

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.balance.fit import fit
 from bench.balance.hypothesis import Hypothesis
 from bench.balance.parameter import Parameter
@@ -21,9 +20,11 @@ from bench.balance.quantities import uncertain
 from bench.balance.rows import Rows
 from bench.balance.shapes import shaped
 from bench.diagnose.name.candidates import candidates
+from bench.diagnose.show.next_experiment import LONG_ENOUGH
 from bench.effects.effect import Effect
 from bench.effects.present import Present
 from bench.errors import InputError, UndeterminedError
+from bench.names import words
 from bench.plant.limits import MotionLimits
 from bench.plant.plant import Plant
 from bench.plant.profiles import PROFILES, full_torque, plan
@@ -32,37 +33,35 @@ from bench.plant.simulate import simulate
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-#: Least duration of a recording that tells anything - s: a shorter profile is repeated.
-LONG_ENOUGH = 4.0
-#: Profiles that ask for more than the motor has serve another end.
+#: Profiles to choose from: not the one that demands more than the motor has.
 PLANNED = tuple(name for name, profile in PROFILES.items() if profile is not full_torque)
 
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """A motion and what it will tell.
+    """A motion, and the errors to expect from its recording.
 
     Attributes:
         profile: its name.
         motion: at the drive's ticks, repeated until it is long enough.
-        tells: quantities with the errors to expect, by name.
-        reason: why it tells nothing; empty where it does.
+        expected: quantities with the errors to expect, by name.
+        reason: why it determines nothing; empty if it does.
     """
 
     profile: str
     motion: References
-    tells: Mapping[str, Parameter]
+    expected: Mapping[str, Parameter]
     reason: str = ""
 
     @property
     def worst(self) -> float:
-        """Largest standard error of what it tells, over the value; infinite where it tells nothing."""
-        shares = [found.std_error / abs(found.value) for found in self.tells.values() if found.value]
+        """Largest relative standard error; infinite if it determines nothing."""
+        shares = [found.std_error / abs(found.value) for found in self.expected.values() if found.value]
         return max((share for share in shares if np.isfinite(share)), default=np.inf) if not self.reason else np.inf
 
 
 def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
-    """Every profile that the rig can follow, the one that tells best first.
+    """Every profile that the rig can follow, the most accurate first.
 
     Args:
         rig: with `[drive]` and `[simulation]`, which is what is expected of axis and sensors.
@@ -86,7 +85,7 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
         found.append(_planned(name, motion, trace, rig, effect))
     found.sort(key=lambda each: each.worst)
     if not np.isfinite(found[0].worst):
-        what = "inertia and friction" if effect is None else effect.name.replace("_", " ")
+        what = "inertia and friction" if effect is None else words(effect.name)
         raise UndeterminedError(what, f"no profile tells it: {found[0].reason}", "nothing yet: state more of the rig")
     return found
 
@@ -94,7 +93,7 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
 def _planned(name: str, motion: References, trace: Trace, rig: Rig, effect: Effect | None) -> Planned:
     """What a simulated recording tells of the effect, or of inertia and friction."""
     kind = rig.axis_kind
-    units = {kind.parameter(term): kind.parameter_unit(term) for term in (INERTIA, VISCOUS, COULOMB)}
+    units = kind.base_parameters()
     try:
         rows = Rows.of(trace, rig)
     except UndeterminedError as error:

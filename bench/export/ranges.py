@@ -42,7 +42,9 @@ def ranges_json(stored: StoredModel, result: Path) -> str:
     try:
         between = content.get("between") or {}
         parameters = {
-            name: _range(table, between.get(name)) for name, table in content["parameters"].items() if _told(table)
+            name: _range(table, between.get(name))
+            for name, table in content["parameters"].items()
+            if _has_interval(table)
         }
         effects = [_effect(entry) for entry in content.get("effects", [])]
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -52,7 +54,7 @@ def ranges_json(stored: StoredModel, result: Path) -> str:
     return json_text({"schema": SCHEMA, "name": stored.name, **kept}) + "\n"
 
 
-def _told(table: Mapping[str, Any]) -> bool:
+def _has_interval(table: Mapping[str, Any]) -> bool:
     return table["ci95"] is not None
 
 
@@ -71,8 +73,8 @@ def _effect(entry: Mapping[str, Any]) -> dict[str, Any]:
     """Ranges of an effect's quantities within their bounds."""
     effect: Effect = named(str(entry["name"]), "effects")
     bounds = {quantity.name: quantity.lower for quantity in (*effect.quantities, *effect.derived)}
-    told = {key: table for key, table in entry["parameters"].items() if _told(table)}
-    ranges = {key: _range(table, None, bounds.get(key, float("-inf"))) for key, table in told.items()}
+    known = {key: table for key, table in entry["parameters"].items() if _has_interval(table)}
+    ranges = {key: _range(table, None, bounds.get(key, float("-inf"))) for key, table in known.items()}
     return {"name": effect.name, "parameters": ranges}
 
 

@@ -23,7 +23,7 @@ TIMESTEP = 1e-4
 
 
 @dataclass
-class _Told:
+class _Recorder:
     """A seat that keeps what effects would set."""
 
     friction: Number
@@ -61,12 +61,12 @@ def resisting_torque(model: AxisModel, position: Array, velocity: Array) -> Arra
     batch.bind("qpos")[:, joint.qposadr[0]], batch.bind("qvel")[:, joint.dofadr[0]] = position, velocity
     passive, made = batch.bind("qfrc_passive"), batch.bind("qfrc_actuator")
     batch.forward()
-    told = _Told(np.full(position.size, dry_friction(model)))
-    ticked = TickedEffects(told, [model] * position.size, velocity)
+    recorder = _Recorder(np.full(position.size, dry_friction(model)))
+    ticked = TickedEffects(recorder, [model] * position.size, velocity)
     nothing = np.zeros(position.size)
     ticked.act(np.full(position.size, np.inf), position, velocity, nothing)
     dof = joint.dofadr[0]
-    return told.friction * np.sign(velocity) - told.torque - passive[:, dof] - made[:, dof]
+    return recorder.friction * np.sign(velocity) - recorder.torque - passive[:, dof] - made[:, dof]
 
 
 def dry_friction(model: AxisModel) -> float:

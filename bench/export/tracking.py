@@ -27,7 +27,7 @@ class Tracking:
     velocity: float
 
 
-def tracking(model: AxisModel, rig: Rig, references: References, told: Feedforward | None = None) -> Tracking:
+def tracking(model: AxisModel, rig: Rig, references: References, feedforward: Feedforward | None = None) -> Tracking:
     """Errors of a rig's drive on an axis.
 
     Args:
@@ -42,8 +42,8 @@ def tracking(model: AxisModel, rig: Rig, references: References, told: Feedforwa
     """
     cascade = Cascade.from_rig(rig)
     motion = references
-    if told is not None:
-        cascade, motion = replace(cascade, inertia_feedforward=told.inertia), told.along(references)
+    if feedforward is not None:
+        cascade, motion = replace(cascade, inertia_feedforward=feedforward.inertia), feedforward.along(references)
     plant = Plant(model.parameters, cascade, cascade.control_period, effects=model.effects, winding=model.winding)
     states = run([plant], [motion])
     return Tracking(rms(references.position - states.position[:, 0]), rms(references.velocity - states.velocity[:, 0]))

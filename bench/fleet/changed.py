@@ -22,7 +22,7 @@ ALARM = 0.01
 VAGUE = 5.0
 #: Quantities of the axis itself; what follows from them, or is the drive's, would be told twice.
 COMPARED = (INERTIA, VISCOUS, COULOMB, OFFSET)
-_UNTOLD: Plain = {"std_error": None}
+_UNKNOWN: Plain = {"std_error": None}
 
 
 @dataclass(frozen=True)
@@ -84,14 +84,14 @@ def changes(
     steps = [(one, found) for one in series if (found := change(one.values, one.errors)) is not None]
     files, times = manifest.text("file"), manifest.text("time")
     chances = holm(np.array([step.chance for _, step in steps]))
-    told = []
+    alarms = []
     for (one, step), chance in sorted(zip(steps, chances.tolist(), strict=True), key=lambda each: each[0][1].chance):
         if chance < ALARM:
             first, counts = one.rows[step.place], (step.place, len(one.rows) - step.place)
-            told.append(
+            alarms.append(
                 Changed(one.axis, one.quantity, one.unit, step, times[first], files[first], counts, chance, one)
             )
-    return len(steps), told
+    return len(steps), alarms
 
 
 def _series(
@@ -99,17 +99,17 @@ def _series(
 ) -> Iterator[Series]:
     """Of what was recorded at a known time and evaluated by one rig: another rig is no other axis, but other values."""
     axes, times = manifest.text("axis"), manifest.times
-    told: dict[tuple[str, str, str, str], list[tuple[int, float, float]]] = {}
+    groups: dict[tuple[str, str, str, str], list[tuple[int, float, float]]] = {}
     for row in order:
         task = planned[row].task
         if task is None or np.isnan(times[row]) or results[row]["status"] != "done":
             continue
         for name in map(task.rig.axis_kind.parameter, COMPARED):
-            found = results[row]["parameters"].get(name, _UNTOLD)
+            found = results[row]["parameters"].get(name, _UNKNOWN)
             if found["std_error"] is not None:
                 key = (axes[row], planned[row].basis["rig_sha256"], name, found["unit"])
-                told.setdefault(key, []).append((row, found["value"], found["std_error"]))
-    for (axis, _, name, unit), found in told.items():
+                groups.setdefault(key, []).append((row, found["value"], found["std_error"]))
+    for (axis, _, name, unit), found in groups.items():
         vague = VAGUE * median(error for *_, error in found)
         kept = [one for one in found if one[-1] <= vague]
         rows, values, errors = zip(*kept, strict=True)

@@ -47,7 +47,7 @@ def fleet(
     workers: int | None = None,
     scheduler: str | None = None,
     progress: Callable[[float], None] = lambda share: None,
-    tell: Callable[[Fleet], None] = lambda found: None,
+    finish: Callable[[Fleet], None] = lambda found: None,
 ) -> Fleet:
     """Evaluate what has no result yet, and write the table of all.
 
@@ -77,7 +77,7 @@ def fleet(
         results = [one.refusal or store.get(one.key) or {} for one in planned]
         write_table(out / TABLE, tabulate(manifest, planned, results))
         found = Fleet(manifest, summarise(manifest, planned, results), len(tasks))
-        tell(found)
+        finish(found)
     return found
 
 

@@ -75,8 +75,8 @@ def read_manifest(path: Path) -> Manifest:
     try:
         table = pq.read_table(io.BytesIO(content)) if content.startswith(_MAGIC) else _of_csv(content)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        told = str(error).splitlines()[0]
-        raise InputError(path, f"found no table ({told})", "allowed: a manifest, CSV or Parquet") from error
+        reason = str(error).splitlines()[0]
+        raise InputError(path, f"found no table ({reason})", "allowed: a manifest, CSV or Parquet") from error
     for place, field in enumerate(table.schema):
         if pa.types.is_dictionary(field.type):  # as data frames keep categories
             table = table.set_column(place, field.name, table.column(place).cast(field.type.value_type))
@@ -139,8 +139,8 @@ def _timed(path: Path, table: pa.Table) -> pa.Table:
     kind = table["time"].type
     if pa.types.is_null(kind):
         return table.set_column(table.column_names.index("time"), "time", table["time"].cast(pa.float64()))
-    told = (pa.types.is_timestamp, pa.types.is_date, pa.types.is_integer, pa.types.is_floating)
-    if any(is_one(kind) for is_one in told):
+    kinds = (pa.types.is_timestamp, pa.types.is_date, pa.types.is_integer, pa.types.is_floating)
+    if any(is_one(kind) for is_one in kinds):
         return table
     example = next((value for value in table["time"].to_pylist() if value is not None), None)
     raise InputError(f"{path}: time", f"found {example!r}", "allowed: ISO 8601 (2026-03-01T12:00:00), or a number")

@@ -12,11 +12,11 @@ from typing import Any
 
 from bench.balance.parameter import Parameter
 from bench.bounds import Bounds, within
-from bench.checks.check import Check
-from bench.checks.gate import UnanswerableError
 from bench.errors import BenchError, UndeterminedError
 from bench.files import sha256
 from bench.fleet.remote import fetched
+from bench.gate.check import Check
+from bench.gate.gate import UnanswerableError
 from bench.identify.estimate import Estimate, RefusedEstimateError
 from bench.identify.regression import identify
 from bench.rig.rig import Rig
@@ -142,8 +142,8 @@ def _parameters(found: Mapping[str, Parameter]) -> Plain:
 
 def _checks(checks: Sequence[Check]) -> list[Plain]:
     """Those that did not pass."""
-    told = [check for check in checks if check.status in ("warn", "fail")]
-    return [{"name": c.name, "status": c.status, "found": c.found, "advice": c.advice} for c in told]
+    notable = [check for check in checks if check.status in ("warn", "fail")]
+    return [{"name": c.name, "status": c.status, "found": c.found, "advice": c.advice} for c in notable]
 
 
 def _number(value: float) -> float | None:

@@ -21,7 +21,7 @@ def marked(url: str) -> str:
     Raises:
         InputError: no such file, or a storage that cannot be reached or is not known.
     """
-    with _told(url):
+    with _errors_as_input(url):
         storage, path = url_to_fs(url)
         return str(storage.ukey(path))
 
@@ -33,7 +33,7 @@ def fetched(url: str, folder: Path) -> Path:
         InputError: as `marked`, or it is too large.
     """
     copy, size = folder / (PurePosixPath(url).name or "trace"), 0
-    with _told(url):
+    with _errors_as_input(url):
         storage, path = url_to_fs(url)
         with storage.open(path, "rb") as remote, copy.open("wb") as local:
             while piece := remote.read(_PIECE):
@@ -44,9 +44,9 @@ def fetched(url: str, folder: Path) -> Path:
 
 
 @contextmanager
-def _told(url: str) -> Iterator[None]:
+def _errors_as_input(url: str) -> Iterator[None]:
     try:
         yield
     except (OSError, ValueError, ImportError) as error:  # no file or way to it; no such storage; no package for it
-        told = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(url, f"cannot be read ({told})", "give the URL of a trace that fsspec can open") from error
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(url, f"cannot be read ({reason})", "give the URL of a trace that fsspec can open") from error

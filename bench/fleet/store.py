@@ -27,7 +27,7 @@ class Store:
         return self.folder / key[:2] / f"{key}.json"
 
     def get(self, key: str) -> dict[str, Any] | None:
-        """A result; None where there is none, or somebody has damaged it."""
+        """A result; None if there is none, or it is damaged."""
         path = self.path(key)
         if not path.exists():
             return None

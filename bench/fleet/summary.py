@@ -118,12 +118,12 @@ def _named(axis: str, times: Sequence[str], results: Sequence[Plain], rows: Sequ
 
 def _concerns(axis: str, files: Sequence[str], results: Sequence[Plain], rows: Sequence[int]) -> Iterator[Concern]:
     """Why a person should look at the recordings of one axis, in the order of time."""
-    told = {row: _why(results[row]) for row in rows}
+    reasons = {row: _why(results[row]) for row in rows}
     for kind in KINDS:
-        affected = [row for row in rows if kind in told[row]]
+        affected = [row for row in rows if kind in reasons[row]]
         if affected:
             last = affected[-1]
-            yield Concern(axis, kind, len(affected), len(rows), files[last], told[last][kind])
+            yield Concern(axis, kind, len(affected), len(rows), files[last], reasons[last][kind])
 
 
 def _why(found: Plain) -> dict[str, str]:
@@ -134,8 +134,8 @@ def _why(found: Plain) -> dict[str, str]:
     if found.get("verdict") == "unexplained_remainder":
         why["unexplained"] = "something is left that no effect of the catalogue explains"
     elif "verdict" not in found and explained is not None and explained < EXPLAINED:
-        told = f"inertia and friction explain only {explained:.0%} of the effort"
-        why["unexplained"] = f"{told}; --diagnose says what is missing"
+        share = f"inertia and friction explain only {explained:.0%} of the effort"
+        why["unexplained"] = f"{share}; --diagnose says what is missing"
     if found["checks"]:
         why["checks"] = "; ".join(f"{check['name']}: {check['found']}" for check in found["checks"])
     return why

@@ -60,11 +60,11 @@ def write_table(path: Path, table: pa.Table) -> None:
 def _parameters(results: Sequence[Plain]) -> dict[str, pa.Array]:
     """Value, standard error and unit of each parameter that any recording tells."""
     columns: dict[str, pa.Array] = {}
-    told = [found.get("parameters", {}) for found in results]
-    for name in dict.fromkeys(name for one in told for name in one):
-        columns[name] = _numbers(one.get(name, {}).get("value") for one in told)
-        columns[f"{name}_std_error"] = _numbers(one.get(name, {}).get("std_error") for one in told)
-        columns[f"{name}_unit"] = _texts(one.get(name, {}).get("unit") for one in told)
+    tables = [found.get("parameters", {}) for found in results]
+    for name in dict.fromkeys(name for one in tables for name in one):
+        columns[name] = _numbers(one.get(name, {}).get("value") for one in tables)
+        columns[f"{name}_std_error"] = _numbers(one.get(name, {}).get("std_error") for one in tables)
+        columns[f"{name}_unit"] = _texts(one.get(name, {}).get("unit") for one in tables)
     return columns
 
 

@@ -16,13 +16,13 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
-from bench.checks.check import Check
-from bench.checks.gate import STEADY as STEADY_CHECKS
-from bench.checks.gate import joined, passed
 from bench.effects.catalogue import catalogue
 from bench.effects.signals import Base
 from bench.errors import InputError, UndeterminedError
 from bench.friction_map.curve import Curve, bent_curve, chance, plain_curve
+from bench.gate.check import Check
+from bench.gate.gate import STEADY as STEADY_CHECKS
+from bench.gate.gate import joined, passed
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

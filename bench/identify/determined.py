@@ -1,4 +1,4 @@
-"""Whether a recording determines what is asked of it; a refusal with its reason beats a number it cannot carry."""
+"""Whether a recording determines a parameter; if not, it is refused with the reason and what to record instead."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from bench.balance.parameter import Parameter
 from bench.balance.rows import ONE_WAY
 from bench.errors import UndeterminedError
 from bench.identify.estimate import Estimate
+from bench.names import words
 
-#: Rows that the regression must have for each of its columns.
+#: Least number of rows for each column of the regression.
 ROWS_PER_COLUMN = 20
-#: Share of a column's power that the others do not explain; 1 % inflates its standard error tenfold.
+#: Least share of a column's power that the others do not explain; 1 % inflates its standard error tenfold.
 INDEPENDENT_SHARE = 0.01
 
-#: Terms of the equation of motion by their places among the columns; a constant comes last.
+#: Columns of the terms of the equation of motion; a constant comes last.
 PLACES = {
     INERTIA: layout.INERTIA,
     VISCOUS: layout.VISCOUS,
@@ -28,7 +29,7 @@ PLACES = {
     OFFSET: -1,
 }
 
-#: Share of the effort's variance below which a model that explains it identifies nothing.
+#: Least share of the effort's variance that a model has to explain.
 LEAST_EXPLAINED = 0.5
 
 RECORD = {
@@ -45,22 +46,22 @@ EXPLAINED = "a motion in which inertia and friction take most of the effort, and
 
 
 def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
-    """UndeterminedError naming the first quantity that the rows leave open.
+    """Raise UndeterminedError for the first quantity that the rows do not determine.
 
     Args:
-        equations: of every column, the constant one among them.
+        equations: of every column, the constant included.
         kind: of the axis.
     """
     require_inertia(equations, kind)
     side = only_direction(equations)
     if side is not None:
-        name = f"{kind.spoken(COULOMB)} apart from {kind.spoken(OFFSET)}"
+        name = f"{kind.in_words(COULOMB)} apart from {kind.in_words(OFFSET)}"
         raise UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
     require_friction(equations, kind)
 
 
 def left_open(equations: NormalEquations, kind: AxisKind) -> frozenset[str]:
-    """Terms of the equation of motion that the rows leave open; the others may be told without them."""
+    """Terms of the equation of motion that the rows do not determine."""
     try:
         require_inertia(equations, kind)
     except UndeterminedError:
@@ -75,22 +76,22 @@ def left_open(equations: NormalEquations, kind: AxisKind) -> frozenset[str]:
 
 
 def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
-    """UndeterminedError where the rows are too few or leave the inertia open."""
+    """Raise UndeterminedError if the rows are too few or do not determine the inertia."""
     least = ROWS_PER_COLUMN * equations.noise.shape[0]
     if equations.count < least:
         reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
-        raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])
+        raise UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
     _require_excited(equations, INERTIA, kind)
 
 
 def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
-    """UndeterminedError where the rows leave viscous or Coulomb friction open beside the inertia."""
+    """Raise UndeterminedError if the rows do not determine viscous or Coulomb friction."""
     for column in (VISCOUS, COULOMB):
         _require_excited(equations, column, kind)
 
 
 def only_direction(equations: NormalEquations) -> str | None:
-    """`forward` or `backward` where the axis moves one way only, so that Coulomb friction and offset are one number."""
+    """`forward` or `backward` if the axis moves one way only: Coulomb friction and offset are then inseparable."""
     mean_direction = equations.gram[:, PLACES[COULOMB], PLACES[OFFSET]].sum() / equations.count
     if 0.5 * (1.0 - abs(mean_direction)) >= ONE_WAY:
         return None
@@ -98,15 +99,15 @@ def only_direction(equations: NormalEquations) -> str | None:
 
 
 def _require_excited(equations: NormalEquations, column: str, kind: AxisKind) -> None:
-    """A column must keep power above its noise, and enough of it beside the others."""
+    """Raise UndeterminedError if too little of a column is independent of noise and of the others."""
     share = independent_share(equations, column, [term for term in (INERTIA, VISCOUS, COULOMB) if term != column])
     if not share >= INDEPENDENT_SHARE:
         reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
-        raise UndeterminedError(kind.spoken(column), reason, RECORD[column])
+        raise UndeterminedError(kind.in_words(column), reason, RECORD[column])
 
 
 def independent_share(equations: NormalEquations, column: str, others: Sequence[str]) -> float:
-    """Share of a column's power that is neither noise nor explained by others; negative where noise is all of it."""
+    """Share of a column's power that is neither noise nor explained by others; negative if it is noise alone."""
     places = [PLACES[column], *(PLACES[term] for term in others)]
     power = np.diag(equations.total)[places]
     scale = np.sqrt(np.where(power > 0.0, power, 1.0))
@@ -114,8 +115,8 @@ def independent_share(equations: NormalEquations, column: str, others: Sequence[
     return float(matrix[0, 0] - matrix[0, 1:] @ np.linalg.lstsq(matrix[1:, 1:], matrix[1:, 0], rcond=1e-9)[0])
 
 
-def require_significant(inertia: Parameter, kind: AxisKind, told: Sequence[str] = ()) -> None:
-    """UndeterminedError unless the interval of the inertia lies away from zero; the effort may be anything's then.
+def require_significant(inertia: Parameter, kind: AxisKind, suspicions: Sequence[str]) -> None:
+    """Raise UndeterminedError if the interval of the inertia contains zero.
 
     Args:
         inertia: as found.
@@ -124,12 +125,12 @@ def require_significant(inertia: Parameter, kind: AxisKind, told: Sequence[str] 
     """
     low, high = inertia.ci95
     if low <= 0.0 <= high:
-        reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero", *told])
-        raise UndeterminedError(kind.spoken(INERTIA), reason, RECORD[INERTIA])
+        reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero", *suspicions])
+        raise UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
 
 
-def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, told: Sequence[str] = ()) -> None:
-    """UndeterminedError where the inertia, or the load's, is negative as far as its interval reaches.
+def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]) -> None:
+    """Raise UndeterminedError if the whole interval of the inertia, or of the load's, is negative.
 
     Args:
         parameters: as found.
@@ -142,22 +143,22 @@ def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, told: Se
             low, high = found.ci95
             reason = f"it comes out negative, {found.value:.3g} {found.unit} ({low:.3g} to {high:.3g})"
             advice = {kind.inertia: TURNED, ARMATURE: LINKS}.get(name, SMALLER)
-            raise UndeterminedError(name.replace("_", " "), "; ".join([reason, *told]), advice)
+            raise UndeterminedError(words(name), "; ".join([reason, *suspicions]), advice)
 
 
-def require_sound(estimate: Estimate, kind: AxisKind, told: Sequence[str] = ()) -> None:
-    """UndeterminedError where numbers were found that identify nothing.
+def require_sound(estimate: Estimate, kind: AxisKind, suspicions: Sequence[str]) -> None:
+    """Raise UndeterminedError if an estimate is meaningless.
 
-    An inertia that may be zero or is negative, a load's that is negative, or a model that explains less than half of
-    the effort's variance.
+    Its inertia may be zero or is negative, the load's is negative, or the model explains less than half of the effort's
+    variance.
 
     Args:
         estimate: as found.
         kind: of the axis.
         told: what else is suspicious about the recording, and may be why.
     """
-    require_masses(estimate.parameters, kind, told)
-    require_significant(estimate[kind.inertia], kind, told)
+    require_masses(estimate.parameters, kind, suspicions)
+    require_significant(estimate[kind.inertia], kind, suspicions)
     if estimate.explained < LEAST_EXPLAINED:
         share = f"the model explains {max(estimate.explained, 0.0):.0%} of the {kind.effort}'s variance"
-        raise UndeterminedError(f"{kind.spoken(INERTIA)} and friction", "; ".join([share, *told]), EXPLAINED)
+        raise UndeterminedError(f"{kind.in_words(INERTIA)} and friction", "; ".join([share, *suspicions]), EXPLAINED)

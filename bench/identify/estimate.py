@@ -1,4 +1,4 @@
-"""What identification returns: parameters with intervals, and how well they explain the recording."""
+"""The result of an identification: parameters with intervals, and how well they explain the recording."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bench.balance.parameter import Parameter
-from bench.checks.check import Check
 from bench.errors import UndeterminedError
+from bench.gate.check import Check
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Residual:
 
     Attributes:
         rms: root mean square - unit.
-        noise_floor: what the sensors' noise alone would leave - unit; nan where the estimator knows none.
+        noise_floor: expected RMS from sensor noise alone - unit; nan if the estimator has none.
         relative: norm of the residual over the norm of the effort.
         unit: of the effort.
     """
@@ -33,8 +33,8 @@ class Between:
     """How recordings of one axis differ in a quantity.
 
     Attributes:
-        std_dev: standard deviation of what each recording tells alone - the quantity's unit.
-        predictive95: where what one recording more tells alone is to be expected, at 95 % - the quantity's unit.
+        std_dev: standard deviation of the estimates by each recording alone - the quantity's unit.
+        predictive95: prediction interval for one more recording, at 95 % - the quantity's unit.
     """
 
     std_dev: float
@@ -43,12 +43,12 @@ class Between:
 
 @dataclass(frozen=True)
 class Alone:
-    """What one of several recordings tells by itself.
+    """The estimate by one of several recordings alone.
 
     Attributes:
         origin: of the recording.
-        parameters: that it determines alone, by the names of the contract.
-        reason: why not all of them; empty where it determines all.
+        parameters: those that it determines alone, by name.
+        reason: why not all of them; empty if all.
     """
 
     origin: str
@@ -58,20 +58,20 @@ class Alone:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Result of identification; nothing downstream edits it.
+    """Result of an identification.
 
     Attributes:
         estimator: name of the method.
-        parameters: by the names of the contract.
-        residual: how well they explain the recording.
-        samples_read, samples_used: of the recording, and of its rows in the regression times the filter's stride.
-        cutoff: half-power frequency of the filter - Hz; nan where nothing was filtered.
-        source: signal that speed and acceleration came from.
+        parameters: by name.
+        residual: of the fit.
+        samples_read, samples_used: of the recording, and in the regression (rows times the filter's stride).
+        cutoff: half-power frequency of the filter - Hz; nan without a filter.
+        source: signal that speed and acceleration are from.
         warnings: what a user should know before relying on it.
-        explained: share of the effort's variance that the model explains; nan where the estimator does not tell.
-        checks: what the gate found before the fit.
-        recordings: each alone, where several were fitted together.
-        between: how they differ, by the names of the quantities that at least two of them tell alone.
+        explained: share of the effort's variance that the model explains; nan if the estimator does not give it.
+        checks: results of the gate.
+        recordings: the estimate by each alone, where several were fitted together.
+        between: their spread, by name of a quantity that at least two of them determine alone.
     """
 
     estimator: str
@@ -92,11 +92,11 @@ class Estimate:
 
 
 class RefusedEstimateError(UndeterminedError):
-    """The recording cannot answer; what was found all the same goes with it.
+    """The recording does not determine everything; the error carries what it does.
 
     Args:
         reason: why not.
-        estimate: what was found, less what the recording leaves open.
+        estimate: without the undetermined parameters.
     """
 
     def __init__(self, reason: UndeterminedError, estimate: Estimate) -> None:

@@ -1,8 +1,8 @@
 """The lab course's estimators, as a student writes them: fixed thresholds on a backward difference.
 
-They stay beside the default estimator to be compared with it. What they lose: the backward difference amplifies speed
-noise by sqrt(2)/T and lags speed by half a sample, noise in alpha draws J towards zero, rows are chosen by thresholds
-that know neither noise nor motion, and the covariance takes residuals for independent.
+They are kept for comparison with the default estimator. Their faults: the backward difference amplifies speed noise by
+sqrt(2)/T and lags speed by half a sample, noise in alpha biases J towards zero, rows are chosen by thresholds that do
+not depend on noise or motion, and the covariance assumes independent residuals.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""One of several recordings that are fitted together: what it knows of the axis, and what it tells alone."""
+"""One of several recordings that are fitted together: its information about the axis, and its estimate alone."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bench.balance import layout
 from bench.balance.normal_equations import NormalEquations, solved
 from bench.balance.parameter import Parameter
 from bench.errors import UndeterminedError
-from bench.identify.between import half_width
+from bench.identify.cutoffs import TERMS
 from bench.identify.determined import only_direction
 from bench.identify.estimate import Alone, RefusedEstimateError
 from bench.identify.regression import Gathered, parameters_of, solve
@@ -30,11 +30,11 @@ class Member:
     Attributes:
         gathered: its normal equations.
         solved: its own fit, with the columns that all recordings share and its own shift and hum.
-        alone: what it tells by itself.
-        along: where it moves in one direction only, its friction that way, in which any offset is; else None.
-        scales: standard error and half width of an interval of 95 % of what it does not tell alone, over the standard
-            error that `solved` has.
-        tolerances: how far J, K_w, K_0 and offset may be off by the rig's tolerances.
+        alone: its estimate alone.
+        along: if it moves in one direction only, its friction in that direction, offset included; else None.
+        scales: standard error and half width at 95 % of parameters that it does not determine alone, over the
+            standard error in `solved`.
+        tolerances: half widths of J, K_w, K_0 and offset from the rig's tolerances.
         warnings: of its own fit.
     """
 
@@ -48,7 +48,7 @@ class Member:
 
     @classmethod
     def of(cls, gathered: Gathered, rig: Rig) -> Member:
-        """A recording by itself, so far as it tells anything alone.
+        """The fit of one recording alone.
 
         Raises:
             InputError: rig and recording do not fit together.
@@ -57,8 +57,7 @@ class Member:
         own = solved_with_shift(equations, gathered.rows, rig.offset)
         along, scales = None, (1.0, own.reach)
         one_way = only_direction(equations) is not None  # no offset was fitted then: it is in the friction
-        places = {INERTIA: layout.INERTIA, VISCOUS: layout.VISCOUS, COULOMB: layout.COULOMB}
-        places |= {OFFSET: layout.COULOMB if one_way else -1} if own.offset else {}
+        places = TERMS | ({OFFSET: layout.COULOMB if one_way else -1} if own.offset else {})
         tolerances = {kind.parameter(term): float(gathered.tolerance[place]) for term, place in places.items()}
         tolerances |= {"load_moment_of_inertia": tolerances[kind.inertia]}
         if one_way:
@@ -67,15 +66,15 @@ class Member:
             more = np.hypot(misfit, np.pad(gathered.doubt, (0, misfit.size - gathered.doubt.size)))
             along = parameters_of(bare, kind, gathered.effort_unit, more)[kind.parameter(COULOMB)]
             error = max(float(bare.errors[layout.COULOMB]), 1e-300)
-            scales = along.std_error / error, half_width(along) / error
+            scales = along.std_error / error, along.half_width / error
         try:
             found, reason = solve(gathered, rig), ""
         except RefusedEstimateError as refusal:
             found, reason = refusal.estimate, str(refusal)
         except UndeterminedError as refusal:
             return cls(gathered, own, Alone(origin, {}, str(refusal)), along, scales, tolerances, ())
-        told = {name: one for name, one in found.parameters.items() if name != kind.inertia or not _holds_zero(one)}
-        return cls(gathered, own, Alone(origin, told, reason), along, scales, tolerances, found.warnings)
+        kept = {name: one for name, one in found.parameters.items() if name != kind.inertia or not _holds_zero(one)}
+        return cls(gathered, own, Alone(origin, kept, reason), along, scales, tolerances, found.warnings)
 
     @property
     def _shared(self) -> list[int]:
@@ -88,7 +87,7 @@ class Member:
 
     @property
     def power(self) -> float:
-        """Sum of the squared residuals of its own fit - the effort's unit squared."""
+        """Sum of squared residuals of its own fit - the effort's unit squared."""
         return max(self.equations.residual_power(self.solved.theta), 0.0)
 
     @property
@@ -98,9 +97,9 @@ class Member:
 
     @property
     def matrix(self) -> Array:
-        """Normal equations' matrix of these, beside its own shift and hum, with no power below zero (s, s).
+        """Matrix of the normal equations of these, its own shift and hum eliminated, positive semidefinite (s, s).
 
-        Where noise makes more of a column than was expected of it alone, the recording knows nothing of that column.
+        A column with less power than expected from its noise carries no information.
         """
         at, equations, shared = layout.MISALIGNMENT, self.equations, self._shared
         whole, gram, noise = equations.matrix, equations.gram.sum(axis=0), equations.count * equations.noise
@@ -113,18 +112,18 @@ class Member:
 
     @cached_property
     def own(self) -> dict[str, Parameter]:
-        """What it tells alone, less what the rig's tolerances make of it, which are the same in all recordings."""
+        """Its estimate alone, without the rig's tolerances, which are common to all recordings."""
         found = dict(self.alone.parameters)
         for name, reach in self.tolerances.items():
             if name in found:
                 before = found[name]
-                half = math.sqrt(max(half_width(before) ** 2 - reach**2, 0.0))
+                half = math.sqrt(max(before.half_width**2 - reach**2, 0.0))
                 error = math.sqrt(max(before.std_error**2 - (reach / NORMAL95) ** 2, 0.0))
                 found[name] = replace(before, std_error=error, ci95=(before.value - half, before.value + half))
         return found
 
     def known(self, kind: AxisKind) -> Array:
-        """What it knows of these: `matrix` over the variance that its covariance shows on the mean (s, s)."""
+        """Its information about these: `matrix` over the mean variance implied by its covariance (s, s)."""
         matrix, (covariance, _) = self.matrix, self.covariance(kind)
         return matrix * matrix.shape[0] / max(float(np.trace(matrix @ covariance)), 1e-300)
 
@@ -133,10 +132,10 @@ class Member:
         found = self.solved.covariance[np.ix_(self._shared, self._shared)]
         names = [kind.parameter(term) for term in (INERTIA, VISCOUS, COULOMB, OFFSET)][: len(self._shared)]
         errors = np.sqrt(np.maximum(np.diag(found), 1e-300)).tolist()
-        told = self.own
+        own = self.own
         scales = np.array(
             [
-                (told[name].std_error / error, half_width(told[name]) / error) if name in told else self.scales
+                (own[name].std_error / error, own[name].half_width / error) if name in own else self.scales
                 for name, error in zip(names, errors, strict=True)
             ]
         )

@@ -1,4 +1,4 @@
-"""Effort that an estimate explains along a motion."""
+"""Effort by an estimate along a motion."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def modelled_effort(motion: Motion, estimate: Estimate, kind: AxisKind) -> NDArr
     """J*alpha + K_w*omega + K_0*sgn(omega) (+ M_0) - tau*dM/dt along a motion.
 
     Returns:
-        (m,) - the effort's unit; nan where the direction is in doubt.
+        (m,) - the effort's unit; nan where the direction is uncertain.
     """
     moving = motion.direction != 0.0
     columns = {

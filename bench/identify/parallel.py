@@ -1,4 +1,4 @@
-"""Work on the parts of a recording side by side, in order, without holding more of them than are being worked on."""
+"""Work on the parts of a recording in parallel and in order, with only a few of them in memory."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ Result = TypeVar("Result")
 
 
 def in_parallel(work: Callable[[Part], Result], parts: Iterable[Part]) -> Iterator[Result]:
-    """Results of `work` on each part, in order, on one thread a core: NumPy lets them run while it computes.
+    """Results of `work` on each part, in order, on one thread a core; NumPy releases the interpreter lock.
 
-    At most two parts a core wait at a time, so a recording may be longer than memory. A lone part needs no thread: to
-    start some takes milliseconds.
+    At most two parts a core are in memory, so a recording may be larger than it. A single part is done without threads,
+    whose start takes milliseconds.
     """
     cores, parts = os.cpu_count() or 1, iter(parts)
     ahead = list(islice(parts, 2))

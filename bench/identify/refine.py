@@ -1,7 +1,7 @@
-"""Polish an estimate by simulation error: MuJoCo runs the axis along the recording, the parameters follow.
+"""Refine an estimate by simulation error: MuJoCo runs the axis along the recording, and its parameters are optimised.
 
-Regression first, simulation second: from far starts a simulation's error has no way down (see docs/identify.md for
-the figures), from the regression's estimate it converges in a few steps.
+Regression first, simulation second: from a far start the simulation error does not converge (figures in
+docs/identify.md), from the regression's estimate it does in a few steps.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from bench.plant.track import BANDWIDTH, holding_cascade, holding_model, measure
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-#: Share of the recording, at its end, that is kept from the fit to judge it.
+#: Share of the recording, at its end, that is held out to judge the refinement.
 HELD_OUT = 1.0 / 3.0
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """What polishing did to the velocity gap, RMS of measured minus simulated - rad/s (m/s).
+    """Velocity gap before and after refinement: RMS of measured minus simulated velocity - rad/s (m/s).
 
     Attributes:
         fitted: gap over the whole recording, before and after.
-        held_out: gap on motion that neither regression nor polish had seen, before and after.
-        accepted: whether the polished parameters were kept: they are only if the held-out gap did not grow.
+        held_out: gap on motion that neither regression nor refinement used, before and after.
+        accepted: whether the refined parameters were kept: only if the held-out gap did not grow.
         bandwidth: of the cascade that holds the model to the recording - rad/s.
     """
 
@@ -48,10 +48,10 @@ class Refinement:
 def refine(
     trace: Trace, rig: Rig, start: Estimate, progress: Callable[[float], None] = lambda share: None
 ) -> tuple[Estimate, Refinement]:
-    """Polish inertia and friction (and offset) of an estimate by the velocity gap of the simulated axis.
+    """Refine inertia and friction (and offset) of an estimate by the velocity gap of the simulated axis.
 
-    Minimises sum((omega_simulated - omega_measured)**2). Whether that helps is tried first: regression and polish on
-    the first two thirds, judged on the rest. Intervals keep the regression's width, as both read the same noise.
+    Minimises sum((omega_simulated - omega_measured)**2). Whether that helps is tested first: regression and refinement
+    on the first two thirds, judged on the rest. Intervals keep the regression's width, as the noise is the same.
 
     Args:
         trace: the recording the estimate came from.
@@ -83,7 +83,7 @@ def refine(
 
 
 class _Tracking:
-    """A recording and the axis that is simulated along it."""
+    """A recording, and the axis simulated along it."""
 
     def __init__(self, trace: Trace, rig: Rig) -> None:
         self.trace, self.rig = trace, rig
@@ -97,7 +97,7 @@ class _Tracking:
         return rms(self._difference(self._theta(estimate), estimate))
 
     def polished(self, start: Estimate) -> Estimate:
-        """The estimate whose simulation comes closest, searched from `start`."""
+        """The estimate with the least velocity gap, searched from `start`."""
         first = self._theta(start)
         lower = np.where(np.array(self.columns) == OFFSET, -np.inf, 0.0)
         lower[0] = 0.1 * first[0]

@@ -1,4 +1,4 @@
-"""The default estimator: the fit of the empty hypothesis, gathered block by block, with honest intervals."""
+"""The default estimator: least squares of the torque balance without effects, accumulated block by block."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from bench.balance.hypothesis import Hypothesis
 from bench.balance.normal_equations import BLOCKS, NormalEquations, join
 from bench.balance.parameter import Parameter
 from bench.balance.rows import Rows
-from bench.checks.check import Check
-from bench.checks.gate import PARTS, gate, joined, passed, require
 from bench.errors import UndeterminedError
+from bench.gate.check import Check
+from bench.gate.gate import PARTS, gate, joined, passed, require
 from bench.identify.cutoffs import TERMS, choose
 from bench.identify.determined import left_open, only_direction, require_determined, require_inertia, require_sound
 from bench.identify.estimate import Estimate, RefusedEstimateError, Residual
@@ -33,18 +33,18 @@ from bench.trace.trace import Trace
 
 @dataclass(frozen=True)
 class Gathered:
-    """A recording in normal equations.
+    """Normal equations of a recording.
 
     Attributes:
-        equations: of every column and, behind them, a constant.
-        rows: of its first part, which decides on filter and noise floor.
+        equations: of every column and, last, a constant.
+        rows: of its first part, which determines filter and noise floor.
         hypothesis: without effects.
         effort_unit: N*m, N, or what the rig allows.
         samples_read: of all parts.
-        doubt: how far J, K_w and K_0 may be off as they move with the filter's cut-off (3,).
-        hinted: how far an effect that the recording hints at would move them (3,).
-        tolerance: how far coefficients may be off by the rig's tolerances (p,).
-        warnings: that they move.
+        doubt: possible bias of J, K_w and K_0, as they move with the filter's cut-off (3,).
+        hinted: by how much an effect that the recording hints at would move them (3,).
+        tolerance: half widths of coefficients from the rig's tolerances (p,).
+        warnings: about the cut-off.
         checks: of all parts.
     """
 
@@ -72,7 +72,7 @@ def identify(
         cutoff: half-power frequency of the filter instead of the one chosen from the data - Hz.
 
     Raises:
-        RefusedEstimateError: the recording does not determine one of them; what it does goes with it.
+        RefusedEstimateError: the recording leaves one of them undetermined; the error carries the others.
         UndeterminedError: it determines none.
         InputError: a signal is missing, rig and trace do not fit together, or a check of the recording fails.
     """
@@ -84,9 +84,9 @@ def identify(
 
 
 def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Gathered:
-    """Normal equations of a recording, or of its consecutive parts; as `identify` has the arguments.
+    """Normal equations of a recording, or of its consecutive parts; arguments as of `identify`.
 
-    The first part decides how all are filtered, and whether the mains hum in them.
+    The first part determines the filter of all, and whether they contain mains hum.
     """
     parts = iter([trace] if isinstance(trace, Trace) else trace)
     gated = passed(next(parts), rig)
@@ -122,11 +122,11 @@ def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Ga
 
 
 def solve(gathered: Gathered, rig: Rig) -> Estimate:
-    """Estimate from normal equations, refusing what they do not determine.
+    """Estimate from normal equations.
 
     Raises:
-        RefusedEstimateError: they determine some of it.
-        UndeterminedError: they determine nothing.
+        RefusedEstimateError: they determine only some parameters.
+        UndeterminedError: they determine none.
     """
     kind = rig.axis_kind
     require_inertia(gathered.equations, kind)
@@ -139,8 +139,8 @@ def solve(gathered: Gathered, rig: Rig) -> Estimate:
         require_sound(estimate, kind, (*gathered.warnings, *_remaining(estimate)))
     except UndeterminedError as refusal:
         unknown = {kind.parameter(term) for term in left_open(gathered.equations, kind)}
-        told = {name: value for name, value in estimate.parameters.items() if name not in unknown}
-        raise RefusedEstimateError(refusal, replace(estimate, parameters=told)) from refusal
+        determined = {name: value for name, value in estimate.parameters.items() if name not in unknown}
+        raise RefusedEstimateError(refusal, replace(estimate, parameters=determined)) from refusal
     return estimate
 
 
@@ -150,14 +150,14 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
     more = np.sqrt(left.misfit(found) ** 2 + doubt**2 + gathered.tolerance**2)
     parameters = parameters_of(found, kind, unit, more)
     for term, away in zip(TERMS, gathered.hinted, strict=True):
-        told = parameters[kind.parameter(term)]
-        parameters[kind.parameter(term)] = told.reaching(told.value + float(away))
+        parameter = parameters[kind.parameter(term)]
+        parameters[kind.parameter(term)] = parameter.reaching(parameter.value + float(away))
     parameters |= load_inertia(parameters, rig)
     chosen = equations.select(found.columns)
     power, squares = max(chosen.residual_power(found.theta), 0.0), float(chosen.power.sum())
     if squares == 0.0:
-        quantity = kind.parameter(INERTIA).replace("_", " ")
-        raise UndeterminedError(quantity, "the effort is zero throughout", "the motor's current or torque too")
+        reason = "the effort is zero throughout"
+        raise UndeterminedError(kind.in_words(INERTIA), reason, "the motor's current or torque too")
     mean = float(equations.moment[:, -1].sum()) / equations.count
     smooth = gathered.rows.conditioning.filter
     estimate = Estimate(
@@ -179,22 +179,21 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solved, left: Left) -> Estima
     return replace(estimate, warnings=(*estimate.warnings, *_remaining(estimate)))
 
 
-def parameters_of(found: Solved, kind: AxisKind, effort_unit: str, more: Array | None = None) -> dict[str, Parameter]:
+def parameters_of(found: Solved, kind: AxisKind, effort_unit: str, more: Array) -> dict[str, Parameter]:
     """J, K_w, K_0, misalignment and, where it was fitted, offset of a solution, with their intervals.
 
     Args:
         found: the solution.
         kind: of the axis.
         effort_unit: N*m, N, or what the rig allows.
-        more: how far intervals of 95 % have to reach beside what the covariance says (p,).
+        more: half widths at 95 % to add to those of the covariance (p,).
     """
-    more = np.zeros(found.theta.size) if more is None else more
     parameters = {}
     for term, place in (TERMS | {MISALIGNMENT: layout.MISALIGNMENT} | ({OFFSET: -1} if found.offset else {})).items():
         value, error, beside = (float(numbers[place]) for numbers in (found.theta, found.errors, more))
         interval = (value - found.reach * error, value + found.reach * error)
-        told = Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
-        parameters[kind.parameter(term)] = told.widened(beside)
+        parameter = Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
+        parameters[kind.parameter(term)] = parameter.widened(beside)
     return parameters
 
 

@@ -1,13 +1,13 @@
-"""Several recordings of one axis in one fit: what only one lacks, the others give.
+"""Joint fit of several recordings of one axis: what one does not determine, another may.
 
     theta = (sum of B_k)**-1 * sum of B_k*theta_k,   B_k = (I + A_k*D)**-1 * A_k
 
-theta - J, K_w, K_0 and offset, which the recordings share; theta_k - what recording k alone makes of them; A_k - what
-it knows of them: its normal equations' matrix, its own shift of torque against speed and its own hum eliminated, scaled
-to its covariance; D - variances by which recordings differ beyond their own errors (`between.py`). Without those it is
-the least-squares fit to all of them (D. Jackson, I. R. White, S. G. Thompson, Statistics in Medicine 29(12), 2010,
-1282-1297). A_k need not be invertible: a run in one direction knows K_0 and offset only together. Every recording keeps
-its own filter, noise, sample period and source of speed. The interval holds the recordings' own errors and D.
+theta - J, K_w, K_0 and offset, common to all recordings; theta_k - their estimate from recording k alone; A_k - its
+information: the matrix of its normal equations, scaled to its covariance, with its own shift of torque against speed
+and its own hum eliminated; D - variances between recordings beyond their own errors (`between.py`). With D = 0 it is
+the least-squares fit to all recordings (D. Jackson, I. R. White, S. G. Thompson, Statistics in Medicine 29(12), 2010,
+1282-1297). A_k may be singular: a run in one direction determines only the sum of K_0 and offset. Each recording keeps
+its own filter, noise, sample period and source of speed. The interval covers the recordings' own errors and D.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.balance.normal_equations import NormalEquations, join, solved
 from bench.balance.parameter import Parameter
-from bench.checks.gate import joined
 from bench.errors import InputError, UndeterminedError
-from bench.identify.between import ALARM, Excess, between, excess, told_apart
+from bench.gate.gate import joined
+from bench.identify.between import ALARM, Excess, between, excess, spread_warning
 from bench.identify.determined import left_open, only_direction, require_determined, require_sound
 from bench.identify.estimate import Between, Estimate, RefusedEstimateError, Residual
 from bench.identify.load_inertia import load_inertia
@@ -46,7 +46,7 @@ def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutof
         cutoff: half-power frequency of the filter instead of those chosen from the recordings - Hz.
 
     Raises:
-        RefusedEstimateError: all together do not determine one of them; what they do goes with it.
+        RefusedEstimateError: together they leave one of them undetermined; the error carries the others.
         UndeterminedError: one recording never moves clearly.
         InputError: no recording, one that is given twice, a signal is missing, or efforts in different units.
     """
@@ -74,7 +74,7 @@ def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutof
         cutoff=min(smooth.cutoff for smooth in filters),
         source=" and ".join(sorted({one.rows.conditioning.source for one in gathered})),
         warnings=(
-            *(f"{member.alone.origin}: {told}" for member in members for told in member.warnings),
+            *(f"{member.alone.origin}: {warning}" for member in members for warning in member.warnings),
             *(f"{member.alone.origin} alone: {member.alone.reason}" for member in members if member.alone.reason),
             *_differences(members, excesses, kind),
             *_offset(gathered, members, rig),
@@ -89,23 +89,24 @@ def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutof
 
 
 def _sound(estimate: Estimate, whole: NormalEquations, apart: Excess, kind: AxisKind) -> Estimate:
-    """The estimate, if the recordings together determine it and it can be one; `apart`: by how much inertia differs."""
-    told = []
+    """The estimate, if the recordings together determine it and it is sound; `apart`: spread of the inertia."""
+    suspicions = []
     if apart.variance:
         unit = estimate[kind.inertia].unit
-        told = [f"it differs from recording to recording by {math.sqrt(apart.variance):.2g} {unit}, and few are given"]
+        spread = f"{math.sqrt(apart.variance):.2g} {unit}"
+        suspicions = [f"it differs from recording to recording by {spread}, and few are given"]
     try:
         require_determined(whole, kind)
-        require_sound(estimate, kind, told)
+        require_sound(estimate, kind, suspicions)
     except UndeterminedError as refusal:
         unknown = {kind.parameter(term) for term in left_open(whole, kind)}
-        told = {name: found for name, found in estimate.parameters.items() if name not in unknown}
-        raise RefusedEstimateError(refusal, replace(estimate, parameters=told)) from refusal
+        determined = {name: found for name, found in estimate.parameters.items() if name not in unknown}
+        raise RefusedEstimateError(refusal, replace(estimate, parameters=determined)) from refusal
     return estimate
 
 
 def _variation(joined: NormalEquations) -> float:
-    """Squares of the effort less its mean, of all recordings - the effort's unit squared."""
+    """Sum of squares of the effort less its mean, over all recordings - the effort's unit squared."""
     return float(joined.power.sum()) - float(joined.moment[:, -1].sum()) ** 2 / joined.count
 
 
@@ -122,7 +123,7 @@ def _require_distinct(gathered: Sequence[Gathered]) -> None:
 
 
 def _joined(gathered: Sequence[Gathered]) -> NormalEquations:
-    """Equations of all recordings in the columns that each has: J, K_w, K_0, misalignment, constant."""
+    """Equations of all recordings in their common columns: J, K_w, K_0, misalignment, constant."""
     parts = [one.equations.select([*range(4), one.equations.noise.shape[0] - 1]) for one in gathered]
     noise = sum((part.count * part.noise for part in parts), np.zeros_like(parts[0].noise))
     return replace(join(parts), noise=noise / sum(part.count for part in parts))
@@ -130,7 +131,7 @@ def _joined(gathered: Sequence[Gathered]) -> NormalEquations:
 
 @dataclass(frozen=True)
 class Joint:
-    """What all recordings together tell of J, K_w, K_0 and, where it is fitted, offset (s,).
+    """Joint estimate of J, K_w, K_0 and, where it is fitted, offset (s,).
 
     Attributes:
         theta: (s,).
@@ -153,7 +154,7 @@ class Joint:
 
         Args:
             members: the recordings.
-            excesses: by how much they differ in each quantity beyond their own errors (s,).
+            excesses: their variance in each quantity beyond their own errors (s,).
             kind: of the axis.
         """
         between = np.array([found.variance for found in excesses])
@@ -170,15 +171,15 @@ class Joint:
         return cls(theta, np.sqrt(variance), np.sqrt(reached))
 
     def left(self, members: Sequence[Member]) -> float:
-        """Squared residuals of all recordings, each with its own shift and hum beside - the effort's unit squared."""
+        """Sum of squared residuals of all recordings, each with its own shift and hum - the effort's unit squared."""
         away = [self.theta - member.theta for member in members]
         return sum(member.power + float(d @ member.matrix @ d) for member, d in zip(members, away, strict=True))
 
 
 def _excess(members: Sequence[Member], kind: AxisKind, term: str) -> Excess:
-    """By how much recordings differ in a quantity; runs in one direction tell friction that way, which may be compared.
+    """Variance between recordings in a quantity.
 
-    Where offsets are all that such runs differ by, their friction takes it: together they move no sum of the two.
+    Runs of one direction determine the sum of friction and offset; it is compared among runs of the same direction.
     """
     name = kind.parameter(term)
     groups: dict[str, list[Parameter]] = {}
@@ -191,7 +192,7 @@ def _excess(members: Sequence[Member], kind: AxisKind, term: str) -> Excess:
 
 
 def _residual(members: Sequence[Member], left: float, unit: str) -> Residual:
-    """What the joint fit leaves of all recordings."""
+    """Residual of the joint fit over all recordings."""
     counts = np.array([member.equations.count for member in members])
     floors = [Left.of(m.gathered.rows, m.gathered.hypothesis, m.solved).floor for m in members]
     return Residual(
@@ -203,14 +204,14 @@ def _residual(members: Sequence[Member], left: float, unit: str) -> Residual:
 
 
 def _differences(members: Sequence[Member], excesses: Mapping[str, Excess], kind: AxisKind) -> Iterator[str]:
-    """Warnings: in what the recordings differ, and of what nobody can say whether they do."""
-    told = [term for term, found in excesses.items() if found.chance < ALARM / len(excesses)]
-    for term in told:
+    """Warnings of quantities in which the recordings differ, and of those that cannot be compared."""
+    differing = [term for term, found in excesses.items() if found.chance < ALARM / len(excesses)]
+    for term in differing:
         name = kind.parameter(term)
         values = [m.alone.parameters[name] for m in members if name in m.alone.parameters]
-        yield told_apart(name, values or [member.along for member in members if member.along is not None])
+        yield spread_warning(name, values or [member.along for member in members if member.along is not None])
     silent = [kind.parameter(term) for term, found in excesses.items() if not found.degrees and term != OFFSET]
-    if told and silent:
+    if differing and silent:
         yield (
             f"no two recordings tell {' or '.join(silent)} alike, so the interval does not count how recordings "
             "differ in it: record each direction twice"
@@ -218,7 +219,7 @@ def _differences(members: Sequence[Member], excesses: Mapping[str, Excess], kind
 
 
 def _offset(gathered: Sequence[Gathered], members: Sequence[Member], rig: Rig) -> Iterator[str]:
-    """A warning of a constant effort, not asked for, that runs in one direction each hide in their friction."""
+    """A warning of an offset that is not fitted, which runs of one direction each attribute to friction."""
     if rig.offset or all(member.along is None for member in members):
         return
     kind, asked = rig.axis_kind, rig.model_copy(update={"offset": True})
@@ -228,16 +229,16 @@ def _offset(gathered: Sequence[Gathered], members: Sequence[Member], rig: Rig) -
     if abs(value) > reach:
         unit = kind.parameter_unit(OFFSET, gathered[0].effort_unit)
         yield (
-            f"the recordings hold a {kind.spoken(OFFSET)} of {value:.3g} ± {reach:.2g} {unit}, which was not fitted: "
+            f"the recordings hold a {kind.in_words(OFFSET)} of {value:.3g} ± {reach:.2g} {unit}, which was not fitted: "
             "set `offset = true` in the rig, or give --offset"
         )
 
 
 def _between(members: Sequence[Member], kind: AxisKind) -> dict[str, Between]:
-    """Of each quantity that at least two recordings tell alone; the shift is not the axis'."""
+    """Spread of each quantity that at least two recordings determine alone; the shift is no property of the axis."""
     own = [member.own for member in members]
     found = {
-        name: [told[name] for told in own if name in told] for name in dict.fromkeys(n for told in own for n in told)
+        name: [each[name] for each in own if name in each] for name in dict.fromkeys(n for each in own for n in each)
     }
     found.pop(kind.parameter(MISALIGNMENT), None)
     return {name: between(values) for name, values in found.items() if len(values) > 1}

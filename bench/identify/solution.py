@@ -58,10 +58,10 @@ class Solved:
 
 
 def solved_with_shift(equations: NormalEquations, rows: Rows, offset: bool) -> Solved:
-    """Least squares; a shift of torque against speed beyond a tick is one only if it is sure, else held at the tick.
+    """Least squares; the shift of torque against speed is limited to a tick unless a larger one is significant.
 
-    A drive latches its signals within one tick. Along a sine the shift and viscous friction are one number: noise that
-    the drive feeds back made 4 ms and 26 times the friction of a shift that was none.
+    A drive latches its signals within one tick. Along a sine, shift and viscous friction are inseparable: noise that
+    the drive feeds back gave a false shift of 4 ms and 26 times the friction.
     """
     width = equations.noise.shape[0]
     columns = list(range(width if offset else width - 1))
@@ -90,10 +90,10 @@ def solved_with_shift(equations: NormalEquations, rows: Rows, offset: bool) -> S
 
 
 def with_digit(equations: NormalEquations, rows: Rows) -> tuple[NormalEquations, Array]:
-    """The equations with what is known of the effort's last digit, where it is a column; the variance it adds (p, p).
+    """The equations with a prior of the effort's last digit, if that is a column; and the variance it adds (p, p).
 
-    Where torque and speed turn together, what is cut off a current and dry friction are one number; half a step at most
-    is cut off, and the friction's interval counts where in between. Free, it took half of the friction.
+    Where torque and speed change sign together, truncation of the current and dry friction are inseparable. Truncation
+    is at most half a step, and the interval of friction includes that range; fitted freely, it took half of it.
     """
     beforehand, step = np.zeros_like(equations.noise), plain(rows).step
     if not step:
@@ -107,12 +107,12 @@ def with_digit(equations: NormalEquations, rows: Rows) -> tuple[NormalEquations,
 
 @dataclass(frozen=True)
 class Left:
-    """What a solution leaves of a recording's first part.
+    """Residual of a solution over a recording's first part.
 
     Attributes:
         laid: its columns.
         residual: (m,) - the effort's unit.
-        floor: RMS that the sensors' noise leaves - the effort's unit.
+        floor: expected RMS from sensor noise - the effort's unit.
     """
 
     laid: Layout
@@ -132,7 +132,7 @@ class Left:
         return cls(laid, residual, floor)
 
     def misfit(self, found: Solved) -> Array:
-        """How far intervals of 95 % have to reach because of what stands above the noise (p,); 0 where nothing does."""
+        """Half widths at 95 % from the residual above noise (p,); 0 if there is none."""
         columns = self.laid.columns
         if found.offset:
             columns = np.column_stack([columns, np.ones(self.residual.size)])

@@ -1,4 +1,4 @@
-"""What is left open of an estimate by the rig's tolerances, and by an effect too weak to be named."""
+"""Uncertainty of an estimate from the rig's tolerances, and from an effect too weak to be named."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from bench.trace.trace import Trace
 
 
 def by_tolerance(first: Trace, rig: Rig, tried: Tried) -> Array:
-    """How far intervals of 95 % have to reach for the rig's tolerances alone (p,), which are taken for independent.
+    """Half widths at 95 % from the rig's tolerances alone (p,), which are assumed independent.
 
     Args:
         first: the recording, or its first part.
         rig: of the axis.
-        tried: the estimate of it at the cut-off taken.
+        tried: its estimate at the chosen cut-off.
     """
     offset = rig.offset and only_direction(tried.equations) is None
     others = tuple(rig.within_tolerance())
@@ -38,10 +38,10 @@ def by_tolerance(first: Trace, rig: Rig, tried: Tried) -> Array:
 
 
 def by_hint(tried: Tried) -> Array:
-    """How far J, K_w and K_0 would move with the effect that a recording hints at (3,); 0 without one.
+    """By how much the effect that a recording hints at would move J, K_w and K_0 (3,); 0 without one.
 
     Args:
-        tried: the estimate of the recording, or of its first part, at the cut-off taken.
+        tried: the estimate of the recording, or of its first part, at the chosen cut-off.
     """
     found = fit(tried.rows, tried.hypothesis)
     beside = hint(found, catalogue().values())

@@ -1,1 +1,1 @@
-"""Many pieces of work, each with its own deadline, in one process beside this one or on Dask."""
+"""Many pieces of work, each with its own deadline, in one worker process or on Dask."""

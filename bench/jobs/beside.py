@@ -1,4 +1,4 @@
-"""A process beside this one that does one piece of work after the other, and can be stopped in the middle of one.
+"""A worker process that does one piece of work after another, and can be stopped during one.
 
 A thread cannot be stopped, and a signal does not interrupt compiled code that hangs: only a process can be ended, with
 what it holds. It is kept from one piece to the next, for loading numerics costs it a second. Dask has no deadline for a
@@ -31,11 +31,11 @@ from bench.jobs.limits import Failure, Limits
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-#: Seconds between looks at a process' memory, as Dask's nanny has them.
+#: Interval at which the memory of the process is checked - s -, as in Dask's nanny.
 LOOK = 0.2
-#: Seconds after the deadline at which the process ends itself, should nobody be left to end it.
+#: Time after the deadline at which the process ends itself, if its parent is gone - s.
 GRACE = 10.0
-#: Processes side by side would fight over the cores (BLAS; Arrow goes by the first too).
+#: One numeric thread a process, since several compete for the cores (BLAS; Arrow reads the first too).
 _ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 _SERVE = "import sys; from bench.jobs.beside import serve; serve(int(sys.argv[1]))"
 
@@ -86,7 +86,7 @@ class Beside(Generic[Item, Result]):
             process.wait()
 
     def _waited(self, process: subprocess.Popen[bytes], calls: Connection) -> Failure | None:
-        """None once there is an answer, or the process has died; else what it exceeded."""
+        """The limit that it exceeded; None once there is an answer, or the process has died."""
         end = time.monotonic() + self._limits.deadline
         while not calls.poll(min(LOOK, max(0.0, end - time.monotonic()))):
             if time.monotonic() >= end:
@@ -107,7 +107,7 @@ def _process() -> tuple[subprocess.Popen[bytes], Connection]:
 
 
 def _memory(number: int) -> int:
-    """Resident memory of a process - bytes; 0 of one that has died."""
+    """Resident memory of a process - bytes; 0 if it has died."""
     try:
         return psutil.Process(number).memory_info().rss
     except psutil.NoSuchProcess:
@@ -120,12 +120,12 @@ def _how(status: int) -> str:
 
 
 def serve(handle: int) -> None:
-    """Do what comes through a pipe, in the process beside, until the other end is closed.
+    """Do the work that comes through a pipe, in the worker process, until the other end is closed.
 
     Args:
         handle: of the pipe.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of the terminal: whoever waits for the result decides
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of the terminal: the waiting process decides
     with Connection(handle) as calls, Path(os.devnull).open("w") as nowhere:
         try:
             work, deadline = calls.recv()
@@ -133,7 +133,7 @@ def serve(handle: int) -> None:
             calls.send(raised(error))
             return
         calls.send(None)
-        with suppress(EOFError, ConnectionError):  # nobody is left to work for
+        with suppress(EOFError, ConnectionError):  # the parent is gone
             while True:
                 item = calls.recv()
                 faulthandler.dump_traceback_later(deadline + GRACE, exit=True, file=nowhere)
@@ -143,7 +143,7 @@ def serve(handle: int) -> None:
 
 
 def _answer(work: Callable[[Any], Any], item: object) -> bytes:
-    """Result or failure, pickled; what a result refuses to be pickled for is a failure too."""
+    """Result or failure, pickled; a result that cannot be pickled is a failure too."""
     try:
         return pickle.dumps(work(item))
     except Exception as error:
@@ -151,7 +151,7 @@ def _answer(work: Callable[[Any], Any], item: object) -> bytes:
 
 
 def raised(error: Exception) -> Failure:
-    """What to say of an exception that the work did not foresee."""
+    """The failure of an unexpected exception."""
     last = traceback.extract_tb(error.__traceback__)[-1]
-    told = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    return Failure("failed", f"{told} (at {Path(last.filename).name}:{last.lineno})")
+    reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    return Failure("failed", f"{reason} (at {Path(last.filename).name}:{last.lineno})")

@@ -1,4 +1,4 @@
-"""Do the same work on many items: beside this process where that is soonest done, else on Dask."""
+"""Do the same work on many items: in one worker process if that is faster, else on Dask."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from bench.jobs.limits import Failure, Limits
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-#: Seconds that Dask takes to be loaded, to start and to end (7 s measured on two cores that had other work too).
+#: Time that Dask takes to load, start and stop - s (7 s measured on two busy cores).
 DASK_STARTS = 7.0
 
 
@@ -26,7 +26,7 @@ def each(
     workers: int | None = None,
     scheduler: str | None = None,
 ) -> Iterator[tuple[int, Result | Failure]]:
-    """Place of each item with its result, or why there is none, in the order in which they come.
+    """Index of each item with its result or failure, in order of completion.
 
     An item that raises, hangs or ends its process is a `Failure` and nothing else: the others go on. What is returned
     for an item depends on neither the number of workers nor where they are.
@@ -60,5 +60,5 @@ def each(
 
 
 def _worth_dask(seconds: list[float], left: int, workers: int) -> bool:
-    """Whether several workers save more than Dask's start costs, as items took so far."""
+    """Whether several workers save more time than Dask takes to start, judged by the items so far."""
     return bool(seconds) and left * median(seconds) * (1.0 - 1.0 / workers) > DASK_STARTS

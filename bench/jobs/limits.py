@@ -1,4 +1,4 @@
-"""What one piece of work may take, and what is said of one that gave no result."""
+"""Limits of one piece of work, and the failure of one without a result."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal
 
 @dataclass(frozen=True)
 class Limits:
-    """Of one piece of work.
+    """Limits of one piece of work.
 
     Attributes:
         deadline: after which it is stopped - s.
@@ -21,7 +21,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Failure:
-    """Of one piece of work that gave no result.
+    """Why a piece of work gave no result.
 
     Attributes:
         status: `timed_out` where it was stopped at its deadline, `failed` where it raised, or its process died.

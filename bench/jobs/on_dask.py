@@ -1,4 +1,4 @@
-"""Pieces of work on Dask: workers of this machine, or a cluster that is there.
+"""Pieces of work on Dask: workers of this machine, or an existing cluster.
 
 Dask has the queue, the balance between workers, and the retries where a worker or its machine is lost; each thread of a
 worker has one process beside it (`beside.py`), so that no piece of work can hold up or end the worker itself.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from functools import cached_property
+from types import ModuleType
 
 from bench.errors import BenchError
 from bench.lab import (
@@ -81,36 +82,25 @@ class _Course:
     def steps(self) -> list[tuple[str, str, Callable[[], Task]]]:
         """Number, title and work of every task."""
         rig, sources, example = self.rig, self.sources, self.recordings.example
-        return [
-            (t01_catapult.KEY, t01_catapult.TITLE, self._catapult),
-            (t02_difference.KEY, t02_difference.TITLE, t02_difference.task),
-            (t03_torque_constants.KEY, t03_torque_constants.TITLE, lambda: t03_torque_constants.task(rig, sources)),
-            (
-                t04_torque_constant_curve.KEY,
-                t04_torque_constant_curve.TITLE,
-                lambda: t04_torque_constant_curve.task(rig, sources),
-            ),
-            (
-                t05_run_without_friction.KEY,
-                t05_run_without_friction.TITLE,
-                lambda: t05_run_without_friction.task(self.without_friction),
-            ),
-            (t06_inertia.KEY, t06_inertia.TITLE, lambda: self.inertia),
-            (
-                t07_run_with_friction.KEY,
-                t07_run_with_friction.TITLE,
-                lambda: t07_run_with_friction.task(self.with_friction),
-            ),
-            (t08_fast_samples.KEY, t08_fast_samples.TITLE, lambda: t08_fast_samples.task(self.with_friction)),
-            (t09_least_squares.KEY, t09_least_squares.TITLE, lambda: self.least_squares),
-            (t10_peak_torque.KEY, t10_peak_torque.TITLE, lambda: self.peak_torque),
-            (t11_corner.KEY, t11_corner.TITLE, self._corner),
-            (estimators.KEY, estimators.TITLE, lambda: estimators.task(example)),
-            (operating_range.KEY, operating_range.TITLE, self._operating_range),
-            (tracking.KEY, tracking.TITLE, self._tracking),
-            (equation_of_motion.KEY, equation_of_motion.TITLE, lambda: equation_of_motion.task(example)),
-            (emulated_friction.KEY, emulated_friction.TITLE, lambda: emulated_friction.task(example)),
+        work: list[tuple[ModuleType, Callable[[], Task]]] = [
+            (t01_catapult, self._catapult),
+            (t02_difference, t02_difference.task),
+            (t03_torque_constants, lambda: t03_torque_constants.task(rig, sources)),
+            (t04_torque_constant_curve, lambda: t04_torque_constant_curve.task(rig, sources)),
+            (t05_run_without_friction, lambda: t05_run_without_friction.task(self.without_friction)),
+            (t06_inertia, lambda: self.inertia),
+            (t07_run_with_friction, lambda: t07_run_with_friction.task(self.with_friction)),
+            (t08_fast_samples, lambda: t08_fast_samples.task(self.with_friction)),
+            (t09_least_squares, lambda: self.least_squares),
+            (t10_peak_torque, lambda: self.peak_torque),
+            (t11_corner, self._corner),
+            (estimators, lambda: estimators.task(example)),
+            (operating_range, self._operating_range),
+            (tracking, self._tracking),
+            (equation_of_motion, lambda: equation_of_motion.task(example)),
+            (emulated_friction, lambda: emulated_friction.task(example)),
         ]
+        return [(module.KEY, module.TITLE, step) for module, step in work]
 
     @cached_property
     def without_friction(self) -> Run:

@@ -48,7 +48,7 @@ def task(rig: Rig) -> Task:
     traces = recordings(rig)
     found = {words: identify_friction(run_of(trace, rig)) for words, trace in traces.items()}
     numbers = [number for words, trace in traces.items() for number in _numbers(words, found[words], trace, rig, truth)]
-    return Task(KEY, TITLE, _says(found, truth), tuple(numbers), example=True)
+    return Task(KEY, TITLE, _findings(found, truth), tuple(numbers), example=True)
 
 
 def _numbers(words: str, found: Friction, trace: Trace, rig: Rig, truth: AxisParameters) -> list[Number]:
@@ -67,7 +67,7 @@ def _numbers(words: str, found: Friction, trace: Trace, rig: Rig, truth: AxisPar
     ]
 
 
-def _says(found: dict[str, Friction], truth: AxisParameters) -> tuple[str, ...]:
+def _findings(found: dict[str, Friction], truth: AxisParameters) -> tuple[str, ...]:
     mechanics, setpoint, phases = found[MECHANICS], found[SETPOINT], found[PHASES]
     return (
         "Which current is recorded decides whether software friction is seen.",

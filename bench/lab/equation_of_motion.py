@@ -55,8 +55,8 @@ def task(rig: Rig) -> Task:
         Number("K_fric_0", found["coulomb_friction_torque"].value, "N·m", truth.coulomb_friction),
         Number("M_load behind the gear", found[rig.axis_kind.parameter(OFFSET)].value * RATIO, "N·m", LOAD_TORQUE),
     )
-    says = (
+    findings = (
         f"With i = {RATIO:g} the motor feels J_load/i² and M_load/i. Simulated with {LOAD_TORQUE:g} N·m on the load "
         "and identified with a constant torque beside inertia and friction.",
     )
-    return Task(KEY, TITLE, says, tuple(replace(number, source=EXAMPLE) for number in numbers), example=True)
+    return Task(KEY, TITLE, findings, tuple(replace(number, source=EXAMPLE) for number in numbers), example=True)

@@ -51,7 +51,7 @@ def task(rig: Rig) -> Task:
             for q, e in zip(("J", "K_fric_w", "K_fric_0"), error, strict=True)
         ]
     late, step, bench = (errors[words] for words in ("least squares, out of step", "least squares, in step", "bench"))
-    says = (
+    findings = (
         f"RMS error over {REPETITIONS} recordings of the fast run. The backward difference is half a sample late: "
         f"taken as it is, J·α of that half sample goes into friction ({late[1]:.0f} % and {late[2]:.0f} %). In step "
         f"(t_sync) {step[1]:.2g} % and {step[2]:.2g} % remain.",
@@ -59,7 +59,7 @@ def task(rig: Rig) -> Task:
         "torque, speed, acceleration and sign alike: smoothing α alone shortens its peaks against the torque's, and "
         "its noise draws J towards zero (or, in the mean of M/α, away from it, as 1/α is convex).",
     )
-    return Task(KEY, TITLE, says, tuple(numbers), example=True)
+    return Task(KEY, TITLE, findings, tuple(numbers), example=True)
 
 
 def _recordings(rig: Rig) -> list[Trace]:

@@ -10,9 +10,10 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.lab.text import text_of
 from bench.trace.readers.mat import load
-from bench.unit_text import in_pints_words
 from bench.units import convert, dimensionality
+from bench.units.text import spelled_for_pint
 
 Cells = list[str]
 
@@ -56,7 +57,8 @@ def flights_of_text(content: bytes, where: str) -> FoundFlights:
     Raises:
         InputError: no table of points y, z; names line or column.
     """
-    lines = [(k, line.strip("\r\n")) for k, line in enumerate(_text(content).splitlines(), 1) if line.strip(" ;,\t\r")]
+    text = text_of(content).splitlines()
+    lines = [(k, line.strip("\r\n")) for k, line in enumerate(text, 1) if line.strip(" ;,\t\r")]
     header = next((k for k, (_, line) in enumerate(lines) if not re.search(r"[^\W\dEe_]", _without_nan(line))), None)
     if header is None:
         raise InputError(where, "found no line of numbers", f"allowed: at least three points, {_ADVICE}")
@@ -84,15 +86,6 @@ def flights_of_mat(content: bytes, where: str) -> FoundFlights:
 
 
 _ADVICE = "y and z on each line, named in the first one: y [m],z [m]"
-
-
-def _text(content: bytes) -> str:
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return content.decode("utf-16", errors="replace")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("latin-1")
 
 
 def _without_nan(line: str) -> str:
@@ -189,7 +182,7 @@ def _by_flight_number(columns: Sequence[Column], table: Array, points: list[Arra
 def _metres(column: Column, values: Array, where: str) -> Array:
     if column.unit is None:
         return values
-    unit = in_pints_words(column.unit)
+    unit = spelled_for_pint(column.unit)
     try:
         known = dimensionality(unit) == "[length]"
     except ValueError:

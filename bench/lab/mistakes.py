@@ -20,7 +20,7 @@ class Mistake:
     """
 
     name: str
-    says: str
+    explanation: str
     ways: tuple[Way, ...]
 
 

@@ -29,11 +29,11 @@ def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
         OperatingRange.of(rig.motor, voltage, rig.source)
         for voltage in [curve.mains_voltage for curve in rig.motor.peak_curves] or [230.0]
     ]
-    says, numbers, curves = [], [], []
+    findings, numbers, curves = [], [], []
     for limit in ranges:
         volts = f"{limit.curve.mains_voltage:g} V"
         left = reserve(limit, speed, torque)
-        says.append(f"At {volts}: {_peak_says(left, speed, torque)} {_thermal_says(left)}")
+        findings.append(f"At {volts}: {_peak_finding(left, speed, torque)} {_thermal_finding(left)}")
         numbers += [
             Number(f"peak reserve, {volts}", left.peak, "N·m"),
             Number(f"thermal reserve, {volts}", left.thermal, "A"),
@@ -45,9 +45,9 @@ def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
             at = np.linspace(0.0, cold.curve.no_load_speed, 300)
             curves.append(Curve(at * RPM, cold.peak(at), f"peak, {volts}, winding at 20 °C", "thin"))
     left = reserve(ranges[0], speed, torque)
-    says.append(_heat_says(left, ranges[0]))
+    findings.append(_heat_finding(left, ranges[0]))
     if any(number.name.endswith("cold") for number in numbers):
-        says.append(
+        findings.append(
             "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve stands apart "
             "and is none "
             "to plan with. It changes nothing where the magnets limit, nor for heat."
@@ -56,10 +56,12 @@ def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
     panel = Panel(
         "speed |n| / rpm", "torque M in the direction of motion / (N·m)", (*_motion(speed, torque, ranges[0]), *curves)
     )
-    return Task(KEY, f"{TITLE}: {what}", tuple(says), tuple(numbers), (Chart(f"Operating range: {what}", (panel,)),))
+    return Task(
+        KEY, f"{TITLE}: {what}", tuple(findings), tuple(numbers), (Chart(f"Operating range: {what}", (panel,)),)
+    )
 
 
-def _peak_says(left: Reserve, speed: Array, torque: Array) -> str:
+def _peak_finding(left: Reserve, speed: Array, torque: Array) -> str:
     braking = speed[left.at] * torque[left.at] < 0.0
     beyond = f"; {left.beyond:.1%} of the samples lie beyond the limit" if left.beyond else ""
     return (
@@ -68,7 +70,7 @@ def _peak_says(left: Reserve, speed: Array, torque: Array) -> str:
     )
 
 
-def _thermal_says(left: Reserve) -> str:
+def _thermal_finding(left: Reserve) -> str:
     hot = ", the motor would overheat if this repeats" if left.thermal < 0.0 else ""
     return (
         f"RMS current {left.rms_current:.3g} A at {left.mean_speed * RPM:.0f} rpm on average leaves "
@@ -77,7 +79,7 @@ def _thermal_says(left: Reserve) -> str:
     )
 
 
-def _heat_says(left: Reserve, limit: OperatingRange) -> str:
+def _heat_finding(left: Reserve, limit: OperatingRange) -> str:
     """Why heat goes by current and not by torque."""
     by_torque = left.rms_torque / float(limit.torque_constant(np.asarray(left.continuous_current)))
     return (

@@ -13,16 +13,16 @@ from bench.files import read_text
 from bench.lab.rig import lab_rig
 from bench.lab.run import Run, run_of
 from bench.lab.sources import Sources, embedded
+from bench.names import nearest
 from bench.plant.truth import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.structured import parse_json
 from bench.trace.assemble import assemble
 from bench.trace.channel import Recording
 from bench.trace.choose import choose
-from bench.trace.how import how_to_read
 from bench.trace.read import read_recording
 from bench.trace.readers import READERS
-from bench.units import nearest
+from bench.trace.reading_options import reading_options
 
 WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"
 #: Signals that the tasks need.
@@ -129,7 +129,7 @@ def _letters(path: Path) -> str:
 
 
 def _require_signals(recording: Recording, path: Path, columns: Mapping[str, str]) -> None:
-    chosen, _ = choose(recording, how_to_read(columns))
+    chosen, _ = choose(recording, reading_options(columns))
     missing = [name for name in NEEDED if name not in chosen]
     if not missing:
         return

@@ -74,7 +74,7 @@ class Task:
 
     key: str
     title: str
-    says: tuple[str, ...] = ()
+    findings: tuple[str, ...] = ()
     numbers: tuple[Number, ...] = ()
     charts: tuple[Chart, ...] = ()
     example: bool = False

@@ -70,7 +70,7 @@ def record_class(
 
 
 def seal(content: dict[str, Any]) -> str:
-    """Checksum of a truth's content: whoever changes a value breaks it."""
+    """Checksum of a truth's content, to detect changes."""
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

@@ -9,9 +9,10 @@ from typing import Any
 
 from bench.errors import InputError
 from bench.lab.answers import ASKED
+from bench.lab.text import text_of
+from bench.names import nearest
 from bench.structured import parse_json
-from bench.unit_text import in_pints_words
-from bench.units import nearest
+from bench.units.text import spelled_for_pint
 
 ENDINGS = (".csv", ".json")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
@@ -57,7 +58,7 @@ def read_submission(path: Path) -> Submission:
     Raises:
         InputError: a row that cannot be read, a quantity that is not asked for or given twice, or no student.
     """
-    text = _text(path)
+    text = text_of(path.read_bytes())
     rows = _json_rows(text, path) if path.suffix.lower() == ".json" else _csv_rows(text, path)
     known = {asked.name.lower(): asked.name for asked in ASKED}
     student, answers = "", {}
@@ -79,17 +80,7 @@ def read_submission(path: Path) -> Submission:
 
 
 def _is_form(path: Path) -> bool:
-    return bool(re.match(r'\W*"?(quantity|student|schema)', _text(path)[:200], re.IGNORECASE))
-
-
-def _text(path: Path) -> str:
-    content = path.read_bytes()
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return content.decode("utf-16", errors="replace")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("latin-1")
+    return bool(re.match(r'\W*"?(quantity|student|schema)', text_of(path.read_bytes())[:200], re.IGNORECASE))
 
 
 def _csv_rows(text: str, path: Path) -> list[tuple[str, str, str, str]]:
@@ -134,4 +125,4 @@ def _unit(text: str) -> str:
     plain = text.strip().strip("[]")
     if plain in ("1", "-", "dimensionless"):
         return "dimensionless"
-    return in_pints_words(plain).translate(_SIGNS)
+    return spelled_for_pint(plain).translate(_SIGNS)

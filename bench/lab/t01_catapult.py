@@ -62,11 +62,13 @@ def task(flights: Flights, truth: Mapping[str, float]) -> Task:
     numbers = [
         Number(name, float(value), units[name], truth.get(name)) for name, value in zip("abc", theta, strict=True)
     ]
-    says, comparison = compare_solvers(y, z)
+    solvers, comparison = compare_solvers(y, z)
     counts = (
         f"{len(flights.points)} experiments, {y.size} points; RMS distance in z {np.sqrt(error / y.size) * 1e3:.2g} mm."
     )
-    return Task(KEY, TITLE, (counts, says, *flights.notes), (*numbers, Number("E", error, "m²")), (chart, comparison))
+    return Task(
+        KEY, TITLE, (counts, solvers, *flights.notes), (*numbers, Number("E", error, "m²")), (chart, comparison)
+    )
 
 
 def compare_solvers(y: Array, z: Array) -> tuple[str, Chart]:
@@ -90,9 +92,9 @@ def compare_solvers(y: Array, z: Array) -> tuple[str, Chart]:
         ),
     )
     worst = next((k for k, value in enumerate(apart) if value > 1e-3), len(SHIFTS) - 1)
-    says = (
+    findings = (
         f"(AᵀA)⁻¹Aᵀb and QR agree within {apart[0]:.1g} m here (condition number {condition[0]:.0f}). They part when "
         f"A is badly conditioned, for AᵀA has its square: with y measured from {SHIFTS[worst]:g} m away "
         f"({condition[worst]:.1g}) the paths are {apart[worst]:.1g} m apart."
     )
-    return says, chart
+    return findings, chart

@@ -51,15 +51,15 @@ def load_inertia(inertia: float, rig: Rig, sources: Sources, true: float | None)
             joined(RECORDING, f"J_motor: {source}"),
         )
     ]
-    says = [f"J_motor = {rotor * KG_CM2:.3g} kg·cm² ({source})."]
+    findings = [f"J_motor = {rotor * KG_CM2:.3g} kg·cm² ({source})."]
     if theory is not None:
         disk = sources("load", "outer_diameter")
         numbers.append(Number("J_load, theory", theory * KG_CM2, "kg·cm²", source=f"disk: {disk}"))
-        says.append(
+        findings.append(
             f"J_load is {load / theory - 1.0:+.2%} off what the disk's geometry gives ({disk}); hub, coupling and "
             "bolts are not part of it."
         )
-    return numbers, says
+    return numbers, findings
 
 
 def task(run: Run, rig: Rig, sources: Sources) -> Task:
@@ -80,7 +80,7 @@ def task(run: Run, rig: Rig, sources: Sources) -> Task:
         *loads,
         Number("RMS of M - J·α", left, "N·m"),
     )
-    says = (
+    findings = (
         f"{taken.sum()} of {taken.size} samples accelerate at alpha_max/4 or more; J is the mean of M/α over them.",
         "In which unit? N·m over rad/s² is N·m·s² = kg·m², as the radian counts as 1; 1 kg·m² = 10⁴ kg·cm².",
         f"J·α compared with M: they leave {left:.3g} N·m RMS, {left / rms(run.torque[taken]):.1%} of the torque of "
@@ -95,7 +95,7 @@ def task(run: Run, rig: Rig, sources: Sources) -> Task:
         Panel("time / s", "torque / (N·m)", curves),
         Panel("time / s", "M - J·α / (N·m)", (Curve(run.time, residual),)),
     )
-    return Task(KEY, TITLE, says, numbers, (Chart("Task 6: J·α over the measured torque", panels),))
+    return Task(KEY, TITLE, findings, numbers, (Chart("Task 6: J·α over the measured torque", panels),))
 
 
 def _scatter(run: Run, taken: NDArray[np.bool_]) -> str:

@@ -75,7 +75,7 @@ def task(run: Run, rig: Rig, sources: Sources, load_inertia_before: Number | Non
     left = rms(residual)
     true = run.true("moment_of_inertia", KG_CM2)
     loads, _ = load_inertia(found.inertia, rig, sources, true)
-    says = [
+    findings = [
         f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted.time.size} samples of task 8; the theta with the least "
         "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
         f"M_est is drawn for all {run.time.size} samples. It leaves {left:.3g} N·m RMS, "
@@ -84,7 +84,7 @@ def task(run: Run, rig: Rig, sources: Sources, load_inertia_before: Number | Non
     ]
     if load_inertia_before is not None and loads:
         off = loads[0].value / load_inertia_before.value - 1.0
-        says.append(f"J_load is {off:+.2%} off the one of task 6.")
+        findings.append(f"J_load is {off:+.2%} off the one of task 6.")
     curves = (
         Curve(run.time, run.torque, "measured torque M", "wide"),
         Curve(run.time, found.torque(every), "M_est, all samples"),
@@ -103,5 +103,5 @@ def task(run: Run, rig: Rig, sources: Sources, load_inertia_before: Number | Non
         Number("RMS of M - M_est, all samples", left, "N·m"),
     )
     return Task(
-        KEY, TITLE, tuple(says), numbers, (Chart("Task 9: reconstructed torque over the measured one", panels),)
+        KEY, TITLE, tuple(findings), numbers, (Chart("Task 9: reconstructed torque over the measured one", panels),)
     )

@@ -104,19 +104,19 @@ def task(run: Run, rig: Rig, sources: Sources, mains: float = 230.0) -> Task:
         if math.isfinite(measured):
             numbers.append(Number(name, measured, "N·m"))
         numbers.append(Number(f"{name}, datasheet", sheet, "N·m", source=peak))
-    says = (
+    findings = (
         f"The torque starts to decline at {found.corner * RPM:.0f} rpm, {(found.corner - limit[1]) * RPM:+.0f} "
         "rpm from "
         "the datasheet's corner; task 11 says why. The corner is found by least squares on the current from its top to "
         "half of it: constant, then falling in proportion to speed with a lag, as the motor's circuit has it.",
-        *_tail_says(velocity, torque, found),
-        *_missing_says(rows),
+        *_tail_findings(velocity, torque, found),
+        *_missing_findings(rows),
     )
     chart = Chart("Task 10: peak torque", (Panel("speed n / rpm", "torque M / (N·m)", curves),))
-    return Task(KEY, TITLE, says, tuple(numbers), (chart,))
+    return Task(KEY, TITLE, findings, tuple(numbers), (chart,))
 
 
-def _tail_says(velocity: Array, torque: Array, found: Decline) -> tuple[str, ...]:
+def _tail_findings(velocity: Array, torque: Array, found: Decline) -> tuple[str, ...]:
     """What ends the run before the no-load speed: the drive's set speed, which the axis then keeps."""
     top = float(velocity.max())
     if top > 0.99 * found.no_load:
@@ -130,6 +130,6 @@ def _tail_says(velocity: Array, torque: Array, found: Decline) -> tuple[str, ...
     )
 
 
-def _missing_says(rows: list[tuple[float, float, float]]) -> tuple[str, ...]:
+def _missing_findings(rows: list[tuple[float, float, float]]) -> tuple[str, ...]:
     missing = [f"{speed * RPM:.0f}" for speed, measured, _ in rows if not math.isfinite(measured)]
     return (f"At {', '.join(missing)} rpm there is no sample: the run-up does not get there.",) if missing else ()

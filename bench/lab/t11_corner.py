@@ -144,23 +144,23 @@ def task(
     sheet = peak_curve(rig.motor, mains, rig.source).corner_speed
     by_temperature, by_inductance = (found.cold - found.hot) * RPM, (found.inductive - found.cold) * RPM
     assumed = sources("motor", "electrical_time_constant")
-    says = [
+    findings = [
         "The corner is the speed at which the torque starts to decline, as full voltage no longer drives peak current: "
         "U = R·Imax + Ke·ω. The current is still constant there, dIq/dt = 0, so no inductance can move it.",
         f"Simulated, it lies at {found.hot * RPM:.0f} rpm hot, at {found.cold * RPM:.0f} rpm cold and at "
         f"{found.inductive * RPM:.0f} rpm cold with inductance (L/R, {assumed}): the cold winding moves it by "
         f"{by_temperature:+.0f} rpm, as it takes less voltage and leaves more to the back-EMF, the inductance by "
         f"{by_inductance:+.1f} rpm, and for L/R from 1 to 8 ms alike.",
-        _fall_says(found),
+        _fall_finding(found),
         f"The winding warms by {found.runs[0].warming:.1f} K (hot) and {found.runs[1].warming:.1f} K (cold) during "
         f"the run-up, which keeps the hot corner {(found.hot - sheet) * RPM:+.0f} rpm from the datasheet's "
         f"{sheet * RPM:.0f} rpm.",
-        _voltage_says(rig, mains),
+        _voltage_finding(rig, mains),
     ]
     if measured is not None:
-        says.insert(3, _measured_says(measured, found, synthetic))
+        findings.insert(3, _measured_finding(measured, found, synthetic))
     charts = (_torque_chart(rig, mains, found), _dependence_chart(found))
-    return Task(KEY, TITLE, tuple(says), _numbers(found, joined(SIMULATED, f"L/R: {assumed}")), charts)
+    return Task(KEY, TITLE, tuple(findings), _numbers(found, joined(SIMULATED, f"L/R: {assumed}")), charts)
 
 
 def _numbers(found: Split, with_inductance: str) -> tuple[Number, ...]:
@@ -191,7 +191,7 @@ def _numbers(found: Split, with_inductance: str) -> tuple[Number, ...]:
     )
 
 
-def _fall_says(found: Split) -> str:
+def _fall_finding(found: Split) -> str:
     _, cold, inductive = found.runs
     faster = [f"{(speed_at(inductive, s) - speed_at(cold, s)) * RPM:.0f} rpm at {s:.0%}" for s in SHARES]
     return (
@@ -203,7 +203,7 @@ def _fall_says(found: Split) -> str:
     )
 
 
-def _measured_says(measured: Decline, found: Split, synthetic: bool) -> str:
+def _measured_finding(measured: Decline, found: Split, synthetic: bool) -> str:
     text = (
         f"Measured in task 10: {measured.corner * RPM:.0f} rpm, "
         f"{(measured.corner - found.inductive) * RPM:+.1f} rpm from "
@@ -218,7 +218,7 @@ def _measured_says(measured: Decline, found: Split, synthetic: bool) -> str:
     return text
 
 
-def _voltage_says(rig: Rig, mains: float) -> str:
+def _voltage_finding(rig: Rig, mains: float) -> str:
     """What the circuit leaves out, told by the curve at another voltage."""
     others = [curve for curve in rig.motor.peak_curves if curve.mains_voltage != mains]
     if not others:

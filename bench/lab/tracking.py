@@ -53,7 +53,7 @@ def task(rig: Rig, sources: Sources, axis: AxisParameters, identified: float, kn
     for k, name in enumerate(loads):
         numbers.append(Number(f"largest deviation, {name}", float(np.abs(deviation[:, k]).max()), "deg", source=source))
         numbers.append(Number(f"RMS deviation, {name}", float(rms[k]), "deg", source=source))
-    says = (
+    findings = (
         f"The simulated axis is that of the recording: J = {axis.inertia * KG_CM2:.4g} kg·cm², "
         + ("as it truly is." if known else "as task 9 found it, so that the identified J_load fits it by construction.")
         + f" The disk's geometry is {theory / (axis.inertia - rotor) - 1.0:+.1%} off its J_load, as hub, coupling and "
@@ -63,7 +63,7 @@ def task(rig: Rig, sources: Sources, axis: AxisParameters, identified: float, kn
         "reversal.",
     )
     labels = [f"{name}: {load * KG_CM2:.4g} kg·cm²" for name, load in loads.items()]
-    return Task(KEY, TITLE, says, tuple(numbers), (_chart(states.time, deviation, labels),))
+    return Task(KEY, TITLE, findings, tuple(numbers), (_chart(states.time, deviation, labels),))
 
 
 def _chart(time: Array, deviation: Array, labels: list[str]) -> Chart:

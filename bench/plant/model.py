@@ -38,7 +38,7 @@ STICKING_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
 #: The ground that is drawn under an axis.
 FLOOR = "floor"
-#: Mass of a body whose mass nobody told - kg: MuJoCo wants one, and where the body is moved about it weighs nothing.
+#: Mass of a body of unknown mass - kg: MuJoCo needs one, and it is negligible where the body moves.
 NO_MASS = 1e-6
 
 #: Inertia of a flat disk about its diameter, over that about its shaft: half, and as much more as a thickness of a
@@ -141,11 +141,6 @@ def build_spec(parameters: AxisParameters, timestep: float, load: Load | None = 
     return spec
 
 
-def build_model(parameters: AxisParameters, timestep: float, load: Load | None = None) -> mujoco.MjModel:
-    """Compiled model of an axis with a bare torque input, the actuator `drive`; arguments as `build_spec`."""
-    return build_spec(parameters, timestep, load).compile()
-
-
 def _set_inertia(spec: mujoco.MjSpec, parameters: AxisParameters) -> None:
     parts = {MOTOR: parameters.motor_inertia, LOAD: parameters.inertia - parameters.motor_inertia}
     for name, inertia in parts.items():
@@ -162,7 +157,7 @@ def disk_inertia(inertia: float) -> list[float]:
 
 
 def set_masses(spec: mujoco.MjSpec, kind: AxisKind, mounting: Mounting) -> str:
-    """Give the bodies of an axis the masses that are known, and nobody's to the others; says which, in a sentence.
+    """Set the known masses of the bodies of an axis, and negligible ones for the others; returns a sentence about them.
 
     About the shaft no mass is felt; it is where the axis itself is moved. What moves along a slide has its mass.
     """

@@ -24,12 +24,11 @@ from bench.axis_kind import AxisKind, axis_kind
 from bench.effects.kinds import Winding
 from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.errors import InputError
-from bench.files import write_text
+from bench.names import nearest
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import FLOOR, AxisParameters, parameter_quantities, set_masses
 from bench.plant.mounting import DIRECT, Mounting
 from bench.structured import read_toml
-from bench.units import nearest
 
 SCHEMA = "bench.model/1"
 #: Step that the exported MuJoCo model runs at - s.
@@ -40,7 +39,7 @@ MOUNTED = {"gear_ratio": "dimensionless", "load_mass": "kg", "link_inertia": "kg
 
 @dataclass(frozen=True)
 class StoredModel:
-    """A model with what is needed to hold it against a recording.
+    """A model with what is needed to compare it with a recording.
 
     Attributes:
         name: of the axis.
@@ -55,28 +54,16 @@ class StoredModel:
     mounting: Mounting = DIRECT
 
 
-def write_model(folder: str | Path, stored: StoredModel, timestep: float = TIMESTEP) -> tuple[Path, Path]:
-    """Write `model.toml` and `model.xml` into a folder, each whole or not at all; returns their paths.
-
-    Raises:
-        InputError: the folder cannot be written to.
-    """
-    toml, xml = Path(folder) / "model.toml", Path(folder) / "model.xml"
-    write_text(toml, model_toml(stored))
-    write_text(xml, model_xml(stored, timestep))
-    return toml, xml
-
-
-def model_xml(stored: StoredModel, timestep: float = TIMESTEP) -> str:
+def model_xml(stored: StoredModel) -> str:
     """MJCF that MuJoCo opens alone, and that attaches to any body; a comment tells what it lacks, and assumes."""
     model, mounting = stored.model, stored.mounting
-    spec = model.spec(timestep)
+    spec = model.spec(TIMESTEP)
     spec.delete(spec.geom(FLOOR))
     mass = set_masses(spec, model.parameters.kind, mounting)
     spec.compile()
     missing = sorted({present.name for present in model.effects} - set(model.structure))
     rest = f"; not in it, but in model.toml: {', '.join(missing)}" if missing else ""
-    notes = [f"Axis at steps of {timestep:g} s, torque as input{rest}.", mass]
+    notes = [f"Axis at steps of {TIMESTEP:g} s, torque as input{rest}.", mass]
     if mounting.gear_ratio != 1.0:
         notes.append(
             f"All of it is on the motor's side of a gear of {mounting.gear_ratio:g}: the joint is the motor's shaft."
@@ -104,8 +91,8 @@ def model_toml(stored: StoredModel, beside: Mapping[str, Any] | None = None) -> 
         content["winding"] = {key: _determined(getattr(model.winding, key), unit) for key, unit in units.items()}
     if model.effects:
         content["effects"] = [_effect_table(present, kind) for present in model.effects]
-    if stored.mounting.told:
-        content["mounting"] = {key: _determined(value, MOUNTED[key]) for key, value in stored.mounting.told.items()}
+    if stored.mounting.stated:
+        content["mounting"] = {key: _determined(value, MOUNTED[key]) for key, value in stored.mounting.stated.items()}
     return tables_toml(kind, {**content, **(beside or {})})
 
 

@@ -1,4 +1,4 @@
-"""How an axis sits in its machine: what a model on the motor's side needs to go onto a joint of somebody's robot."""
+"""Mounting of an axis: what a model on the motor's side needs to be put onto a joint of a robot."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class Mounting:
         return cls(float(load.gear_ratio), load.disk_mass, load.link_inertia or 0.0)
 
     @property
-    def told(self) -> dict[str, float]:
+    def stated(self) -> dict[str, float]:
         """Values other than those of an axis without gear and robot, by name - SI."""
         return {f.name: getattr(self, f.name) for f in fields(self) if getattr(self, f.name) != f.default}
 
 
-#: Of an axis without gear and robot, whose load nobody told.
+#: Of an axis without gear and robot, and of an unknown load.
 DIRECT = Mounting()

@@ -9,10 +9,10 @@ from functools import reduce
 import numpy as np
 
 from bench.errors import InputError
+from bench.names import nearest
 from bench.plant.limits import MotionLimits
 from bench.plant.references import References
 from bench.plant.s_curve import s_curve, speed_change, through_speeds
-from bench.units import nearest
 
 Profile = Callable[[MotionLimits], References]
 

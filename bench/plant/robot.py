@@ -5,8 +5,9 @@ robot's mass matrix M and p = row of the joint of M*w,
 
     M_rest = dp/dt + r,  r = bias - passive - (dM/dt*w),
 
-so that no acceleration has to be had from the log (`bench.trace.known`). The joint's own inertia where the MJCF stands
-is left to the balance, which has it with the armature as one number: the noise of its speed is then weighed rightly.
+so that no acceleration is needed from the log (`bench.trace.known_torque`). The joint's own inertia at the
+configuration of the MJCF is left to the balance, together with the armature: noise of its speed is then weighted
+correctly.
 """
 
 from __future__ import annotations
@@ -23,16 +24,16 @@ from mujoco.batch import Batch
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.files import read_bytes
+from bench.names import nearest
 from bench.rig.load import Load
 from bench.rig.rig import Rig
 from bench.trace.assemble import assemble
 from bench.trace.channel import Recording
-from bench.trace.how import How
-from bench.trace.known import with_known
+from bench.trace.known_torque import with_known
 from bench.trace.read import read_recording
+from bench.trace.reading_options import GivenOptions
 from bench.trace.time_base import interpolate
 from bench.trace.trace import Trace
-from bench.units import nearest
 
 #: Poses evaluated at once, which bounds memory.
 TOGETHER = 4096
@@ -176,7 +177,7 @@ def read_beside(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float])
         if name == robot.joint:
             position[:, k], velocity[:, k] = (values / ratio for values in _motion(trace, trace))
         elif _holds(recording, name):
-            position[:, k], velocity[:, k] = _motion(assemble(recording, How(axis=name)), trace)
+            position[:, k], velocity[:, k] = _motion(assemble(recording, GivenOptions(axis=name)), trace)
         elif name in stated:
             position[:, k], velocity[:, k] = stated[name], 0.0
         else:

@@ -1,4 +1,4 @@
-"""Hold an axis with effects softly to a recording: its velocity against the recorded one is the velocity gap.
+"""An axis with effects tracks a recording with low gains: its velocity less the recorded one is the velocity gap.
 
 As `bench.plant.track`, with every effect where it acts: electronics on the recorded effort before the simulation,
 mechanisms in MuJoCo (by rollouts where all of them are native, else step by step), sensing on what comes out. What
@@ -19,7 +19,6 @@ from bench.arrays import Array
 from bench.effects.kinds import Mechanism
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import SimulationError
-from bench.plant.axis_model import AxisModel
 from bench.plant.blocks import blocks
 from bench.plant.native import OpenLoop, run_blocks
 from bench.plant.quiet import quiet
@@ -30,36 +29,20 @@ from bench.plant.stretches import Held, Reported, Stretch, all_stretches, inputs
 from bench.plant.ticked import TickedEffects
 from bench.plant.ticks import batch_of
 from bench.plant.track import BANDWIDTH
-from bench.trace.trace import Trace
 
 
-def track_effects(
-    model: AxisModel, trace: Trace, effort: Array, misalignment: float = 0.0, bandwidth: float = BANDWIDTH
-) -> Array:
-    """Velocity that an axis with effects reports, held to a recording - rad/s (m/s) - (n,).
+def track_motion(held: Held, bandwidth: float = BANDWIDTH) -> tuple[Array, Array]:
+    """Position - rad (m) - and velocity - rad/s (m/s) - that a model reports, held to its recording, (n,) each.
 
-    Each stretch without holes is started from the recording; time of effects counts from the recording's start.
+    Each stretch without holes starts from the recording; time of effects counts from the recording's start. Where the
+    recording holds no position, that of each stretch counts from zero.
 
     Args:
-        model, trace, effort, misalignment: as `Held` has them.
+        held: the model and its recording.
         bandwidth: of the cascade that holds the model - rad/s.
 
     Returns:
         nan where `bench.plant.track.in_stretches` does not hold.
-
-    Raises:
-        SimulationError: the model diverged.
-    """
-    (simulated,) = track_models([Held(model, trace, effort, misalignment)], bandwidth)
-    if simulated is None:
-        raise SimulationError(DIVERGED)
-    return simulated
-
-
-def track_motion(held: Held, bandwidth: float = BANDWIDTH) -> tuple[Array, Array]:
-    """Position - rad (m) - and velocity as `track_effects` has it, (n,) each.
-
-    Where the recording holds no position, that of each stretch counts from zero.
 
     Raises:
         SimulationError: the model diverged.
@@ -74,7 +57,7 @@ def track_models(held: Sequence[Held], bandwidth: float = BANDWIDTH) -> list[Arr
     """Velocities that models report, each held to its recording - rad/s (m/s) - (n,) each; None where one diverged.
 
     Models of one structure run side by side, which costs hardly more than one of them where effects are ticked.
-    Lone samples between holes are nan, as in `track_effects`.
+    Lone samples between holes are nan, as in `track_motion`.
     """
     return [None if found is None else found[0] for found in _track(held, bandwidth, signals=1)]
 

@@ -16,16 +16,16 @@ from pathlib import Path
 
 from bench.check.compare import Checked
 from bench.check.comparison import CHANGED, Comparison
-from bench.check.told import headline
+from bench.check.wording import headline
 from bench.files import read_text
 from bench.names import plain
-from bench.report.check import says
+from bench.report.check import sentences
 
 #: Annotations of a step that GitHub shows.
 MOST = 10
 _LEVELS = {CHANGED: "error"}
 _SEVERITIES = {CHANGED: "major"}
-#: What makes markup of text, or a mention of somebody, after HTML's own.
+#: Characters of Markdown markup and mentions, other than in HTML entities.
 _MARKUP = re.compile(r"[\\`*_\[\]|~@!#](?!#?\w+;)")
 
 
@@ -33,15 +33,15 @@ def github_lines(checked: Checked, baseline: Path) -> list[str]:
     """Workflow commands, worst first."""
     places = _lines(baseline)
     return [
-        command(_LEVELS.get(one.result, "warning"), said, {"file": str(baseline), "line": str(_place(one, places))})
-        for one, said in says(checked)[:MOST]
+        command(_LEVELS.get(one.result, "warning"), sentence, {"file": str(baseline), "line": str(_place(one, places))})
+        for one, sentence in sentences(checked)[:MOST]
     ]
 
 
 def command(level: str, message: str, properties: Mapping[str, str]) -> str:
     """A workflow command, escaped as GitHub's own toolkit does (`@actions/core`, command.ts)."""
-    told = ",".join(f"{key}={_property(value)}" for key, value in {**properties, "title": "bench check"}.items())
-    return f"::{level} {told}::{_data(message)}"
+    fields = ",".join(f"{key}={_property(value)}" for key, value in {**properties, "title": "bench check"}.items())
+    return f"::{level} {fields}::{_data(message)}"
 
 
 def _data(text: str) -> str:
@@ -58,8 +58,8 @@ def summary(checked: Checked, title: str) -> str:
     for one in checked.comparisons:
         numbers = ("-" if value is None else f"{value:.4g}" for value in (one.baseline, one.now, one.margin))
         rows.append(f"| {' | '.join(map(_cell, [one.name, *numbers, one.unit, one.result]))} |")
-    told = [f"- {_cell(said)}" for _, said in says(checked)]
-    return "\n".join([f"### bench check: {_cell(title)}", "", _cell(headline(checked)), "", *rows, "", *told, ""])
+    items = [f"- {_cell(sentence)}" for _, sentence in sentences(checked)]
+    return "\n".join([f"### bench check: {_cell(title)}", "", _cell(headline(checked)), "", *rows, "", *items, ""])
 
 
 def _cell(text: str) -> str:
@@ -74,13 +74,13 @@ def gitlab_report(checked: Checked, baseline: Path) -> str:
     return json.dumps(
         [
             {
-                "description": plain(said),
+                "description": plain(sentence),
                 "check_name": f"bench check: {plain(one.name)}",
                 "fingerprint": hashlib.sha256(f"{baseline}:{one.name}".encode("utf-8", "backslashreplace")).hexdigest(),
                 "severity": _SEVERITIES.get(one.result, "info"),
                 "location": {"path": plain(str(baseline)), "lines": {"begin": _place(one, places)}},
             }
-            for one, said in says(checked)
+            for one, sentence in sentences(checked)
         ],
         indent=2,
     )

@@ -13,7 +13,7 @@ from bench.check.compare import Checked
 from bench.check.comparison import SAME, Comparison
 from bench.check.measured import Measured
 from bench.check.state import Gap, NamedHere, State
-from bench.check.told import READ, headline, read, told
+from bench.check.wording import DISPLAYED, described, formatted, headline
 from bench.structured import json_text
 
 SCHEMA = "bench.check/1"
@@ -86,15 +86,15 @@ def _measured(found: Measured) -> dict[str, Any]:
 
 
 def _gaps(baseline: State, now: State) -> dict[str, Any]:
-    def told_of(gap: Gap | None) -> dict[str, float] | None:
+    def gap_json(gap: Gap | None) -> dict[str, float] | None:
         return None if gap is None else {"after": gap.after, "noise_floor": gap.noise_floor}
 
     names = dict.fromkeys([*baseline.gaps, *now.gaps])
     return {
         name: {
             "unit": (now.gaps.get(name) or baseline.gaps[name]).unit,
-            "baseline": told_of(baseline.gaps.get(name)),
-            "now": told_of(now.gaps.get(name)),
+            "baseline": gap_json(baseline.gaps.get(name)),
+            "now": gap_json(now.gaps.get(name)),
         }
         for name in names
     }
@@ -127,16 +127,16 @@ def cells(one: Comparison) -> list[str]:
     """A comparison as a row: quantity, baseline, now, difference, margin, unit, result."""
 
     def number(value: float | None) -> str:
-        return "-" if value is None else read(value, one.unit)
+        return "-" if value is None else formatted(value, one.unit)
 
     bounds = one.difference95
     difference = "-" if bounds is None else f"{number(bounds[0])} to {number(bounds[1])}"
-    unit = READ[one.unit][0] if one.unit in READ else one.unit.replace("dimensionless", "")
+    unit = DISPLAYED[one.unit][0] if one.unit in DISPLAYED else one.unit.replace("dimensionless", "")
     label = f"{one.name.replace('_', ' ')}{f' ({one.effect})' if one.effect else ''}"
     margin = number(one.margin) if bounds is not None else "-"
     return [label, number(one.baseline), number(one.now), difference, margin, unit, one.result]
 
 
-def says(checked: Checked) -> list[tuple[Comparison, str]]:
+def sentences(checked: Checked) -> list[tuple[Comparison, str]]:
     """A sentence for each comparison that is not the same, worst first."""
-    return [(one, told(one, checked)) for one in checked.comparisons if one.result != SAME]
+    return [(one, described(one, checked)) for one in checked.comparisons if one.result != SAME]

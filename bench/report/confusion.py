@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.report.page.numbers import words
+from bench.names import words
 from bench.validate.naming import NOTHING, NOTHING_MISSING
 
 

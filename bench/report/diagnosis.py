@@ -16,11 +16,12 @@ from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Gap, Shrunk
 from bench.diagnose.where.where import Where
 from bench.files import held, write_text
+from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml
-from bench.report.checks import checks_json
 from bench.report.diagnosis_figures import gaps_figure, where_figure
 from bench.report.estimate import between_json, parameters_json, recordings_json
 from bench.report.figures import save
+from bench.report.gate import checks_json
 from bench.report.page.blocks import File
 from bench.report.page.folder import write_page
 from bench.report.pages.diagnosis import diagnosis_page
@@ -152,7 +153,7 @@ def _step(step: Shrunk) -> dict[str, Any]:
 
 def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
     """Effects with their quantities, and the gaps they closed."""
-    caption = [f"verdict: {diagnosis.verdict.replace('_', ' ')}", *(f"  {said}" for said in diagnosis.because)]
+    caption = [f"verdict: {diagnosis.verdict.replace('_', ' ')}", *(f"  {reason}" for reason in diagnosis.because)]
     caption += _at_fault(diagnosis)
     for name, gap in (("torque", diagnosis.torque), ("velocity", diagnosis.velocity)):
         for recording, pair in (("recording", gap.identify), ("holdout", gap.holdout)):
@@ -195,8 +196,8 @@ def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
     for name, parameters, ambiguous in rows:
         label = f"{name} (or {', '.join(ambiguous)})" if ambiguous else name
         for quantity, found in parameters.items():
-            reach = f"{0.5 * (found.ci95[1] - found.ci95[0]):.2g}"
-            table.add_row(label, quantity.replace("_", " "), f"{found.value:.5g}", reach, found.unit)
+            reach = f"{found.half_width:.2g}"
+            table.add_row(label, words(quantity), f"{found.value:.5g}", reach, found.unit)
             label = ""
     return table
 

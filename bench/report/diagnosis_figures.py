@@ -12,8 +12,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from bench.diagnose.found import Gap, Profile
 from bench.diagnose.show.show import Diagnosis
 from bench.diagnose.where.where import Where
+from bench.names import words
 from bench.report.figures import MEASURED, MODELLED, NOISE, REST, in_style, legend_above, title_figure
-from bench.report.page.numbers import number, share, unit_text, words
+from bench.report.page.numbers import number, share, unit_text
 from bench.report.pages.tables import coordinate_word
 
 #: Empty space beside the outermost dots of a gap - factor on a logarithmic axis.
@@ -93,9 +94,9 @@ def _dots(axes: Axes, values: np.ndarray, gap: Gap) -> None:
             axes.plot(values[:, k], places, marker, ms=6.0, color=colour, label=recording)
     axes.axvline(floor, color="#8a94a0", lw=1.2, ls="--", zorder=0.8, label="noise floor")
     for place, row in zip(places, values, strict=True):
-        told = "  ".join(number(value, digits=3) if math.isfinite(value) else "–" for value in row)
+        figures = "  ".join(number(value, digits=3) if math.isfinite(value) else "–" for value in row)
         beside = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center", "fontsize": 8}
-        axes.annotate(told, (1.0, place), (6.0, 0.0), **beside)
+        axes.annotate(figures, (1.0, place), (6.0, 0.0), **beside)
     shown = values[np.isfinite(values) & (values > 0.0)]
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))

@@ -14,7 +14,8 @@ from rich.table import Table
 from bench.axis_kind import AxisKind
 from bench.balance.parameter import Parameter
 from bench.identify.estimate import Alone, Between, Estimate
-from bench.report.checks import checks_json
+from bench.names import words
+from bench.report.gate import checks_json
 from bench.structured import json_text
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
@@ -111,11 +112,8 @@ def recordings_table(estimate: Estimate) -> Table:
     for name in names:
         table.add_column(f"{name.replace('_', ' ')}\n{estimate[name].unit}", justify="right")
     for alone in estimate.recordings:
-        told = [alone.parameters.get(name) for name in names]
-        values = [
-            "-" if found is None else f"{found.value:.4g} ± {0.5 * (found.ci95[1] - found.ci95[0]):.2g}"
-            for found in told
-        ]
+        found_alone = [alone.parameters.get(name) for name in names]
+        values = ["-" if found is None else f"{found.value:.4g} ± {found.half_width:.2g}" for found in found_alone]
         table.add_row(Path(alone.origin).name, *values)
     following = [estimate.between[name].predictive95 for name in names]
     table.add_row("the next one (95 %)", *(f"{low:.4g} to {high:.4g}" for low, high in following))
@@ -157,7 +155,7 @@ def estimate_table(estimate: Estimate, title: str, truth: Mapping[str, float] | 
     for name, found in estimate.parameters.items():
         known = truth.get(name) if truth else None
         compared = (f"{known:.5g}", f"{found.value / known - 1.0:+.3%}") if known else ("", "")
-        reach = f"{0.5 * (found.ci95[1] - found.ci95[0]):.2g}"
-        row = [name.replace("_", " "), f"{found.value:.5g}", reach, *(compared if truth else ()), found.unit]
+        reach = f"{found.half_width:.2g}"
+        row = [words(name), f"{found.value:.5g}", reach, *(compared if truth else ()), found.unit]
         table.add_row(*row)
     return table

@@ -86,9 +86,9 @@ def title_figure(figure: Figure | SubFigure, title: str, **style: Any) -> None: 
     figure.suptitle(plain(title), **{"x": 0.01, "ha": "left", "weight": "bold", "parse_math": False, **style})
 
 
-def legend_above(axes: Axes, columns: int = 4) -> None:
+def legend_above(axes: Axes) -> None:
     """A legend over the axes, where it covers no data; its names are text."""
-    legend = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1, ncols=columns)
+    legend = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1, ncols=4)
     for text in legend.get_texts():
         text.set_parse_math(False)
 

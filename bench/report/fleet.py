@@ -11,7 +11,7 @@ from rich.table import Table
 from bench.fleet.changed import ALARM, Changed
 from bench.fleet.fleet import TABLE, Fleet
 from bench.fleet.summary import STATUSES, Concern, Named
-from bench.names import short
+from bench.names import short, words
 from bench.structured import json_text
 
 SCHEMA = "bench.fleet/1"
@@ -65,8 +65,8 @@ def _named(one: Named) -> dict[str, Any]:
 
 
 def _concern(one: Concern) -> dict[str, Any]:
-    told = {"axis": one.axis, "kind": one.kind, "recordings": one.count, "of": one.of}
-    return {**told, "file": one.file, "reason": one.reason}
+    counts = {"axis": one.axis, "kind": one.kind, "recordings": one.count, "of": one.of}
+    return {**counts, "file": one.file, "reason": one.reason}
 
 
 def fleet_tables(fleet: Fleet) -> Iterator[Table | str]:
@@ -97,7 +97,7 @@ def changed_table(changed: tuple[Changed, ...]) -> Table:
         share = f"{difference / abs(step.before):+.1%} ± {step.reach / abs(step.before):.1%}" if step.before else ""
         values = (f"{step.before:.4g}", f"{step.after:.4g} {unit}", share)
         counts = f"{one.counts[0]} before, {one.counts[1]} after"
-        table.add_row(one.axis, one.quantity.replace("_", " "), *values, one.since, counts)
+        table.add_row(one.axis, words(one.quantity), *values, one.since, counts)
     return table
 
 
@@ -118,7 +118,7 @@ def concerns_table(concerns: tuple[Concern, ...]) -> Table:
         table.add_column(heading, no_wrap=heading == "recordings")
     for one in concerns[:SHOWN]:
         counts = f"{one.count} of {one.of}"
-        table.add_row(one.axis, one.kind.replace("_", " "), counts, one.file, short(one.reason, 160))
+        table.add_row(one.axis, words(one.kind), counts, one.file, short(one.reason, 160))
     return table
 
 

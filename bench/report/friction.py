@@ -13,8 +13,9 @@ from rich.table import Table
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS
 from bench.effects.catalogue import catalogue
 from bench.friction_map.map import CHANCE, FrictionMap
-from bench.report.checks import checks_json
+from bench.names import words
 from bench.report.figures import MEASURED, MODELLED, REST, in_style, legend_above, save_as_named, title_figure
+from bench.report.gate import checks_json
 from bench.report.page.numbers import unit_text
 from bench.report.pages.tables import effort_word
 from bench.structured import json_text
@@ -45,7 +46,7 @@ def friction_json(found: FrictionMap) -> str:
 def friction_table(found: FrictionMap, title: str) -> Table:
     """Quantities of the curve that holds; below it how sure the effect is and what it explains."""
     before, after = found.unexplained
-    label = found.best.name.replace("_", " ")
+    label = words(found.best.name)
     if found.name is not None:
         verdict = f"named: {label}; chance saves as much with probability {found.probability:.2g}"
     elif label:
@@ -69,7 +70,7 @@ def friction_table(found: FrictionMap, title: str) -> Table:
     table.add_column("unit", no_wrap=True)
     for owner, quantities in (("", base_values(found)), (found.name or "", effect_values(found))):
         for name, (value, unit) in quantities.items():
-            table.add_row(owner, name.replace("_", " "), f"{value:.5g}", unit)
+            table.add_row(owner, words(name), f"{value:.5g}", unit)
             owner = ""
     return table
 
@@ -92,7 +93,7 @@ def friction_figure(found: FrictionMap, title: str) -> Figure:
     over.plot(found.velocity, found.effort, "o", ms=4.5, color=MEASURED, label="recordings")
     curves = [(found.plain, "no effect", REST, "s")]
     if found.name is not None:
-        curves.append((found.best, found.name.replace("_", " "), MODELLED, "o"))
+        curves.append((found.best, words(found.name), MODELLED, "o"))
     for curve, label, colour, marker in curves:
         for direction in (-1.0, 1.0):
             speeds = direction * np.abs(found.velocity[direction * found.velocity > 0.0])

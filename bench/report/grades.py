@@ -57,7 +57,7 @@ def _write(graded: Sequence[Graded], bad: Sequence[InputError], missing: Sequenc
     environment = Environment(
         loader=PackageLoader("bench.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
-    environment.globals.update(said=said, shown=shown, off=off)
+    environment.globals.update(remark=remark, shown=shown, off=off)
     paths = [out / "grades.csv", out / "grades.html"]
     write_text(paths[0], _csv(graded))
     teacher = environment.get_template("grades.html.j2")
@@ -93,10 +93,10 @@ def _csv(graded: Sequence[Graded]) -> str:
     return buffer.getvalue()
 
 
-def said(mark: Mark) -> str:
+def remark(mark: Mark) -> str:
     """What a student reads beside an answer."""
     if mark.mistake is not None:
-        return f"{mark.mistake.name}: {mark.mistake.says}"
+        return f"{mark.mistake.name}: {mark.mistake.explanation}"
     if mark.verdict == "wrong unit":
         return unit_advice(mark)
     return {"wrong": "Off by more than other right ways would be; no mistake that is known gives this figure."}.get(

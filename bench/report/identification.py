@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.axis_kind import MISALIGNMENT
-from bench.checks.gate import gate
 from bench.files import held, write_text
+from bench.gate.gate import gate
 from bench.identify.estimate import Estimate
 from bench.names import in_a_row, readable
 from bench.report.estimate import estimate_json

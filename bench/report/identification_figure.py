@@ -13,8 +13,9 @@ from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.identify.estimate import Estimate
 from bench.identify.modelled import modelled_effort
+from bench.names import words
 from bench.report.figures import MEASURED, MODELLED, NOISE, REST, in_style, legend_above, thinned, title_figure
-from bench.report.page.numbers import interval, unit_text, words
+from bench.report.page.numbers import interval, unit_text
 from bench.report.pages.tables import effort_word
 from bench.trace.motion import Motion
 
@@ -39,7 +40,7 @@ def identification_figure(motion: Motion, estimate: Estimate, kind: AxisKind, ti
     axes = [figure.add_subplot(grid[0, 0])]
     axes += [figure.add_subplot(grid[row, 0], sharex=axes[0]) for row in (1, 2, 3)]
     over = [figure.add_subplot(grid[2, 1]), figure.add_subplot(grid[3, 1])]
-    _tell(figure.add_subplot(grid[:2, 1]), estimate)
+    _write_numbers(figure.add_subplot(grid[:2, 1]), estimate)
     _draw(axes[0], motion.time, motion.velocity, f"speed\n{length}/s")
     _draw(axes[1], motion.time, motion.acceleration, f"acceleration\n{length}/s²")
     time, shown = thinned(motion.time, motion.effort)
@@ -64,7 +65,7 @@ def identification_figure(motion: Motion, estimate: Estimate, kind: AxisKind, ti
     return figure
 
 
-def _tell(axes: Axes, estimate: Estimate) -> None:
+def _write_numbers(axes: Axes, estimate: Estimate) -> None:
     """The estimates with their intervals, as text."""
     axes.set_axis_off()
     lines = [f"{words(name)}\n    {interval(found)}" for name, found in estimate.parameters.items()]

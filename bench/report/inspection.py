@@ -48,19 +48,19 @@ def _signals(inspection: Inspection) -> Table:
 
 def _columns(columns: list[ColumnSummary]) -> Table:
     """Columns that are not read as a signal."""
-    told = Table(box=box.SIMPLE_HEAD)
+    table = Table(box=box.SIMPLE_HEAD)
     for heading in ("column", "unit"):
-        told.add_column(heading)
+        table.add_column(heading)
     for heading in ("min", "max", "resolution"):
-        told.add_column(heading, justify="right")
-    told.add_column("likely")
+        table.add_column(heading, justify="right")
+    table.add_column("likely")
     for column in columns:
         numbers = (column.minimum, column.maximum, column.resolution)
         texts = ("" if number is None else f"{number:.5g}" for number in numbers)
         likely = f"{column.signal}: {', '.join(column.why)}" if column.signal else ", ".join(column.why)
         name = column.name if column.axis is None else f"{column.name} ({column.axis})"
-        told.add_row(Text(plain(name)), Text(plain(column.unit or "")), *texts, Text(plain(likely)))
-    return told
+        table.add_row(Text(plain(name)), Text(plain(column.unit or "")), *texts, Text(plain(likely)))
+    return table
 
 
 def _facts(inspection: Inspection) -> list[tuple[str, str]]:

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from bench.check.compare import Checked
 from bench.check.comparison import CHANGED, UNDECIDED
-from bench.check.told import headline, told
+from bench.check.wording import described, headline
 from bench.names import plain
 
 #: Characters that XML 1.0 does not have at all, escaped or not.
@@ -35,11 +35,11 @@ def check_junit(checked: Checked, title: str) -> str:
     suite = ElementTree.SubElement(suites, "testsuite", {"name": text(title), **numbers})
     for one in checked.comparisons:
         case = ElementTree.SubElement(suite, "testcase", {"classname": "bench.check", "name": text(one.name)})
-        said = text(told(one, checked))
+        sentence = text(described(one, checked))
         if one.result == CHANGED:
-            ElementTree.SubElement(case, "failure", {"message": said, "type": "changed"}).text = said
+            ElementTree.SubElement(case, "failure", {"message": sentence, "type": "changed"}).text = sentence
         elif one.result == UNDECIDED:
-            ElementTree.SubElement(case, "skipped", {"message": said})
+            ElementTree.SubElement(case, "skipped", {"message": sentence})
     ElementTree.SubElement(suite, "system-out").text = text(headline(checked))
     ElementTree.indent(suites)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(suites, encoding="unicode") + "\n"

@@ -31,7 +31,7 @@ def _task(result: Task | NotDone) -> dict[str, object]:
         **named,
         "status": "done",
         "embedded_example": result.example,
-        "says": list(result.says),
+        "says": list(result.findings),
         "numbers": [_number(number) for number in result.numbers],
     }
 

@@ -150,7 +150,7 @@ def _write(part: SubFigure, lines: Sequence[Line]) -> None:
 
 def _text(section: Section) -> Iterator[tuple[Line, ...]]:
     """A section's text in parts that may stand on different pages."""
-    paragraphs = [_paragraph(text) for text in section.says]
+    paragraphs = [_paragraph(text) for text in section.findings]
     if section.missing:
         paragraphs.insert(0, _paragraph(f"Not done: {section.missing}"))
     first = paragraphs[0] if paragraphs else []

@@ -1,4 +1,4 @@
-"""A progress bar on standard error for what takes long, and nothing where nobody looks."""
+"""A progress bar on standard error for long work, if that is a terminal."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ class Section:
     key: str
     heading: str
     missing: str
-    says: tuple[str, ...]
+    findings: tuple[str, ...]
     rows: tuple[Row, ...]
 
     @property
@@ -42,7 +42,7 @@ def section(result: Task | NotDone) -> Section:
         heading = f"{heading} (embedded example)"
     if isinstance(result, NotDone):
         return Section(result.key, heading, str(result.reason), (), ())
-    return Section(result.key, heading, "", result.says, tuple(row(number) for number in result.numbers))
+    return Section(result.key, heading, "", result.findings, tuple(row(number) for number in result.numbers))
 
 
 def row(number: Number) -> Row:

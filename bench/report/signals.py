@@ -14,13 +14,13 @@ from bench.report.figures import MEASURED, in_style, save_as_named, thinned, tit
 from bench.trace.assemble import assemble
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import of_axis
-from bench.trace.how import HowToRead
+from bench.trace.reading_options import ReadingOptions
 
 #: Rows of a page that can still be read.
 MOST = 16
 
 
-def draw_signals(recording: Recording, how: HowToRead, path: Path) -> None:
+def draw_signals(recording: Recording, how: ReadingOptions, path: Path) -> None:
     """Draw the signals over time, holes as gaps; of a recording that needs a rig, the columns that change over samples.
 
     Raises:

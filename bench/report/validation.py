@@ -71,10 +71,10 @@ def determined(runs: tuple[Run, ...]) -> Sheet:
     plain = [run for run in runs if not run.hidden and run.status != "failed"]
     rows = []
     for term, symbol in SYMBOLS.items():
-        told = [one for run in plain for one in run.told if one.by == "identify" and one.quantity == term]
-        found = Coverage.of("identify", Group("", len(plain), True), term, told)
-        known = Share(sum(abs(one.parameter.value) > one.half_width * one.scale for one in told), len(plain))
-        true = f"{told[0].true:.4g} {told[0].parameter.unit}" if told else "-"
+        scored = [one for run in plain for one in run.scored if one.by == "identify" and one.quantity == term]
+        found = Coverage.of("identify", Group("", len(plain), True), term, scored)
+        known = Share(sum(abs(one.parameter.value) > one.half_width * one.scale for one in scored), len(plain))
+        true = f"{scored[0].true:.4g} {scored[0].parameter.unit}" if scored else "-"
         rows.append(
             (symbol, true, _of(known), _percent(found.half_width), _percent(found.bias), _percent(found.typical))
         )
@@ -107,12 +107,12 @@ def covered(found: Sequence[Coverage], title: str) -> Sheet:
 def names(found: Naming) -> Sheet:
     """Whether names are right, over all runs that were diagnosed."""
     rows = [
-        ("nulls with a false name", told(found.nulls), _of(found.nulls)),
-        *((f"  {name}", told(share), _of(share)) for name, share in _apart(found.nulls_by_motion)),
-        ("runs with a false name", told(found.false), _of(found.false)),
-        ("  and no remainder beside it", told(found.silent), _of(found.silent)),
-        ("runs named exactly", told(found.exact), _of(found.exact)),
-        ("refused", told(found.refused), _of(found.refused)),
+        ("nulls with a false name", bounded(found.nulls), _of(found.nulls)),
+        *((f"  {name}", bounded(share), _of(share)) for name, share in _apart(found.nulls_by_motion)),
+        ("runs with a false name", bounded(found.false), _of(found.false)),
+        ("  and no remainder beside it", bounded(found.silent), _of(found.silent)),
+        ("runs named exactly", bounded(found.exact), _of(found.exact)),
+        ("refused", bounded(found.refused), _of(found.refused)),
     ]
     return Sheet("Names", ("what", "share", "runs"), rows)
 
@@ -125,11 +125,11 @@ def _apart(by_motion: Mapping[str, Share]) -> list[tuple[str, Share]]:
 def by_name(found: Naming) -> Sheet:
     """Of each effect, how often it is named where it is, and where it is not."""
     every = {name: found.named.get(name, Share(0, 0)) for name in sorted({*found.named, *found.falsely})}
-    rows = [(name, told(share), _of(share), str(found.falsely.get(name, 0))) for name, share in every.items()]
+    rows = [(name, bounded(share), _of(share), str(found.falsely.get(name, 0))) for name, share in every.items()]
     return Sheet("By effect", ("effect", "named where it is", "runs", "where it is not"), rows)
 
 
-def told(share: Share) -> str:
+def bounded(share: Share) -> str:
     """A share with its bounds."""
     if not share.of:
         return "-"
@@ -245,7 +245,7 @@ def quantities_table(runs: tuple[Run, ...]) -> pa.Table:
                 "high": one.parameter.ci95[1],
             }
             for run in runs
-            for one in run.told
+            for one in run.scored
         ]
     )
 
@@ -262,10 +262,8 @@ def write_validation(folder: Path, found: Validation, provenance: Mapping[str, A
 
 def _written(folder: Path, found: Validation, provenance: Mapping[str, Any], command: str) -> Iterator[Path]:
     yield _text(folder / "validation.json", validation_json(found, provenance) + "\n")
-    whole_text = "\n\n".join(
-        [f"# Validation\n\n`{command}`", *(sheet.markdown() for sheet in sheets(found, every=True))]
-    )
-    yield _text(folder / "validation.md", whole_text + "\n")
+    text = "\n\n".join([f"# Validation\n\n`{command}`", *(sheet.markdown() for sheet in sheets(found, every=True))])
+    yield _text(folder / "validation.md", text + "\n")
     for name, table in (("runs", runs_table(found.runs)), ("quantities", quantities_table(found.runs))):
         with whole(folder / f"{name}.parquet") as temporary:
             pq.write_table(table, temporary)

@@ -56,8 +56,8 @@ def confusion_figure(found: Naming) -> Figure:
     axis.imshow(matrix.shares, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
     for row, column in zip(*np.nonzero(matrix.counts), strict=True):
         colour = "white" if matrix.shares[row, column] > 0.6 else "black"
-        told = str(matrix.counts[row, column])
-        axis.text(column, row, told, ha="center", va="center", color=colour, fontsize=8)
+        count = str(matrix.counts[row, column])
+        axis.text(column, row, count, ha="center", va="center", color=colour, fontsize=8)
     for row in range(rows):
         axis.add_patch(Rectangle((row - 0.5, row - 0.5), 1.0, 1.0, fill=False, edgecolor=RIGHT, lw=1.2))
     axis.set_xticks(range(columns), matrix.said, rotation=55, ha="left")

@@ -7,7 +7,7 @@ from typing import Any
 
 from bench.assets import asset
 from bench.errors import InputError
-from bench.units import nearest
+from bench.names import nearest
 
 
 def motor_names() -> list[str]:

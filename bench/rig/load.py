@@ -85,7 +85,3 @@ class Load(Table):
     def reflected(self, inertia: float) -> float:
         """Inertia on the load's side as the motor feels it, J/i**2 - kg*m**2."""
         return inertia / self.gear_ratio**2
-
-    def behind_gear(self, inertia: float) -> float:
-        """Inertia on the motor's side beyond rotor and gear, as it is on the load's side, J*i**2 - kg*m**2."""
-        return inertia * self.gear_ratio**2

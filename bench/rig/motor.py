@@ -101,7 +101,7 @@ class Motor(Table):
         return self
 
     @model_validator(mode="after")
-    def _told_for_the_peak(self) -> Motor:
+    def _as_peak_values(self) -> Motor:
         """Values told for effective currents, as values for peaks, which are sqrt(2) times as high."""
         if self.current == "peak":
             return self

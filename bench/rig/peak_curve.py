@@ -14,7 +14,7 @@ class PeakCurve(Table):
 
     Attributes:
         mains_voltage: line to line, RMS - V.
-        corner_speed: up to which peak torque is to be had - rad/s (m/s).
+        corner_speed: up to which peak torque is available - rad/s (m/s).
         no_load_speed: at which the back-EMF takes all the voltage and torque is zero - rad/s (m/s).
     """
 
@@ -29,6 +29,6 @@ class PeakCurve(Table):
         return self
 
     def share(self, speed: Array) -> Array:
-        """Share of peak torque to be had at speeds - rad/s (m/s), any shape: 1 to the corner, then linearly to 0."""
+        """Share of peak torque available at speeds - rad/s (m/s), any shape: 1 to the corner, then linearly to 0."""
         falling = (self.no_load_speed - np.abs(speed)) / (self.no_load_speed - self.corner_speed)
         return np.clip(falling, 0.0, 1.0)

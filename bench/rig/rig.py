@@ -11,7 +11,7 @@ from pydantic import Field, ValidationError, model_validator
 from bench.arrays import Array
 from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
-from bench.names import short
+from bench.names import nearest, short
 from bench.rig.catalogue import catalogue_motor
 from bench.rig.check import Check
 from bench.rig.drive import Drive
@@ -21,10 +21,9 @@ from bench.rig.peak_curve import PeakCurve
 from bench.rig.simulation import Simulation
 from bench.rig.values import Table, Time, Wrap, tolerance_of
 from bench.structured import read_toml
-from bench.trace.known import less_known
-from bench.trace.possible import require_possible
+from bench.trace.known_torque import less_known
+from bench.trace.plausible import require_plausible
 from bench.trace.trace import Trace
-from bench.units import nearest
 
 
 class TraceNotes(Table):
@@ -106,7 +105,7 @@ class Rig(Table):
             InputError: the trace holds none of the signals, one of a magnitude that no axis has, or motor and trace
                 disagree on the kind of axis.
         """
-        require_possible(trace)
+        require_plausible(trace)
         if trace.axis_kind != self.axis_kind and ("velocity" in trace or "position" in trace):
             found = f"found a {trace.axis_kind.name} axis"
             raise InputError(trace.origin, found, f"allowed: a {self.kind} one, as {self.source} says")
@@ -148,7 +147,7 @@ class Rig(Table):
         gravity = self.load.gravity_torque(trace["position"])
         return (effort, unit) if gravity is None else (effort - gravity, unit)
 
-    def asks_for_speed(self, trace: Trace) -> bool:
+    def needs_speed(self, trace: Trace) -> bool:
         """Whether the effort in a trace is made of a voltage less what the speed induces, kT*(U - Ke*w)/R."""
         if {self.axis_kind.effort, "current"} & set(trace.signals):
             return False

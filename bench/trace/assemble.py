@@ -6,26 +6,26 @@ from collections.abc import Mapping
 
 from bench.trace.channel import Recording
 from bench.trace.choose import Chosen, choose
-from bench.trace.how import HowToRead, how_to_read
 from bench.trace.in_si import in_si
+from bench.trace.reading_options import ReadingOptions, reading_options
 from bench.trace.time_base import regular
 from bench.trace.trace import Trace
 
 
-def assemble(recording: Recording, told: Mapping[str, str] | HowToRead | None = None) -> Trace:
+def assemble(recording: Recording, given: Mapping[str, str] | ReadingOptions | None = None) -> Trace:
     """Trace of a recording.
 
     Args:
         recording: as a reader returned it.
-        told: signal (or `time`) -> column of the file with unit, e.g. `{"velocity": "-Axis1.ActVel [mm/s]"}`, a leading
-            `-` turns the sign; or all that a rig's `[trace]` tells. Signals not named here are taken from columns with
-            well-known names.
+        given: signal (or `time`) -> column of the file with unit, e.g. `{"velocity": "-Axis1.ActVel [mm/s]"}`, where a
+            leading `-` inverts the sign; or a rig's `[trace]`. Other signals are taken from columns with well-known
+            names.
 
     Raises:
         InputError: a column missing, ambiguous, without unit or of the wrong dimension; no time; values that are not
             finite; times that run backwards or stand twice too often.
     """
-    how = how_to_read(told)
+    how = reading_options(given)
     chosen, notes = choose(recording, how)
     found = in_si(chosen, recording, how)
     dropped = unused(chosen, recording)

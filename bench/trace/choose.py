@@ -1,4 +1,4 @@
-"""Which channel of a recording is which signal, by the rig's columns first and by well-known names second."""
+"""Which channel of a recording is which signal: by the rig's columns first, by well-known names second."""
 
 from __future__ import annotations
 
@@ -6,13 +6,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from bench.errors import InputError
-from bench.names import short
+from bench.names import nearest, short
 from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.how import HowToRead
-from bench.trace.known_names import is_index, plain_name, scale_in, signal_of, unit_of
+from bench.trace.reading_options import ReadingOptions
+from bench.trace.signal_names import is_index, plain_name, scale_in, signal_of, unit_of
 from bench.trace.signals import SI_UNITS
-from bench.unit_text import Scale
-from bench.units import nearest
+from bench.units.text import Scale
 
 #: Signals of which one that can be read is enough: the others are then left out where they cannot.
 ENOUGH = (("velocity", "position"), ("torque", "force", "current"))
@@ -34,7 +33,7 @@ class Chosen:
     sign: float = 1.0
 
 
-def choose(recording: Recording, how: HowToRead) -> tuple[dict[str, Chosen], tuple[str, ...]]:
+def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, Chosen], tuple[str, ...]]:
     """Channel of every signal, `time` among them where the recording is a table, and what had to be assumed.
 
     Raises:
@@ -90,19 +89,21 @@ def _serves_all(channel: Channel) -> bool:
 
 
 def axes_of(channels: Iterable[Channel]) -> tuple[str, ...]:
-    """Names of the axes that a recording tells apart, in its order."""
+    """Names of the axes of a recording, in its order."""
     return tuple(dict.fromkeys(channel.axis for channel in channels if channel.axis is not None))
 
 
-def _require(recording: Recording, chosen: Mapping[str, Chosen], faults: dict[str, InputError], how: HowToRead) -> None:
+def _require(
+    recording: Recording, chosen: Mapping[str, Chosen], faults: dict[str, InputError], how: ReadingOptions
+) -> None:
     """Raise the first fault that leaves a trace without what it needs."""
     timed = "time" in chosen or any(choice.channel.time is not None for choice in chosen.values())
     if not timed and how.sample_period is None:
         if "time" in faults:
             raise faults["time"]
         if chosen:
-            told = 'give its sample_period = "1 ms" in the rig\'s [trace], or its column: time = "column [unit]"'
-            raise missing(recording, "column 'time'", told)
+            advice = 'give its sample_period = "1 ms" in the rig\'s [trace], or its column: time = "column [unit]"'
+            raise missing(recording, "column 'time'", advice)
     for group in ENOUGH:
         if not any(signal in chosen for signal in group):
             for signal in group:
@@ -112,21 +113,21 @@ def _require(recording: Recording, chosen: Mapping[str, Chosen], faults: dict[st
 
 def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes: list[str]) -> Chosen | None:
     """The channel of a signal; None where the recording has none."""
-    told = columns.get(signal)
+    given = columns.get(signal)
     channel, unit, sign = None, None, 1.0
-    if told is not None:
-        sign = -1.0 if told.strip().startswith("-") else 1.0
-        name, unit = split_label(told.strip().removeprefix("-"))
+    if given is not None:
+        sign = -1.0 if given.strip().startswith("-") else 1.0
+        name, unit = split_label(given.strip().removeprefix("-"))
         channel = _named(recording, signal, name)
     named = channel is not None
     if channel is None:
         channel, sign, unit = _known(recording, signal), 1.0, None
-        if channel is None and told is not None:
-            raise missing(recording, f"column '{told.strip().lstrip('-')}'")
+        if channel is None and given is not None:
+            raise missing(recording, f"column '{given.strip().lstrip('-')}'")
         if channel is None:
             return None
-        if told is not None:
-            notes.append(f"{signal} read from '{channel.label}', as the file has no '{told}'")
+        if given is not None:
+            notes.append(f"{signal} read from '{channel.label}', as the file has no '{given}'")
     if channel.defect is not None:
         raise channel.defect
     scale = _scale(recording, signal, channel, unit, notes)
@@ -137,10 +138,10 @@ def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes
     return Chosen(channel, scale, sign)
 
 
-def _scale(recording: Recording, signal: str, channel: Channel, told: str | None, notes: list[str]) -> Scale:
+def _scale(recording: Recording, signal: str, channel: Channel, given: str | None, notes: list[str]) -> Scale:
     if channel.moments:
         return scale_in(signal, channel.unit or "s", channel.place())
-    unit = unit_of(told or channel.unit)
+    unit = unit_of(given or channel.unit)
     usual = recording.usual_units.get(signal)
     if unit is None and usual is not None:
         unit = usual
@@ -208,9 +209,9 @@ def _one(recording: Recording, signal: str, matches: list[Channel]) -> Channel:
 
 
 def _index(recording: Recording, columns: Mapping[str, str]) -> Channel | None:
-    """The column that counts samples: the time that tells no unit, or one of such a name."""
-    told = columns.get("time")
-    named = _named(recording, "time", split_label(told)[0]) if told is not None else None
+    """The column that counts samples: a time without a unit, or a column of such a name."""
+    given = columns.get("time")
+    named = _named(recording, "time", split_label(given)[0]) if given is not None else None
     if named is not None and named.defect is None:
         return named
     for channel in recording.channels:
@@ -221,7 +222,7 @@ def _index(recording: Recording, columns: Mapping[str, str]) -> Channel | None:
 
 
 def missing(recording: Recording, what: str, then: str | None = None) -> InputError:
-    """What to say about a column that is not in the file."""
+    """The error for a column that is not in the file."""
     labels = [short(channel.label) for channel in recording.channels[:12]]
     more = len(recording.channels) - len(labels)
     shown = ", ".join(labels) + (f" and {more} more" if more else "")

@@ -1,4 +1,4 @@
-"""Sample times as recorded: shared by signals, rounded by the recorder, some standing twice or running backwards."""
+"""Sample times as recorded: shared by signals, rounded by the recorder, some duplicate or decreasing."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.errors import InputError
 
-#: Share of samples that may stand at a time already taken, with other values.
+#: Largest share of samples with a time that another sample already has, and other values.
 MOST_DUPLICATES = 0.01
 
 
@@ -34,7 +34,7 @@ class Clock:
 
     @cached_property
     def quantum(self) -> float:
-        """Step of the decimal grid that all recorded times stand on - s; 0 when they stand on none.
+        """Step of the decimal grid that all recorded times lie on - s; 0 if there is none.
 
         Times printed with k decimals stand on the grid 10**-k.
         """
@@ -53,7 +53,7 @@ class Sampled:
     Attributes:
         clock: its sample times.
         values: SI - (n,).
-        unknown: where the file holds none, and neighbours stand in - (n,); None: nowhere.
+        unknown: where the file has no value and neighbours were used - (n,); None: nowhere.
     """
 
     clock: Clock

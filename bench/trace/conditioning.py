@@ -1,4 +1,4 @@
-"""How a recording is to be filtered, read from the recording itself: source of speed, noise, cut-off."""
+"""Filter of a recording, chosen from the recording itself: source of speed, noise, cut-off."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, GaussianFilter
-from bench.trace.known import less_known
+from bench.trace.known_torque import less_known
 from bench.trace.noise import TOP, resolution, white_noise
 from bench.trace.rounding import common_step, rounding_spectrum
 from bench.trace.signals import KNOWN_MOMENTUM
@@ -27,16 +27,16 @@ SIGN_CONFIDENCE = 4.0
 KEPT = 0.9
 #: Widths from a reversal at which the filtered sign is within 1e-3 of one: 1 - erf(3.1/sqrt(2)) = 2e-3.
 SIGN_REACH = 3.1
-#: More samples than this tell nothing new about noise and spectrum; more are taken in pieces spread over the recording.
+#: Number of samples sufficient for noise and spectrum; of longer recordings pieces spread over them are taken.
 ENOUGH, PIECE = 2**17, 2**13
-#: Share of the fastest stretch's effective speed above which a stretch moves. Where the axis stands, coarse signals
-#: hide their noise and effort follows nothing.
+#: Share of the fastest stretch's RMS speed above which a stretch moves. Where the axis stands, coarse signals hide
+#: their noise and effort is unrelated to motion.
 MOVES = 0.1
 
 
 @dataclass(frozen=True)
 class Conditioning:
-    """What one recording asks of its filter.
+    """Filter and noise of a recording.
 
     Attributes:
         filter: the one filter of every column.
@@ -114,7 +114,7 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
     longest = max(part.stop - part.start for part in trace.segments)
     if longest < 8 * least.margin:
         raise UndeterminedError(
-            trace.axis_kind.spoken(INERTIA),
+            trace.axis_kind.in_words(INERTIA),
             f"the longest stretch without a hole has {longest} samples",
             f"at least {8 * least.margin} samples without a hole",
         )

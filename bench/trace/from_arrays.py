@@ -12,13 +12,14 @@ import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from bench.errors import InputError
+from bench.names import nearest
 from bench.trace.assemble import assemble
 from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.known_names import signal_of
 from bench.trace.readers.parquet import channel_of
+from bench.trace.signal_names import signal_of
 from bench.trace.signals import SI_UNITS
 from bench.trace.trace import Trace
-from bench.units import nearest, parse
+from bench.units import parse
 
 FORMAT = "arrays"
 
@@ -64,7 +65,7 @@ def trace_of(
 
 
 def _channels(signals: Arrays, origin: str) -> Iterator[Channel]:
-    """Columns with samples of their own, which nobody else can change."""
+    """Columns with copies of the samples, independent of the caller's arrays."""
     if isinstance(signals, Mapping):
         found = (_channel(label, values, origin) for label, values in signals.items())
     else:

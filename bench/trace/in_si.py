@@ -12,8 +12,8 @@ from bench.errors import InputError
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import Chosen, missing
 from bench.trace.clock import Clock, Sampled
-from bench.trace.how import HowToRead
-from bench.trace.known_names import scale_in
+from bench.trace.reading_options import ReadingOptions
+from bench.trace.signal_names import scale_in
 from bench.trace.signals import SI_UNITS
 from bench.trace.trace import all_finite
 from bench.trace.wraps import Unwrapping, Wraps
@@ -36,7 +36,10 @@ class InSI:
 
 
 def in_si(
-    chosen: Mapping[str, Chosen], recording: Recording, how: HowToRead, wrapping: dict[str, Unwrapping] | None = None
+    chosen: Mapping[str, Chosen],
+    recording: Recording,
+    how: ReadingOptions,
+    wrapping: dict[str, Unwrapping] | None = None,
 ) -> InSI:
     """Bring chosen channels to SI.
 
@@ -123,7 +126,7 @@ def _clock(
     time: Channel | None,
     chosen: Chosen | None,
     channel: Channel,
-    how: HowToRead,
+    how: ReadingOptions,
     recording: Recording,
     notes: list[str],
 ) -> Clock:
@@ -162,7 +165,7 @@ def _filled_times(time: Channel, notes: list[str]) -> Array:
     return np.interp(place, place[~unknown], time.values[~unknown])
 
 
-def _counted(time: Channel, raw: Array, how: HowToRead) -> Clock:
+def _counted(time: Channel, raw: Array, how: ReadingOptions) -> Clock:
     """Times of a sample index."""
     assert how.sample_period is not None
     steps = np.diff(raw)
@@ -174,7 +177,7 @@ def _counted(time: Channel, raw: Array, how: HowToRead) -> Clock:
 
 
 def _agreeing(clock: Clock, period: float, time: Channel, notes: list[str]) -> Clock:
-    """The clock, held against the sample period that the rig tells; that period's where the clock is too coarse.
+    """The clock, checked against the rig's sample period; times by that period if the clock is too coarse.
 
     Raises:
         InputError: they contradict each other.

@@ -1,4 +1,4 @@
-"""What a recording holds, told before anyone identifies from it: every column and, where plain, the signals."""
+"""What a recording holds, before it is used: every column and, where they are clear, the signals."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from bench.structured import json_text
 from bench.trace.assemble import assemble
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import Chosen, axes_of, choose, of_axis
-from bench.trace.how import HowToRead, how_to_read
 from bench.trace.in_si import in_si
-from bench.trace.known_names import scale_in
 from bench.trace.likely import Likely, likely_signals
 from bench.trace.read import read_recording
+from bench.trace.reading_options import ReadingOptions, reading_options
+from bench.trace.signal_names import scale_in
 from bench.trace.trace import Trace
 
 SCHEMA = "bench.inspect/1"
@@ -48,7 +48,7 @@ class SignalSummary:
 
 @dataclass(frozen=True)
 class ColumnSummary:
-    """One column of the file as it stands there.
+    """One column of the file.
 
     Attributes:
         name, unit: as in the file.
@@ -56,10 +56,10 @@ class ColumnSummary:
         count: of its numbers.
         minimum, maximum, resolution: of its numbers, in the file's unit; None where it holds none, or never changes.
         rate: of its samples, where it has times of its own - Hz.
-        signal: that it is read as, or is likely to be; None where nothing speaks for one.
+        signal: that it is read as, or probably is; None if unknown.
         read: whether it is read as that.
-        why: what speaks for it.
-        suggestion: line for the rig's `[trace.columns]`, where it is not read.
+        why: the reasons.
+        suggestion: line for the rig's `[trace.columns]`, if it is not read.
     """
 
     name: str
@@ -78,13 +78,13 @@ class ColumnSummary:
 
 @dataclass(frozen=True)
 class Inspection:
-    """What a recording holds. Of one whose signals are not plain, only columns and `asks` are told.
+    """What a recording holds; only columns and `asks` if its signals are not clear.
 
     Attributes:
         origin, format: the file and what it is.
         columns: of the file, in its order.
-        axes: that the file tells apart.
-        asks: what keeps the file from being read as it is, and what to write; None where nothing does.
+        axes: of the file.
+        asks: why the file cannot be read as it is, and what to write; None if it can.
         samples: on the regular time base.
         segments: stretches between holes.
         start, duration: of the recording - s.
@@ -126,7 +126,7 @@ class Inspection:
         return tuple(column.suggestion for column in self.columns if column.suggestion is not None)
 
 
-def inspect(path: str | Path, columns: Mapping[str, str] | HowToRead | None = None) -> Inspection:
+def inspect(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = None) -> Inspection:
     """Look into a recording.
 
     Args:
@@ -137,31 +137,31 @@ def inspect(path: str | Path, columns: Mapping[str, str] | HowToRead | None = No
         InputError: no table or container that the bench knows; a column that the rig names is not there, or has no
             unit. A file that needs a rig to be read is no error here.
     """
-    return inspect_recording(read_recording(path), how_to_read(columns))
+    return inspect_recording(read_recording(path), reading_options(columns))
 
 
-def inspect_recording(recording: Recording, how: HowToRead) -> Inspection:
+def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
     """See `inspect`."""
     try:
         chosen, _ = choose(recording, how)
         trace = assemble(recording, how)
-    except InputError as asked:
+    except InputError as error:
         if how.columns:
             raise
-        told = _columns(recording, {}, how)
+        summaries = _columns(recording, {}, how)
         return Inspection(
             recording.origin,
             recording.format,
-            told,
+            summaries,
             axes_of(recording.channels),
-            str(asked),
+            str(error),
             metadata=dict(recording.metadata),
             notes=recording.notes,
         )
     return _of_trace(recording, chosen, trace, how)
 
 
-def _of_trace(recording: Recording, chosen: Mapping[str, Chosen], trace: Trace, how: HowToRead) -> Inspection:
+def _of_trace(recording: Recording, chosen: Mapping[str, Chosen], trace: Trace, how: ReadingOptions) -> Inspection:
     recorded = in_si(chosen, recording, how).signals
     base = trace.time_base
     assert base is not None  # a trace that was read has one
@@ -206,7 +206,7 @@ def _resolution(values: Array) -> float | None:
     return float(steps.min()) if steps.size else None
 
 
-def _columns(recording: Recording, chosen: Mapping[str, Chosen], how: HowToRead) -> tuple[ColumnSummary, ...]:
+def _columns(recording: Recording, chosen: Mapping[str, Chosen], how: ReadingOptions) -> tuple[ColumnSummary, ...]:
     """Every column of the axis in numbers, with what it is read as or likely to be."""
     channels = of_axis(recording, how.axis)
     read = {id(choice.channel): signal for signal, choice in chosen.items()}

@@ -1,6 +1,6 @@
-"""What a column is likely to be: told by its name, its unit and its values, each reason said.
+"""The signal that a column probably holds, judged by name, unit and values, with the reasons.
 
-A suggestion, never a reading: it goes into the rig's `[trace.columns]` by the user's hand.
+Only a suggestion: the user decides and enters it in the rig's `[trace.columns]`.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.trace.channel import Channel
-from bench.trace.known_names import is_index, signal_of, unit_of, wanted_units
-from bench.trace.makers import makers_unit
+from bench.trace.signal_names import is_index, signal_of, unit_of, wanted_units
 from bench.trace.signals import SI_UNITS
-from bench.unit_text import UnitError, is_unit, scale_of
+from bench.trace.vendors import vendor_column
+from bench.units.text import UnitError, is_unit, scale_of
 
-#: Words of names in the languages that drives speak, and letters of the field.
+#: Words in column names, in the languages of drives, and letters of the field.
 WORDS: dict[str, str] = {
     "time": r"time|zeit|temps|tempo|tiempo|timestamp|stamp|ms_today|clock|uhrzeit|t",
     "velocity": r"vel|velo|velocity|speed|spd|geschw\w*|drehzahl\w*|vitesse|velocidad|velocita|omega|rpm|erpm|"
@@ -51,13 +51,13 @@ TIMES, AGREEMENT = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}, 
 
 @dataclass(frozen=True)
 class Likely:
-    """A signal that a column may be.
+    """A signal that a column may hold.
 
     Attributes:
         signal: as `[trace.columns]` names it.
-        unit: it stands in; None where only the user knows.
-        why: what speaks for it.
-        weight: how much.
+        unit: of the column; None if only the user knows.
+        why: the reasons.
+        weight: of the reasons.
     """
 
     signal: str
@@ -71,7 +71,7 @@ def likely_signals(channels: Sequence[Channel]) -> dict[int, Likely]:
     numeric = {
         place: channel for place, channel in enumerate(channels) if channel.defect is None and channel.values.size > 1
     }
-    with np.errstate(over="ignore", invalid="ignore"):  # of magnitudes that no axis has: nothing speaks for them
+    with np.errstate(over="ignore", invalid="ignore"):  # implausible magnitudes give no reasons
         times = [place for place, channel in numeric.items() if _rises(channel.values)]
         derived = _derivatives(numeric, times)
     found = [
@@ -166,9 +166,9 @@ def _guess(signal: str, channel: Channel, unit: str | None, parts: list[str], wh
     if reference in SI_UNITS and any(_REFERENCE.fullmatch(part) for part in parts):
         why, signal, weight = [*why, "is a set-point by its name"], reference, weight - 0.25
     if unit is None and not channel.moments:
-        known = makers_unit(channel.name)
+        known = vendor_column(channel.name)
         if known is not None and known.signal == signal:
-            return Likely(signal, known.unit, (*why, known.says), weight + 0.5)
+            return Likely(signal, known.unit, (*why, known.note), weight + 0.5)
     return Likely(signal, unit, tuple(why), weight)
 
 

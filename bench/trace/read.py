@@ -7,13 +7,13 @@ from pathlib import Path
 
 from bench.trace.assemble import assemble
 from bench.trace.channel import Recording
-from bench.trace.how import HowToRead
 from bench.trace.readers import reader_of
+from bench.trace.reading_options import ReadingOptions
 from bench.trace.source import open_source
 from bench.trace.trace import Trace
 
 
-def read(path: str | Path, columns: Mapping[str, str] | HowToRead | None = None) -> Trace:
+def read(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = None) -> Trace:
     """Trace of a file: signals in SI units on one regular time base.
 
     Args:

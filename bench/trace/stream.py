@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from bench.allocation import keep_freed_memory
 from bench.arrays import Array
 from bench.bounds import require_ratio
 from bench.errors import InputError
 from bench.names import readable
 from bench.trace.channel import Recording
 from bench.trace.choose import choose
-from bench.trace.how import HowToRead, how_to_read
 from bench.trace.in_si import InSI, in_si
 from bench.trace.read import read
 from bench.trace.readers.parquet import DAMAGE, FORMAT, MAGIC, WIDTH, channel_of, damaged, is_moment
+from bench.trace.reading_options import ReadingOptions, reading_options
 from bench.trace.time_base import regular
 from bench.trace.trace import Trace
 from bench.trace.wraps import Unwrapping
 
-#: Samples a chunk: small enough for the processor's cache, large enough to forget Python's share of the work.
+#: Samples of a chunk: few enough for the processor's cache, enough to make Python's overhead negligible.
 CHUNK = 1 << 17
 #: Deviation of the step from one chunk to the next, as share of the sample period, within which the second continues
 #: the first.
@@ -33,29 +33,27 @@ JOINT = 0.01
 
 def stream(
     path: str | Path,
-    columns: Mapping[str, str] | HowToRead | None = None,
-    signals: Collection[str] | None = None,
+    columns: Mapping[str, str] | ReadingOptions | None = None,
     chunk: int = CHUNK,
 ) -> Iterator[Trace]:
     """Consecutive traces of at most `chunk` samples (one more at the end), which together are the recording.
 
-    They do not overlap; `Trace.continues` says whether one follows the last without a hole. Parquet is read as it is
-    needed, columns of other signals not at all; other formats are read whole and cut. In Parquet the time base is found
-    chunk by chunk, so a recording with jitter is interpolated onto a regular base in each.
+    They do not overlap; `Trace.continues` says whether one follows the last without a hole. Of Parquet only columns
+    that are signals are read, chunk by chunk; other formats are read whole and cut. In Parquet the time base is found
+    for each chunk, so a recording with jitter is interpolated onto a regular base in each.
 
     Args:
         path: file of any format.
         columns: signal -> column name with unit, or all that a rig's `[trace]` tells, as for `read`.
-        signals: the ones wanted, those of them that the file holds; None: all.
         chunk: samples, at least 2.
 
     Raises:
         InputError: as `read` does, while iterating.
     """
-    how = how_to_read(columns)
+    how = reading_options(columns)
     if _is_parquet(Path(path)) and how.sample_period is None and not _counts_from_first_moment(str(path)):
-        return _parquet(str(path), how, signals, chunk)
-    return cut(read(path, columns), signals, chunk)
+        return _parquet(str(path), how, chunk)
+    return cut(read(path, columns), chunk)
 
 
 def _is_parquet(path: Path) -> bool:
@@ -69,7 +67,7 @@ def _is_parquet(path: Path) -> bool:
 
 
 def _counts_from_first_moment(path: str) -> bool:
-    """Whether a Parquet file holds moments, which are read as times from the first one: no chunk knows it."""
+    """Whether a Parquet file holds timestamps, which count from the first one, unknown to later chunks."""
     try:
         return any(is_moment(field.type) for field in pq.read_schema(path))
     except DAMAGE:
@@ -91,23 +89,21 @@ def _continues(last: Trace | None, time: Array, period: float, origin: str) -> b
     return abs(step - period) <= JOINT * period
 
 
-def cut(trace: Trace, signals: Collection[str] | None = None, chunk: int = CHUNK) -> Iterator[Trace]:
-    """The same of a recording that is read already; arguments and what comes as of `stream`."""
-    wanted = {name: values for name, values in trace.signals.items() if signals is None or name in signals}
-    units = {name: trace.units[name] for name in wanted}
+def cut(trace: Trace, chunk: int = CHUNK) -> Iterator[Trace]:
+    """The same for a recording in memory; see `stream`."""
     start, last = 0, None
     while start < len(trace):
         stop = start + chunk if len(trace) - start > chunk + 1 else len(trace)
         time = trace.time[start:stop]
-        part = {name: values[start:stop] for name, values in wanted.items()}
+        part = {name: values[start:stop] for name, values in trace.signals.items()}
         follows = _continues(last, time, trace.sample_period, trace.origin)
-        last = replace(trace, time=time, signals=part, units=units, continues=follows)
+        last = replace(trace, time=time, signals=part, continues=follows)
         yield last
         start = stop
 
 
-def _parquet(path: str, how: HowToRead, signals: Collection[str] | None, chunk: int) -> Iterator[Trace]:
-    _keep_freed_memory()
+def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
+    keep_freed_memory()
     try:
         with pq.ParquetFile(path, memory_map=True) as file:
             fields = list(file.schema_arrow)
@@ -115,7 +111,6 @@ def _parquet(path: str, how: HowToRead, signals: Collection[str] | None, chunk: 
                 tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), FORMAT, readable(path)
             )
             chosen, notes = choose(empty, how)
-            chosen = {name: it for name, it in chosen.items() if signals is None or name == "time" or name in signals}
             field_of = {name: fields[empty.channels.index(choice.channel)] for name, choice in chosen.items()}
             require_ratio(path, file.metadata.num_rows * len(field_of) * WIDTH, Path(path).stat().st_size)
             start, last = 0, None
@@ -159,13 +154,3 @@ def _batches(file: pq.ParquetFile, names: list[str], chunk: int) -> Iterator[pa.
             held = batch if held is None else pa.concat_batches([held, batch])
     if held is not None:
         yield held
-
-
-def _keep_freed_memory() -> None:
-    """Teach the C allocator that large blocks come and go.
-
-    glibc returns freed blocks beyond a threshold to the system and faults them in again for the next chunk, a third of
-    the time of streaming (0.29 s against 0.21 s for 10 million samples of three columns). Freeing one block below its
-    upper limit of 32 MB raises the threshold for good; untouched, the block costs nothing.
-    """
-    np.empty((4_000_000,))

@@ -33,7 +33,7 @@ def all_finite(values: Array) -> bool:
 
 @dataclass(frozen=True)
 class TimeBase:
-    """What a reader found about the sample times before it brought them to a regular base.
+    """Sample times as found by a reader, before they were brought to a regular base.
 
     Attributes:
         sample_period: median step - s.
@@ -54,7 +54,7 @@ class TimeBase:
 
 @dataclass(frozen=True)
 class Trace:
-    """One recording of one axis. Synthetic and measured ones are the same type and take the same way.
+    """One recording of one axis, synthetic or measured.
 
     Attributes:
         time: sample times, increasing, regular within each segment - s - (n,).
@@ -173,7 +173,7 @@ class Trace:
 
     @property
     def axis_kind(self) -> AxisKind:
-        """Linear where position or velocity stands in metres, else rotary."""
+        """Linear if position or velocity is in metres, else rotary."""
         lengths = (LINEAR.length_unit, LINEAR.speed_unit)
         return LINEAR if any(self.units.get(name) in lengths for name in ("position", "velocity")) else ROTARY
 

@@ -1,8 +1,8 @@
 """Positions that wrap: a drive counts to the end of a turn, or of its range, and starts over.
 
-A wrapped position leaps by nearly its period P from one end of its range to the other; the step that was really made
-is that of its neighbours. So each leap d beside steps s tells P = |d - s|, about which all leaps have to agree. Where
-turns, or a power of two counts, of which a counter is made, are as near as noise of a step lets tell, P is that.
+A wrapped position jumps by nearly its period P from one end of its range to the other; the true step is about that of
+its neighbours. So a jump d next to steps s gives P = |d - s|, on which all jumps have to agree. If a number of turns,
+or a power of two counts, agrees with them within noise, P is that.
 """
 
 from __future__ import annotations
@@ -17,24 +17,24 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.errors import InputError
 
-#: Samples from which on a jump is told from motion.
+#: Least number of samples in which jumps are looked for.
 LEAST = 10
 #: Sample periods beyond which a step is a hole in time.
 LONGEST_STEP = 2.5
 #: A step beyond this share of all travel is a jump, if it is also this many times the longest of the other steps.
 FAR, ISOLATED = 0.5, 3.0
-#: Jumps of one period differ by what the axis moves meanwhile, which the steps beside them tell, to this share of it.
+#: Relative tolerance between jumps of one period, after the motion during each, which its neighbours give.
 ALIKE = 0.02
 #: Standard errors, and share of a period, within which jumps agree with an exact one: 25 rad, by which CAN drives wrap,
 #: is 0.5 % off four turns.
 SURE, EXACT = 4.0, 3e-3
 #: Turns and powers of two counts that drives wrap by.
 TURNS, POWERS = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0), range(8, 33)
-#: Steps looked at together: few enough for the processor's cache.
+#: Number of steps processed at once: few enough for the processor's cache.
 PIECE = 1 << 16
 #: A position beyond it - rad (m) - is none, which the checks say; its differences and their sums would overflow.
 FARTHEST = 1e150
-#: Steps beyond this share of the period may be one turn more or less.
+#: Steps beyond this share of the period are ambiguous by one period.
 HALF = 0.45
 
 
@@ -43,8 +43,8 @@ class Wraps:
     """Wraps of a position that were undone.
 
     Attributes:
-        period: by which it jumps - rad (m).
-        count: of the jumps.
+        period: of the position - rad (m).
+        count: number of jumps.
     """
 
     period: float
@@ -106,14 +106,14 @@ def undone(position: Array, period: float) -> Array:
 
 
 class Unwrapping:
-    """A position made continuous piece by piece: what was found in one piece holds in those that follow.
+    """A position made continuous piece by piece, with the period found in earlier pieces.
 
     Args:
-        told: period that the user tells - rad (m); None where it is to be found.
+        period: if the user gives it - rad (m); None if it is to be found.
     """
 
-    def __init__(self, told: float | None) -> None:
-        self.period, self.turned, self.count, self.last = told, 0.0, 0, np.empty((2, 0))
+    def __init__(self, period: float | None) -> None:
+        self.period, self.turned, self.count, self.last = period, 0.0, 0, np.empty((2, 0))
 
     def __call__(
         self, position: Array, time: Array, speed: Array | None, count: float, place: Callable[[int | None], str]
@@ -150,7 +150,7 @@ class Unwrapping:
 def _turns(
     position: Array, time: Array, speed: Array | None, period: float, place: Callable[[int | None], str]
 ) -> Array:
-    """Periods that each step of a position (n,) has too much (n - 1,)."""
+    """Number of periods to subtract from each step of a position (n,): (n - 1,)."""
     if np.ptp(position) > 1.01 * period:
         found = f"spans {np.ptp(position):.6g}, more than its period {period:.6g}"
         raise InputError(place(None), found, "allowed: a position_period that it wraps by, or none where it does not")

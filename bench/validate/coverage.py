@@ -11,9 +11,9 @@ import numpy as np
 from scipy import stats
 
 from bench.validate.run import Run
-from bench.validate.told import TERMS, Told
+from bench.validate.score import TERMS, Scored
 
-#: Levels of the intervals that are held against the truth.
+#: Levels of the intervals that are compared with the truth.
 LEVELS = (0.5, 0.8, 0.95)
 #: Of bounds on a share.
 CONFIDENCE = 0.95
@@ -95,38 +95,38 @@ class Coverage:
     whole: bool = True
 
     @classmethod
-    def of(cls, by: str, group: Group, quantity: str, told: Sequence[Told]) -> Coverage:
-        """Of what runs tell of a quantity; nan where they tell nothing."""
-        error, half = (np.array([getattr(one, name) for one in told]) for name in ("error", "half_width"))
-        several = len(told) > 1
+    def of(cls, by: str, group: Group, quantity: str, scored: Sequence[Scored]) -> Coverage:
+        """Coverage of a quantity; nan without estimates."""
+        error, half = (np.array([getattr(one, name) for one in scored]) for name in ("error", "half_width"))
+        several = len(scored) > 1
         spread = float(np.std(error, ddof=1)) if several else math.nan
-        typical = float(np.sqrt(np.mean(error**2))) if told else math.nan
-        wide = float(np.sqrt(np.mean(half**2))) if told else math.nan
+        typical = float(np.sqrt(np.mean(error**2))) if scored else math.nan
+        wide = float(np.sqrt(np.mean(half**2))) if scored else math.nan
         return cls(
             by=by,
             group=group.name,
             quantity=quantity,
             runs=group.runs,
-            told=len(told),
-            bias=float(np.mean(error)) if told else math.nan,
-            bias_error=spread / math.sqrt(len(told)) if several else math.nan,
+            told=len(scored),
+            bias=float(np.mean(error)) if scored else math.nan,
+            bias_error=spread / math.sqrt(len(scored)) if several else math.nan,
             spread=spread,
             typical=typical,
-            half_width=float(np.median(half)) if told else math.nan,
+            half_width=float(np.median(half)) if scored else math.nan,
             width_over_error=wide / typical if typical > 0.0 else math.nan,
-            inside=tuple(Share(sum(one.inside(level) for one in told), len(told)) for level in LEVELS),
+            inside=tuple(Share(sum(one.inside(level) for one in scored), len(scored)) for level in LEVELS),
             whole=group.whole,
         )
 
 
 def coverage(runs: Sequence[Run]) -> list[Coverage]:
-    """Each quantity that `identify` tells, then those of `diagnose`, over all groups of runs that there are."""
+    """Each quantity of `identify`, then of `diagnose`, over all groups of runs."""
     found = []
     for by in ("identify", "diagnose"):
         for name, whole, some in _groups(runs, by):
-            told = [one for run in some for one in run.told if one.by == by and not one.effect]
+            scored = [one for run in some for one in run.scored if one.by == by and not one.effect]
             for term in TERMS:
-                those = [one for one in told if one.quantity == term]
+                those = [one for one in scored if one.quantity == term]
                 found.append(Coverage.of(by, Group(name, len(some), whole), term, those))
     return found + _of_effects(runs)
 
@@ -146,10 +146,10 @@ def _groups(runs: Sequence[Run], by: str) -> Iterator[tuple[str, bool, list[Run]
 
 def _apart(runs: Sequence[Run]) -> Iterator[tuple[str, list[Run]]]:
     """Runs by plant, noise, kind of axis and motion; not by what all share."""
-    for told in (_plant, _noise, _kind, _motion):
-        names = sorted({told(run) for run in runs})
+    for group_of in (_plant, _noise, _kind, _motion):
+        names = sorted({group_of(run) for run in runs})
         for name in names if len(names) > 1 else ():
-            yield name, [run for run in runs if told(run) == name]
+            yield name, [run for run in runs if group_of(run) == name]
 
 
 def _plant(run: Run) -> str:
@@ -170,13 +170,13 @@ def _motion(run: Run) -> str:
 
 def _of_effects(runs: Sequence[Run]) -> list[Coverage]:
     """Quantities of the effects that were named where they are hidden."""
-    told: dict[tuple[str, str], list[Told]] = {}
+    scored: dict[tuple[str, str], list[Scored]] = {}
     for run in runs:
-        for one in run.told:
+        for one in run.scored:
             if one.effect:
-                told.setdefault((one.effect, one.quantity), []).append(one)
+                scored.setdefault((one.effect, one.quantity), []).append(one)
     hidden = Counter(name for run in runs if run.named is not None for name in run.hidden)
     return [
-        Coverage.of("diagnose", Group(effect, hidden[effect], False), quantity, told[effect, quantity])
-        for effect, quantity in sorted(told)
+        Coverage.of("diagnose", Group(effect, hidden[effect], False), quantity, scored[effect, quantity])
+        for effect, quantity in sorted(scored)
     ]

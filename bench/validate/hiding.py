@@ -9,7 +9,7 @@ import numpy as np
 
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError
-from bench.units import nearest
+from bench.names import nearest
 from bench.validate.independent.draw import any_effects
 from bench.validate.independent.effects import KINDS
 from bench.validate.independent.rig import Axis

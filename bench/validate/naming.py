@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from bench.validate.coverage import Share
 from bench.validate.run import Run
-from bench.validate.told import Named
+from bench.validate.score import Named
 
 #: Verdicts, as the contract has them.
 EXPLAINED, UNEXPLAINED = "explained", "unexplained_remainder"
@@ -48,8 +48,8 @@ def naming(runs: Sequence[Run]) -> Naming | None:
     pairs = [(run, run.named) for run in runs if run.named is not None]
     if not pairs:
         return None
-    told = [(run, named) for run, named in pairs if named.verdict]
-    nulls = [(run.motion, named) for run, named in told if not run.hidden]
+    named_runs = [(run, named) for run, named in pairs if named.verdict]
+    nulls = [(run.motion, named) for run, named in named_runs if not run.hidden]
     motions = {motion: [named for other, named in nulls if other == motion] for motion in sorted({m for m, _ in nulls})}
     hidden = Counter(name for run, _ in pairs for name in run.hidden)
     missed = Counter(name for _, named in pairs for name in named.missed)
@@ -60,18 +60,18 @@ def naming(runs: Sequence[Run]) -> Naming | None:
     return Naming(
         nulls=_false([named for _, named in nulls]),
         nulls_by_motion={motion: _false(those) for motion, those in motions.items()},
-        false=_false([named for _, named in told]),
-        silent=Share(sum(bool(named.false) and named.verdict == EXPLAINED for _, named in told), len(told)),
+        false=_false([named for _, named in named_runs]),
+        silent=Share(sum(bool(named.false) and named.verdict == EXPLAINED for _, named in named_runs), len(named_runs)),
         exact=Share(sum(named.exact for _, named in pairs), len(pairs)),
-        refused=Share(len(pairs) - len(told), len(pairs)),
+        refused=Share(len(pairs) - len(named_runs), len(pairs)),
         named={name: Share(hidden[name] - missed[name], hidden[name]) for name in sorted(hidden)},
-        falsely=dict(Counter(name for _, named in told for name in named.false)),
+        falsely=dict(Counter(name for _, named in named_runs for name in named.false)),
         confusion={name: dict(confusion[name]) for name in sorted(confusion, key=lambda name: (name == NOTHING, name))},
     )
 
 
-def _false(told: Sequence[Named]) -> Share:
-    return Share(sum(bool(named.false) for named in told), len(told))
+def _false(names: Sequence[Named]) -> Share:
+    return Share(sum(bool(named.false) for named in names), len(names))
 
 
 def given(named: Named) -> tuple[str, ...]:

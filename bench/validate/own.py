@@ -96,7 +96,7 @@ def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
     """
     if rig.load is not None and rig.load.eccentric_mass is not None:
         raise InputError(f"{rig.source}: load.eccentric_mass", "found one", "allowed: none; the plants do not swing it")
-    if rig.simulation is None and recording is not None and _tells_effort(recording):
+    if rig.simulation is None and recording is not None and _has_effort(recording):
         rig = rig.model_copy(update={"simulation": as_recorded(rig, recording)})
     require(rig, "validate")
     parameters, cascade = AxisParameters.from_rig(rig), Cascade.from_rig(rig)
@@ -128,7 +128,7 @@ def _known(time: Array, values: Array) -> tuple[Array, Array]:
     return time[there], values[there]
 
 
-def _tells_effort(recording: Trace) -> bool:
+def _has_effort(recording: Trace) -> bool:
     return bool({"current", "torque", "force"} & set(recording.signals))
 
 

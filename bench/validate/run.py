@@ -1,4 +1,4 @@
-"""One run: a case is recorded, identified and, where asked for, diagnosed; what is told is held against the truth."""
+"""One run: a case is recorded, identified and, if wanted, diagnosed; results are compared with the truth."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bench.trace.trace import Trace
 from bench.validate.case import Case
 from bench.validate.plan import Plan
 from bench.validate.record import record
-from bench.validate.told import Named, Told, base, of_effects
+from bench.validate.score import Named, Scored, base, of_effects
 
 #: Runs simulated side by side in one piece of work: more cost no less each.
 TOGETHER = 64
@@ -46,7 +46,7 @@ class Run:
     severity: float
     status: Status = "done"
     reason: str = ""
-    told: tuple[Told, ...] = ()
+    scored: tuple[Scored, ...] = ()
     named: Named | None = None
 
 
@@ -76,7 +76,7 @@ def carried_out(piece: Piece) -> list[Run]:
 
 
 def judged(case: Case, made: Trace | BenchError, plan: Plan) -> Run:
-    """What the bench makes of a recording, held against its case."""
+    """Results on a recording, compared with its case."""
     run = drawn(case)
     if isinstance(made, BenchError):
         return replace(run, status="failed", reason=str(made))
@@ -85,24 +85,24 @@ def judged(case: Case, made: Trace | BenchError, plan: Plan) -> Run:
 
 
 def identified(run: Run, case: Case, trace: Trace) -> Run:
-    """With what `identify` tells, be it a refusal."""
+    """With the result of `identify`, or its refusal."""
     try:
         estimate, status, reason = identify(trace, case.rig), "done", ""
     except RefusedEstimateError as refused:
         estimate, status, reason = refused.estimate, "refused", str(refused)
     except BenchError as refused:
         return replace(run, status="refused", reason=str(refused))
-    return replace(run, status=status, reason=reason, told=tuple(base("identify", case, estimate.parameters)))
+    return replace(run, status=status, reason=reason, scored=tuple(base("identify", case, estimate.parameters)))
 
 
 def diagnosed(run: Run, case: Case, trace: Trace) -> Run:
-    """With what `diagnose` tells, be it a refusal."""
+    """With the result of `diagnose`, or its refusal."""
     try:
         found = diagnose(trace, case.rig)
     except BenchError as refused:
         return replace(run, named=Named(missed=case.hidden, reason=str(refused)))
-    told = (*run.told, *base("diagnose", case, found.parameters), *of_effects(case, found))
-    return replace(run, told=told, named=Named.of(found.verdict, found.effects, case.hidden))
+    scored = (*run.scored, *base("diagnose", case, found.parameters), *of_effects(case, found))
+    return replace(run, scored=scored, named=Named.of(found.verdict, found.effects, case.hidden))
 
 
 def drawn(case: Case) -> Run:

@@ -1,1 +1,1 @@
-"""A model to be looked at: the simulated axis and, as a ghost, the one it is held against."""
+"""View of a model in motion: the simulated axis, with the measured one as a ghost."""

@@ -15,10 +15,11 @@ from bench.effects.effect import Effect
 from bench.effects.kinds import Sensing
 from bench.effects.present import Present
 from bench.effects.signals import Scope
+from bench.names import words
 from bench.plant.plant import Plant
 from bench.plant.profile_names import NAMES
 from bench.report.effects import acting, bounds, unit_of
-from bench.report.page.numbers import number, share, words
+from bench.report.page.numbers import number, share
 from bench.units import Quantity
 from signature import Signature, rig
 

@@ -21,10 +21,11 @@ from bench.diagnose.where.where import LEAST, bins_of, coordinates, means_in, wh
 from bench.effects.catalogue import catalogue, rivals
 from bench.effects.effect import Effect
 from bench.effects.present import Present, parse_effect
+from bench.names import words
 from bench.plant.profile_names import DEFAULT, NAMES
 from bench.plant.simulate import simulate
 from bench.report.figures import MEASURED, MODELLED, NOISE, REST, in_style, save, thinned
-from bench.report.page.numbers import share, unit_text, words
+from bench.report.page.numbers import share, unit_text
 from bench.report.pages.tables import coordinate_word
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace

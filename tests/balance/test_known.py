@@ -9,7 +9,7 @@ from bench.balance.layout import lay_out
 from bench.balance.rows import Rows
 from bench.effects.catalogue import catalogue
 from bench.rig.rig import Rig
-from bench.trace.known import less_known, with_known
+from bench.trace.known_torque import less_known, with_known
 from bench.trace.trace import Trace
 
 RIG = Rig.of({"name": "axis", "kind": "rotary"})

@@ -91,7 +91,7 @@ def test_the_page_holds_what_was_measured_and_keeps_what_was_not(one_row, tmp_pa
     assert "2.00" in again["Second"]
 
 
-def test_an_unknown_name_is_told(one_row):
+def test_an_unknown_name_is_reported(one_row):
     told = run("third")
     assert told.exit_code == 2
     assert "allowed: first, second" in " ".join(told.output.split())

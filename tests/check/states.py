@@ -58,7 +58,7 @@ def named(name: str, rms: float, ambiguous_with=(), **values: float) -> NamedHer
 
 
 @dataclass(frozen=True)
-class Told(Observed):
+class GivenObserved(Observed):
     """A state that says what it is told to say with the effects of the baseline.
 
     Attributes:

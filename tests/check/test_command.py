@@ -102,7 +102,7 @@ def test_a_new_effect_is_named(bench):
     assert "Cogging torque (harmonic 6) is gone" in printed
 
 
-def test_another_rig_file_is_told(axis):
+def test_another_rig_file_is_reported(axis):
     Path("rig.toml").write_text(Path("rig.toml").read_text().replace("0.8 N*m/A", "0.9 N*m/A"), encoding="utf-8")
     write(again(2), Path("now.csv"))
     status, printed, _ = axis(*BASE, "now.csv")

@@ -7,17 +7,17 @@ import pytest
 from bench.check.allowed import Allowed
 from bench.check.compare import compare
 from bench.check.measured import Measured
-from bench.check.told import headline
+from bench.check.wording import headline
 from bench.errors import InputError
 from bench.rig.rig import Rig
-from tests.check.states import Told, named, state
+from tests.check.states import GivenObserved, named, state
 
 RIG = {"name": "a", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A"}}
 
 
-def checked(baseline, now, rate=0.01, told=None, **check):
+def checked(baseline, now, rate=0.01, observed=None, **check):
     rig = Rig.of({**RIG, "check": check})
-    return compare(baseline, told or Told(now), Allowed.of(rig), rate)
+    return compare(baseline, observed or GivenObserved(now), Allowed.of(rig), rate)
 
 
 def results(found):
@@ -65,7 +65,7 @@ def test_the_rig_file_says_what_matters():
         ({"between": {"moment_of_inertia": "-1 kg*m**2"}}, "zero or above"),
     ],
 )
-def test_a_wrong_margin_is_told_where_it_stands(table, message):
+def test_a_wrong_margin_is_reported_where_it_stands(table, message):
     with pytest.raises(InputError, match=message):
         checked(state(), state(), **table)
 
@@ -76,7 +76,7 @@ def test_a_stricter_rate_alarms_later():
     assert checked(state(), now, rate=1e-6).result == "undecided"
 
 
-def test_another_rig_is_told_and_decides_nothing():
+def test_another_rig_is_reported_and_decides_nothing():
     now = replace(state({"moment_of_inertia": 1.5}), rig={"kind": "rotary", "motor.torque_constant": "0.9"})
     found = checked(state(), now)
     assert found.result == "undecided"
@@ -98,26 +98,26 @@ COGGING = {"amplitude": 0.05, "harmonic": 6.0, "phase": 1.0}
 
 def test_an_effect_that_the_baseline_would_have_shown_has_appeared():
     now = state(None, [named("cogging_torque", 0.03, **COGGING)], "explained")
-    found = checked(state(), now, told=Told(now, factors={"torque_gap": 6.0}))
+    found = checked(state(), now, observed=GivenObserved(now, factors={"torque_gap": 6.0}))
     assert found.result == "changed"
     assert [effect.name for effect, _ in found.appeared] == ["cogging_torque"]
     assert headline(found).startswith("Cogging torque (harmonic 6) appeared: amplitude 0.05 N*m (0.03 N*m RMS")
 
 
 def test_an_effect_on_the_edge_of_its_name_is_no_alarm():
-    now = Told(state(None, [named("cogging_torque", 0.0022, **COGGING)], "explained"))
-    found = checked(state(), now.state, told=now)
+    now = GivenObserved(state(None, [named("cogging_torque", 0.0022, **COGGING)], "explained"))
+    found = checked(state(), now.state, observed=now)
     assert found.result == "undecided"
     assert "may have hidden" in headline(found)
     before = state(None, [named("cogging_torque", 0.0022, **COGGING)], "explained")
-    gone = checked(before, state(), told=Told(state(), torques={"cogging_torque": 0.0021}))
+    gone = checked(before, state(), observed=GivenObserved(state(), torques={"cogging_torque": 0.0021}))
     assert gone.result == "undecided"  # the verdict differs, and nothing else
     assert results(gone)["cogging_torque (harmonic 6)"] == "same"
 
 
 def test_an_effect_that_makes_no_torque_any_more_is_gone():
     before = state(None, [named("cogging_torque", 0.03, **COGGING)], "explained")
-    found = checked(before, state(), told=Told(state(), torques={"cogging_torque": 0.0005}))
+    found = checked(before, state(), observed=GivenObserved(state(), torques={"cogging_torque": 0.0005}))
     assert found.result == "changed"
     assert [effect.name for effect, _ in found.gone] == ["cogging_torque"]
     assert "is gone" in headline(found)
@@ -125,7 +125,7 @@ def test_an_effect_that_makes_no_torque_any_more_is_gone():
 
 def test_parameters_that_an_uncertain_name_moves_are_compared_with_both_sets_of_effects():
     now = state({"coulomb_friction_torque": 1.15}, [named("cogging_torque", 0.0022, **COGGING)], "explained")
-    found = checked(state(), now, told=Told(now, factors={"coulomb_friction_torque": 1.0 / 1.15}))
+    found = checked(state(), now, observed=GivenObserved(now, factors={"coulomb_friction_torque": 1.0 / 1.15}))
     assert results(found)["coulomb_friction_torque"] == "undecided"
     assert found.result == "undecided"
 
@@ -169,10 +169,10 @@ def test_another_unit_is_not_compared():
     assert results(checked(state(), replace(now, quantities=quantities)))["moment_of_inertia"] == "undecided"
 
 
-def test_what_is_not_told_now_is_not_called_the_same():
+def test_what_is_not_determined_now_is_not_called_the_same():
     now = state()
-    told = {name: one for name, one in now.quantities.items() if name != "coulomb_friction_torque"}
-    found = checked(state(), replace(now, quantities=told))
+    observed = {name: one for name, one in now.quantities.items() if name != "coulomb_friction_torque"}
+    found = checked(state(), replace(now, quantities=observed))
     assert found.result == "undecided"
     assert results(found)["coulomb_friction_torque"] == "undecided"
     assert "it is not told now" in headline(found)

@@ -2,18 +2,13 @@
 
 import pytest
 
-from tests.diagnose.command import started
+from tests import command
+from tests.diagnose.command import RIG
 
 
 @pytest.fixture
-def bench(capsys, monkeypatch, tmp_path):
-    """Runs `bench` in a folder of its own and returns status, standard output and standard error."""
+def bench(monkeypatch, tmp_path):
+    """Runs `bench` in a folder of its own, which holds a rig file."""
     monkeypatch.chdir(tmp_path)
-    run = started(tmp_path)
-
-    def told(*arguments):
-        status = run(*arguments)
-        printed = capsys.readouterr()
-        return status, printed.out, printed.err
-
-    return told
+    (tmp_path / "rig.toml").write_text(RIG, encoding="utf-8")
+    return command.bench

@@ -238,7 +238,7 @@ def test_a_holdout_too_short_is_named(bench):
     assert "other.csv" in err
 
 
-def test_a_wrong_unit_of_current_and_a_clipped_current_are_told(bench):
+def test_a_wrong_unit_of_current_and_a_clipped_current_are_reported(bench):
     write(turned(run_of(), "current", 1e-3), "run.csv")
     status, _, err = bench("diagnose", "run.csv", "--rig", "rig.toml")
     assert status == 1
@@ -287,7 +287,7 @@ def test_a_damaged_model_is_one_line_and_status_two(bench, diagnosed, tmp_path, 
     assert not (tmp_path / "replay.csv").exists()
 
 
-def test_replay_along_another_axis_is_told_and_too_short_a_recording_refused(bench, diagnosed, tmp_path):
+def test_replay_along_another_axis_is_reported_and_too_short_a_recording_refused(bench, diagnosed, tmp_path):
     model = diagnosed / "found" / "model.toml"
     write(run_of(seed=2, truth=Truth(inertia=3.0 * Truth.inertia)), "other.csv")
     status, _, err = bench("replay", model, "other.csv", "--rig", "rig.toml", "--out", "replay.csv")

@@ -97,7 +97,7 @@ def test_a_coupling_beside_something_else_is_no_gap():
     assert searched(without(ReplacesClearly), trace, effects) == ("backlash",)
 
 
-def test_what_no_effect_explains_is_told():
+def test_what_no_effect_explains_is_reported():
     trace = recorded(MOTION, vibration(0.01, 3.3))
     others = frozenset(catalogue()) - {"unbalance"}
     assert diagnose(trace, RIG, excluded=others).verdict == "unexplained_remainder"

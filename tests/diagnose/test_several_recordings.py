@@ -69,7 +69,7 @@ def test_hum_of_another_phase_in_every_recording_is_no_remainder():
     assert (found.verdict, found.effects) == ("nothing_missing", [])
 
 
-def test_recordings_that_differ_widen_the_interval_and_are_told():
+def test_recordings_that_differ_widen_the_interval_and_are_reported():
     runs = [run_of(k, Truth(inertia=Truth.inertia * (1.0 + 0.004 * (k - 2)))) for k in (1, 2, 3)]
     found = bench.diagnose(runs, RIG)
     assert any("the recordings differ in moment_of_inertia" in told for told in found.warnings)

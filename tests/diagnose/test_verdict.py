@@ -70,13 +70,13 @@ def test_a_model_that_moves_worse_explains_nothing(identify, holdout, said):
         (named("unbalance", amplitude=(0.1, 0.01), phase=(0.02, 3.5)), "phase"),
     ],
 )
-def test_a_quantity_that_is_not_told_explains_nothing(effect, said):
+def test_a_quantity_that_is_not_determined_explains_nothing(effect, said):
     against = Undetermined().against(shown(effect))
     assert said in against
     assert bool(said) == bool(against)
 
 
-def test_friction_that_is_not_told_counts_where_its_torque_does():
+def test_friction_that_is_not_determined_counts_where_its_torque_does():
     assert "not determined" in Undetermined().against(shown(SPRING, friction=(0.08, 0.09)))
     assert Undetermined().against(shown(SPRING, friction=(0.001, 0.002))) == ""
     assert Undetermined().against(shown(friction=(0.08, 0.09))) == ""
@@ -103,7 +103,7 @@ def test_a_holdout_with_half_as_much_friction_again_is_no_proof_that_nothing_is_
     assert any("holdout stands apart" in said for said in other.because)
 
 
-def test_friction_that_drives_is_told():
+def test_friction_that_drives_is_reported():
     found = diagnose(recorded(MOTION, lambda motion: -1.5 * COULOMB * motion.sign), RIG, excluded=NONE)
     assert found.verdict == "unexplained_remainder"
     assert any("coulomb friction torque" in said and "negative" in said for said in found.because)

@@ -67,7 +67,7 @@ def test_every_source_of_the_theory_is_one_that_the_code_cites(source):
         assert any(year in part for part in blocks), f"{author} {year}"
 
 
-def test_every_name_of_the_front_door_is_in_the_reference():
+def test_every_public_name_is_in_the_reference():
     for name in bench.__all__:
         assert f"bench.{name}\n" in PAGES["docs/python.md"] or name == "__version__"
 

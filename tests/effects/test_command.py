@@ -5,23 +5,11 @@ import json
 import pytest
 
 from bench.axis_kind import LINEAR
-from bench.cli import main
 from bench.effects.catalogue import catalogue
 from bench.effects.present import parse_effect
 from bench.errors import InputError
+from tests.command import bench
 from tests.plant.conftest import RIG
-
-
-@pytest.fixture
-def bench(monkeypatch, capsys):
-    def run(*arguments):
-        monkeypatch.setattr("sys.argv", ["bench", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        output = capsys.readouterr()
-        return stop.value.code, output.out, output.err
-
-    return run
 
 
 @pytest.mark.parametrize(
@@ -54,12 +42,12 @@ def test_linear_axes_take_metres_and_newtons():
         ("cogging_torque:amplitude=inf", "finite"),
     ],
 )
-def test_what_cannot_be_read_is_said(text, says):
+def test_what_cannot_be_read_is_reported(text, says):
     with pytest.raises(InputError, match=says):
         parse_effect(text)
 
 
-def test_simulate_writes_the_truth_of_its_effects(bench, tmp_path):
+def test_simulate_writes_the_truth_of_its_effects(tmp_path):
     rig, out = tmp_path / "rig.toml", tmp_path / "run.csv.gz"
     rig.write_text(RIG.format(simulation="", motor=""), encoding="utf-8")
     effects = (
@@ -83,7 +71,7 @@ def test_simulate_writes_the_truth_of_its_effects(bench, tmp_path):
         ("backlash:gap=0.1,contact_stiffness=x", "number with a unit"),
     ],
 )
-def test_simulate_refuses_in_one_line_and_writes_nothing(bench, tmp_path, effect, says):
+def test_simulate_refuses_in_one_line_and_writes_nothing(tmp_path, effect, says):
     rig, out = tmp_path / "rig.toml", tmp_path / "run.csv.gz"
     rig.write_text(RIG.format(simulation="", motor=""), encoding="utf-8")
     code, _, error = bench("simulate", rig, "--out", out, "--profile", "multisine", "--effect", effect)
@@ -93,7 +81,7 @@ def test_simulate_refuses_in_one_line_and_writes_nothing(bench, tmp_path, effect
     assert not out.exists()
 
 
-def test_friction_made_by_the_drive_has_no_effects(bench, tmp_path):
+def test_friction_made_by_the_drive_has_no_effects(tmp_path):
     rig = tmp_path / "rig.toml"
     rig.write_text(RIG.format(simulation='friction = "drive"', motor=""), encoding="utf-8")
     effect = "load_dependent_friction:load_friction_coefficient=0.1"
@@ -102,7 +90,7 @@ def test_friction_made_by_the_drive_has_no_effects(bench, tmp_path):
     assert "mechanics" in error
 
 
-def test_every_effect_is_listed_and_has_a_page(bench):
+def test_every_effect_is_listed_and_has_a_page():
     code, table, _ = bench("effects")
     assert code == 0
     for name, effect in catalogue().items():
@@ -113,7 +101,7 @@ def test_every_effect_is_listed_and_has_a_page(bench):
         assert all(quantity.name in page for quantity in effect.quantities)
 
 
-def test_unknown_effect_has_no_page(bench):
+def test_unknown_effect_has_no_page():
     code, _, error = bench("effects", "coging")
     assert code == 2
     assert "allowed: backlash" in error

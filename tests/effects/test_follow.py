@@ -70,12 +70,12 @@ def test_any_reference_will_do(left_out, truths, rig):
     assert gap(model(), recording(truths[()], *left_out), rig) < 0.03
 
 
-def test_no_reference_is_said(truths, rig):
+def test_no_reference_is_reported(truths, rig):
     with pytest.raises(InputError, match="holds no references"):
         follow_references(model(), recording(truths[()], "position_reference", "velocity_reference"), rig)
 
 
-def test_holes_are_said(truths, rig):
+def test_holes_are_reported(truths, rig):
     trace = recording(truths[()])
     gone = np.r_[0:100, 200 : len(trace)]
     holed = Trace(trace.time[gone], {n: trace[n][gone] for n in UNITS}, dict(trace.units), "holed")

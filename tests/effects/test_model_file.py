@@ -19,12 +19,12 @@ from bench.plant.model_file import (
     StoredModel,
     load_model,
     model_toml,
+    model_xml,
     read_table,
     tables_toml,
-    write_model,
 )
 from bench.plant.native import run_controls, sense_torque
-from bench.plant.track_effects import track_effects
+from bench.plant.track_effects import Held, track_motion
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, PERIOD, VALUES, model
 
@@ -32,9 +32,15 @@ from tests.effects.axes import AXIS, PERIOD, VALUES, model
 EVERYTHING = [name for name in VALUES if name != "backlash"]
 
 
+def written(folder, stored):
+    path = folder / "model.toml"
+    write_text(path, model_toml(stored))
+    return path
+
+
 def test_everything_comes_back(tmp_path):
     stored = StoredModel('the "axis" \\ of\tall', model(*EVERYTHING), 1.27e-5)
-    toml, _ = write_model(tmp_path, stored)
+    toml = written(tmp_path, stored)
     assert load_model(toml) == stored
 
 
@@ -42,7 +48,7 @@ def test_linear_axis_without_winding_comes_back(tmp_path):
     effects = (Present.of("cogging_torque", {"amplitude": 1.0, "harmonic": 2513.0}),)
     parameters = AxisParameters(95.1, 203.5, 20.4, -3.2, 0.0, kind=LINEAR)
     stored = StoredModel("slide", AxisModel(parameters, effects))
-    toml, _ = write_model(tmp_path, stored)
+    toml = written(tmp_path, stored)
     assert load_model(toml) == stored
     text = toml.read_text(encoding="utf-8")
     assert 'moving_mass = "95.1 kg"' in text
@@ -81,13 +87,13 @@ def test_tables_stand_alone_where_there_is_no_model(tmp_path):
 
 
 @pytest.mark.parametrize("names", [("elastic_coupling", "cogging_torque", "quadratic_drag"), ("presliding_friction",)])
-def test_xml_moves_as_the_model(tmp_path, names):
+def test_xml_moves_as_the_model(names):
     """MuJoCo writes numbers with six digits or more."""
     native = model(*names, "torsion_spring", "unbalance", "torque_offset")
-    _, xml = write_model(tmp_path, StoredModel("axis", native))
+    xml = model_xml(StoredModel("axis", native))
     torque = np.sin(np.arange(4000) / 200.0)[:, None]
-    mujoco.MjModel.from_xml_path(str(xml))
-    specs = native.spec(TIMESTEP), mujoco.MjSpec.from_file(str(xml))
+    mujoco.MjModel.from_xml_string(xml)
+    specs = native.spec(TIMESTEP), mujoco.MjSpec.from_string(xml)
     motions = []
     for spec in specs:
         sense_torque(spec)
@@ -95,9 +101,9 @@ def test_xml_moves_as_the_model(tmp_path, names):
     np.testing.assert_allclose(motions[1], motions[0], atol=1e-3 * np.abs(motions[0]).max())
 
 
-def test_xml_names_what_it_lacks(tmp_path):
-    _, xml = write_model(tmp_path, StoredModel("axis", model("stribeck_friction", "cogging_torque")))
-    assert "not in it, but in model.toml: stribeck_friction." in xml.read_text(encoding="utf-8").splitlines()[0]
+def test_xml_names_what_it_lacks():
+    xml = model_xml(StoredModel("axis", model("stribeck_friction", "cogging_torque")))
+    assert "not in it, but in model.toml: stribeck_friction." in xml.splitlines()[0]
 
 
 @pytest.mark.parametrize(
@@ -138,7 +144,8 @@ def test_a_stored_model_runs_along_a_recording(truths, tmp_path):
     signals = truths["cogging_torque",]
     kept = {"velocity": signals["velocity"][::8], "current": signals["current"][::8]}
     trace = Trace(PERIOD * 8 * np.arange(kept["velocity"].size), kept, {"velocity": "rad/s", "current": "A"}, "axis")
-    toml, _ = write_model(tmp_path, StoredModel("axis", model("cogging_torque"), -PERIOD / 2.0))
+    toml = written(tmp_path, StoredModel("axis", model("cogging_torque"), -PERIOD / 2.0))
     stored = load_model(toml)
-    simulated = track_effects(stored.model, trace, AXIS.torque_constant * trace["current"], stored.misalignment)
+    effort = AXIS.torque_constant * trace["current"]
+    simulated = track_motion(Held(stored.model, trace, effort, stored.misalignment))[1]
     assert np.sqrt(np.mean((trace["velocity"] - simulated) ** 2)) < 0.03

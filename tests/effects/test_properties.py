@@ -1,4 +1,4 @@
-"""What effects declare of themselves is what they do: each declaration against the behaviour of the object.
+"""What effects declare of their columns is what these do: each declaration against the behaviour of the object.
 
 Asked are all effects that there are, those of other packages too where some are installed.
 """
@@ -8,10 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.effects.kinds import Electronics, Mechanism, Moment, Sensing
+from bench.effects.kinds import Mechanism, Moment
 from bench.plant.model import build_spec
-from bench.trace.known_names import SI_UNITS
-from bench.trace.trace import Trace
 from bench.validate.independent import KINDS
 from tests.effects.axes import PARAMETERS, PERIOD, model
 from tests.effects.recording import (
@@ -22,6 +20,7 @@ from tests.effects.recording import (
     changed,
     differ,
     every,
+    made,
     plain,
     raw,
     reported,
@@ -30,8 +29,6 @@ from tests.effects.recording import (
 )
 
 AXIS = model().axis
-
-# What its columns are made of.
 
 
 @every
@@ -134,7 +131,7 @@ def test_what_happens_in_one_recording_only_is_absent_for_a_while(effect):
 
 
 @every
-def test_several_of_a_repeatable_one_are_told_apart(effect):
+def test_several_of_a_repeatable_one_are_distinguished(effect):
     if not effect.repeatable:
         return
     assert effect.overrides("columns")
@@ -174,9 +171,8 @@ def test_a_torque_of_the_load_is_its_columns_in_a_simulation(effect):
     """What a gear transmits is the same to the balance and to MuJoCo."""
     if isinstance(effect, Mechanism) and effect.overrides("load_torque"):
         moment = Moment(RECORDED.time, RECORDED.position, RECORDED.velocity, RECORDED.effort)
-        columns = np.array(plain(effect, RECORDED)).T
         found = effect.load_torque(reported(effect), moment)
-        np.testing.assert_allclose(columns @ ([5e-4] * columns.shape[1]), found * np.ones(len(columns)), atol=1e-12)
+        np.testing.assert_allclose(made(effect), found * np.ones(RECORDED.time.size), atol=1e-12)
 
 
 @every
@@ -205,106 +201,3 @@ def test_a_coupling_gives_the_axis_a_second_degree_of_freedom(effect):
         assert effect.load_inertia([7e-4]) == 7e-4
         assert effect.physical([0.5 * BASE.inertia], shape_of(effect), BASE)
         assert not effect.physical([BASE.inertia], shape_of(effect), BASE)
-
-
-# How it changes what is seen.
-
-
-@every
-def test_what_it_sees_is_what_a_simulated_sensor_or_drive_does_undone(effect):
-    shape = shape_of(effect)
-    if isinstance(effect, Sensing) and effect.overrides("seen"):
-        values = effect.report([], shape, BASE)
-        position, velocity = effect.seen(values, RECORDED.position, RECORDED.velocity)
-        found = effect.see(replace(RECORDED, position=position, velocity=velocity), shape)
-        np.testing.assert_allclose(found.position, RECORDED.position, atol=1e-9)
-        np.testing.assert_allclose(found.velocity, RECORDED.velocity, atol=1e-7)
-        again = effect.unseen(values, position, velocity)
-        np.testing.assert_allclose(again, [RECORDED.position, RECORDED.velocity], atol=1e-7)
-    elif isinstance(effect, Electronics) and effect.overrides("acting_along"):
-        acts = effect.acting_along(effect.report([], shape, BASE), RECORDED.torque, STEP)
-        np.testing.assert_allclose(effect.see(RECORDED, shape).torque, acts, atol=1e-12)
-    elif isinstance(effect, Sensing) and effect.overrides("unrecorded"):
-        acts = effect.unrecorded(effect.report([], shape, BASE), RECORDED.torque, STEP)
-        np.testing.assert_allclose(effect.see(RECORDED, shape).torque, acts, atol=1e-12)
-    else:
-        assert not effect.overrides("see")
-
-
-@every
-def test_a_delay_is_that_of_the_simulated_signal(effect):
-    """A sine that passes it comes out as behind a first-order lag of the declared time; without one, nothing lasts."""
-    shape, sources = shape_of(effect), ("velocity", "position")
-    declared = [lag for source in sources for lag in effect.delays(shape, source)]
-    twice = [lag for source in sources for lag in effect.delays([2.0 * value for value in shape], source)]
-    assert twice == pytest.approx([2.0 * lag for lag in declared])
-    assert any(declared) == effect.overrides("delays")
-    hooks = [hook for hook in ("acting_along", "filtered") if effect.overrides(hook)]
-    assert hooks or not any(declared)
-    step, omega = 1e-4, 2.0 * np.pi * 30.0
-    time = step * np.arange(10000)
-    wave = np.sin(omega * time)
-    for passes in (getattr(effect, hook) for hook in hooks):
-        if not any(declared):
-            backward = passes(reported(effect), wave[::-1], step)
-            assert not differ([passes(reported(effect), wave, step)], [backward[::-1]])
-            continue
-        late, listen = passes(reported(effect), wave, step)[-5000:], np.exp(-1j * omega * time[-5000:])
-        gain = np.sum(late * listen) / np.sum(wave[-5000:] * listen)
-        assert gain == pytest.approx(1.0 / (1.0 + 1j * omega * max(declared)), rel=1e-3)
-
-
-@every
-def test_a_lag_of_the_effort_is_that_of_the_recorded_one_and_is_undone(effect):
-    """A sine comes out of the recorder as behind a first-order lag of the declared time, and back as it was."""
-    shape = shape_of(effect)
-    declared = effect.effort_lag(shape)
-    assert effect.effort_lag([2.0 * value for value in shape]) == pytest.approx(2.0 * declared)
-    hooks = [effect.overrides(hook) for hook in ("effort_lag", "recorded", "unrecorded")]
-    assert hooks == [declared > 0.0] * 3
-    if not declared:
-        return
-    step, omega = 1e-4, 2.0 * np.pi * 30.0
-    time, values = step * np.arange(10000), effect.report([], shape, BASE)
-    wave = np.sin(omega * time)
-    late, listen = effect.recorded(values, wave, step), np.exp(-1j * omega * time[-5000:])
-    gain = np.sum(late[-5000:] * listen) / np.sum(wave[-5000:] * listen)
-    assert gain == pytest.approx(1.0 / (1.0 + 1j * omega * declared), rel=1e-3)
-    np.testing.assert_allclose(effect.unrecorded(values, late, step)[5000:-1], wave[5000:-1], atol=1e-3)
-
-
-@every
-def test_what_a_sensor_of_the_current_misreads_is_what_its_columns_explain(effect):
-    """Reported less acting effort is the columns' sum, so far as it is small; nothing else of a sensor has columns."""
-    if not isinstance(effect, Sensing):
-        return
-    assert effect.overrides("acted") == effect.overrides("columns")
-    if effect.overrides("columns"):
-        values = reported(effect)
-        acts = effect.acted(values, AXIS, RECORDED.effort, RECORDED.time)
-        columns = np.array(plain(effect, RECORDED)).T
-        np.testing.assert_allclose(columns @ ([5e-4] * columns.shape[1]), RECORDED.effort - acts, atol=1e-12)
-
-
-@every
-def test_it_mends_the_signal_it_declares_faulty_and_no_other(effect):
-    assert bool(effect.faulty_signal) == effect.overrides("corrected")
-    if not effect.faulty_signal:
-        return
-    assert effect.faulty_signal in SI_UNITS
-    values = reported(effect)
-    spoilt = {"position": RECORDED.position, "current": RECORDED.torque, "velocity": RECORDED.velocity}
-    spoilt[effect.faulty_signal] = effect.filtered(values, spoilt[effect.faulty_signal], STEP)
-    units = {"position": "rad", "velocity": "rad/s", "current": "A"}
-    mended = effect.corrected(Trace(RECORDED.time, spoilt, units, "reversals"), values)
-    for name, true in (("position", RECORDED.position), ("current", RECORDED.torque), ("velocity", RECORDED.velocity)):
-        off = np.abs(mended[name] - true)[10:-10].max()
-        assert off < 0.02 * np.abs(true).max()
-        assert name == effect.faulty_signal or off == 0.0
-
-
-@every
-def test_kind_says_whether_a_sensor_errs(effect):
-    """Of the motion, or of the torque that the balance is to explain."""
-    wrong = effect.see(RECORDED, shape_of(effect)).effort is not RECORDED.effort
-    assert effect.kind == ("measurement" if isinstance(effect, Sensing) or wrong else "physics")

@@ -5,7 +5,7 @@ import pytest
 
 from bench.plant import ticks
 from bench.plant.run import run
-from bench.plant.track_effects import track_effects
+from bench.plant.track_effects import Held, track_motion
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, Reversals, model, plant
 
@@ -46,7 +46,7 @@ def recorded(duration):
 
 
 def tracked(names, trace):
-    return track_effects(model(*names), trace, AXIS.torque_constant * trace["current"])
+    return track_motion(Held(model(*names), trace, AXIS.torque_constant * trace["current"]))[1]
 
 
 @pytest.mark.parametrize(("names", "each"), [((), 0), (NATIVE, 0), (TICKED, STEPS), (MANY_TICKED, STEPS)], ids=str)

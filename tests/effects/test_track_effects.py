@@ -9,7 +9,7 @@ from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import build_spec
 from bench.plant.track import holding_cascade, holding_model, step_of, track
-from bench.plant.track_effects import Held, track_effects, track_motion
+from bench.plant.track_effects import Held, track_models, track_motion
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, PARAMETERS, PERIOD, model
 from tests.effects.conftest import CASES
@@ -35,9 +35,14 @@ def recording(signals, position=True):
     return Trace(times, kept, {name: units[name] for name in kept}, "independent")
 
 
+def velocity_of(axis: AxisModel, trace: Trace, misalignment=0.0):
+    """Velocity of an axis held to a recording - rad/s - (n,)."""
+    return track_motion(Held(axis, trace, AXIS.torque_constant * trace["current"], misalignment))[1]
+
+
 def gap(axis: AxisModel, trace: Trace) -> float:
     """RMS velocity gap - rad/s; the current belongs to the middle of the tick that begins with its sample."""
-    simulated = track_effects(axis, trace, AXIS.torque_constant * trace["current"], misalignment=-PERIOD / 2.0)
+    simulated = velocity_of(axis, trace, misalignment=-PERIOD / 2.0)
     return float(np.sqrt(np.mean((simulated - trace["velocity"]) ** 2)))
 
 
@@ -62,7 +67,7 @@ def test_without_effects_it_is_the_plain_track(recordings):
     trace = recordings[()]
     effort, (timestep, _) = AXIS.torque_constant * trace["current"], step_of(trace)
     compiled = holding_model(build_spec(PARAMETERS, timestep), holding_cascade(AXIS.inertia, timestep))
-    np.testing.assert_array_equal(track_effects(model(), trace, effort), track(compiled, trace, effort))
+    np.testing.assert_array_equal(velocity_of(model(), trace), track(compiled, trace, effort))
 
 
 def test_natively_and_step_by_step_alike(recordings):
@@ -71,8 +76,7 @@ def test_natively_and_step_by_step_alike(recordings):
     native = model("cogging_torque")
     ticked = native.with_effects([*native.effects, FAINT])
     assert ticked.ticked
-    effort = AXIS.torque_constant * trace["current"]
-    np.testing.assert_allclose(track_effects(ticked, trace, effort), track_effects(native, trace, effort), atol=1e-6)
+    np.testing.assert_allclose(velocity_of(ticked, trace), velocity_of(native, trace), atol=1e-6)
 
 
 @pytest.mark.parametrize("case", [(), ("stribeck_friction",), ("velocity_filter_lag",), ("encoder_eccentricity",)])
@@ -80,5 +84,5 @@ def test_position_is_told_as_the_sensor_has_it(case, recordings):
     trace = recordings[case]
     held = Held(model(*case), trace, AXIS.torque_constant * trace["current"], -PERIOD / 2.0)
     position, velocity = track_motion(held)
-    np.testing.assert_array_equal(velocity, track_effects(held.model, trace, held.effort, held.misalignment))
+    np.testing.assert_array_equal(velocity, track_models([held])[0])
     assert np.abs(position - trace["position"]).max() < 0.01

@@ -25,7 +25,7 @@ def test_undone_where_velocity_is_smooth():
 
 
 @pytest.mark.parametrize("first_order", [True, False])
-def test_a_lag_of_another_form_is_told_and_not_mended(first_order):
+def test_a_lag_of_another_form_is_reported_and_not_mended(first_order):
     """Speed of two sines behind a first-order filter, and behind a mean over 8 ms, which is no such filter at 40 Hz.
 
     Sine by sine: a filter H(i*w) multiplies amplitude and shifts phase. At 250 rad/s the mean over T, sinc(w*T/2) with

@@ -13,7 +13,7 @@ from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
 from bench.export.joint import Share, armature_of, onto
 from bench.plant.drive import CascadeDrive
-from bench.plant.model_file import StoredModel, write_model
+from bench.plant.model_file import StoredModel, model_toml
 from bench.plant.mounting import Mounting
 from bench.plant.references import References, side_by_side
 from bench.plant.run import run
@@ -57,7 +57,8 @@ def test_it_agrees_on_a_joint_behind_a_gear(tmp_path):
     """From the file, on an MJCF of somebody else whose link has the load's inertia."""
     names, ratio = TOGETHER[:3], 12.0
     expected = run([plant(*names)], [REFERENCES]).velocity[:, 0]
-    toml, _ = write_model(tmp_path, StoredModel("axis", model(*names), mounting=Mounting(ratio)))
+    toml = tmp_path / "model.toml"
+    toml.write_text(model_toml(StoredModel("axis", model(*names), mounting=Mounting(ratio))), encoding="utf-8")
     load = (PARAMETERS.inertia - PARAMETERS.motor_inertia) * ratio**2
     xml = f"""<mujoco><option timestep="{PERIOD}"/><worldbody><body><joint name="elbow" axis="0 0 1"/>
       <inertial pos="0 0 0" mass="1" diaginertia="{load} {load} {load}"/></body></body></worldbody></mujoco>"""
@@ -161,7 +162,7 @@ def test_a_servo_of_ones_own_is_asked_for_its_torque():
     assert force > 0.1
 
 
-def test_what_cannot_be_stepped_is_told():
+def test_what_cannot_be_stepped_is_reported():
     simulation = mujoco.MjModel.from_xml_string(ARM)
     effects = bench.Effects(stored(), "ellbow")
     with pytest.raises(InputError, match="found none of that name; allowed: shoulder, elbow, slide"):

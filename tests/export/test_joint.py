@@ -78,7 +78,7 @@ def test_what_the_joint_had_is_replaced_and_the_rest_kept():
     assert carried.left == (("stribeck_friction", "bench.Effects steps it"),)
 
 
-def test_a_measurement_fault_is_said_to_be_none_of_the_motion():
+def test_a_measurement_fault_is_reported_to_be_none_of_the_motion():
     lag = ("velocity_filter_lag", {"time_constant": 2e-3})
     carried = onto(mujoco.MjSpec.from_string(ARM), "elbow", stored(lag))
     assert carried.left == (("velocity_filter_lag", "it is in what sensors report, not in the motion"),)
@@ -95,7 +95,7 @@ def test_the_links_of_a_robot_are_not_counted_twice():
 @pytest.mark.parametrize(
     ("joint", "says"), [("elbo", "did you mean 'elbow'"), ("slide", "type slide; allowed: .*rotary")]
 )
-def test_a_joint_that_cannot_have_it_is_told(joint, says):
+def test_a_joint_that_cannot_have_it_is_reported(joint, says):
     with pytest.raises(InputError, match=says):
         onto(mujoco.MjSpec.from_string(ARM), joint, stored())
 
@@ -182,7 +182,7 @@ def test_a_robot_in_a_file_keeps_its_meshes(tmp_path):
 @pytest.mark.parametrize(
     ("content", "says"), [("<mujoco>", "does not read"), ("", "does not read"), (None, "no such file")]
 )
-def test_a_robot_that_is_none_is_told_in_one_line(tmp_path, content, says):
+def test_a_robot_that_is_none_is_reported_in_one_line(tmp_path, content, says):
     path = tmp_path / "robot.xml"
     if content is not None:
         path.write_text(content)

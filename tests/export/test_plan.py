@@ -40,18 +40,18 @@ def test_the_errors_expected_are_those_that_come(planned):
         for name in names:
             scatter[name].append(found[name].value)
     for name, values in scatter.items():
-        ratio = float(np.std(values, ddof=1)) / best.tells[name].std_error
-        print(f"\n{name}: scatter {np.std(values, ddof=1):.3g}, expected {best.tells[name].std_error:.3g}", end="")
+        ratio = float(np.std(values, ddof=1)) / best.expected[name].std_error
+        print(f"\n{name}: scatter {np.std(values, ddof=1):.3g}, expected {best.expected[name].std_error:.3g}", end="")
         assert 0.4 < ratio < 1.8
 
 
-def test_one_that_is_asked_for_is_told(monkeypatch):
+def test_one_that_is_asked_for_is_reported(monkeypatch):
     """Of two motions, the one that passes the speeds at which friction falls slowly enough."""
     monkeypatch.setattr("bench.export.plan.PLANNED", ("speed_staircase", "identification"))
     wanted = Present.of("stribeck_friction", {"static_friction": 0.12, "stribeck_velocity": 2.0})
     best, other = motions(RIG, wanted)
     assert best.profile == "identification"
-    assert best.tells["static_friction"].value == pytest.approx(0.12, rel=0.1)
+    assert best.expected["static_friction"].value == pytest.approx(0.12, rel=0.1)
     assert best.worst < 0.2 * other.worst
 
 

@@ -59,7 +59,7 @@ def test_a_joint_has_them_behind_its_gear_and_never_below_zero(tmp_path):
         ({**FOUND, "effects": [{"name": "coging_torque", "parameters": {}}]}, "did you mean 'cogging_torque'"),
     ],
 )
-def test_what_is_no_result_is_told_in_one_line(tmp_path, content, says):
+def test_what_is_no_result_is_reported_in_one_line(tmp_path, content, says):
     with pytest.raises(InputError, match=says) as error:
         ranges_json(stored(), written(tmp_path, content))
     assert "\n" not in str(error.value)

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import io
 import json
-import sys
 import tempfile
 import traceback
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
-from bench.cli import main
+from tests.command import bench
 from tests.shared import SHARED
 
 EXPORTS = SHARED / "data" / "exports"
@@ -79,12 +75,8 @@ def _error(parameters: dict[str, Any], letter: str, truth: float) -> float:
 
 def _run(*arguments: str) -> tuple[int, str]:
     """Exit status of a command and what it says on standard error; a traceback is no status of the bench's."""
-    said = io.StringIO()
-    with patch.object(sys, "argv", ["bench", *arguments]), redirect_stderr(said), redirect_stdout(io.StringIO()):
-        try:
-            main()
-        except SystemExit as end:
-            return int(end.code or 0), " ".join(said.getvalue().split())
-        except Exception:
-            return TRACEBACK, traceback.format_exc()
-    return 0, " ".join(said.getvalue().split())
+    try:
+        ended = bench(*arguments)
+    except Exception:
+        return TRACEBACK, traceback.format_exc()
+    return ended.status, " ".join(ended.err.split())

@@ -5,7 +5,6 @@ import logging
 import re
 import shlex
 import shutil
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,10 +14,10 @@ import pyarrow.parquet as pq
 import pytest
 from distributed import LocalCluster
 
-from bench.cli import main
 from bench.fleet.fleet import fleet
 from bench.jobs.limits import Limits
 from bench.trace.write import write
+from tests.command import bench
 from tests.diagnose.command import RIG
 from tests.fleet.made import DAMAGES, fleet_of
 from tests.fleet.storage import Deadly, Never, offer
@@ -90,23 +89,9 @@ def test_reasons_say_what_was_found_without_where_it_lay(made, found):
     assert not any(str(made.parent) in reason for reason in reasons.values())
 
 
-def test_the_row_is_what_identify_tells(made, found, capsys, monkeypatch):
+def test_the_row_is_what_identify_tells(made, found):
     row, target = found[2][0], made.parent / "single.json"
-    monkeypatch.setattr(
-        sys,
-        "argv",
-        [
-            "bench",
-            "identify",
-            str(made.parent / row["file"]),
-            "--rig",
-            str(made.parent / "rig.toml"),
-            "--json",
-            str(target),
-        ],
-    )
-    with pytest.raises(SystemExit):
-        main()
+    bench("identify", made.parent / row["file"], "--rig", made.parent / "rig.toml", "--json", target)
     single = json.loads(target.read_text())
     for name, truth in zip(NAMES, Truth().values, strict=True):
         assert row[name] == single["parameters"][name]["value"] == pytest.approx(truth, rel=0.05)
@@ -171,7 +156,7 @@ def test_the_axis_that_changed_is_named_with_its_day(found):
     assert changed.chance < 0.01
 
 
-def test_who_needs_a_person_is_told_gravest_first(found):
+def test_who_needs_a_person_is_reported_gravest_first(found):
     told = [(one.axis, one.kind, one.count, one.of) for one in found[0].summary.concerns]
     assert told == [
         ("press 2", "failed", 1, 4),
@@ -181,13 +166,10 @@ def test_who_needs_a_person_is_told_gravest_first(found):
     ]
 
 
-def test_the_command_prints_and_writes_what_it_found(made, found, capsys, monkeypatch):
+def test_the_command_prints_and_writes_what_it_found(made, found):
     out = made.parent / "out"
-    monkeypatch.setattr(sys, "argv", ["bench", "fleet", str(made), "--out", str(out), "--workers", "1"])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    printed = capsys.readouterr().out
-    assert stop.value.code == 0
+    status, printed, _ = bench("fleet", made, "--out", out, "--workers", 1)
+    assert status == 0
     assert "27 recordings of 3 axes: 17 done, 8 refused, 1 failed, 1 timed out (0 evaluated now)" in printed
     assert "press 1" in printed
     summary = json.loads((out / "summary.json").read_text())
@@ -231,30 +213,25 @@ def test_effects_are_named_where_that_is_asked_for(tmp_path):
         ("file,rig\na.csv\n", "found no table"),
     ],
 )
-def test_a_bad_manifest_is_one_line(text, told, tmp_path, capsys, monkeypatch):
+def test_a_bad_manifest_is_one_line(text, told, tmp_path):
     (tmp_path / "fleet.csv").write_text(text)
-    monkeypatch.setattr(sys, "argv", ["bench", "fleet", str(tmp_path / "fleet.csv"), "--out", str(tmp_path / "out")])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    message = capsys.readouterr().err
-    assert (stop.value.code, message.count("\n")) == (2, 1)
+    status, _, message = bench("fleet", tmp_path / "fleet.csv", "--out", tmp_path / "out")
+    assert (status, message.count("\n")) == (2, 1)
     assert told in message
     assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("output", ["fleet.parquet", "fleet.html", "summary.json"])
-def test_an_output_is_never_an_input(output, tmp_path, capsys, monkeypatch):
+def test_an_output_is_never_an_input(output, tmp_path):
     made = fleet_of(tmp_path, axes=1, each=1)
     (tmp_path / "press_0_0.csv.gz").rename(tmp_path / output)
     made.rows = [made.rows[0].replace("press_0_0.csv.gz", output)]
-    monkeypatch.setattr(sys, "argv", ["bench", "fleet", str(made.write()), "--out", str(tmp_path)])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    assert stop.value.code == 2
-    assert "is an input of this command" in capsys.readouterr().err
+    status, _, message = bench("fleet", made.write(), "--out", tmp_path)
+    assert status == 2
+    assert "is an input of this command" in message
 
 
-def test_the_manuals_commands_run(tmp_path, cluster, capsys, monkeypatch):
+def test_the_manuals_commands_run(tmp_path, cluster, monkeypatch):
     manual = (Path(__file__).resolve().parents[2] / "docs" / "fleet.md").read_text()
     commands = re.findall(r"^bench .*$", manual, re.MULTILINE)
     assert len(commands) == 4
@@ -264,13 +241,13 @@ def test_the_manuals_commands_run(tmp_path, cluster, capsys, monkeypatch):
     for row, line in enumerate(example.splitlines()[1:]):
         write(recording(np.random.default_rng(row), duration=2.0, position=True), tmp_path / line.split(",")[0])
     monkeypatch.chdir(tmp_path)
+    printed = []
     for command in commands:
-        words = shlex.split(command.replace("tcp://scheduler:8786", cluster.scheduler_address))
-        monkeypatch.setattr(sys, "argv", words)
-        with pytest.raises(SystemExit) as stop:
-            main()
-        assert stop.value.code == 0
-    assert "3 recordings of 2 axes: 3 done" in capsys.readouterr().out
+        _, *words = shlex.split(command.replace("tcp://scheduler:8786", cluster.scheduler_address))
+        status, out, _ = bench(*words)
+        assert status == 0
+        printed.append(out)
+    assert any("3 recordings of 2 axes: 3 done" in out for out in printed)
     columns = pq.read_table("result/fleet.parquet").column_names
     for name in re.findall(r"`(\w+)`", manual.partition("fleet.parquet`:")[2].partition("- `results`")[0]):
         assert any(name in column for column in columns), name

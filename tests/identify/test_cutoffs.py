@@ -18,10 +18,6 @@ from tests.identify.motions import NAMES, RIG, UNITS, Truth, recording
 INERTIA = NAMES[0]
 
 
-def half_width(parameter):
-    return 0.5 * (parameter.ci95[1] - parameter.ci95[0])
-
-
 def fed_back(rng, gain=0.2, noise=0.05, **what):
     """A drive that answers the noise of its speed: current holds -gain*noise, which moves the axis hardly."""
     truth = Truth()
@@ -44,7 +40,7 @@ def test_noise_that_the_drive_feeds_back_moves_the_cut_off_and_leaves_the_inerti
     for _ in range(10):
         truth, trace = fed_back(rng, speed=0.05, duration=8.0)
         found, fixed = identify(trace, RIG), choose(trace, RIG, 66.25).tried
-        kept.append((found[INERTIA].value / truth.inertia - 1.0, half_width(found[INERTIA]) / truth.inertia))
+        kept.append((found[INERTIA].value / truth.inertia - 1.0, found[INERTIA].half_width / truth.inertia))
         plain.append(fixed.theta[0] / truth.inertia - 1.0)
         assert found.cutoff < 0.7 * fixed.cutoff
     error, width = np.array(kept).T
@@ -54,7 +50,7 @@ def test_noise_that_the_drive_feeds_back_moves_the_cut_off_and_leaves_the_inerti
     assert np.mean(np.abs(error) < width) >= 0.8
 
 
-def test_it_is_told_where_the_estimate_moves():
+def test_it_is_reported_where_the_estimate_moves():
     truth, trace = fed_back(np.random.default_rng(2), gain=0.3, speed=0.04, duration=8.0)
     found = identify(trace, RIG)
     (told,) = [warning for warning in found.warnings if "moves with the filter's cut-off" in warning]
@@ -107,7 +103,7 @@ def test_misfit_counts_in_the_interval(kind):
     assert np.mean(inside, axis=0)[0] >= 0.9
 
 
-def test_the_share_explained_is_told():
+def test_the_share_explained_is_reported():
     trace = recording(np.random.default_rng(6))
     found = identify(trace, RIG)
     assert found.explained == pytest.approx(1.0 - (found.residual.relative) ** 2, abs=2e-3)

@@ -90,3 +90,43 @@ def test_a_servo_that_reports_its_duty_is_identified_through_its_winding():
     print(f"\nXL330 {[(name, p.value, p.unit) for name, p in found.parameters.items()]}; {trace.time_base}")
     assert found["moment_of_inertia"].unit == "kg*m**2"
     assert found["moment_of_inertia"].value == pytest.approx(6.7e-3, rel=0.25)
+
+
+def joint(axis, *names, **more):
+    folder = SHARED / "data" / "real" / axis
+    rig = load_rig(folder / "rig.toml")
+    return identify([read(folder / f"{name}.csv.gz", rig.trace.columns) for name in names], rig, **more)
+
+
+@pytest.mark.parametrize(
+    ("runs", "low", "high"),
+    [
+        (("pos_006_2", "neg_004_1"), 1.14e-4, 1.18e-4),
+        (("pos_006_2", "neg_004_3"), 1.22e-4, 1.25e-4),
+        (("pos_006_1", "neg_004_1"), 1.00e-4, 1.07e-4),
+        (("pos_006_1", "pos_006_2", "neg_004_1", "neg_004_3"), 1.01e-4, 1.05e-4),
+    ],
+)
+def test_a_stand_whose_runs_go_one_way_gives_the_inertia_of_other_joint_fits(runs, low, high):
+    """Own plain least squares of others on the same runs, at about the cut-off that is taken here."""
+    found = joint("hsm150", *runs, cutoff=3.0)
+    inertia = found["moment_of_inertia"]
+    print(f"\n{runs}: J {inertia.value:.4g} {inertia.ci95}, {found.between['moment_of_inertia']}")
+    assert inertia.ci95[0] < low and high < inertia.ci95[1]
+    assert 0.97 * low < inertia.value < 1.03 * high or len(runs) > 2
+    assert all("apart from torque offset" in alone.reason for alone in found.recordings)
+    assert found["coulomb_friction_torque"].value == pytest.approx(0.033, rel=0.1)
+    assert found["torque_offset"].value == pytest.approx(0.0066, rel=0.2)
+    if len(runs) > 2:
+        expected = found.between["moment_of_inertia"].predictive95
+        assert expected[0] < 1.00e-4 < 1.25e-4 < expected[1]
+
+
+def test_rounds_of_one_joint_agree():
+    found = joint("damiao_m1", "r1", "r2", "r3")
+    assert not any("differ" in told for told in found.warnings)
+    for alone in found.recordings:
+        for name in NAMES:
+            low, high = found.between[name].predictive95
+            assert low < alone.parameters[name].value < high
+    assert found["coulomb_friction_torque"].value == pytest.approx(0.525, abs=0.02)

@@ -173,7 +173,7 @@ def test_a_turned_sensor_is_refused():
         identify(turned, RIG)
 
 
-def test_an_inertia_below_zero_is_refused_and_told():
+def test_an_inertia_below_zero_is_refused_and_reported():
     trace = recording(np.random.default_rng(13), Truth(inertia=-1.5e-3))
     with pytest.raises(
         RefusedEstimateError, match="moment of inertia cannot be determined: it comes out negative"

@@ -7,13 +7,9 @@ import numpy as np
 import pytest
 
 import bench
-from bench.balance.parameter import Parameter
 from bench.errors import InputError, UndeterminedError
-from bench.identify.between import between, excess
 from bench.identify.regression import identify
 from bench.rig.rig import load_rig
-from bench.statistics import NORMAL95
-from bench.trace.read import read
 from bench.trace.trace import Trace
 from bench.trace.write import write
 from bench.validate.independent import Motion, Noise, Sensors, write_rig
@@ -23,7 +19,6 @@ from bench.validate.independent.references import Ramps
 from tests.diagnose.command import started
 from tests.identify.motions import NAMES, RIG, UNITS, Truth, recording
 from tests.identify.test_recovery import AXES, STEP
-from tests.shared import SHARED, needs_shared
 
 #: About what is chosen for these motions, which takes a fifth of the time where it is given - Hz.
 CUTOFF = 66.0
@@ -85,7 +80,7 @@ def test_runs_of_one_direction_determine_together_what_neither_does_alone(tmp_pa
     assert np.mean(held) >= 0.75
 
 
-def test_an_offset_that_was_not_asked_for_is_told():
+def test_an_offset_that_was_not_asked_for_is_reported():
     runs = [moving_at(side * np.array([20.0, 60.0]), seed, offset=0.02) for seed, side in enumerate((1.0, -1.0))]
     assert any("torque offset of 0.02" in told and "--offset" in told for told in identify(runs, RIG).warnings)
     assert not any("--offset" in told for told in identify(runs, OFFSET).warnings)
@@ -196,7 +191,7 @@ def test_recordings_that_are_alike_leave_the_joint_interval_as_narrow_as_their_n
     assert told <= 5
 
 
-def test_recordings_that_differ_are_told_and_widen_the_interval():
+def test_recordings_that_differ_are_reported_and_widen_the_interval():
     rng = np.random.default_rng(11)
     runs = [recording(rng, Truth(inertia=Truth.inertia * factor)) for factor in (0.97, 1.0, 1.03)]
     found = identify(runs, RIG)
@@ -208,32 +203,6 @@ def test_recordings_that_differ_are_told_and_widen_the_interval():
     # what does not differ keeps the interval that noise gives it
     alone = found.recordings[0].parameters["coulomb_friction_torque"]
     assert found["coulomb_friction_torque"].std_error < alone.std_error
-
-
-def numbers(values, error):
-    reach = NORMAL95 * error
-    return [Parameter(value, "", error, (value - reach, value + reach)) for value in values]
-
-
-def test_the_variance_between_recordings_is_that_of_the_method_of_moments():
-    values, error = [1.0, 2.0, 4.0, 5.0], 0.5
-    found = excess([numbers(values, error)])
-    assert found.variance == pytest.approx(np.var(values, ddof=1) - error**2)
-    assert found.degrees == 3
-    assert excess([numbers([1.0, 1.1], 0.5)]).variance == 0.0
-    assert excess([numbers([1.0], 0.5), numbers([7.0], 0.5)]).degrees == 0
-    grouped = excess([numbers([1.0, 2.0], error), numbers([11.0, 12.0], error)])
-    assert (grouped.variance, grouped.degrees) == (pytest.approx(0.5 - error**2), 2)
-
-
-def test_the_expected_interval_is_students_and_never_below_the_recordings_own_errors():
-    wide = between(numbers([1.0, 2.0, 3.0], 1e-3))
-    assert wide.std_dev == pytest.approx(1.0)
-    assert wide.predictive95 == pytest.approx(
-        (2.0 - 4.302653 * np.sqrt(4.0 / 3.0), 2.0 + 4.302653 * np.sqrt(4.0 / 3.0))
-    )
-    low, high = between(numbers([2.0, 2.0], 0.1)).predictive95
-    assert high - low == pytest.approx(2.0 * NORMAL95 * 0.1 * np.sqrt(1.5))
 
 
 @pytest.mark.parametrize(
@@ -297,45 +266,3 @@ def test_the_command_writes_what_the_contract_asks_for(tmp_path, monkeypatch, ca
     for option in ("--refine", "--estimator=lab"):
         assert command(*two, option) == 2
     assert "with one recording" in capsys.readouterr().err
-
-
-def shared(axis, *names, **more):
-    folder = SHARED / "data" / "real" / axis
-    rig = load_rig(folder / "rig.toml")
-    return identify([read(folder / f"{name}.csv.gz", rig.trace.columns) for name in names], rig, **more)
-
-
-@needs_shared
-@pytest.mark.parametrize(
-    ("runs", "low", "high"),
-    [
-        (("pos_006_2", "neg_004_1"), 1.14e-4, 1.18e-4),
-        (("pos_006_2", "neg_004_3"), 1.22e-4, 1.25e-4),
-        (("pos_006_1", "neg_004_1"), 1.00e-4, 1.07e-4),
-        (("pos_006_1", "pos_006_2", "neg_004_1", "neg_004_3"), 1.01e-4, 1.05e-4),
-    ],
-)
-def test_a_stand_whose_runs_go_one_way_gives_the_inertia_of_other_joint_fits(runs, low, high):
-    """Own plain least squares of others on the same runs, at about the cut-off that is taken here."""
-    found = shared("hsm150", *runs, cutoff=3.0)
-    inertia = found["moment_of_inertia"]
-    print(f"\n{runs}: J {inertia.value:.4g} {inertia.ci95}, {found.between['moment_of_inertia']}")
-    assert inertia.ci95[0] < low and high < inertia.ci95[1]
-    assert 0.97 * low < inertia.value < 1.03 * high or len(runs) > 2
-    assert all("apart from torque offset" in alone.reason for alone in found.recordings)
-    assert found["coulomb_friction_torque"].value == pytest.approx(0.033, rel=0.1)
-    assert found["torque_offset"].value == pytest.approx(0.0066, rel=0.2)
-    if len(runs) > 2:
-        expected = found.between["moment_of_inertia"].predictive95
-        assert expected[0] < 1.00e-4 < 1.25e-4 < expected[1]
-
-
-@needs_shared
-def test_rounds_of_one_joint_agree():
-    found = shared("damiao_m1", "r1", "r2", "r3")
-    assert not any("differ" in told for told in found.warnings)
-    for alone in found.recordings:
-        for name in NAMES:
-            low, high = found.between[name].predictive95
-            assert low < alone.parameters[name].value < high
-    assert found["coulomb_friction_torque"].value == pytest.approx(0.525, abs=0.02)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from bench.rig.rig import load_rig
-from bench.validate.independent.case import record, residual_ratio, truth, write_cases
+from bench.validate.independent.case import record, residual_ratio, truth, write_case
 from bench.validate.independent.draw import any_effects, hidden
 from bench.validate.independent.effects import CATALOGUE, OUTSIDE
 from bench.validate.independent.sensors import Noise, Sensors
@@ -28,7 +28,8 @@ def _case(name, effects, seed, linear=False):
 def folder(tmp_path_factory):
     home = tmp_path_factory.mktemp("cases")
     cases = [_case("a", (), 1), _case("b", ("elastic_coupling",), 2), _case("c", ("torque_offset",), 3, linear=True)]
-    write_cases(home, cases, seed=4)
+    entries = {case.name: write_case(home, case, runs) for case, runs in zip(cases, record(cases, 4), strict=True)}
+    (home / "truth.json").write_text(json.dumps(entries))
     return home
 
 

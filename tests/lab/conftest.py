@@ -1,16 +1,13 @@
 """`bench lab`, run once for all tests that read its tasks, its report or what it prints."""
 
-import sys
-from contextlib import redirect_stdout
 from dataclasses import dataclass
-from io import StringIO
 from pathlib import Path
 
 import pytest
 
-from bench.cli import main
 from bench.lab.result import Task
 from bench.report import course
+from tests.command import bench
 
 
 @dataclass(frozen=True)
@@ -32,13 +29,11 @@ def lab(tmp_path_factory):
         reports.append(report(*arguments))
         return reports[-1]
 
-    with pytest.MonkeyPatch.context() as patch, redirect_stdout(StringIO()) as printed:
+    with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        patch.setattr(sys, "argv", ["bench", "lab", "--out", "here"])
         patch.setattr(course, "report_course", kept)
-        with pytest.raises(SystemExit) as stop:
-            main()
-    return Lab(folder, stop.value.code, printed.getvalue(), [*reports[0].results])
+        ended = bench("lab", "--out", "here")
+    return Lab(folder, ended.status, ended.out, [*reports[0].results])
 
 
 @pytest.fixture(scope="session")

@@ -56,7 +56,7 @@ def test_the_current_of_the_phases_shows_no_emulated_friction(done):
             found = task[f"{name}, emulated, phases{way}"]
             assert found.truth == 0.0
             assert abs(found.value) < 0.02 * task[f"{name}, in the mechanics"].truth
-    assert "least squares finds none" in task.says[2]
+    assert "least squares finds none" in task.findings[2]
 
 
 def test_tracking_moves_the_axis_of_the_recording():
@@ -66,15 +66,15 @@ def test_tracking_moves_the_axis_of_the_recording():
     task = tracking.task(rig, Sources.of(None), axis, true - rig.motor.rotor_inertia, known=False)
     rms = [task[f"RMS deviation, J_load {name}"].value for name in ("= 0", "theoretical", "identified")]
     assert rms[2] < 0.2 * rms[1] < 0.2 * rms[0]
-    assert "30 kg·cm²" in task.says[0]
-    assert "by construction" in task.says[0]
+    assert "30 kg·cm²" in task.findings[0]
+    assert "by construction" in task.findings[0]
 
 
 def test_operating_range_states_a_reserve_at_both_mains_voltages(done):
     task = done["range"]
     assert 0.0 < task["peak reserve, 230 V"].value <= task["peak reserve, 400 V"].value < 3.5
     assert task["thermal reserve, 230 V"].value < 0.0
-    assert "overheat" in task.says[0]
+    assert "overheat" in task.findings[0]
     assert task["thermal reserve, 230 V"].unit == "A"
     assert task["RMS current"].value > 1.05 * task["RMS torque"].value / (1.4 / 1.8)
     labels = {curve.label for curve in task.charts[0].panels[0].curves}

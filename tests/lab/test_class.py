@@ -3,29 +3,17 @@
 import csv
 import json
 import re
-import sys
 from time import process_time
 
 import numpy as np
 import pytest
 
-from bench.cli import main
 from bench.lab.answers import ASKED
+from bench.lab.students import SCHEMA, seal
 from bench.trace.read import read
+from tests.command import bench
 
 DEG, RPM = np.pi / 180.0, 30.0 / np.pi
-
-
-@pytest.fixture
-def bench(capsys, monkeypatch):
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["bench", "lab", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        printed = capsys.readouterr()
-        return stop.value.code, printed.out, printed.err
-
-    return run
 
 
 class Student:
@@ -131,10 +119,10 @@ def fill(folder, number, answers, random):
     (own / "answers.csv").write_text(text.replace(",", ";").replace(".", ",") if comma else text, encoding="utf-8")
 
 
-def graded_class(bench, folder, students, wrong):
+def graded_class(folder, students, wrong):
     """Record, fill in, grade; returns rows of grades.csv by student. `wrong`: mistake and keywords by student."""
     start = process_time()
-    status, out, _ = bench("--record", folder / "class", "--students", students, "--seed", 7)
+    status, out, _ = bench("lab", "--record", folder / "class", "--students", students, "--seed", 7)
     took = process_time() - start
     assert status == 0
     assert out.count("wrote") == students + 1
@@ -148,7 +136,7 @@ def graded_class(bench, folder, students, wrong):
             how = {**how, "constant": torque / current}
         fill(folder / "handed in", number, student.answers(**how), random)
     status, out, err = bench(
-        "--grade", folder / "handed in", "--truth", folder / "class.truth.json", "--out", folder / "grades"
+        "lab", "--grade", folder / "handed in", "--truth", folder / "class.truth.json", "--out", folder / "grades"
     )
     assert (status, err) == (0, "")
     with (folder / "grades" / "grades.csv").open(encoding="utf-8") as file:
@@ -179,25 +167,25 @@ def drawn(first):
     return {first + k: way for k, way in enumerate(ways)}
 
 
-def test_every_mistake_is_named_and_no_right_one_marked_down(bench, tmp_path):
+def test_every_mistake_is_named_and_no_right_one_marked_down(tmp_path):
     wrong = drawn(5)
-    _, graded = graded_class(bench, tmp_path, 14, wrong)
+    _, graded = graded_class(tmp_path, 14, wrong)
     check(graded, wrong, tmp_path)
 
 
 @pytest.mark.slow
-def test_forty_students(bench, tmp_path):
+def test_forty_students(tmp_path):
     """Ten of forty with a mistake; recorded in CPU time that is below five minutes on one core."""
     wrong = drawn(21)
     assert len(wrong) == 10
-    took, graded = graded_class(bench, tmp_path, 40, wrong)
+    took, graded = graded_class(tmp_path, 40, wrong)
     print(f"40 students recorded in {took:.0f} s of CPU")
     assert took < 300.0
     check(graded, wrong, tmp_path)
 
 
-def test_students_folders_hold_no_truth(bench, tmp_path):
-    status, _, _ = bench("--record", tmp_path / "class", "--students", 2, "--seed", 3)
+def test_students_folders_hold_no_truth(tmp_path):
+    status, _, _ = bench("lab", "--record", tmp_path / "class", "--students", 2, "--seed", 3)
     assert status == 0
     folders = sorted((tmp_path / "class").iterdir())
     assert [folder.name for folder in folders] == ["student-01", "student-02"]
@@ -216,9 +204,9 @@ def test_students_folders_hold_no_truth(bench, tmp_path):
     disk = 19.0
     assert known["truth"]["J_load"] > 0.5 * disk
     again = tmp_path / "again"
-    bench("--record", again, "--students", 1, "--seed", 3)
+    bench("lab", "--record", again, "--students", 1, "--seed", 3)
     assert (again / "student-01" / "rig.toml").read_text() == first
-    status, _, err = bench("--record", tmp_path / "class", "--students", 2)
+    status, _, err = bench("lab", "--record", tmp_path / "class", "--students", 2)
     assert (status, err.count("\n")) == (2, 1)
     assert "not empty" in err
 
@@ -230,8 +218,6 @@ def known():
 
 
 def sealed(path, known):
-    from bench.lab.students import SCHEMA, seal
-
     content = {"schema": SCHEMA, "seed": 0, "students": known}
     path.write_text(json.dumps({**content, "seal": seal(content)}))
     return path
@@ -249,11 +235,11 @@ def sealed(path, known):
         ("J,,kg*cm**2", "not answered", ""),
     ],
 )
-def test_units_are_checked(bench, tmp_path, known, rows, verdict, word):
+def test_units_are_checked(tmp_path, known, rows, verdict, word):
     (tmp_path / "in").mkdir()
     (tmp_path / "in" / "a.csv").write_text(f"quantity,value,unit\nstudent,7,\n{rows}\n", encoding="utf-8")
     truth = sealed(tmp_path / "truth.json", known)
-    status, _, _ = bench("--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
+    status, _, _ = bench("lab", "--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
     assert status == 0
     with (tmp_path / "out" / "grades.csv").open(encoding="utf-8") as file:
         found = {row["quantity"]: row["verdict"] for row in csv.DictReader(file)}
@@ -272,19 +258,19 @@ def test_units_are_checked(bench, tmp_path, known, rows, verdict, word):
         ("a.csv", "quantity,value,unit\nstudent,7,\nJ,22,4,kg*cm**2\n", ["line 3", "cells"]),
     ],
 )
-def test_a_bad_form_is_told_and_the_others_are_graded(bench, tmp_path, known, name, text, words):
+def test_a_bad_form_is_reported_and_the_others_are_graded(tmp_path, known, name, text, words):
     (tmp_path / "in").mkdir()
     (tmp_path / "in" / name).write_text(text)
     (tmp_path / "in" / "good.csv").write_text("quantity,value,unit\nstudent,7,\nJ,1,\n")
     truth = sealed(tmp_path / "truth.json", known)
-    status, out, err = bench("--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
+    status, out, err = bench("lab", "--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
     assert (status, err.count("\n")) == (1, 1)
     for word in words:
         assert word in err
     assert "07" in out
 
 
-def test_a_changed_truth_and_missing_ones_are_refused(bench, tmp_path, known):
+def test_a_changed_truth_and_missing_ones_are_refused(tmp_path, known):
     (tmp_path / "in").mkdir()
     truth = sealed(tmp_path / "truth.json", known)
     for arguments, word in (
@@ -294,11 +280,11 @@ def test_a_changed_truth_and_missing_ones_are_refused(bench, tmp_path, known):
         (("--grade", tmp_path / "in", "--truth", tmp_path / "none.json"), "no such file"),
         (("--students", 3), "--record"),
     ):
-        status, _, err = bench(*arguments)
+        status, _, err = bench("lab", *arguments)
         assert (status, err.count("\n")) == (2, 1), err
         assert word in err
     truth.write_text(truth.read_text().replace('"J": 1.0', '"J": 2.0'))
     (tmp_path / "in" / "good.csv").write_text("quantity,value,unit\nstudent,7,\nJ,1,\n")
-    status, _, err = bench("--grade", tmp_path / "in", "--truth", truth)
+    status, _, err = bench("lab", "--grade", tmp_path / "in", "--truth", truth)
     assert status == 2
     assert "seal" in err

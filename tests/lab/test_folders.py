@@ -2,14 +2,12 @@
 
 import json
 import shutil
-import sys
 
 import numpy as np
 import pytest
 import scipy.io
 
 from bench.assets import asset
-from bench.cli import main
 from bench.lab import course as course_module
 from bench.lab.flights import read_flights
 from bench.lab.recordings import Recordings
@@ -17,8 +15,10 @@ from bench.lab.rig import lab_rig
 from bench.lab.sources import Sources
 from bench.report import lab as report
 from bench.trace.read import read
+from tests.command import bench
 
 TRACES = asset("data", "traces")
+SI = "time [s];velocity [rad/s];current [A]"
 NAMES = ("JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc")
 ON_FRICTION = {"7", "8", "9", "range", "tracking"}
 RECORDED = {"1", "5", "6", "10"} | ON_FRICTION
@@ -32,11 +32,14 @@ def signals(folder, name):
     return trace.time, trace["velocity"], trace["current"]
 
 
+def lines(*columns, separator=";", decimal="."):
+    """Rows of numbers (n,) each as text."""
+    rows = zip(*columns, strict=True)
+    return "".join(separator.join(f"{value:.6g}".replace(".", decimal) for value in row) + "\n" for row in rows)
+
+
 def table(path, header, *columns, decimal="."):
-    rows = "\n".join(
-        ";".join(f"{value:.6g}".replace(".", decimal) for value in row) for row in zip(*columns, strict=True)
-    )
-    path.write_text(f"{header}\n{rows}\n", encoding="utf-8")
+    path.write_text(f"{header}\n{lines(*columns, decimal=decimal)}", encoding="utf-8")
 
 
 def as_it_is(folder):
@@ -46,7 +49,7 @@ def as_it_is(folder):
 def wrong_sign(folder):
     for name in NAMES:
         time, velocity, current = signals(folder, name)
-        table(folder / f"{name}.csv", "time [s];velocity [rad/s];current [A]", time, velocity, -current)
+        table(folder / f"{name}.csv", SI, time, velocity, -current)
 
 
 def wrong_sign_turned_by_the_advice(folder):
@@ -60,7 +63,7 @@ def one_way(folder):
     forward &= velocity > 20.0
     shifted = np.abs(velocity[forward]), current[forward] + 0.05 / 0.75
     rows = np.arange(forward.sum()) * 1e-3
-    table(folder / "JLoadAndFriction.csv", "time [s];velocity [rad/s];current [A]", rows, *shifted)
+    table(folder / "JLoadAndFriction.csv", SI, rows, *shifted)
 
 
 def german_names(folder):
@@ -103,14 +106,13 @@ def a_rig_of_another_motor(folder):
 
 def two_samples(folder):
     (folder / "MaxAcc.trace").unlink()
-    table(folder / "MaxAcc.csv", "time [s];velocity [rad/s];current [A]", [0.0, 0.001], [0.0, 1.0], [0.0, 1.0])
+    table(folder / "MaxAcc.csv", SI, [0.0, 0.001], [0.0, 1.0], [0.0, 1.0])
 
 
 def at_rest(folder):
-    time, velocity, current = signals(folder, "JLoadAndFriction")
-    table(folder / "JLoadAndFriction.csv", "time [s];velocity [rad/s];current [A]", time, 0.0 * velocity, 0.0 * current)
-    time, velocity, current = signals(folder, "JLoadWithoutFriction")
-    table(folder / "JLoadWithoutFriction.csv", "time [s];velocity [rad/s];current [A]", time, 0.0 * velocity, current)
+    for name, factor in (("JLoadAndFriction", 0.0), ("JLoadWithoutFriction", 1.0)):
+        time, velocity, current = signals(folder, name)
+        table(folder / f"{name}.csv", SI, time, 0.0 * velocity, factor * current)
 
 
 def damaged(folder):
@@ -125,9 +127,8 @@ def nothing_usable(folder):
 
 
 def empty(folder):
-    nothing_usable(folder)
-    for path in folder.iterdir():
-        path.unlink()
+    shutil.rmtree(folder)
+    folder.mkdir()
 
 
 def flights(folder):
@@ -136,35 +137,31 @@ def flights(folder):
     return points
 
 
-def flights_in_another_order(folder):
+def a_file_each(folder, ending, text):
+    """Flights in files of their own, as `text` of y - m -, z - m - and time - s - has them."""
     points = flights(folder)
     (folder / "catapult").mkdir()
     for k, flight in enumerate(points):
-        time = 0.02 * np.arange(len(flight))
-        table(folder / "catapult" / f"{k:02}.csv", "z [mm];y [mm];t [s]", 1e3 * flight[:, 1], 1e3 * flight[:, 0], time)
+        content = text(*flight.T, 0.02 * np.arange(len(flight)))
+        (folder / "catapult" / f"{k:02}.{ending}").write_text(content)
+
+
+def flights_in_another_order(folder):
+    a_file_each(folder, "csv", lambda y, z, t: "z [mm];y [mm];t [s]\n" + lines(1e3 * z, 1e3 * y, t))
 
 
 def flights_y_z_t(folder):
-    points = flights(folder)
-    (folder / "catapult").mkdir()
-    for k, flight in enumerate(points):
-        time = 0.02 * np.arange(len(flight))
-        text = "\n".join(f"{y:.6g},{z:.6g},{t:.6g}" for (y, z), t in zip(flight, time, strict=True))
-        (folder / "catapult" / f"{k:02}.csv").write_text(f"y,z,t\n{text}\n")
+    a_file_each(folder, "csv", lambda y, z, t: "y,z,t\n" + lines(y, z, t, separator=","))
+
+
+def flights_with_blanks_and_decimal_commas(folder):
+    a_file_each(folder, "txt", lambda y, z, t: "y [m]  z [m]\n\n" + lines(y, z, separator="  ", decimal=",") + "\n")
 
 
 def flights_side_by_side(folder):
     points = flights(folder)
     header = ";".join(f"y{k} [m];z{k} [m]" for k in range(1, 11))
     table(folder / "Katapult.csv", header, *(side for flight in points for side in flight.T), decimal=",")
-
-
-def flights_with_blanks_and_decimal_commas(folder):
-    points = flights(folder)
-    (folder / "catapult").mkdir()
-    for k, flight in enumerate(points):
-        text = "\n".join(f"{y:.6f}  {z:.6f}".replace(".", ",") for y, z in flight)
-        (folder / "catapult" / f"{k:02}.txt").write_text(f"y [m]  z [m]\n\n{text}\n\n")
 
 
 def flights_in_mat(folder):
@@ -227,18 +224,15 @@ def quick(monkeypatch):
 
 
 @pytest.mark.parametrize(("state", "missing", "words"), STATES, ids=lambda value: getattr(value, "__name__", ""))
-def test_a_students_folder(state, missing, words, tmp_path, monkeypatch, capsys, quick, done):
+def test_a_students_folder(state, missing, words, tmp_path, quick, done):
     folder = tmp_path / "data"
     folder.mkdir()
     for name in NAMES:
         shutil.copy(TRACES / f"{name}.trace", folder)
     shutil.copytree(TRACES / "catapult", folder / "catapult", ignore=shutil.ignore_patterns("*.json"))
     state(folder)
-    monkeypatch.setattr(sys, "argv", ["bench", "lab", "--data", str(folder), "--out", str(tmp_path / "out")])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    printed = capsys.readouterr()
-    assert stop.value.code == (1 if missing >= RECORDED else 0), printed.err
+    printed = bench("lab", "--data", folder, "--out", tmp_path / "out")
+    assert printed.status == (1 if missing >= RECORDED else 0), printed.err
     assert "Traceback" not in printed.out + printed.err
     content = json.loads((tmp_path / "out" / "lab.json").read_text(encoding="utf-8"))
     tasks = {task["key"]: task for task in content["tasks"]}

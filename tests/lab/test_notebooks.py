@@ -3,7 +3,6 @@
 import contextlib
 import json
 import shutil
-import sys
 from contextlib import redirect_stdout
 from io import StringIO
 
@@ -11,9 +10,9 @@ import matplotlib.pyplot as plt
 import pytest
 
 from bench.assets import asset
-from bench.cli import main
 from bench.errors import InputError
 from bench.lab.notebooks import TEXTS, notebook, write_notebooks
+from tests.command import bench
 
 SIGNALS = """omega = np.radians(degrees_per_second)
 current = milliamperes / 1000
@@ -136,12 +135,10 @@ def test_checks_notice_a_mistake(task, cells, word, folder):
     assert any(line.startswith("not yet:") and word in line for line in found), found
 
 
-def test_the_command_writes_them_and_overwrites_none(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(sys, "argv", ["bench", "lab", "--notebooks", str(tmp_path / "mine")])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    assert stop.value.code == 0
-    assert capsys.readouterr().out.count("wrote") == 11
+def test_the_command_writes_them_and_overwrites_none(tmp_path):
+    status, out, _ = bench("lab", "--notebooks", tmp_path / "mine")
+    assert status == 0
+    assert out.count("wrote") == 11
     for path in (tmp_path / "mine").iterdir():
         assert "lstsq" not in path.read_text(encoding="utf-8")
         assert json.loads(path.read_text(encoding="utf-8"))["nbformat"] == 4

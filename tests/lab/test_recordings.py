@@ -133,7 +133,7 @@ def test_other_units_other_formats_and_other_letters_are_read(folder):
     assert found["6"]["J"].value == pytest.approx(22.5, rel=0.005)
 
 
-def test_damaged_files_and_two_of_a_name_are_said_to_be_so(folder):
+def test_damaged_files_and_two_of_a_name_are_reported_to_be_so(folder):
     path = folder / "JLoadAndFriction.trace"
     path.write_bytes(path.read_bytes()[:5000])
     (folder / "MaxAcc.csv.gz").write_bytes(gzip.compress(b"time [ms],velocity [rpm]\n0,1\n1,2\n"))
@@ -156,7 +156,7 @@ def test_other_files_beside_the_recordings_are_passed_over_and_linear_axes_refus
     assert {"9", "10"} <= set(found)
 
 
-def test_progress_is_told_after_every_task():
+def test_progress_is_reported_after_every_task():
     shares = []
     course(Recordings.in_folder(None), shares.append, keys=READING)
     assert shares == sorted(shares)

@@ -8,7 +8,6 @@ import sys
 import pytest
 
 from bench.assets import asset
-from bench.cli import main
 from bench.console import console
 from bench.errors import InputError
 from bench.lab.cover import Cover
@@ -18,6 +17,7 @@ from bench.report.charts import chart_figure
 from bench.report.course import course_table
 from bench.report.lab import lab_html, write_lab_report
 from bench.report.section import section
+from tests import command
 
 #: Labels of axes that the course asks for.
 LABELS = (
@@ -36,17 +36,10 @@ LABELS = (
 
 
 @pytest.fixture
-def bench(capsys, monkeypatch, tmp_path):
+def bench(monkeypatch, tmp_path):
+    """Runs `bench` in a folder of its own."""
     monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["bench", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        printed = capsys.readouterr()
-        return stop.value.code, printed.out, printed.err
-
-    return run
+    return command.bench
 
 
 def test_report_has_every_task_number_and_figure(lab, done):

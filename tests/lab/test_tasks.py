@@ -103,7 +103,7 @@ def test_5_and_7_four_signals_on_one_time_axis_in_si(done):
         assert 2.0 < done[key]["largest torque"].value < 3.5
         angle, speed = (panels[k].curves[0] for k in (0, 1))
         assert angle.y[-1] == pytest.approx(np.trapezoid(speed.y, speed.x), abs=1e-9)
-        assert "four graphs and names three" in done[key].says[1]
+        assert "four graphs and names three" in done[key].findings[1]
 
 
 def test_6_inertia_within_half_a_percent(done):
@@ -113,7 +113,7 @@ def test_6_inertia_within_half_a_percent(done):
     theory = 1e4 * mass / 8.0 * (0.14**2 + 0.014**2)
     assert done["6"]["J_load, theory"].value == pytest.approx(theory, rel=1e-12)
     assert 0.10 < done["6"]["J_load"].value / theory - 1.0 < 0.20
-    text = " ".join(done["6"].says)
+    text = " ".join(done["6"].findings)
     assert "In which unit?" in text
     measured, modelled = done["6"].charts[0].panels[0].curves
     residual = done["6"].charts[0].panels[1].curves[0]
@@ -206,7 +206,7 @@ def test_10_table_of_peak_torque_and_the_tail(done):
         sheet = 3.5 * min(1.0, (5000.0 - speed) / 2900.0)
         assert task[f"{name}, datasheet"].value == pytest.approx(sheet)
     assert task["M_max at 2500 rpm"].value == pytest.approx(rig.motor.peak_torque, rel=2e-3)
-    assert any("tail above" in text and "set to about 44" in text for text in task.says)
+    assert any("tail above" in text and "set to about 44" in text for text in task.findings)
 
 
 @pytest.mark.parametrize("lag", [0.0, 1e-3, 3e-3, 8e-3])

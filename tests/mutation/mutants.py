@@ -33,6 +33,7 @@ DECISIONS = ("diagnose/test_policy.py", "diagnose/test_doubts.py", "diagnose/tes
 OF_EVERY_EFFECT = (
     "effects/test_contract.py",
     "effects/test_properties.py",
+    "effects/test_sensing.py",
     "effects/test_track_effects.py",
     "effects/test_agreement.py",
     "effects/test_diagnosed.py",
@@ -40,6 +41,7 @@ OF_EVERY_EFFECT = (
 #: Tests that ask for nothing of an effect by name, and may still notice.
 BEYOND = (
     "effects/test_properties.py",
+    "effects/test_sensing.py",
     "diagnose/test_columns.py",
     "balance",
     *DECISIONS,

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import json
-import sys
 import time
 from collections.abc import Sequence
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
-from unittest.mock import patch
 
-from bench.cli import main
+from tests.command import bench
 
 #: Keys of J in the JSON.
 INERTIA = ("moment_of_inertia", "moving_mass")
@@ -87,13 +83,8 @@ def ask(command: str, traces: Sequence[Path], rig: Path, *options: str) -> Answe
 
 def _run(arguments: Sequence[str]) -> tuple[int, str]:
     """Exit status, and what was said on standard error, of the command line run in this process."""
-    error = io.StringIO()
-    with redirect_stdout(io.StringIO()), redirect_stderr(error), patch.object(sys, "argv", ["bench", *arguments]):
-        try:
-            main()
-            status = 0
-        except SystemExit as end:
-            status = end.code if isinstance(end.code, int) else int(end.code is not None)
-        except Exception as fault:  # a traceback is an answer too, and a bad one
-            return FAULT, f"{type(fault).__name__}: {fault}"
-    return status, " ".join(error.getvalue().split())
+    try:
+        ended = bench(*arguments)
+    except Exception as fault:  # a traceback is an answer too, and a bad one
+        return FAULT, f"{type(fault).__name__}: {fault}"
+    return ended.status, " ".join(ended.err.split())

@@ -169,7 +169,7 @@ def test_a_wrong_torque_constant_may_be_told_instead():
     assert judged(null, told, told).judgement == RIGHT
 
 
-def test_results_are_told():
+def test_results_are_reported():
     null = case("hum")
     scores = [
         judged(null, answer(null), answer(null)),

@@ -6,7 +6,7 @@ import pytest
 
 from bench.assets import asset
 from bench.axis_kind import axis_kind
-from bench.plant.model import AxisParameters, build_model, build_spec
+from bench.plant.model import AxisParameters, build_spec
 from bench.rig.load import Load
 
 KINDS = ("rotary", "linear")
@@ -38,7 +38,7 @@ def test_visible_geometry_adds_no_inertia(kind):
 
 def test_disk_is_drawn_to_size():
     load = Load.model_construct(outer_diameter=0.2, thickness=0.02, gear_ratio=1.0)
-    model = build_model(AxisParameters(inertia=1e-3), 250e-6, load)
+    model = build_spec(AxisParameters(inertia=1e-3), 250e-6, load).compile()
     assert model.geom("disk").size[:2] == pytest.approx([0.1, 0.01])
     assert model.geom("angle mark").pos[2] + model.geom("angle mark").size[2] < 0.1
 

@@ -9,7 +9,7 @@ import bench
 from bench.errors import InputError
 from bench.plant.robot import Robot, beside_robot, read_beside
 from bench.rig.rig import Rig
-from bench.trace.known import less_known
+from bench.trace.known_torque import less_known
 from tests.export.two_links import C2, HIDDEN, I2, M2, MJCF, elbow_torque, log, motion, shoulder_torque, write_log
 
 ELBOW = Rig.of({"name": "elbow", "kind": "rotary"})
@@ -98,7 +98,7 @@ WEIGHTLESS = '<mujoco><worldbody><body><joint name="elbow"/></body></worldbody><
         (WEIGHTLESS, "elbow", "MuJoCo refuses it"),
     ],
 )
-def test_a_robot_that_cannot_be_had_is_told_in_one_line(tmp_path, text, joint, says):
+def test_a_robot_that_cannot_be_had_is_reported_in_one_line(tmp_path, text, joint, says):
     path = tmp_path / "arm.xml"
     path.write_text(text)
     with pytest.raises(InputError, match=says) as error:

@@ -61,7 +61,7 @@ def test_what_lies_far_beyond_its_margin_does_not_hide_the_rest():
     assert html(page).count('class="hole"') == 1
 
 
-def test_what_differs_beside_the_axis_is_told():
+def test_what_differs_beside_the_axis_is_reported():
     same = check_page(checked(state(), state()), "x")
     other = check_page(checked(state(), state(duration=3.0)), "x")
     rig = check_page(checked(state(), replace(state(), rig={"kind": "rotary", "motor.torque_constant": "0.9"})), "x")
@@ -92,7 +92,7 @@ def test_the_command_writes_it(bench):
     assert bench("check", "now.csv", *BASE, "--update", "--report", "check.html")[0] == 2
 
 
-def test_models_are_told_without_recordings():
+def test_models_are_reported_without_recordings():
     found = checked(state(), state())
     model = replace(found.now, gaps={}, conditions={}, source="model")
     page = check_page(replace(found, baseline=model, now=model, false_alarm_rate=0.0), "x")

@@ -39,7 +39,7 @@ def rms(values):
     return np.sqrt(np.nanmean(values**2))
 
 
-def test_what_is_drawn_over_time_has_the_gaps_that_are_told(found, page):
+def test_what_is_drawn_over_time_has_the_gaps_that_are_reported(found, page):
     gap = json.loads((found / "diagnosis.json").read_text(encoding="utf-8"))["gap"]
     graphs = blocks(page, TimeGraph)
     assert [graph.choices for graph in graphs] == [("inertia and friction", "+ unbalance")] * 2
@@ -71,7 +71,7 @@ def test_the_found_effect_is_drawn_into_the_gap(page):
     assert np.max(np.abs(series["left after"].y)) < floor.high[0] < np.max(np.abs(line.y))
 
 
-def test_every_effect_is_told_with_a_reason(diagnosed):
+def test_every_effect_is_reported_with_a_reason(diagnosed):
     assert {one.effect.name for one in diagnosed.considered} == set(catalogue())
     assert all(one.reason for one in diagnosed.considered)
     taken = [one.effect.name for one in diagnosed.considered if one.taken]

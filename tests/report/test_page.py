@@ -32,66 +32,37 @@ from bench.report.page.scripted import Curve, Motion, Panel, Samples, TimeGraph
 HOSTILE = "<script>alert(1)</script>\"'&{{ 7*7 }}</style>-->"
 
 
+def full_of(text, kind, **given):
+    """A block with this text wherever one can stand that is not given."""
+    texts = {name: text for name, field in kind.model_fields.items() if field.annotation is str}
+    return kind(**texts | given)
+
+
 def page_full_of(text):
     """A page with one of everything, and this text wherever a text can stand."""
+    grid = {"start": 0.0, "step": 1.0, "count": 2}
     samples = Samples(offset=0.0, scale=1.0, low="AAABAA==", high=None)
-    curve = Curve(name=text, role="measured", choice=None, samples=samples)
-    chosen = Curve(name=text, role="model", choice=0, samples=samples)
-    series = Series(name=text, style="line", colour="ink", x=(0.0, 1.0), y=(0.0, 1.0))
+    curves = (
+        full_of(text, Curve, role="measured", choice=None, samples=samples),
+        full_of(text, Curve, role="model", choice=0, samples=samples),
+    )
+    moved = {"low": 0.0, "high": 1.0, "position": "AAAAAAAAgD8=", "apart": "AAAAAAAAAAA="}
+    series = full_of(text, Series, style="line", colour="ink", x=(0.0, 1.0), y=(0.0, 1.0))
+    span = full_of(text, Span, colour="ink", value=3.0, low=-1.0, high=4.0)
+    columns = full_of(text, Column), full_of(text, Column, number=True)
     blocks = (
-        Paragraph(text=text),
+        full_of(text, Paragraph),
         Points(items=(text,)),
-        Table(caption=text, columns=(Column(heading=text), Column(heading=text, number=True)), rows=((text, text),)),
-        TimeGraph(
-            title=text,
-            alternative=text,
-            start=0.0,
-            step=1.0,
-            count=2,
-            choices=(text, text),
-            panels=(Panel(label=text, unit=text, curves=(curve, chosen)),),
-        ),
-        *(
-            Motion(
-                title=text,
-                alternative=text,
-                turns=turns,
-                unit=text,
-                ghost=text,
-                start=0.0,
-                step=1.0,
-                count=2,
-                low=0.0,
-                high=1.0,
-                position="AAAAAAAAgD8=",
-                apart="AAAAAAAAAAA=",
-            )
-            for turns in (True, False)
-        ),
-        Chart(
-            title=text,
-            alternative=text,
-            y_label=text,
-            y_unit=text,
-            panels=(Axes(x_label=text, x_unit=text, note=text, series=(series,)),),
-        ),
-        HeatMap(caption=text, corner=text, rows=(text, text), columns=(text,), counts=((1,), (0,))),
-        Intervals(
-            title=text,
-            alternative=text,
-            label=text,
-            unit=text,
-            right=(-1.0, 1.0),
-            limits=(-2.0, 2.0),
-            spans=(Span(name=text, colour="ink", value=3.0, low=-1.0, high=4.0),),
-        ),
-        Downloads(files=(File(name=text, about=text, media="text/plain", content=text),)),
+        full_of(text, Table, columns=columns, rows=((text, text),)),
+        full_of(text, TimeGraph, **grid, choices=(text, text), panels=(full_of(text, Panel, curves=curves),)),
+        *(full_of(text, Motion, turns=turns, ghost=text, **grid, **moved) for turns in (True, False)),
+        full_of(text, Chart, panels=(full_of(text, Axes, series=(series,)),)),
+        full_of(text, HeatMap, rows=(text, text), columns=(text,), counts=((1,), (0,))),
+        full_of(text, Intervals, right=(-1.0, 1.0), limits=(-2.0, 2.0), spans=(span,)),
+        Downloads(files=(full_of(text, File, media="text/plain"),)),
     )
-    section = Section(key="all", heading=text, blocks=blocks)
-    answer = Answer(question=text, answer=text)
-    return Page(
-        title=text, subject=text, verdict=text, tone="open", answers=(answer,), sections=(section,), origin=(text,)
-    )
+    section = full_of(text, Section, key="all", blocks=blocks)
+    return full_of(text, Page, tone="open", answers=(full_of(text, Answer),), sections=(section,), origin=(text,))
 
 
 def test_text_is_text_wherever_it_stands():
@@ -147,7 +118,7 @@ def test_a_page_made_anew_is_the_same(bench, tmp_path):
         (lambda page: page | {"page": "bench.page/9"}, ["report.json: page", "bench.page/1"]),
     ],
 )
-def test_damage_is_told_in_one_line(bench, tmp_path, change, words):
+def test_damage_is_reported_in_one_line(bench, tmp_path, change, words):
     write_page(tmp_path / "out", page_full_of("x"))
     content = json.loads((tmp_path / "out" / DATA).read_text(encoding="utf-8"))
     (tmp_path / "out" / DATA).write_text(json.dumps(change(content)), encoding="utf-8")
@@ -157,7 +128,7 @@ def test_damage_is_told_in_one_line(bench, tmp_path, change, words):
         assert word in err
 
 
-def test_a_folder_without_a_page_is_told(bench, tmp_path):
+def test_a_folder_without_a_page_is_reported(bench, tmp_path):
     (tmp_path / "empty").mkdir()
     status, _, err = bench("report", "empty")
     assert (status, err.count("\n")) == (2, 1)

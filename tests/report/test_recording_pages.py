@@ -13,9 +13,9 @@ from bench.report.pages.inspection import inspection_page
 from bench.report.pages.simulation import simulation_page
 from bench.rig.rig import load_rig
 from bench.trace.assemble import assemble
-from bench.trace.how import How
 from bench.trace.inspect import inspect_recording
 from bench.trace.read import read_recording
+from bench.trace.reading_options import GivenOptions
 from bench.trace.write import write
 from tests.diagnose.conftest import bench
 from tests.diagnose.test_commands import run_of
@@ -47,8 +47,8 @@ def inspected(tmp_path):
     """Page of a recording of a hostile name, as it was written and read again."""
     write(run_of(), tmp_path / TRACE_NAME)
     recording = read_recording(tmp_path / TRACE_NAME)
-    trace = assemble(recording, How())
-    return inspection_page(inspect_recording(recording, How()), (), trace), trace
+    trace = assemble(recording, GivenOptions())
+    return inspection_page(inspect_recording(recording, GivenOptions()), (), trace), trace
 
 
 def test_an_inspection_shows_every_signal_as_it_is_read(inspected):

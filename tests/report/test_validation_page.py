@@ -61,7 +61,7 @@ def test_the_tone_is_that_of_the_coverage(count, of, tone):
     )
 
 
-def test_a_false_name_is_told_in_the_verdict():
+def test_a_false_name_is_reported_in_the_verdict():
     good, bad = (page_of([covered("inertia", 950, 1000)], named(false, 200)) for false in (0, 1))
     assert good.verdict.endswith("none of 200 diagnosed runs have a false name.")
     assert bad.verdict.endswith("1 of 200 diagnosed runs has a false name.")
@@ -84,7 +84,7 @@ def test_the_chart_has_each_quantity_with_its_bounds_by_group():
     assert charts[0].right == (95.0, 95.0)
 
 
-def test_what_is_said_in_the_place_of_a_name_is_told_most_frequent_first():
+def test_what_is_reported_in_the_place_of_a_name_is_reported_most_frequent_first():
     page = page_of([], named(1, 9, {"backlash": {"refused": 1, "backlash": 8}, "nothing": {"nothing missing": 5}}))
     confusion = next(table for table in blocks(page, Table) if "nothing" in table.caption)
     assert confusion.rows == (("backlash", "backlash 8, refused 1"), ("nothing", "nothing missing 5"))

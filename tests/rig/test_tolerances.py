@@ -6,8 +6,8 @@ import pickle
 import numpy as np
 import pytest
 
-from bench.checks.gate import spoken
 from bench.errors import InputError
+from bench.gate.gate import warnings_of
 from bench.identify.regression import identify
 from bench.rig.rig import Rig, load_rig
 from bench.rig.values import tolerance_of
@@ -94,11 +94,11 @@ def test_datasheet_values_and_the_rotor_s_inertia_count_too():
         ("0.8 +/- 0.02 N*m/A", "0.74 +/- 0.07 V*s/rad", False),
     ],
 )
-def test_constants_of_two_motors_are_told(constant, back_emf, told):
+def test_constants_of_two_motors_are_reported(constant, back_emf, told):
     found = identify(recording(np.random.default_rng(2)), rig(torque_constant=constant, back_emf_constant=back_emf))
     check = next(check for check in found.checks if check.name == "motor_constants_agree")
     assert check.status == ("warn" if told else "pass")
-    assert any("back-EMF constant" in warning for warning in spoken(found.checks)) == told
+    assert any("back-EMF constant" in warning for warning in warnings_of(found.checks)) == told
 
 
 def test_intervals_reach_as_far_as_constants_disagree():

@@ -76,19 +76,6 @@ TEXT = {
     "all at one time": (HEAD + "5,1,1\n" * 50, r"found 1 different times"),
     "cut in the last line": (_rows().rstrip().rpartition(",")[0], r"line 61: found 2 cells"),
 }
-
-
-@pytest.mark.parametrize("case", TEXT)
-def test_bad_tables(tmp_path, case):
-    text, message = TEXT[case]
-    path = tmp_path / "run.csv"
-    path.write_text(text)
-    with pytest.raises(InputError, match=message) as error:
-        read(path)
-    assert "\n" not in str(error.value) and str(error.value).startswith(str(path))
-    assert error.value.exit_status == 2
-
-
 BYTES = {
     "empty": (b"", r"the file is empty"),
     "blank": (b"\n  \n", r"the file is empty"),
@@ -107,16 +94,18 @@ BYTES = {
     "html": (b"<!DOCTYPE html><html><body>time,velocity</body></html>", r"not a trace in any format"),
     "json": (b'{"entries": 3}', r"not a trace in any format"),
 }
+FILES = {**{name: (text.encode(), message) for name, (text, message) in TEXT.items()}, **BYTES}
 
 
-@pytest.mark.parametrize("case", BYTES)
-def test_bad_bytes(tmp_path, case):
-    content, message = BYTES[case]
+@pytest.mark.parametrize("case", FILES)
+def test_bad_files(tmp_path, case):
+    content, message = FILES[case]
     path = tmp_path / "run.csv"
     path.write_bytes(content)
     with pytest.raises(InputError, match=message) as error:
         read(path)
-    assert "\n" not in str(error.value)
+    assert "\n" not in str(error.value) and str(error.value).startswith(str(path))
+    assert error.value.exit_status == 2
 
 
 def test_places_that_are_no_file(tmp_path):
@@ -140,7 +129,7 @@ def test_blank_lines_do_not_shift_the_lines_of_messages(tmp_path):
         read(path)
 
 
-def test_two_samples_are_read_and_told(tmp_path):
+def test_two_samples_are_read_and_reported(tmp_path):
     path = tmp_path / "run.csv"
     path.write_text(HEAD + ROWS[0] + ROWS[1])
     trace = read(path)
@@ -148,7 +137,7 @@ def test_two_samples_are_read_and_told(tmp_path):
     assert inspect(path).notes == trace.notes
 
 
-def test_a_hole_is_told(tmp_path):
+def test_a_hole_is_reported(tmp_path):
     path = tmp_path / "run.csv"
     path.write_text(HEAD + "".join(ROWS[:20] + ROWS[30:]))
     trace = read(path)
@@ -191,7 +180,7 @@ def test_parquet_without_rows_and_with_gaps(tmp_path):
         read(path)
 
 
-def test_damaged_mat_of_version_7_3_is_told(tmp_path):
+def test_damaged_mat_of_version_7_3_is_reported(tmp_path):
     path = tmp_path / "run.mat"
     path.write_bytes(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512) + b"\x89HDF\r\n\x1a\n" + bytes(600))
     with pytest.raises(InputError, match=r"the HDF5 file is truncated or damaged"):
@@ -210,18 +199,8 @@ def _samples(folder):
     pq.write_table(pa.table({"time [s]": TIME, "velocity [deg/s]": velocity(TIME)}), folder / "a.parquet")
     savemat(folder / "a.mat", {"t": TIME, "v": velocity(TIME)})
     stamps = np.arange(60)
-    entries = [
-        {
-            "timestamp": k / 200,
-            "position": 0.1,
-            "speed": 1.0,
-            "load": 5,
-            "input_volts": 7.0,
-            "temp": 30,
-            "goal_position": 0,
-        }
-        for k in range(60)
-    ]
+    entry = {"position": 0.1, "speed": 1.0, "load": 5, "input_volts": 7.0, "temp": 30, "goal_position": 0}
+    entries = [{"timestamp": k / 200, **entry} for k in range(60)]
     epos = "EPOS Studio Version:;3\r\n;Velocity actual value;Torque actual value\r\nms;rpm;%\r\n"
     twincat = "Name\tproject\nStarttime of export\t132959733843760000\n\nName\tvelocity\nUnit\trad/s\n\n"
     codesys = "[key]; [value]\nFlags; 16\n0.Variable; A.Velocity\n0.Data; \n"
@@ -258,7 +237,7 @@ def test_the_samples_are_good(samples, tmp_path, kind):
 
 @pytest.mark.parametrize("kind", ["gz", "parquet", "trace", "xml", "mat", "json"])
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.95])
-def test_truncated_files_are_told_as_such(samples, tmp_path, kind, share):
+def test_truncated_files_are_reported_as_such(samples, tmp_path, kind, share):
     path = tmp_path / f"run.{kind}"
     path.write_bytes(samples[kind][: int(share * len(samples[kind]))])
     with pytest.raises(InputError, match=r"truncated"):

@@ -92,7 +92,7 @@ def test_plain_utf8_xml_is_the_same(tmp_path):
         assert np.array_equal(read(tmp_path / name)["velocity"], utf16["velocity"])
 
 
-def test_two_variables_of_one_name_must_be_told_apart(tmp_path):
+def test_two_variables_of_one_name_must_be_distinguished(tmp_path):
     stamps = np.arange(0, 100, 1)
     channels = {"A.Velocity": (stamps, velocity(stamps / 1e3)), "B.Velocity": (stamps, current(stamps / 1e3))}
     path = write_utf16(tmp_path / "run.trace", machine_expert_xml(channels))

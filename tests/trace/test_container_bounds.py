@@ -86,7 +86,7 @@ def test_what_a_container_expands_to_is_bounded(tmp_path, name):
         read_recording(path)
 
 
-def test_a_length_that_a_file_does_not_hold_is_told(tmp_path):
+def test_a_length_that_a_file_does_not_hold_is_reported(tmp_path):
     """npTDMS' own warning is a note, and no line of its own on standard error."""
     recording = read_recording(tdms_that_lies(tmp_path / "run.tdms"))
     assert recording.channels[0].values.size == 64 and "not a multiple of the chunk size" in recording.notes[0]

@@ -12,8 +12,8 @@ from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 from scipy.io import savemat
 
 from bench.errors import InputError
-from bench.trace.how import How
 from bench.trace.read import read, read_recording
+from bench.trace.reading_options import GivenOptions
 from tests.trace.recordings import current, velocity
 
 TIME = np.arange(400) * 2e-3
@@ -77,9 +77,9 @@ def test_a_bag_of_several_joints_asks_which(tmp_path):
     path = bag(tmp_path / "run.mcap", {"hip": 1.0, "knee": -0.5})
     with pytest.raises(InputError, match=r"found 2 axes \(hip, knee\); pick one: --axis hip"):
         read(path)
-    holds(read(path, How(axis="knee")), -0.5 * SPEED)
+    holds(read(path, GivenOptions(axis="knee")), -0.5 * SPEED)
     with pytest.raises(InputError, match=r"no axis 'kne', did you mean 'knee'\?; found: hip, knee"):
-        read(path, How(axis="kne"))
+        read(path, GivenOptions(axis="kne"))
 
 
 def test_plain_numbers_of_a_bag_are_columns_of_their_topics(tmp_path):
@@ -115,7 +115,7 @@ def test_tdms(tmp_path, timed):
     path = tdms(tmp_path / "two.tdms", {"left": 1.0, "right": -1.0}, timed)
     with pytest.raises(InputError, match=r"found 2 axes \(left, right\)"):
         read(path)
-    holds(read(path, How(axis="right")), -SPEED)
+    holds(read(path, GivenOptions(axis="right")), -SPEED)
 
 
 def hdf5(path):
@@ -185,7 +185,7 @@ WRITTEN = {
 
 @pytest.mark.parametrize("name", WRITTEN)
 @pytest.mark.parametrize("share", [0.02, 0.3, 0.7])
-def test_a_truncated_container_is_told_as_such(tmp_path, name, share):
+def test_a_truncated_container_is_reported_as_such(tmp_path, name, share):
     path = WRITTEN[name](tmp_path / name)
     path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
     try:
@@ -200,7 +200,7 @@ def test_a_truncated_container_is_told_as_such(tmp_path, name, share):
     ("name", "module", "extra"),
     [("run.mcap", "mcap.stream_reader", "mcap"), ("run.tdms", "nptdms", "tdms"), ("run.h5", "h5py", "hdf5")],
 )
-def test_a_missing_library_is_told_with_how_to_install_it(tmp_path, monkeypatch, name, module, extra):
+def test_a_missing_library_is_reported_with_how_to_install_it(tmp_path, monkeypatch, name, module, extra):
     path = WRITTEN[name](tmp_path / name)
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(InputError, match=rf"is not installed; install it: pip install 'servobench\[{extra}\]'"):

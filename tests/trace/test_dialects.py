@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.trace.how import How
 from bench.trace.read import read, read_recording
+from bench.trace.reading_options import GivenOptions
 
 SAMPLES = 600
 TIME = np.arange(SAMPLES) * 1e-3
@@ -144,10 +144,10 @@ def test_a_clock_of_whole_seconds_asks_for_the_sample_period_and_takes_it(tmp_pa
     path = written(tmp_path / "run.csv", ["time,velocity [rpm],current [A]"], rows)
     with pytest.raises(InputError, match=r"time already taken.*sample_period"):
         read(path)
-    trace = read(path, How(sample_period=2e-3))
+    trace = read(path, GivenOptions(sample_period=2e-3))
     np.testing.assert_allclose(trace.time - trace.time[0], 2.0 * TIME, atol=1e-9)
     with pytest.raises(InputError, match=r"steps by 0\.00.* where the rig's \[trace\] says sample_period = 0\.02 s"):
-        read(path, How(sample_period=20e-3))
+        read(path, GivenOptions(sample_period=20e-3))
 
 
 def test_epochs_keep_digits_that_no_float_holds(tmp_path):
@@ -168,10 +168,10 @@ def test_a_sample_index_and_a_period(tmp_path, names):
     path = written(tmp_path / "run.csv", [f"{name},velocity [rpm],current [A]"], rows)
     with pytest.raises(InputError, match="time"):
         read(path)
-    holds(read(path, How(sample_period=1e-3)))
+    holds(read(path, GivenOptions(sample_period=1e-3)))
     lost = [row for k, row in enumerate(path.read_text().splitlines()) if k not in range(100, 110)]
     path.write_text("\n".join(lost))
-    assert len(read(path, How(sample_period=1e-3)).segments) == 2
+    assert len(read(path, GivenOptions(sample_period=1e-3)).segments) == 2
 
 
 def test_no_time_at_all_and_a_period(tmp_path):
@@ -179,7 +179,7 @@ def test_no_time_at_all_and_a_period(tmp_path):
     path = written(tmp_path / "run.csv", ["velocity [rpm],current [A]"], rows)
     with pytest.raises(InputError, match=r"give its sample_period = .1 ms. in the rig's \[trace\]"):
         read(path)
-    holds(read(path, How(sample_period=1e-3)))
+    holds(read(path, GivenOptions(sample_period=1e-3)))
 
 
 @pytest.mark.parametrize("nothing", ["", "NaN", "nan", "-", "NULL", "#N/A"])
@@ -205,7 +205,7 @@ def test_a_column_of_which_most_cells_are_empty_was_sampled_more_slowly(tmp_path
     assert any("position stands in 60 of 600 rows" in note for note in trace.notes)
 
 
-def test_what_is_not_needed_stops_nothing_and_is_told(tmp_path):
+def test_what_is_not_needed_stops_nothing_and_is_reported(tmp_path):
     head = [",".join((*NAMES, "position", "voltage [bananas]", "state", "acceleration"))]
     rows = [f"{row},{k % 7},1,RUN,nan" for k, row in enumerate(lines())]
     trace = read(written(tmp_path / "run.csv", head, rows))
@@ -258,7 +258,7 @@ def test_a_plain_wrap_is_found(tmp_path, period, counts, unit):
     assert any("position wraps" in note for note in trace.notes)
 
 
-def test_a_wrap_by_another_period_is_found_as_it_comes_and_exactly_where_it_is_told(tmp_path):
+def test_a_wrap_by_another_period_is_found_as_it_comes_and_exactly_where_it_is_reported(tmp_path):
     true, wrapped = wrapping(5.0, 0)
     rows = [f"{row},{value!r}" for row, value in zip(lines(), wrapped.tolist(), strict=True)]
     path = written(tmp_path / "run.csv", [",".join((*NAMES, "position [rad]"))], rows)
@@ -266,7 +266,7 @@ def test_a_wrap_by_another_period_is_found_as_it_comes_and_exactly_where_it_is_t
     assert found.wraps is not None
     assert found.wraps.period == pytest.approx(5.0, rel=1e-2)
     np.testing.assert_allclose(np.diff(found["position"]), np.diff(true), atol=0.05)
-    trace = read(path, How(position_period=5.0))
+    trace = read(path, GivenOptions(position_period=5.0))
     np.testing.assert_allclose(np.diff(trace["position"]), np.diff(true), atol=1e-9)
 
 
@@ -283,4 +283,4 @@ def test_axes_by_the_first_part_of_their_names(tmp_path):
     path = written(tmp_path / "run.csv", [",".join(("time [ms]", *names))], rows)
     with pytest.raises(InputError, match="several columns"):
         read(path)
-    holds(read(path, How(axis="Axis1")))
+    holds(read(path, GivenOptions(axis="Axis1")))

@@ -60,7 +60,7 @@ def test_the_longest_sample_period_is_taken():
     assert any("run1 taken every 0.002 s" in note for note in joined.notes)
 
 
-def test_a_signal_that_one_recording_lacks_is_left_out_and_told():
+def test_a_signal_that_one_recording_lacks_is_left_out_and_reported():
     joined = join([run_of(1, position=True), run_of(2)])
     assert "position" not in joined
     assert any("position: left out" in note for note in joined.notes)

@@ -68,7 +68,7 @@ def test_a_hole_is_kept_and_nothing_placed_inside():
     assert found.time.size == stamps.size
 
 
-def test_jitter_is_told_and_resampled_onto_a_regular_base():
+def test_jitter_is_reported_and_resampled_onto_a_regular_base():
     rng = np.random.default_rng(1)
     time = np.sort(np.arange(3000) * 1e-3 + rng.uniform(-0.3e-3, 0.3e-3, 3000))
     found = regular(one(time, values=np.sin(2 * np.pi * 5.0 * time)))

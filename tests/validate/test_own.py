@@ -58,7 +58,7 @@ def test_what_the_rig_does_not_say_the_recording_does():
         ({"load": {"eccentric_mass": "0.1 kg", "eccentric_radius": "10 mm"}}, "eccentric_mass"),
     ],
 )
-def test_what_a_rig_lacks_is_said(change, told):
+def test_what_a_rig_lacks_is_reported(change, told):
     table = {key: value for key, value in (TABLE | change).items() if value is not None}
     with pytest.raises(InputError, match=told):
         own_axis(Rig.of(table), "monday.csv", recording(np.random.default_rng(1), duration=10.0))

@@ -40,7 +40,7 @@ def test_pieces_hold_every_run_once():
     assert found == list(range(2 * TOGETHER + 3))
 
 
-def test_what_is_told_in_a_process_of_its_own_is_what_is_told_here():
+def test_what_is_reported_in_a_process_of_its_own_is_what_is_reported_here():
     (piece,) = pieces(PLAN, 3)
     shares = []
     found = validate(PLAN, 3, workers=1, progress=shares.append)
@@ -66,6 +66,6 @@ def test_so_many_are_hidden_as_asked():
 
 
 @pytest.mark.parametrize("text", ["3-1", "9", "backlsh", "", "1-"])
-def test_what_cannot_be_hidden_is_said(text):
+def test_what_cannot_be_hidden_is_reported(text):
     with pytest.raises(InputError, match="allowed"):
         Hiding.parse(text)

@@ -1,10 +1,10 @@
-"""Add the named effects to the MuJoCo model and keep what held-out motion bears out.
+"""Add the named effects to the MuJoCo model and keep those that held-out motion confirms.
 
-An effect is accepted if, with it, neither the torque gap nor the velocity gap of held-out motion grows. A change that
-the simulation's own floor hides - an offset that integral action takes up - is no verdict, nor is a simulation that is
-further off than the mean speed would be - a held motor that slips from cog to cog: then the torque gap alone
-decides. An effect of drive or sensor that torque and held velocity both leave as they were is judged where it shows:
-a voltage limit under the drive of the rig.
+An effect is accepted if it increases neither the torque gap nor the velocity gap of held-out motion. Changes below the
+simulation's own floor are ignored, such as an offset that integral action compensates. So is a simulation that is worse
+than the mean speed, such as a motor that slips from cog to cog: then the torque gap alone decides. An effect of drive
+or sensor that changes neither torque nor tracked velocity is judged where it is visible: a voltage limit under the
+drive of the rig.
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ from bench.trace.noise import white_noise
 
 @dataclass(frozen=True)
 class Added:
-    """What was kept.
+    """The accepted effects.
 
     Attributes:
         extension: the effects accepted, fitted to the whole recording.
-        held_out: motion that judged them.
-        gaps: velocity gaps, those of every addition simulated.
+        held_out: the motion that they were judged by.
+        gaps: velocity gaps, simulated for every addition.
         recorded: the recording, and the holdout where there is one.
-        rejected: effects not kept, with the reason.
-        refined: the model kept, its quantities refined by simulation where that helps.
-        repeats: whether the recording's events happen in the holdout too.
+        rejected: the others, with the reason.
+        refined: the final model, its quantities refined by simulation where that helps.
+        repeats: whether the recording's events occur in the holdout too.
         compared: whether the holdout is of this axis.
-        warnings: that the holdout is of another axis, or that MuJoCo cannot have the model.
-        closed_loop: velocity gap under the drive of the rig without and with what shows only there - rad/s (m/s); None
-            where nothing does.
+        warnings: about a holdout of another axis, or a model that MuJoCo cannot simulate.
+        closed_loop: velocity gap under the drive of the rig, without and with the effect that is visible only there -
+            rad/s (m/s); None without such an effect.
     """
 
     extension: Extension
@@ -60,7 +60,7 @@ class Added:
 
 
 def add(recordings: Recordings, suspects: Suspects) -> Added:
-    """Try every effect and keep those that held-out motion bears out; refine the model of those."""
+    """Try every effect, keep those that held-out motion confirms, and refine their model."""
     found = suspects.searched.last
     compared = same_axis(found, recordings.other, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.other)
@@ -87,14 +87,14 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
 
 
 def everywhere(balance: Balance, other: Rows | None) -> bool:
-    """Whether events come in every recording: the holdout shows them at the same time of its own."""
+    """Whether events repeat in every recording: the holdout shows them at the same time after its start."""
     if other is None or not any(term.effect.occasional for term in balance.hypothesis.terms):
         return False
     return balance.repeating(True).gap(other) < balance.gap(other)
 
 
 def bandwidth(extension: Extension, recordings: Recordings) -> float:
-    """Bandwidth that holds every model of an extension - rad/s."""
+    """Bandwidth of the tracking loop for every model of an extension - rad/s."""
     stored = extension.whole.model
     top = float(np.abs(measured_velocity(recordings.trace)).max())
     return BANDWIDTH if stored is None else holding_bandwidth(stored.model, top)
@@ -102,14 +102,14 @@ def bandwidth(extension: Extension, recordings: Recordings) -> float:
 
 @dataclass(frozen=True)
 class Trial:
-    """Effects before held-out motion.
+    """Judgement of effects by held-out motion.
 
     Attributes:
-        recordings, suspects: as added.
+        recordings, suspects: as of `add`.
         held_out: the motion.
         gaps: of velocity.
-        judged: all effects, fitted to seen motion.
-        without: the same less each one of them.
+        judged: all effects, fitted to the motion that is not held out.
+        without: the same without each one of them.
     """
 
     recordings: Recordings
@@ -121,7 +121,7 @@ class Trial:
 
     @classmethod
     def of(cls, recordings: Recordings, suspects: Suspects, held_out: HeldOut, extension: Extension) -> Trial:
-        """The effects of an extension, refitted to what may be seen."""
+        """The effects of an extension, refitted without the held-out motion."""
         judged = replace(extension, recording=held_out.fitted, rows=held_out.rows)
         laid_out_for = extension.whole if extension.whole.model is not None else extension.stages[0]
         gaps = VelocityGaps(bandwidth(extension, recordings), float(laid_out_for.fitted.theta[0]))
@@ -130,20 +130,20 @@ class Trial:
 
     @property
     def pairs(self) -> list[tuple[Stage, Recorded]]:
-        """What has to be simulated to judge."""
+        """Models and motions to simulate."""
         tried = (self.judged, *self.without) if self.without else ()
         return [(extension.whole, self.held_out.recorded) for extension in tried]
 
 
 def rejection(trial: Trial) -> tuple[int, str] | None:
-    """The last effect that held-out motion speaks against, and why; None if it speaks against none."""
+    """Index of the last effect that held-out motion contradicts, with the reason; None if it contradicts none."""
     held_out, judged = trial.held_out, trial.judged
     floor = NULL * white_noise(measured_velocity(trial.recordings.trace))
     for index in reversed(range(len(judged.names))):
         less = trial.without[index]
         if judged.occasional(index) and (not held_out.recorded.events or held_out.rows != RECORDING):
             continue
-        if held_out.judge.effort.size:  # none where the axis stands throughout
+        if held_out.judge.effort.size:  # empty if the axis never moves
             torque = tuple(each.balance(held_out.recorded.events).gap(held_out.judge) for each in (less, judged))
             if torque[1] > torque[0]:
                 return index, _grows("torque", torque, judged.rig.effort_unit, held_out)
@@ -156,7 +156,7 @@ def rejection(trial: Trial) -> tuple[int, str] | None:
 
 
 def _comes_closer(trial: Trial, allowed: float) -> bool:
-    """Whether the velocity gap of all effects comes below what is allowed once they are refined by simulation."""
+    """Whether refinement by simulation brings the velocity gap of all effects below what is allowed."""
     whole = trial.judged.whole
     if whole.model is None:
         return True
@@ -166,7 +166,7 @@ def _comes_closer(trial: Trial, allowed: float) -> bool:
 
 
 def unlimited(extension: Extension, closed_loop: tuple[float, float] | None) -> tuple[int, str] | None:
-    """What shows under the drive only, if the axis under its drive does not come closer to the recording with it."""
+    """The effect visible only under the drive, if it does not reduce the velocity gap there; with the reason."""
     index = under_drive(extension)
     if closed_loop is None or closed_loop[1] < closed_loop[0] or index is None:
         return None

@@ -1,4 +1,4 @@
-"""Velocity gap under the drive of the rig, from the references of a recording: prediction, nothing holds the model.
+"""Velocity gap under the drive of the rig, from the references of a recording: a prediction without tracking.
 
 Feedback hides most effects here - the drive makes good what the model lacks - but for what happens in the drive itself
 it is the only place to look: a voltage limit acts before the recorded current, with which the held model is fed.
@@ -15,7 +15,7 @@ from bench.plant.track import measured_velocity
 
 
 def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float, float] | None:
-    """Velocity gap without and with the effect that shows only there, in the motion that shows it - rad/s (m/s).
+    """Velocity gap without and with the effect that is visible only there, in motion that shows it - rad/s (m/s).
 
     None where there is no such effect, the rig describes no drive, the recording holds no references, or the simulation
     diverges.
@@ -40,7 +40,7 @@ def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float
 
 
 def under_drive(extension: Extension) -> int | None:
-    """Index of the effect that shows under the drive of the rig; None without one."""
+    """Index of the effect that is visible only under the drive of the rig; None without one."""
     own = len(extension.hypothesis.terms)
     shown = [own + k for k, present in enumerate(extension.beside) if present.effect.shows_under_drive]
     return shown[0] if shown else None

@@ -26,10 +26,10 @@ class Stage:
     Attributes:
         effect: added last; empty for the bare axis.
         fitted: its torque balance.
-        beside: effects that the torque balance does not hold.
-        rows: what it was fitted to.
-        model: in MuJoCo; None where MuJoCo cannot have it.
-        problem: why not; empty where it can.
+        beside: effects outside the torque balance.
+        rows: name of the rows it was fitted to.
+        model: in MuJoCo; None if MuJoCo cannot simulate it.
+        problem: why not; empty if it can.
     """
 
     effect: str
@@ -40,7 +40,7 @@ class Stage:
     problem: str = ""
 
     def detected(self, suspects: Suspects) -> dict[Effect, Detected]:
-        """Those of the suspects that stand beside the torque balance here."""
+        """Those of the suspects outside the torque balance that are in this model."""
         present = {one.effect for one in self.beside}
         return {effect: found for effect, found in suspects.detected.items() if effect in present}
 
@@ -55,7 +55,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class Extension:
-    """The bare axis, then with each effect added in turn: those of the torque balance, then those beside it.
+    """The bare axis, then with one effect after another: those of the torque balance, then the others.
 
     Attributes:
         recording: the rows that every balance is fitted to.
@@ -84,7 +84,7 @@ class Extension:
 
     @cached_property
     def stages(self) -> tuple[Stage, ...]:
-        """The model after none, one, ... all of the effects, the nuisances of the recording beside each."""
+        """The model after none, one, ... all of the effects, each with the nuisances of the recording."""
         own, count = len(self.hypothesis.terms), len(self.names)
         parts = [replace(self, hypothesis=self.hypothesis.first(k), beside=()) for k in range(own)]
         parts += [replace(self, beside=self.beside[:k]) for k in range(len(self.beside))]
@@ -98,9 +98,9 @@ class Extension:
         return replace(self, beside=(*self.beside[: index - own], *self.beside[index - own + 1 :]))
 
     def occasional(self, index: int) -> bool:
-        """Whether an effect happens in one recording and not in another."""
+        """Whether an effect may occur in one recording and not in another."""
         return index < len(self.hypothesis.terms) and self.hypothesis.terms[index].effect.occasional
 
     def balance(self, events: bool) -> Balance:
-        """Torque balance of the whole; `events`: whether its events happen in every recording."""
+        """Torque balance with all effects; `events`: whether its events occur in every recording."""
         return Balance.of(self.whole.fitted).repeating(events)

@@ -1,4 +1,4 @@
-"""Held-out motion, by which additions are judged: none of the fits that are judged has seen it."""
+"""Held-out motion, by which additions are judged; the judged fits do not use it."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from bench.balance.rows import Rows
 from bench.diagnose.add.tracking import Recorded
 from bench.diagnose.recordings import Recordings
 
-#: Share of a recording without a holdout, at its end, that is kept from the fits that are judged.
+#: Share of a recording, at its end, that is held out if there is no holdout recording.
 HELD_OUT = 1.0 / 3.0
-#: Names of what is fitted, and of what judges.
+#: Names of fitted and of judging motion.
 RECORDING, FIRST_PART = "recording", "first two thirds of the recording"
 HOLDOUT, LAST_THIRD = "holdout", "last third of the recording"
 
@@ -24,7 +24,7 @@ class HeldOut:
         rows: their name.
         judge: rows they are judged by.
         recorded: the same for simulations.
-        seen: motion that a simulation may be fitted to.
+        seen: motion that simulations may be fitted to.
     """
 
     fitted: Rows
@@ -38,7 +38,7 @@ class HeldOut:
         """The holdout, or the last third of the recording.
 
         Args:
-            recordings: laid out.
+            recordings: of the diagnosis.
             trusted: whether the holdout is of this axis.
             events: whether the recording's events happen in the holdout too.
         """
@@ -55,7 +55,7 @@ class HeldOut:
 
 
 def _part(rows: Rows, split: float, late: bool) -> Rows:
-    """The rows before or after a time; what the filter mixes of both sides belongs to neither."""
+    """The rows before or after a time, without those where the filter mixes both sides."""
     smooth = rows.conditioning.filter
     away = smooth.margin * smooth.sample_period
     return rows.selected(lambda time: time >= split + away if late else time < split - away)

@@ -18,11 +18,11 @@ from bench.plant.model_file import StoredModel
 from bench.plant.mounting import Mounting
 from bench.rig.rig import Rig
 
-#: Bandwidth of the cascade that holds a model to a recording - rad/s - and the most that a model may need. On the
-#: shared cases the effects found lessen the gap by a median of 15 times at 10, 16 at 20, 14 at 40 rad/s, and at 20
-#: none falls away (docs/diagnose.md).
+#: Bandwidth of the cascade by which a model tracks a recording - rad/s -, and the largest that a model may need. On the
+#: shared cases the effects found reduce the gap by a median factor of 15 at 10, 16 at 20 and 14 at 40 rad/s; at 20 none
+#: fails to track (docs/diagnose.md).
 BANDWIDTH, MOST = 20.0, 100.0
-#: Speeds at which friction is asked for its slope, and the least of them, as a share of the top speed.
+#: Number of speeds at which the slope of friction is evaluated, and the lowest as share of the top speed.
 SPEEDS, SLOWEST = 400, 1e-3
 
 
@@ -31,7 +31,7 @@ def stored_model(fitted: Fit, beside: Sequence[Present], rig: Rig) -> StoredMode
 
     Args:
         fitted: J, K_w, K_0 and effects of the torque balance.
-        beside: effects that the torque balance does not hold.
+        beside: effects outside the torque balance.
         rig: of the axis.
 
     Raises:
@@ -54,19 +54,19 @@ def stored_model(fitted: Fit, beside: Sequence[Present], rig: Rig) -> StoredMode
 
 
 def present_of(effect: Effect, values: Mapping[str, float]) -> Present:
-    """An effect with those of the values that it has quantities for; what noise left beyond a bound is put onto it."""
+    """An effect with its quantities among the values; those that noise moved beyond a bound are set to it."""
     known = {quantity.name: quantity for quantity in effect.quantities}
     bounded = {key: float(np.clip(values[key], known[key].lower, known[key].upper)) for key in values if key in known}
     return Present.of(effect.name, bounded)
 
 
 def without_events(model: AxisModel) -> AxisModel:
-    """The axis in a recording in which its event does not happen."""
+    """The axis in a recording without its events."""
     return model.with_effects([present for present in model.effects if not present.effect.occasional])
 
 
 def holding_bandwidth(model: AxisModel, top_speed: float) -> float:
-    """Bandwidth that holds a model softly to a recording - rad/s.
+    """Bandwidth of the cascade by which a model tracks a recording - rad/s.
 
     Where friction falls as speed rises by c - N*m*s/rad -, the held axis J*s**2 + (K_v + K_w - c)*s + K_i runs away
     from the recording unless K_v = J*w exceeds c - K_w: small errors grow where the axis under its own drive was

@@ -1,8 +1,8 @@
-"""Refine a model by the error of its simulation, and keep that only if held-out motion bears it out.
+"""Refine a model by its simulation error, and keep the result only if it reduces the gap of held-out motion.
 
-One Gauss-Newton step is a bounded linear least-squares problem over the simulated velocities' derivatives, which run
-side by side: within the intervals of a regression the simulation is as good as linear. Regression first, simulation
-second, as in `bench.identify.refine`, where the figures stand.
+One Gauss-Newton step is a bounded linear least-squares problem over the derivatives of the simulated velocity, which
+are simulated in parallel: within the intervals of a regression the simulation is nearly linear. Regression first,
+simulation second, as in `bench.identify.refine`, which has the figures.
 """
 
 from __future__ import annotations
@@ -29,13 +29,11 @@ from bench.plant.track import measured_velocity
 from bench.statistics import NORMAL95
 from bench.trace.noise import white_noise
 
-#: Velocity gap of a model that lacks nothing, over the white noise of the recorded speed: at most this on the shared
-#: cases (docs/diagnose.md). A change below it shows nothing, and refining a model that is there cannot help.
+#: Largest velocity gap of a complete model on the shared cases, over the white noise of the recorded speed
+#: (docs/diagnose.md). Changes below it are insignificant, and refining such a model cannot help.
 NULL = 3.5
-#: Share by which the gap of held-out motion must fall for a refined model to be kept: what wins less is chance.
+#: Least relative reduction of the gap of held-out motion by a refined model; less is chance.
 WON = 0.02
-
-
 #: Step of a derivative, in standard errors; moves are bounded by the interval of 95 %.
 STEP = 0.5
 BASE = ("inertia", "viscous_friction_coefficient", "coulomb_friction")
@@ -43,12 +41,12 @@ BASE = ("inertia", "viscous_friction_coefficient", "coulomb_friction")
 
 @dataclass(frozen=True)
 class Refined:
-    """A model and what was named in it.
+    """A model with its effects and parameters.
 
     Attributes:
-        model: None where MuJoCo cannot have it.
+        model: None if MuJoCo cannot simulate it.
         effects, parameters: with the values of the model.
-        gap: velocity gap of held-out motion before and after it was refined - rad/s (m/s); None where it was not.
+        gap: velocity gap of held-out motion before and after refinement - rad/s (m/s); None if not refined.
     """
 
     model: StoredModel | None
@@ -58,10 +56,10 @@ class Refined:
 
 
 def refined(recordings: Recordings, stage: Stage, suspects: Suspects, held_out: HeldOut, gaps: VelocityGaps) -> Refined:
-    """The quantities of a model with their intervals, refined where that can matter and helps.
+    """The quantities of a model with their intervals, refined if that is possible and helps.
 
-    It can matter where something was added, nothing is left unexplained that the values would then take up, and the
-    gap stands above what a perfect model leaves.
+    It is possible if effects were added, no unexplained remainder would bias the values, and the gap exceeds that of a
+    complete model.
     """
     effects, parameters = named(recordings, stage.fitted, stage.detected(suspects))
     plain = Refined(stage.model, effects, parameters, None)
@@ -77,7 +75,7 @@ def refined(recordings: Recordings, stage: Stage, suspects: Suspects, held_out: 
 
 
 def refined_model(stored: StoredModel, numbers: Numbers, held_out: HeldOut, gaps: VelocityGaps) -> Refined | None:
-    """The model as simulation of seen motion would have it; None where that cannot be had."""
+    """The model refined on the motion that is not held out; None if that fails."""
     values = stepped(stored, numbers, held_out.seen, gaps)
     if values is None:
         return None
@@ -91,10 +89,10 @@ def refined_model(stored: StoredModel, numbers: Numbers, held_out: HeldOut, gaps
 
 @dataclass(frozen=True)
 class Numbers:
-    """Values of a model that a regression left uncertain.
+    """The free values of a model.
 
     Attributes:
-        effects, parameters: as named: quantities with intervals; of the parameters the first three.
+        effects, parameters: as named, with intervals; of the parameters the first three.
         places: (effect's index, quantity) of each free one, (-1, name) of J, K_w and K_0.
         values, errors: (p,) and their standard errors.
     """
@@ -107,7 +105,7 @@ class Numbers:
 
     @classmethod
     def of(cls, effects: Sequence[NamedEffect], parameters: Mapping[str, Parameter]) -> Numbers:
-        """The free numbers of what was named."""
+        """The free values of named effects and parameters."""
         free = [((-1, name), parameters[name]) for name in list(parameters)[:3]]
         for index, effect in enumerate(effects):
             fixed = effect.effect.fixed_in_simulation
@@ -118,7 +116,7 @@ class Numbers:
         return cls(tuple(effects), parameters, tuple(place for place, _ in free), values, errors)
 
     def model(self, stored: StoredModel, values: Array) -> StoredModel:
-        """The model with other values; InputError where it cannot have them."""
+        """The model with other values; InputError if they are not allowed."""
         moved = self.named(values)
         base = [max(p.value, 0.0) for p in list(moved[1].values())[:3]]
         if not base[0]:
@@ -128,7 +126,7 @@ class Numbers:
         return replace(stored, model=replace(stored.model, parameters=parameters, effects=present))
 
     def named(self, values: Array) -> tuple[list[NamedEffect], dict[str, Parameter]]:
-        """Effects and parameters with other values; intervals keep their width, as both read the same noise."""
+        """Effects and parameters with other values; intervals keep their width, as the noise is the same."""
         parameters = dict(self.parameters)
         effects = [dict(effect.parameters) for effect in self.effects]
         for (index, key), value in zip(self.places, values.tolist(), strict=True):
@@ -141,13 +139,13 @@ class Numbers:
 
 
 def stepped(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: VelocityGaps) -> Array | None:
-    """Values (p,) whose simulation comes closest to a recording; None where a simulation on the way is not to be had.
+    """Values (p,) with the least simulation error on a recording; None if a simulation fails.
 
     Args:
         stored: the model as the regression has it.
-        numbers: that may move.
+        numbers: the free values.
         recorded: the recording.
-        gaps: that simulates.
+        gaps: simulates it.
     """
     moved = numbers.values + np.diag(STEP * numbers.errors)
     try:

@@ -1,4 +1,4 @@
-"""Whether the holdout is a recording of the same axis; where it is not, it proves nothing."""
+"""Whether the holdout is a recording of the same axis; if not, it cannot validate the model."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from bench.balance.quantities import uncertain
 from bench.balance.rows import Rows
 from bench.statistics import NORMAL95
 
-#: What J, K_w and K_0 of one axis may differ by from recording to recording, as factor, before that is told.
-TOLD = (1.01, 1.3, 1.1)
-#: The same from day to day, before it is another axis: inertia by the motor's constant, a few percent between cold and
-#: warm magnets; dry and viscous friction by the lubricant's temperature. On the shared cases J of the two recordings of
-#: an axis agrees within 0.6 %, K_0 within 15 %; of two axes only one pair in 39 within 2 %.
+#: Factors by which J, K_w and K_0 of one axis may differ between recordings without a warning.
+REPORTED = (1.01, 1.3, 1.1)
+#: Factors beyond which it is another axis. From day to day inertia varies with the torque constant, by a few percent
+#: between cold and warm magnets, dry and viscous friction with the temperature of the lubricant. On the shared cases J
+#: of two recordings of an axis agrees within 0.6 %, K_0 within 15 %; of two axes only one pair in 39 within 2 %.
 FOREIGN = (1.03, 3.0, 1.5)
-#: Standard errors beyond that.
+#: Standard errors in addition to these factors.
 SURE = 3.0
-#: Share of the holdout's torque, and multiple of the recording's, that the found model may leave however it is fitted.
+#: Largest residual of the model refitted to the holdout: as share of its torque, and as multiple of the recording's.
 LEFT, MORE = 0.2, 3.0
-#: Standard error of the ratio of inertias above which nothing can be said.
+#: Standard error of the ratio of inertias above which the comparison is inconclusive.
 VAGUE = 0.1
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A quantity that differs between recording and holdout by more than errors and days make.
+    """A quantity that differs between recording and holdout by more than errors and daily variation.
 
     Attributes:
-        quantity: by the name of the contract.
-        recording, holdout: what each tells of it, with the effects that were found.
+        quantity: its name.
+        recording, holdout: its estimate from each, with the effects that were found.
     """
 
     quantity: str
@@ -44,13 +44,13 @@ class Difference:
 
 @dataclass(frozen=True)
 class SameAxis:
-    """What the holdout says of whose recording it is.
+    """Whether the holdout is of the same axis.
 
     Attributes:
-        same: None where nobody can tell: without a holdout, with a vague one, or where friction is another but may be
-            the axis' own in other conditions.
-        differs: in which quantities.
-        warnings: that it is of another axis.
+        same: None if unknown: without a holdout, with an inconclusive one, or if only friction differs, which other
+            conditions may explain.
+        differs: quantities that differ.
+        warnings: about another axis.
     """
 
     same: bool | None
@@ -59,12 +59,12 @@ class SameAxis:
 
 
 def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> SameAxis:
-    """Hold J, K_w and K_0 of recording and holdout against each other, and whether the found model fits both.
+    """Compare J, K_w and K_0 of recording and holdout, and test whether the model fits both.
 
-    The found effects are fitted to both recordings; an event belongs to one of them and is left out.
+    Its effects are fitted to both recordings; events belong to one of them and are left out.
 
     Args:
-        fitted: what was found in the recording.
+        fitted: the model of the recording.
         other: the holdout.
         units: of J, K_w and K_0 by their names.
     """
@@ -74,22 +74,22 @@ def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> Same
     here, there = fit(fitted.rows, lasting), fit(other, lasting)
     own, others = uncertain(here).base(units), uncertain(there).base(units)
     differs, apart, vague = [], [], True
-    for k, (name, spoken) in enumerate(zip(units, ("inertia", "viscous friction", "Coulomb friction"), strict=True)):
+    for k, (name, label) in enumerate(zip(units, ("inertia", "viscous friction", "Coulomb friction"), strict=True)):
         if not own[name].value > 0.0:
             continue
         ratio = others[name].value / own[name].value
         error = float(np.hypot(own[name].std_error * ratio, others[name].std_error)) / own[name].value
         vague = vague and not (k == 0 and error < VAGUE)
-        if not _within(TOLD[k], ratio, error):
+        if not _within(REPORTED[k], ratio, error):
             differs.append(Difference(name, own[name], others[name]))
         if not _within(FOREIGN[k], ratio, error):
-            apart.append(f"{ratio:.3g} times the {spoken} (± {NORMAL95 * error:.2g})")
+            apart.append(f"{ratio:.3g} times the {label} (± {NORMAL95 * error:.2g})")
     left, least = _left(there), _left(here)
     if left > max(LEFT, MORE * least):
         apart.append(f"{left:.0%} of its torque unexplained by the effects found, {least:.1%} of the recording's")
     if apart:
-        told = f"the holdout recording has {' and '.join(apart)}: another axis? It was not used as proof"
-        return SameAxis(False, tuple(differs), (told,))
+        message = f"the holdout recording has {' and '.join(apart)}: another axis? It was not used as proof"
+        return SameAxis(False, tuple(differs), (message,))
     return SameAxis(None if vague or differs else True, tuple(differs))
 
 

@@ -1,4 +1,4 @@
-"""Velocity gap: recorded velocity less that of models held softly to the recording."""
+"""Velocity gap: recorded velocity less that of a model that tracks the recording with low gains."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from bench.plant.track_effects import Held, track_models
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-#: What a model leaves along a recording, kept for every addition: half the memory, and a sum of none.
+#: Type of residuals kept for every addition: half the memory, and never summed.
 Left = NDArray[np.float32]
 
 
 @dataclass(frozen=True)
 class Recorded:
-    """A recording to hold models to.
+    """A recording for models to track.
 
     Attributes:
         name: of it.
         trace: the recording.
         effort: (n,) - N*m (N).
         judged: (n,) samples over which the gap is taken.
-        events: whether the model's events happen in it.
+        events: whether the model's events occur in it.
     """
 
     name: str
@@ -49,7 +49,7 @@ class Recorded:
         until: float = np.inf,
         events: bool = True,
     ) -> Recorded:
-        """A recording whose gap counts from a time on until another - s."""
+        """A recording whose gap is taken from `since` until `until` - s."""
         judged = (trace.time >= since) & (trace.time < until) & in_stretches(trace)
         return cls(name, trace, rig.net_effort(trace)[0], judged, events)
 
@@ -58,16 +58,16 @@ class Recorded:
         return (simulated - measured_velocity(self.trace))[self.judged]
 
     def left(self, simulated: Array) -> Left:
-        """Measured less simulated velocity at every sample, as it is kept to be shown - rad/s (m/s) - (n,)."""
+        """Measured less simulated velocity at every sample, for display - rad/s (m/s) - (n,)."""
         return (measured_velocity(self.trace) - simulated).astype(np.float32)
 
     @property
     def varies(self) -> float:
-        """RMS deviation of measured velocity from its mean: a simulation further off follows nothing - rad/s (m/s)."""
+        """Standard deviation of the measured velocity: a larger gap means no tracking at all - rad/s (m/s)."""
         return float(np.std(measured_velocity(self.trace)[self.judged]))
 
     def holding(self, stored: StoredModel, inertia: float) -> Held:
-        """A model to be held to it by a cascade laid out for an inertia - kg*m**2 (kg)."""
+        """A model that tracks it by a cascade designed for an inertia - kg*m**2 (kg)."""
         model = stored.model if self.events else without_events(stored.model)
         return Held(model, self.trace, self.effort, stored.misalignment, inertia)
 
@@ -81,8 +81,8 @@ class VelocityGaps:
     """Velocity gaps of models along recordings, each simulated once.
 
     Args:
-        bandwidth: of the cascade that holds them - rad/s.
-        inertia: that it is laid out for - kg*m**2 (kg).
+        bandwidth: of the tracking cascade - rad/s.
+        inertia: for which the cascade is designed - kg*m**2 (kg).
     """
 
     def __init__(self, bandwidth: float, inertia: float) -> None:
@@ -91,7 +91,7 @@ class VelocityGaps:
         self._left: dict[tuple[object, ...], Left] = {}
 
     def simulate(self, pairs: Iterable[tuple[Stage, Recorded]]) -> None:
-        """Simulate models along recordings side by side, so far as that is not done."""
+        """Simulate models along recordings in parallel, unless done before."""
         asked = {self._key(*pair): pair for pair in pairs}
         new = {key: pair for key, pair in asked.items() if key not in self._known}
         self._known |= dict.fromkeys(new, float("nan"))

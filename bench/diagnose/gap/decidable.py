@@ -1,4 +1,4 @@
-"""Whether a recording lets a diagnosis decide at all: long enough, fast enough and loud enough."""
+"""Whether a recording is sufficient for a diagnosis: in length, motion and signal-to-noise ratio."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from bench.rig.rig import Rig
 from bench.trace.filter import LEAST_WIDTH
 from bench.trace.trace import Trace
 
-#: Independent rows of clear motion. Of the shared cases cut short, those with 25 to 70 named an effect that was not
-#: there in 5 of 11, those with 90 to 130 in 1 of 13 (first 0.2, 0.4 and 0.8 s of every other one).
+#: Least number of independent rows of clear motion. Of shortened shared cases, those with 25 to 70 named an absent
+#: effect in 5 of 11, those with 90 to 130 in 1 of 13 (first 0.2, 0.4 and 0.8 s of every other one).
 INDEPENDENT = 100
-#: An effect this many times smaller than the torque that moves the axis is small, however little friction there is.
+#: An effect this many times smaller than the torque of the motion is small, however little friction there is.
 SMALL = 10.0
-#: Share of the acceleration's power that may be noise. Least squares loses as much of the inertia to it: 27 % of J at
-#: 0.27, 4 % at 0.04; the shared cases have 6e-5 at most.
+#: Largest share of noise in the acceleration's power. Least squares underestimates inertia by it: by 27 % at 0.27, by 4
+#: % at 0.04; the shared cases have 6e-5 at most.
 NOISY = 0.1
 
 WHAT = "whether the model lacks an effect"
 
 
 def require_samples(trace: Trace) -> None:
-    """UndeterminedError where not even the narrowest filter would leave enough independent rows of the recording."""
+    """Raise UndeterminedError if even the narrowest filter leaves too few independent rows of the recording."""
     needed = math.ceil(INDEPENDENT * 2.0 * math.sqrt(math.pi) * LEAST_WIDTH)
     if len(trace) < needed:
         raise UndeterminedError(
@@ -44,7 +44,7 @@ def require_samples(trace: Trace) -> None:
 
 
 def require_another(trace: Trace, holdout: Trace) -> None:
-    """InputError where the holdout is the recording itself."""
+    """Raise InputError if the holdout is the recording itself."""
     if len(trace) == len(holdout) and all(
         name in holdout and np.array_equal(values, holdout[name]) for name, values in trace.signals.items()
     ):
@@ -70,7 +70,7 @@ def require_decidable(trace: Trace, rig: Rig, rows: Rows) -> Fit:
 
 
 def left_open(rows: Rows, kind: AxisKind) -> list[str]:
-    """A warning of what a motion in one direction leaves open; what else it tells stays told."""
+    """A warning of what motion in one direction does not determine."""
     if not rows.scope.one_way:
         return []
     offset, friction = kind.parameter(OFFSET), kind.parameter(COULOMB)
@@ -82,7 +82,7 @@ def left_open(rows: Rows, kind: AxisKind) -> list[str]:
 
 
 def impacts(fitted: Fit, unit: str) -> list[str]:
-    """A warning of the rows that hang on the instants of impacts, if the fit was judged without some."""
+    """A warning if rows that depend on the instants of impacts were excluded from the verdict."""
     share = 1.0 - float(fitted.determined.mean())
     if share == 0.0:
         return []
@@ -110,12 +110,12 @@ def _require_length(trace: Trace, rows: Rows) -> None:
 
 
 def smallest_visible(fitted: Fit, rules: Rules) -> float:
-    """RMS torque of the smallest effect that noise would let be found - N*m (N)."""
+    """RMS torque of the smallest effect that could be found above noise - N*m (N)."""
     return math.sqrt(rules.significant.threshold(fitted, 1) / fitted.effort.size)
 
 
 def require_audible(base: Fit, unit: str, kind: AxisKind) -> None:
-    """UndeterminedError where an effect as large as friction, or a tenth of the torque, would drown in the noise.
+    """Raise UndeterminedError if noise would hide an effect as large as friction, or as a tenth of the torque.
 
     Args:
         base: inertia, viscous and Coulomb friction fitted to the recording.

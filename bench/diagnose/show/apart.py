@@ -1,4 +1,4 @@
-"""How several recordings of a diagnosis differ: the model that was found, fitted to each of them alone."""
+"""Differences between several recordings of a diagnosis: the model found, fitted to each of them alone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bench.balance.parameter import Parameter
 from bench.balance.quantities import uncertain
 from bench.diagnose.recordings import Recordings
 from bench.errors import UndeterminedError
-from bench.identify.between import ALARM, between, excess, told_apart, widened
+from bench.identify.between import ALARM, between, excess, spread_warning, widened
 from bench.identify.determined import left_open, require_determined
 from bench.identify.estimate import Alone, Between
 from bench.identify.load_inertia import load_inertia
@@ -38,7 +38,7 @@ class Apart:
 
 
 def apart(recordings: Recordings, whole: Fit, parameters: Mapping[str, Parameter]) -> Apart:
-    """Hold the recordings against each other.
+    """Compare the recordings.
 
     Args:
         recordings: laid out.
@@ -58,7 +58,7 @@ def apart(recordings: Recordings, whole: Fit, parameters: Mapping[str, Parameter
         found[name] = widened(found[name], differ, own)
         spread[name] = between(own)
         if differ.chance < ALARM / len(recordings.base_units):
-            warnings.append(told_apart(name, own))
+            warnings.append(spread_warning(name, own))
     found |= load_inertia(found, recordings.rig)
     return Apart(found, alone, spread, tuple(warnings))
 
@@ -80,7 +80,7 @@ def _each(recordings: Recordings, whole: Fit) -> tuple[Alone, ...]:
             require_determined(equations, kind)
         except UndeterminedError as refusal:
             reason = str(refusal)
-        told = uncertain(fit(rows, whole.hypothesis)).base(recordings.base_units)
+        found_alone = uncertain(fit(rows, whole.hypothesis)).base(recordings.base_units)
         unknown = {kind.parameter(term) for term in left_open(equations, kind)}
-        found.append(Alone(origin, {name: one for name, one in told.items() if name not in unknown}, reason))
+        found.append(Alone(origin, {name: one for name, one in found_alone.items() if name not in unknown}, reason))
     return tuple(found)

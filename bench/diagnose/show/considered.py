@@ -1,4 +1,4 @@
-"""Why each effect of the catalogue was taken or was not: what search, doubts and held-out motion said of it."""
+"""Why each effect of the catalogue was accepted or rejected, by search, doubts and held-out motion."""
 
 from __future__ import annotations
 
@@ -18,28 +18,28 @@ from bench.effects.effect import Effect
 
 @dataclass(frozen=True)
 class Trial:
-    """A round of the search: what was fitted, what was tried beside it, and what was taken up; None in the last."""
+    """A round of the search: the fit, the effects tried, and the one accepted; None in the last."""
 
     beside: Fit
     candidates: tuple[Candidate, ...]
     taken: Effect | None
 
     def share(self, effect: Effect) -> float | None:
-        """Of the squared gap that an effect would take; None if it was not tried."""
+        """Share of the squared gap that an effect explains; None if it was not tried."""
         gains = [candidate.gain for candidate in self.candidates if candidate.term.effect is effect]
         return max(0.0, *gains) / max(self.beside.squares, 1e-300) if gains else None
 
 
 def considered(recordings: Recordings, suspects: Suspects, added: Added) -> tuple[Considered, ...]:
-    """All effects: those taken in the order in which they were added, then the others, what explains most first."""
+    """All effects: those accepted in the order of addition, then the others by the share they explain."""
     trials = trials_of(suspects.searched)
     named = {one.effect: one for one in added.refined.effects}
     found = []
     for effect in catalogue().values():
         shares = [share for trial in trials if (share := trial.share(effect)) is not None]
-        told = _spoken(named[effect]) if effect in named else _against(effect, recordings, suspects, added, trials)
+        reason = _evidence(named[effect]) if effect in named else _against(effect, recordings, suspects, added, trials)
         last = trials[-1].share(effect) if len(trials) > 1 and effect not in named else None
-        found.append(Considered(effect, effect in named, shares[0] if shares else None, last, told))
+        found.append(Considered(effect, effect in named, shares[0] if shares else None, last, reason))
     order = list(named)
     taken = sorted((one for one in found if one.taken), key=lambda one: order.index(one.effect))
     return (*taken, *sorted((one for one in found if not one.taken), key=lambda one: -(one.alone or 0.0)))
@@ -67,7 +67,7 @@ def _against(effect: Effect, recordings: Recordings, suspects: Suspects, added: 
 
 
 def trials_of(searched: Searched) -> list[Trial]:
-    """Rounds of a search, the last one without an effect taken up."""
+    """Rounds of a search; the last one accepts no effect."""
     found = []
     for before, step in zip(searched.steps, searched.steps[1:], strict=False):
         new = [term.effect for term in step.fitted.terms if term.effect not in {t.effect for t in before.fitted.terms}]
@@ -77,6 +77,6 @@ def trials_of(searched: Searched) -> list[Trial]:
     return found
 
 
-def _spoken(named: NamedEffect) -> str:
-    """The figures that speak for an effect."""
+def _evidence(named: NamedEffect) -> str:
+    """The figures that support an effect."""
     return ", ".join(f"{key.replace('_', ' ')} {value:.3g}" for key, value in named.evidence.items()) or "named"

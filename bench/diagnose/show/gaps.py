@@ -1,4 +1,4 @@
-"""Show the gap shrink: torque and velocity, on both recordings, after each effect that was kept."""
+"""Gaps of torque and velocity, on both recordings, after each accepted effect."""
 
 from __future__ import annotations
 
@@ -43,19 +43,19 @@ def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
         Shrunk(
             stage.effect,
             tuple(rms(course.torque_left[k]) for course in shown),
-            tuple(_rms_told(course.velocity_left[k]) for course in shown),
+            tuple(_rms_known(course.velocity_left[k]) for course in shown),
         )
         for k, stage in enumerate(added.extension.stages)
     ]
 
 
-def _rms_told(left: NDArray[np.float32] | None) -> float:
-    """RMS where a model says something."""
+def _rms_known(left: NDArray[np.float32] | None) -> float:
+    """RMS over the samples that a model covers; nan without a model."""
     return math.nan if left is None else rms(left[np.isfinite(left)].astype(np.float64))
 
 
 def profiles(bare: Fit, whole: Fit, kind: AxisKind, unit: str, current: Array | None) -> tuple[Profile, ...]:
-    """The gap over each coordinate before and after, what accounts for most of the first gap first.
+    """The gap over each coordinate before and after, by the share of the first gap it explains.
 
     Args:
         bare, whole: fits without and with all effects, of the same rows.

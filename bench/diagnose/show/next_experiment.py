@@ -1,13 +1,13 @@
-"""The motion that tells two explanations apart best: both models are simulated along every profile the rig can follow.
+"""The motion that best distinguishes two explanations: both models are simulated along every profile of the rig.
 
-Two explanations remain where names are ambiguous, where a rival leaves hardly more of the torque than what was named,
-or where motion in one direction does not part dry friction from a constant torque. What a profile shows is the torque
-that one model would miss on the other's recording,
+Two explanations remain if names are ambiguous, if a rival leaves hardly more of the torque than the named effect, or if
+motion in one direction does not separate dry friction from a constant torque. The criterion is the torque that one
+model would miss on the other's recording,
 
     e = dM - J*d(dw)/dt - K_w*dw,
 
-dM, dw - differences of reported torque and velocity under the same drive - through the diagnosis' filter, less what
-other values of J, K_w, K_0 and a shift in time would take up; against the noise floor of the recording at hand.
+dM, dw - differences of reported torque and velocity under the same drive - through the filter of the diagnosis, less
+what other values of J, K_w, K_0 and a shift in time would absorb, over the noise floor of the recording.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ from bench.plant.sensing import reported_states
 from bench.plant.track import measured_velocity
 from bench.trace.filter import GaussianFilter
 
-#: Least duration of a recording that tells anything - s: a shorter profile is repeated.
+#: Least duration of a recording - s: a shorter profile is repeated.
 LONG_ENOUGH = 4.0
-#: RMS of what remains with a rival over that with what was named, below which both remain.
+#: Ratio of residuals, with a rival to with the named effect, below which both explanations remain.
 NEARLY = 1.1
-#: Separation, in noise floors, below which an experiment tells nothing.
+#: Least separation of an experiment, in noise floors.
 TELLS = 3.0
-#: Tick of the drive at least - s: profiles are compared, not recorded.
+#: Shortest tick of the simulated drive - s: profiles are only compared.
 COARSEST_TICK = 0.5e-3
-#: Share of the top speed below which the direction of motion is in doubt, and samples of clear direction needed.
+#: Share of the top speed below which the direction is uncertain, and least number of samples of certain direction.
 CLEAR, LEAST = 0.01, 50
 
 
@@ -60,10 +60,10 @@ class NextExperiment:
         speed, acceleration: highest of it - rad/s, rad/s**2 (m/s, m/s**2).
         duration: of one run - s.
         repetitions: of it, one after the other.
-        tells_apart: what was named and its rival.
+        tells_apart: the named effect and its rival.
         separation: of the two, over the noise floor.
         reason: why it is needed.
-        motion: all of it, repetitions included, at a tick that is quick to simulate.
+        motion: with repetitions, at a coarse tick.
     """
 
     profile: str
@@ -87,7 +87,7 @@ class Rival:
 
 
 def propose(recordings: Recordings, suspects: Suspects, added: Added) -> NextExperiment | None:
-    """The experiment for the first two explanations that one can tell apart; None where one explanation remains."""
+    """The experiment for the first two explanations that can be distinguished; None if only one remains."""
     stored = added.refined.model
     if stored is None or recordings.rig.drive is None:
         return None
@@ -126,7 +126,7 @@ def rivals(recordings: Recordings, suspects: Suspects, added: Added, model: Axis
 
 
 def nearly_as_good(recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel) -> Iterator[Rival]:
-    """Candidates of the search in the place of the effect taken up last that leave hardly more of the torque."""
+    """Candidates that, instead of the effect accepted last, leave hardly more of the torque."""
     whole, searched = added.extension.whole.fitted, suspects.searched
     if not whole.terms or whole.hypothesis != searched.last.hypothesis:
         return
@@ -147,7 +147,7 @@ def nearly_as_good(recordings: Recordings, suspects: Suspects, added: Added, mod
 
 
 def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Iterator[Rival]:
-    """Dry friction against what looks like it in one direction, `dry` together - N*m (N)."""
+    """Dry friction against effects that look like it in one direction, `dry` in total - N*m (N)."""
     direction = 1.0 if float(np.mean(measured_velocity(recordings.trace))) > 0.0 else -1.0
     for effect in catalogue().values():
         values = effect.instead_of_dry_friction(direction * dry)
@@ -160,7 +160,7 @@ def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Itera
 
 
 def motions(recordings: Recordings, model: AxisModel) -> list[tuple[str, References]]:
-    """Every profile inside the limits of the rig, at a tick that is quick to simulate."""
+    """Every profile within the limits of the rig, at a coarse tick."""
     tick = max(Cascade.from_rig(recordings.rig).control_period, COARSEST_TICK)
     limits = MotionLimits.from_rig(recordings.rig, model.parameters, tick)
     # a rig need not state a speed; what was recorded is one that the axis has survived

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from bench.balance.fit import Fit
 from bench.balance.parameter import Parameter
 from bench.balance.stored import Balance
-from bench.checks.check import Check
 from bench.diagnose.add.add import Added
 from bench.diagnose.add.same_axis import SameAxis
 from bench.diagnose.found import Considered, Course, Gap, NamedEffect, Profile, Rejected, Shrunk
@@ -22,6 +21,7 @@ from bench.diagnose.show.next_experiment import NextExperiment, propose
 from bench.diagnose.show.suspicions import suspicions
 from bench.diagnose.show.verdict import Shown, verdict
 from bench.diagnose.where.where import Where, where
+from bench.gate.check import Check
 from bench.identify.estimate import Alone, Between
 from bench.plant.model_file import StoredModel
 

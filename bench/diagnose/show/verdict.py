@@ -1,7 +1,7 @@
-"""The verdict, bound by everything that is shown: what speaks against a model that explains all is listed with it.
+"""The verdict, with every objection to a model that claims to explain everything.
 
-Each objection is one object that says why; the list of them below is the policy. Its thresholds were read from every
-fifth case of the blind set with all effects in the catalogue (`python -m tests.blind.margins`).
+Each objection is one object that gives its reason; OBJECTIONS is the policy. The thresholds are measured on every fifth
+case of the blind set with all effects in the catalogue (`python -m tests.blind.margins`).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from bench.diagnose.recordings import Recordings
 
 @dataclass(frozen=True)
 class Shown:
-    """All that a diagnosis shows.
+    """What a diagnosis shows, as far as the verdict depends on it.
 
     Attributes:
         recordings, suspects, added: as found.
@@ -44,12 +44,12 @@ class Shown:
 
     @property
     def effects(self) -> list[NamedEffect]:
-        """Those named."""
+        """The named effects."""
         return self.added.refined.effects
 
     @property
     def friction(self) -> dict[str, tuple[Parameter, float]]:
-        """Viscous and Coulomb friction, each with its torque at a strength of one - RMS over the rows."""
+        """Viscous and Coulomb friction, each with its RMS torque at unit strength."""
         kind, columns = self.recordings.rig.axis_kind, self.whole.columns
         names = {VISCOUS: 1, COULOMB: 2}
         return {
@@ -59,16 +59,16 @@ class Shown:
 
 
 class Objection(Protocol):
-    """What speaks against a model that explains all."""
+    """An objection to a model that explains everything."""
 
     def against(self, shown: Shown) -> str:
-        """What it has to say; empty if nothing."""
+        """The reason, in one line; empty if there is none."""
         ...
 
 
 @dataclass(frozen=True)
 class Remains:
-    """What is left of the torque stands clearly above noise."""
+    """The torque residual is clearly above noise."""
 
     def against(self, shown: Shown) -> str:
         """The multiple of the floor."""
@@ -79,7 +79,7 @@ class Remains:
 
 @dataclass(frozen=True)
 class Unfinished:
-    """A search that a limit ended has not tried everything, and a name that was not to be tried was found missing."""
+    """The search ended at a limit, or found an effect that was excluded."""
 
     def against(self, shown: Shown) -> str:
         """What ended it."""
@@ -89,7 +89,7 @@ class Unfinished:
 
 @dataclass(frozen=True)
 class MovesWorse:
-    """A model that explains torque moves at least as the bare axis does: more than noise makes of it is worse."""
+    """The model moves worse than the bare axis, by more than noise."""
 
     def against(self, shown: Shown) -> str:
         """The gaps, of the recording that shows it first."""
@@ -102,7 +102,7 @@ class MovesWorse:
 
 @dataclass(frozen=True)
 class Undetermined:
-    """A quantity whose interval is wider than itself explains nothing: the recording does not tell it.
+    """A quantity is undetermined: its interval is wider than its value.
 
     A phase is wide if it may be anywhere in its turn, an instant if it may be anywhere in the recording. Friction as
     wide counts where the torque that it leaves open is more than noise.
@@ -117,29 +117,29 @@ class Undetermined:
             for quantity in named.effect.quantities:
                 found = named.parameters.get(quantity.name)
                 itself = np.pi if quantity.angle else float(time[-1] - time[0]) if quantity.instant else None
-                if found is not None and half(found) > (abs(found.value) if itself is None else itself):
-                    return f"{named.name}: {_told(quantity.name, found)} is not determined"
+                if found is not None and found.half_width > (abs(found.value) if itself is None else itself):
+                    return f"{named.name}: {_with_interval(quantity.name, found)} is not determined"
         for name, (found, torque) in shown.friction.items():
-            if half(found) > abs(found.value) and half(found) * torque > shown.torque.noise_floor:
-                return f"{_told(name, found)} is not determined"
+            if found.half_width > abs(found.value) and found.half_width * torque > shown.torque.noise_floor:
+                return f"{_with_interval(name, found)} is not determined"
         return ""
 
 
 @dataclass(frozen=True)
 class NegativeFriction:
-    """Friction resists: where it comes out negative by more than noise, something else is in it."""
+    """Friction is negative by more than noise, so it includes something else."""
 
     def against(self, shown: Shown) -> str:
         """Which one."""
         for name, (found, torque) in shown.friction.items():
             if found.value < 0.0 and (found.ci95[1] < 0.0 or -found.value * torque > shown.torque.noise_floor):
-                return f"{_told(name, found)} is negative"
+                return f"{_with_interval(name, found)} is negative"
         return ""
 
 
 @dataclass(frozen=True)
 class HoldoutApart:
-    """What was found has to hold on the holdout too.
+    """The model does not hold on the holdout.
 
     Attributes:
         most: torque gap of the holdout over that of the recording, noise at least. Of the blind set's cases that are
@@ -149,7 +149,7 @@ class HoldoutApart:
     most: float = 3.0
 
     def against(self, shown: Shown) -> str:
-        """How far it stands apart."""
+        """How far the holdout is off."""
         gap = shown.torque
         if gap.holdout is None or gap.identify is None:
             return ""
@@ -171,17 +171,12 @@ OBJECTIONS: tuple[Objection, ...] = (
 
 
 def verdict(shown: Shown) -> tuple[str, list[str]]:
-    """What the diagnosis comes to, and what speaks against its being all."""
-    against = [said for objection in OBJECTIONS if (said := objection.against(shown))]
+    """The verdict, and the objections that it rests on."""
+    against = [objected for objection in OBJECTIONS if (objected := objection.against(shown))]
     if against:
         return "unexplained_remainder", against
     return ("explained" if shown.effects else "nothing_missing"), []
 
 
-def half(found: Parameter) -> float:
-    """Half of the interval of 95 % - the parameter's unit."""
-    return 0.5 * (found.ci95[1] - found.ci95[0])
-
-
-def _told(name: str, found: Parameter) -> str:
-    return f"{name.replace('_', ' ')} ({found.value:.3g} ± {half(found):.2g} {found.unit})"
+def _with_interval(name: str, found: Parameter) -> str:
+    return f"{name.replace('_', ' ')} ({found.value:.3g} ± {found.half_width:.2g} {found.unit})"

@@ -1,4 +1,4 @@
-"""Where the gap sits: the share of its variance that each coordinate accounts for, without assuming any effect."""
+"""Where the gap is: the share of its variance that each coordinate explains, without assuming any effect."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.balance.fit import Fit
 
-#: Bins of a coordinate, and rows that a bin needs.
+#: Number of bins of a coordinate, and least number of rows in a bin.
 BINS, LEAST = 48, 12
 
 
 @dataclass(frozen=True)
 class Where:
-    """One coordinate's account of the gap.
+    """Share of the gap that one coordinate explains.
 
     Attributes:
         coordinate: position velocity acceleration current time direction frequency reversal.
-        region: bounds of the bins that hold most of what it accounts for - unit.
+        region: bounds of the bins with most of it - unit.
         unit: of the region.
         share: of the gap's variance, 0 to 1.
         centres, means: bins and the gap's mean in each - unit, N*m (N) - for the plot.
@@ -42,9 +42,9 @@ class Coordinate:
 
     Attributes:
         name: as `Where` has it.
-        values: by which rows are put into bins (m,).
-        unit: of what a bin is called by.
-        called: by what a bin is called where that is noisier than what it is made of, (m,); None if by its values.
+        values: by which rows are sorted into bins (m,).
+        unit: of the labels of bins.
+        called: values that label the bins, if they are noisier than those that sort them (m,); None: the same.
     """
 
     name: str

@@ -25,7 +25,7 @@ from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
-if TYPE_CHECKING:  # 0.2 s, which nobody pays who does not simulate
+if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 #: Contact of a gear whose own is not known: natural frequency against the two inertias - rad/s - and damping ratio.
@@ -75,7 +75,7 @@ class Backlash(Mechanism):
         return strengths[0]
 
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array:
-        """The load hears nothing of it."""
+        """The load does not follow it."""
         return -np.ones_like(omega)
 
     def open_torque(self, fitted: Fitted, index: int) -> Array:

@@ -6,7 +6,7 @@ Source: P. J. Huber, E. M. Ronchetti, Robust Statistics, 2nd ed., 2009, ch. 7.
 
 A softer contact looks like a wider gap, and each impact errs by its own instant: a ridge along which the likelihood is
 rough, so that its curvature at the top tells nothing of how far the shape is open. What tells is how the likeliest
-shape moves when stretches of the recording are drawn anew with replacement (block bootstrap).
+shape moves when stretches of the recording are resampled with replacement (block bootstrap).
 Source: B. Efron, R. J. Tibshirani, An Introduction to the Bootstrap, 1993, sec. 8.6.
 """
 

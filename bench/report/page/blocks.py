@@ -1,10 +1,11 @@
-"""What a page is made of. A page is data: kept beside its HTML, it is made anew from there (`bench report`).
+"""The blocks of a page. A page is data, stored with its HTML, which can be regenerated from it (`bench report`).
 
 All text in it is text: a name from a file is shown, whatever it holds, and never obeyed.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -223,6 +224,11 @@ class Answer(Block):
 
     question: str
     answer: str
+
+
+def answered(answers: Mapping[str, str]) -> tuple[Answer, ...]:
+    """Questions with their answers, as a page lists them."""
+    return tuple(Answer(question=question, answer=answer) for question, answer in answers.items())
 
 
 class Page(Block):

@@ -1,4 +1,4 @@
-"""A page in a folder: `report.html`, and `report.json`, from which it is made anew."""
+"""A page in a folder: `report.html`, and `report.json`, from which it can be regenerated."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def write_html(path: Path, page: Page) -> None:
 
 
 def rebuild(folders: list[Path], script: Path | None = None) -> list[Path]:
-    """Make the pages of folders anew from what they are made of.
+    """Regenerate the pages of folders from their data.
 
     Args:
         folders: with a `report.json` each.

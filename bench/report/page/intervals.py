@@ -45,5 +45,5 @@ def laid(block: Intervals) -> Laid:
         Row(span, place(span.value), place(span.low), place(span.high), not low <= span.value <= high)
         for span in block.spans
     )
-    told = tuple(Tick(scale(value), label) for value, label in ticks(low, high, 5))
-    return Laid(tuple(rows), (place(block.right[0]), place(block.right[1])), told)
+    marks = tuple(Tick(scale(value), label) for value, label in ticks(low, high, 5))
+    return Laid(tuple(rows), (place(block.right[0]), place(block.right[1])), marks)

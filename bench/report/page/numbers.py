@@ -30,32 +30,32 @@ def number(value: float, unit: str = "", digits: int = 4) -> str:
     """A value with its unit."""
     if not math.isfinite(value):
         return "not known"
-    told = f"{value:.{digits}g}"
-    if "e" in told:
-        mantissa, power = told.split("e")
-        told = f"{mantissa}·10{str(int(power)).translate(_RAISED)}"
-    return f"{_minus(told)}{SPACE}{unit_text(unit)}".strip()
+    text = f"{value:.{digits}g}"
+    if "e" in text:
+        mantissa, power = text.split("e")
+        text = f"{mantissa}·10{str(int(power)).translate(_RAISED)}"
+    return f"{_minus(text)}{SPACE}{unit_text(unit)}".strip()
 
 
 def interval(found: Parameter, unit: bool = True) -> str:
     """A parameter with half of its interval of 95 %, both to the second digit of that half."""
     shown = unit_text(found.unit) if unit else ""
-    half = 0.5 * (found.ci95[1] - found.ci95[0])
+    half = found.half_width
     if not math.isfinite(half) or half <= 0.0:
         return f"{number(found.value, digits=5)}{SPACE}{shown}".strip()
     size = abs(found.value)
     power = 3 * math.floor(math.log10(size) / 3) if size > 0.0 and not SMALL <= size < LARGE else 0
     scale = 10.0**power
     decimals = min(max(0, 1 - math.floor(math.log10(half / scale))), MOST_DECIMALS)
-    told = f"{_minus(f'{found.value / scale:.{decimals}f}')}{SPACE}±{SPACE}{half / scale:.{decimals}f}"
+    text = f"{_minus(f'{found.value / scale:.{decimals}f}')}{SPACE}±{SPACE}{half / scale:.{decimals}f}"
     if power:
-        told = f"({told})·10{str(power).translate(_RAISED)}"
-    return f"{told}{SPACE}{shown}".strip()
+        text = f"({text})·10{str(power).translate(_RAISED)}"
+    return f"{text}{SPACE}{shown}".strip()
 
 
-def _minus(told: str) -> str:
+def _minus(text: str) -> str:
     """A number with a minus sign rather than a hyphen."""
-    return told.replace("-", "−")
+    return text.replace("-", "−")
 
 
 def share(value: float) -> str:
@@ -63,11 +63,6 @@ def share(value: float) -> str:
     if 0.0 < value < LEAST_SHARE:
         return f"< {100.0 * LEAST_SHARE:g}{SPACE}%"
     return f"{100.0 * value:.0f}{SPACE}%" if not 0.0 < value < 0.1 else f"{100.0 * value:.2g}{SPACE}%"
-
-
-def words(name: str) -> str:
-    """A name of the contract in words."""
-    return name.replace("_", " ")
 
 
 def sentence(text: str) -> str:

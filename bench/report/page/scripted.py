@@ -73,7 +73,7 @@ class TimeGraph(Block):
 
 
 class Motion(Block):
-    """An axis that moves, with the one it is held against as a ghost: a disk, or a slide on its rail.
+    """An axis in motion, with the one it is compared with as a ghost: a disk, or a slide on its rail.
 
     Attributes:
         title: of the drawing.

@@ -7,8 +7,8 @@ from typing import Any
 
 from bench.check.compare import Checked
 from bench.check.comparison import CHANGED, SAME, UNDECIDED, Comparison
-from bench.check.told import headline, told
-from bench.names import short
+from bench.check.wording import described, headline
+from bench.names import short, words
 from bench.report.check import cells
 from bench.report.page.blocks import (
     Answer,
@@ -23,8 +23,9 @@ from bench.report.page.blocks import (
     Span,
     Table,
     Tone,
+    answered,
 )
-from bench.report.page.numbers import number, sentence, share, unit_text, words
+from bench.report.page.numbers import number, sentence, share, unit_text
 from bench.report.pages.tables import effort_word
 
 COLOURS: dict[str, Colour] = {CHANGED: "model", UNDECIDED: "ink", SAME: "left"}
@@ -40,7 +41,7 @@ def check_page(checked: Checked, title: str) -> Page:
 
     Args:
         checked: what was found.
-        title: what was held against what.
+        title: names of what is compared.
     """
     sections = [
         Section(key="comparisons", heading="What was compared", blocks=tuple(_compared(checked))),
@@ -67,19 +68,19 @@ def _verdict(checked: Checked) -> str:
 def _answers(checked: Checked) -> tuple[Answer, ...]:
     results = [one.result for one in checked.comparisons]
     count = ", ".join(f"{results.count(result)} {result}" for result in TONES if result in results)
-    told_all = {
+    answers = {
         "What came or went?": _names(checked),
         "How many differ?": f"{count} of {len(results)} comparisons." if results else "Nothing could be compared.",
         "How sure?": _sure(checked),
         "What next?": _next(checked),
     }
-    return tuple(Answer(question=question, answer=answer) for question, answer in told_all.items())
+    return answered(answers)
 
 
 def _names(checked: Checked) -> str:
     pairs = [*checked.appeared, *checked.gone]
     if pairs:
-        return unit_text(sentence("; ".join(told(one, checked) for _, one in pairs))) + "."
+        return unit_text(sentence("; ".join(described(one, checked) for _, one in pairs))) + "."
     if not (checked.baseline.names and checked.now.names):
         return "Not asked: the baseline has parameters alone."
     kept = ", ".join(words(effect.label) for effect in checked.now.effects)
@@ -179,8 +180,8 @@ def _gaps(checked: Checked) -> Table:
         unit = next(gap.unit for gap in gaps if gap is not None)
         what = effort_word(unit) if name == "torque" else words(name)
         for of, value in (("left", "after"), ("noise alone", "noise_floor")):
-            told_both = ("–" if gap is None else number(getattr(gap, value), digits=3) for gap in gaps)
-            rows.append((f"{what}, {of} (RMS)", *told_both, unit_text(unit)))
+            both = ("–" if gap is None else number(getattr(gap, value), digits=3) for gap in gaps)
+            rows.append((f"{what}, {of} (RMS)", *both, unit_text(unit)))
     columns = (
         Column(heading="of"),
         Column(heading="baseline", number=True),

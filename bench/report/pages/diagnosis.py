@@ -12,6 +12,7 @@ from bench.arrays import Array
 from bench.diagnose.diagnosis import Diagnosis
 from bench.diagnose.found import Course, Profile
 from bench.diagnose.where.where import Where
+from bench.names import words
 from bench.report.page.blocks import (
     Axes,
     Chart,
@@ -25,7 +26,7 @@ from bench.report.page.blocks import (
     Series,
     Table,
 )
-from bench.report.page.numbers import number, sentence, share, unit_text, words
+from bench.report.page.numbers import number, sentence, share, unit_text
 from bench.report.page.scripted import TimeGraph
 from bench.report.pages.over_time import Measured, time_graph
 from bench.report.pages.tables import (
@@ -123,7 +124,7 @@ def _over_time(diagnosis: Diagnosis, course: Course) -> TimeGraph:
         [course.torque_left[k] for k in shown],
         "modelled",
     )
-    told = (
+    alternative = (
         f"Speed and {effort} of {Path(course.origin).name} as measured and as the model has them. RMS of what is left "
         f"with inertia and friction alone, then with all that was found: speed "
         f"{number(first.velocity[place], digits=3)}, "
@@ -133,7 +134,7 @@ def _over_time(diagnosis: Diagnosis, course: Course) -> TimeGraph:
     )
     title = {"recording": "The recording.", "holdout": "The holdout, which was not fitted."}[course.name]
     part = course.time.size / sum(one.time.size for one in diagnosis.courses)
-    return time_graph(title, told, course.time, [speed, torque], labels, part)
+    return time_graph(title, alternative, course.time, [speed, torque], labels, part)
 
 
 def _where(diagnosis: Diagnosis) -> Section:
@@ -141,13 +142,13 @@ def _where(diagnosis: Diagnosis) -> Section:
     found = {profile.coordinate: profile for profile in diagnosis.profiles}
     most = diagnosis.profiles[0]
     names = " and ".join(words(effect.name) for effect in diagnosis.effects)
-    told = (
+    alternative = (
         f"Mean of measured less modelled {effort_word(diagnosis.torque.unit)} in bins of each coordinate. "
         f"Most of it hangs on {most.coordinate}, {share(most.share)} of its variance."
     )
     graph = Chart(
         title="The gap, and what was found in it.",
-        alternative=told,
+        alternative=alternative,
         y_label="gap",
         y_unit=unit_text(diagnosis.torque.unit),
         panels=tuple(_over(found[name], diagnosis, names) for name in DRAWN if name in found),
@@ -205,7 +206,7 @@ def _parameters(diagnosis: Diagnosis) -> Section:
 
 
 def _suspects(diagnosis: Diagnosis) -> Section:
-    def told(value: float | None) -> str:
+    def of_gap(value: float | None) -> str:
         return "–" if value is None else share(value)
 
     columns = (
@@ -216,7 +217,13 @@ def _suspects(diagnosis: Diagnosis) -> Section:
         Column(heading="why", prose=True),
     )
     rows = tuple(
-        (words(one.effect.name), "yes" if one.taken else "no", told(one.alone), told(one.beside), one.reason)
+        (
+            words(one.effect.name),
+            "yes" if one.taken else "no",
+            of_gap(one.alone),
+            of_gap(one.beside),
+            one.reason,
+        )
         for one in diagnosis.considered
     )
     marked = tuple(k for k, one in enumerate(diagnosis.considered) if one.taken)

@@ -10,7 +10,7 @@ from bench.fleet.change import expected
 from bench.fleet.changed import ALARM, Changed
 from bench.fleet.fleet import TABLE, Fleet
 from bench.fleet.summary import STATUSES, Summary
-from bench.names import short
+from bench.names import short, words
 from bench.report.page.blocks import (
     Answer,
     AnyBlock,
@@ -25,8 +25,9 @@ from bench.report.page.blocks import (
     Series,
     Table,
     Tone,
+    answered,
 )
-from bench.report.page.numbers import SPACE, number, sentence, share, unit_text, words
+from bench.report.page.numbers import SPACE, number, sentence, share, unit_text
 from bench.statistics import NORMAL95
 
 #: Rows of a table, charts, and recordings in one of them: a page of a large fleet stays small, the table has all.
@@ -107,23 +108,23 @@ def _answers(fleet: Fleet) -> tuple[Answer, ...]:
     else:
         sure = "Not known: that needs three recordings of an axis with a time, by one rig."
     first = next(iter(_reasons(summary).items()), None)
-    told = {
+    answers = {
         "Who first?": "Nobody." if first is None else f"{short(first[0], NAME)}: {first[1][0]}.",
         "How sure?": sure,
         "Recordings?": f"{counts}.",
     }
-    return tuple(Answer(question=question, answer=answer) for question, answer in told.items())
+    return answered(answers)
 
 
 def _reasons(summary: Summary) -> dict[str, list[str]]:
     """By axis, why a person should look: what changed surely comes before what could not be told, gravest first."""
-    told: dict[str, list[str]] = {}
+    reasons: dict[str, list[str]] = {}
     for one in summary.changed:
-        told.setdefault(one.axis, []).append(f"{words(one.quantity)} {_share(one)} since {one.since}")
+        reasons.setdefault(one.axis, []).append(f"{words(one.quantity)} {_share(one)} since {one.since}")
     for one in summary.concerns:
         why = f"{words(one.kind)} ({one.count} of {one.of} recordings): {short(one.reason, REASON)}"
-        told.setdefault(one.axis, []).append(why)
-    return told
+        reasons.setdefault(one.axis, []).append(why)
+    return reasons
 
 
 def _share(one: Changed) -> str:
@@ -132,8 +133,8 @@ def _share(one: Changed) -> str:
     difference = step.after - step.before
     if not step.before:
         return f"{difference:+.3g}{SPACE}±{SPACE}{number(step.reach, one.unit, 2)}".replace("-", "−")
-    told = f"{100.0 * difference / abs(step.before):+.3g}{SPACE}±{SPACE}{share(step.reach / abs(step.before))}"
-    return told.replace("-", "−")
+    text = f"{100.0 * difference / abs(step.before):+.3g}{SPACE}±{SPACE}{share(step.reach / abs(step.before))}"
+    return text.replace("-", "−")
 
 
 def _people(summary: Summary) -> AnyBlock:

@@ -11,9 +11,10 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, VISCOUS
 from bench.friction_map.curve import Curve
 from bench.friction_map.map import CHANCE, FrictionMap
+from bench.names import words
 from bench.report.friction import base_values, effect_values
-from bench.report.page.blocks import Answer, Axes, Chart, Column, Page, Section, Series, Table
-from bench.report.page.numbers import number, sentence, share, unit_text, words
+from bench.report.page.blocks import Answer, Axes, Chart, Column, Page, Section, Series, Table, answered
+from bench.report.page.numbers import number, sentence, share, unit_text
 from bench.report.pages.tables import checks_section, effort_word, origin
 
 #: Speeds at which a curve is drawn, in each direction.
@@ -46,8 +47,8 @@ def _verdict(found: FrictionMap) -> str:
     before, after = found.unexplained
     if found.name is None:
         return f"Friction is a straight line over speed: no effect bends it, and {share(before)} is left unexplained."
-    told = ", ".join(f"{words(name)} {number(value, unit)}" for name, (value, unit) in effect_values(found).items())
-    bent = f"{sentence(words(found.name))} ({told}) bends the curve"
+    values = ", ".join(f"{words(name)} {number(value, unit)}" for name, (value, unit) in effect_values(found).items())
+    bent = f"{sentence(words(found.name))} ({values}) bends the curve"
     return f"{bent}: {share(before)} was unexplained without, {share(after)} with it."
 
 
@@ -60,8 +61,8 @@ def _answers(found: FrictionMap) -> tuple[Answer, ...]:
     left = "Nothing that steady speeds would tell."
     if found.offset is None:
         left = "A constant offset is counted in the effect: such recordings do not tell them apart."
-    told = {"Friction?": friction, "How sure?": sure, "What is open?": left}
-    return tuple(Answer(question=question, answer=answer) for question, answer in told.items())
+    answers = {"Friction?": friction, "How sure?": sure, "What is open?": left}
+    return answered(answers)
 
 
 def _table(caption: str, values: Values) -> Table:
@@ -87,9 +88,9 @@ def _over_speed(found: FrictionMap) -> Chart:
                 series.append(_series(name, "line", "model" if bent else "left", x, curve.effort(x)))
     series.append(_series("recordings", "dots", "ink", found.velocity, found.effort))
     axes = Axes(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=tuple(series))
-    told = f"{sentence(effort)} of each recording at its steady speed, and the curves fitted to them."
+    alternative = f"{sentence(effort)} of each recording at its steady speed, and the curves fitted to them."
     return Chart(
-        title="Friction.", alternative=told, y_label=effort, y_unit=unit_text(found.effort_unit), panels=(axes,)
+        title="Friction.", alternative=alternative, y_label=effort, y_unit=unit_text(found.effort_unit), panels=(axes,)
     )
 
 
@@ -105,8 +106,8 @@ def _left(found: FrictionMap) -> Chart:
         for curve, label, bent in _curves(found)
     )
     axes = Axes(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=series)
-    told, unit = "What each curve leaves of the recordings.", unit_text(found.effort_unit)
-    return Chart(title="What is left.", alternative=told, y_label="left", y_unit=unit, panels=(axes,))
+    alternative, unit = "What each curve leaves of the recordings.", unit_text(found.effort_unit)
+    return Chart(title="What is left.", alternative=alternative, y_label="left", y_unit=unit, panels=(axes,))
 
 
 def _series(

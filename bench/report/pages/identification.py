@@ -14,8 +14,9 @@ from bench.diagnose.name.rules import Remainder
 from bench.diagnose.where.where import LEAST, bins_of, means_in
 from bench.identify.estimate import Estimate
 from bench.identify.modelled import modelled_effort
-from bench.report.page.blocks import Answer, Axes, Chart, Downloads, File, Page, Section, Series
-from bench.report.page.numbers import interval, number, share, unit_text, words
+from bench.names import words
+from bench.report.page.blocks import Answer, Axes, Chart, Downloads, File, Page, Section, Series, answered
+from bench.report.page.numbers import interval, number, share, unit_text
 from bench.report.page.scripted import TimeGraph
 from bench.report.pages.over_time import Measured, time_graph
 from bench.report.pages.tables import (
@@ -85,15 +86,15 @@ def _stands_out(estimate: Estimate) -> bool:
 
 def _verdict(estimate: Estimate, kind: AxisKind) -> str:
     effort, chi = effort_word(estimate.residual.unit), _times_noise(estimate)
-    told = f"The {kind.spoken(INERTIA)} is {interval(estimate[kind.parameter(INERTIA)])}"
+    line = f"The {kind.in_words(INERTIA)} is {interval(estimate[kind.parameter(INERTIA)])}"
     if math.isfinite(estimate.explained):
         explained = math.floor(1e4 * estimate.explained) / 100.0
-        told += f"; inertia and friction explain {explained:g} % of the {effort}'s variance"
+        line += f"; inertia and friction explain {explained:g} % of the {effort}'s variance"
     if not math.isfinite(chi):
-        return f"{told}."
+        return f"{line}."
     if _stands_out(estimate):
-        return f"{told}, but what is left is {number(chi, digits=2)} times the noise."
-    return f"{told}, and what is left is noise."
+        return f"{line}, but what is left is {number(chi, digits=2)} times the noise."
+    return f"{line}, and what is left is noise."
 
 
 def _answers(estimate: Estimate, kind: AxisKind) -> tuple[Answer, ...]:
@@ -114,14 +115,14 @@ def _answers(estimate: Estimate, kind: AxisKind) -> tuple[Answer, ...]:
         if _stands_out(estimate)
         else "Nothing stands out of the noise; a recording of other motion would confirm it."
     )
-    told = {
+    answers = {
         f"{words(kind.parameter(INERTIA)).capitalize()}?": f"{interval(estimate[kind.parameter(INERTIA)])} (95 %)",
         "Friction?": "; ".join(friction) or "not determined",
         "How sure?": sure,
         "What is left?": f"{left}.",
         "What next?": following,
     }
-    return tuple(Answer(question=question, answer=answer) for question, answer in told.items())
+    return answered(answers)
 
 
 def _over_time(name: str, moved: Motion, along: Estimate, kind: AxisKind, graphs: int) -> TimeGraph:
@@ -131,8 +132,10 @@ def _over_time(name: str, moved: Motion, along: Estimate, kind: AxisKind, graphs
         Measured("speed", kind.speed_unit, moved.time, moved.velocity),
         Measured(effort, unit, moved.time, moved.effort, [left], "modelled"),
     ]
-    told = f"Speed of {name}, its {effort} as measured and as inertia and friction make it, and what is left of it."
-    return time_graph("Over time.", told, moved.time, signals, (), 1.0 / graphs)
+    alternative = (
+        f"Speed of {name}, its {effort} as measured and as inertia and friction make it, and what is left of it."
+    )
+    return time_graph("Over time.", alternative, moved.time, signals, (), 1.0 / graphs)
 
 
 def _rest(estimate: Estimate, motions: Sequence[tuple[str, Motion, Estimate]], kind: AxisKind) -> Chart:

@@ -7,9 +7,10 @@ from itertools import groupby
 from pathlib import Path
 from typing import Literal
 
-from bench.checks.check import Check
-from bench.report.page.blocks import Answer, AnyBlock, Column, Page, Paragraph, Points, Section, Table, Tone
-from bench.report.page.numbers import number, unit_text, words
+from bench.gate.check import Check
+from bench.names import words
+from bench.report.page.blocks import Answer, AnyBlock, Column, Page, Paragraph, Points, Section, Table, Tone, answered
+from bench.report.page.numbers import number, unit_text
 from bench.report.page.samples import Grid
 from bench.report.page.scripted import Curve, Panel, TimeGraph
 from bench.report.pages.tables import checks_section, origin
@@ -35,7 +36,7 @@ def inspection_page(found: Inspection, checks: Sequence[Check], trace: Trace | N
     if trace is not None:
         sections.append(Section(key="signals", heading="Signals", blocks=(signals_graph(trace), _signals(found))))
     if found.asks is not None:
-        sections.append(Section(key="asked", heading="What to write", blocks=_asked(found)))
+        sections.append(Section(key="asked", heading="What to write", blocks=_what_to_write(found)))
     rest = [column for column in found.columns if not column.read]
     if rest:
         sections.append(Section(key="columns", heading="Columns that are not read", blocks=(_columns(rest),)))
@@ -69,9 +70,14 @@ def signals_graph(trace: Trace) -> TimeGraph:
             for k, name in enumerate(names)
         )
         panels.append(Panel(label=words(names[0]), unit=unit_text(unit), curves=curves))
-    told = f"{', '.join(map(words, signals))} of the recording."
+    alternative = f"{', '.join(map(words, signals))} of the recording."
     return TimeGraph(
-        title="Over time.", alternative=told, start=grid.start, step=grid.step, count=grid.count, panels=tuple(panels)
+        title="Over time.",
+        alternative=alternative,
+        start=grid.start,
+        step=grid.step,
+        count=grid.count,
+        panels=tuple(panels),
     )
 
 
@@ -91,23 +97,23 @@ def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, Tone]:
 
 
 def _answers(found: Inspection) -> tuple[Answer, ...]:
-    told = {"What is it?": f"{found.format}, {len(found.columns)} columns"}
+    answers = {"What is it?": f"{found.format}, {len(found.columns)} columns"}
     if len(found.axes) > 1:
-        told["Which axes?"] = ", ".join(found.axes)
+        answers["Which axes?"] = ", ".join(found.axes)
     if found.samples is not None and found.start is not None and found.duration is not None:
         times = f"{number(found.start)} to {number(found.start + found.duration, 's')}"
-        told["How long?"] = f"{found.samples} samples, {times}"
-        told["Is anything lost?"] = _lost(found)
-    return tuple(Answer(question=question, answer=answer) for question, answer in told.items())
+        answers["How long?"] = f"{found.samples} samples, {times}"
+        answers["Is anything lost?"] = _lost(found)
+    return answered(answers)
 
 
 def _lost(found: Inspection) -> str:
     holes = [f"{number(duration, 's', 3)} at {number(start, 's')}" for start, duration in found.holes[:MOST_HOLES]]
     more = len(found.holes) - len(holes)
-    told = [f"holes of {', '.join(holes)}" + (f" and {more} more" if more > 0 else "")] if holes else ["no hole"]
-    told += [f"{found.interpolated} samples interpolated"] if found.interpolated else []
-    told += [f"{found.duplicates} samples stood there twice"] if found.duplicates else []
-    return "; ".join(told)
+    parts = [f"holes of {', '.join(holes)}" + (f" and {more} more" if more > 0 else "")] if holes else ["no hole"]
+    parts += [f"{found.interpolated} samples interpolated"] if found.interpolated else []
+    parts += [f"{found.duplicates} samples stood there twice"] if found.duplicates else []
+    return "; ".join(parts)
 
 
 def _signals(found: Inspection) -> Table:
@@ -144,8 +150,8 @@ def _columns(columns: Sequence[ColumnSummary]) -> Table:
     return Table(caption="In the file's units", columns=(*headings, Column(heading="likely", prose=True)), rows=rows)
 
 
-def _asked(found: Inspection) -> tuple[AnyBlock, ...]:
+def _what_to_write(found: Inspection) -> tuple[AnyBlock, ...]:
     """What keeps the file from being read, and the lines of a rig that would help."""
     lines = (Points(items=("[trace.columns]", *found.suggestions)),) if found.suggestions else ()
-    told = (Paragraph(text="Likely, for the rig file:"),) if lines else ()
-    return (Paragraph(text=f"{found.asks}."), *told, *lines)
+    heading = (Paragraph(text="Likely, for the rig file:"),) if lines else ()
+    return (Paragraph(text=f"{found.asks}."), *heading, *lines)

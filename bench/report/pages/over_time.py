@@ -40,14 +40,14 @@ class Measured:
     name: str = "measured"
 
     @property
-    def told(self) -> list[tuple[int, Values]]:
+    def shown(self) -> list[tuple[int, Values]]:
         """Models that say something."""
         return [(k, left) for k, left in enumerate(self.left) if left is not None and np.isfinite(left).any()]
 
     @property
     def curves(self) -> int:
         """How many curves it takes."""
-        return 1 + (2 if self.apart else 1) * len(self.told)
+        return 1 + (2 if self.apart else 1) * len(self.shown)
 
 
 def time_graph(
@@ -79,7 +79,7 @@ def _panels(signal: Measured, grid: Grid, choices: Sequence[str]) -> list[Panel]
     places, unit = grid.places(signal.time), unit_text(signal.unit)
     curves = [Curve(name=signal.name, role="measured", choice=None, samples=grid.samples(places, signal.values))]
     rest = []
-    for k, left in signal.told:
+    for k, left in signal.shown:
         samples = grid.samples(places, signal.values - left)
         curves.append(Curve(name=signal.modelled, role="model", choice=k, samples=samples))
         if signal.apart:

@@ -29,10 +29,10 @@ def replay_page(replayed: Replay, title: str, files: Sequence[File]) -> Page:
     torque = _left(replayed.torque, replayed.torque_simulated)
     speed = _left(replayed.velocity, replayed.velocity_simulated)
     alike = torque[0] < LEFT
-    told = f"The model leaves {share(torque[0])} of the {effort}"
+    line = f"The model leaves {share(torque[0])} of the {effort}"
     simulated = math.isfinite(speed[1])
     if simulated:
-        told += f" and is off by {number(speed[1], replayed.speed_unit, 3)} in simulated speed"
+        line += f" and is off by {number(speed[1], replayed.speed_unit, 3)} in simulated speed"
     noise = white_noise(replayed.velocity)
     answers = [
         Answer(question=f"How much {effort} is left?", answer=f"{number(torque[1], replayed.effort_unit, 3)} RMS"),
@@ -52,7 +52,7 @@ def replay_page(replayed: Replay, title: str, files: Sequence[File]) -> Page:
     return Page(
         title=title,
         subject=f"Replay: {title}",
-        verdict=f"{told}.",
+        verdict=f"{line}.",
         tone="sure" if alike and not replayed.warnings else "open",
         answers=tuple(answers),
         sections=tuple(sections),

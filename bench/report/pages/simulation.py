@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from bench.axis_kind import INERTIA
 from bench.effects.present import Present
+from bench.names import words
 from bench.plant.model import parameter_quantities
 from bench.plant.simulate import Simulated
 from bench.plant.truth import Truth
 from bench.report.page.blocks import Answer, Column, Downloads, File, Page, Paragraph, Section, Table
-from bench.report.page.numbers import number, unit_text, words
+from bench.report.page.numbers import number, unit_text
 from bench.report.page.scripted import TimeGraph
 from bench.report.pages.over_time import Measured, time_graph
 from bench.report.pages.tables import origin
@@ -17,13 +18,13 @@ from bench.report.pages.tables import origin
 def simulation_page(simulated: Simulated, name: str) -> Page:
     """The page of a simulated recording of a name."""
     truth, trace = simulated.truth, simulated.trace
-    effects = [_told(present, truth) for present in truth.effects]
+    effects = [_effect(present, truth) for present in truth.effects]
     seconds = number(float(trace.time[-1] - trace.time[0]), "s", 3)
     hidden = f", with {', '.join(words(present.name) for present in truth.effects)} in it" if effects else ""
     kind = truth.parameters.kind
     answers = (
         Answer(
-            question=f"{kind.spoken(INERTIA).capitalize()}?",
+            question=f"{kind.in_words(INERTIA).capitalize()}?",
             answer=number(truth.parameters.inertia, kind.inertia_unit, 5),
         ),
         Answer(question="What is hidden?", answer="; ".join(effects) or "Nothing beyond inertia and friction."),
@@ -45,7 +46,7 @@ def simulation_page(simulated: Simulated, name: str) -> Page:
     )
 
 
-def _told(present: Present, truth: Truth) -> str:
+def _effect(present: Present, truth: Truth) -> str:
     values = ", ".join(f"{name} {number(value, unit)}" for name, value, unit in _values(present, truth))
     return f"{words(present.name)} ({values})"
 
@@ -68,10 +69,10 @@ def _over_time(simulated: Simulated) -> TimeGraph:
     ]
     efforts = [name for name in ("current", "torque", "force") if name in trace]
     signals += [Measured(name, trace.units[name], trace.time, trace[name], name="recorded") for name in efforts]
-    told = (
+    alternative = (
         f"Speed, position and {', '.join(efforts)} as the sensors recorded them, and speed and position as they were."
     )
-    return time_graph("Over time.", told, trace.time, signals)
+    return time_graph("Over time.", alternative, trace.time, signals)
 
 
 def _parameters(truth: Truth) -> Table:

@@ -8,10 +8,11 @@ from typing import Any
 
 from bench import __version__
 from bench.balance.parameter import Parameter
-from bench.checks.check import Check
+from bench.gate.check import Check
 from bench.identify.estimate import Alone, Between
+from bench.names import words
 from bench.report.page.blocks import Column, Points, Section, Series, Table
-from bench.report.page.numbers import interval, number, unit_text, words
+from bench.report.page.numbers import interval, number, unit_text
 
 
 def effort_word(unit: str) -> str:
@@ -21,8 +22,8 @@ def effort_word(unit: str) -> str:
 
 def coordinate_word(coordinate: str, unit: str) -> str:
     """What a coordinate of the gap is called on an axis; the current is the torque where no current was recorded."""
-    told = {"current": effort_word(unit), "reversal": "time since reversal"}
-    return told.get(coordinate, coordinate)
+    labels = {"current": effort_word(unit), "reversal": "time since reversal"}
+    return labels.get(coordinate, coordinate)
 
 
 def parameters_table(caption: str, parameters: Mapping[str, Parameter]) -> Table:
@@ -62,17 +63,17 @@ def noise_band(x: Sequence[float], floor: float) -> Series:
 
 def checks_section(checks: Sequence[Check], warnings: Sequence[str]) -> Section:
     """What was checked before anything was fitted, and what a user should know."""
-    told = [check for check in checks if check.status != "not_applicable"]
-    advised = any(check.advice and check.status in ("warn", "fail") for check in told)
+    applicable = [check for check in checks if check.status != "not_applicable"]
+    advised = any(check.advice and check.status in ("warn", "fail") for check in applicable)
     rows = tuple(
         (words(check.name), words(check.status), check.found, *([check.advice or ""] if advised else []))
-        for check in told
+        for check in applicable
     )
-    marked = tuple(k for k, check in enumerate(told) if check.status in ("warn", "fail"))
+    marked = tuple(k for k, check in enumerate(applicable) if check.status in ("warn", "fail"))
     texts = [Column(heading=heading, prose=True) for heading in ("found", *(["advice"] if advised else []))]
     columns = (Column(heading="check"), Column(heading="status"), *texts)
-    passed = sum(check.status == "pass" for check in told)
-    caption = f"{passed} of {len(told)} checks of the recording passed before anything was fitted"
+    passed = sum(check.status == "pass" for check in applicable)
+    caption = f"{passed} of {len(applicable)} checks of the recording passed before anything was fitted"
     table = Table(caption=caption, columns=columns, rows=rows, marked=marked)
     notes = (Points(items=tuple(warnings)),) if warnings else ()
     return Section(key="checks", heading="Checks and warnings", blocks=(*notes, table))

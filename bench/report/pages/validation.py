@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from bench.names import words
 from bench.report.confusion import Confusion
 from bench.report.page.blocks import (
     Answer,
@@ -20,11 +21,12 @@ from bench.report.page.blocks import (
     Section,
     Span,
     Table,
+    answered,
 )
-from bench.report.page.numbers import number, sentence, share, unit_text, words
+from bench.report.page.numbers import number, sentence, share, unit_text
 from bench.report.pages.tables import origin
 from bench.report.sheet import Sheet
-from bench.report.validation import SYMBOLS, TITLES, by_name, covered, determined, names, outcomes, told
+from bench.report.validation import SYMBOLS, TITLES, bounded, by_name, covered, determined, names, outcomes
 from bench.validate.coverage import LEVELS, Coverage
 from bench.validate.naming import Naming
 from bench.validate.validate import Validation
@@ -34,7 +36,7 @@ LEVEL = LEVELS[-1]
 #: Share that the chart's scale begins at, where no bound lies below it; fewer runs than tell as much are too few.
 FROM = 0.8
 FEW = " More runs narrow these bounds."
-SPOKEN = {"inertia": "inertia", "viscous": "viscous friction", "coulomb": "Coulomb friction"}
+TERM_WORDS = {"inertia": "inertia", "viscous": "viscous friction", "coulomb": "Coulomb friction"}
 FILES = {
     "validation.json": "all of it, as data",
     "runs.csv": "what each run was, and what was said of it",
@@ -89,7 +91,7 @@ def _verdict(first: list[Coverage], naming: Naming | None) -> str:
     if not first:
         verdict = "No run tells a quantity"
     else:
-        shares = ", ".join(f"of {SPOKEN[one.quantity]} in {share(one.inside[-1].value)}" for one in first)
+        shares = ", ".join(f"of {TERM_WORDS[one.quantity]} in {share(one.inside[-1].value)}" for one in first)
         verdict = f"Intervals of {share(LEVEL)} hold the truth {shares}, of {_runs(first[0])}"
     if naming is None:
         return f"{verdict}."
@@ -109,16 +111,16 @@ def _has(count: int) -> str:
 def _answers(found: Validation, first: list[Coverage]) -> tuple[Answer, ...]:
     status = Counter(run.status for run in found.runs)
     counts = ", ".join(f"{count} {words(name)}" for name, count in status.most_common())
-    far = ", ".join(f"{SPOKEN[one.quantity]} {share(one.typical)}" for one in first) or "not known"
-    bounds = "; ".join(f"{SPOKEN[one.quantity]} {told(one.inside[-1])}" for one in first) or "not known"
+    far = ", ".join(f"{TERM_WORDS[one.quantity]} {share(one.typical)}" for one in first) or "not known"
+    bounds = "; ".join(f"{TERM_WORDS[one.quantity]} {bounded(one.inside[-1])}" for one in first) or "not known"
     answers = {
         "How far off are numbers?": f"RMS error over the true value: {far}.",
         f"In their {share(LEVEL)} interval?": f"{bounds} (bounds of 95 %).{'' if _enough(first) else FEW}",
     }
     if found.naming is not None:
-        answers["Named exactly?"] = f"{told(found.naming.exact)} of {found.naming.exact.of} runs."
+        answers["Named exactly?"] = f"{bounded(found.naming.exact)} of {found.naming.exact.of} runs."
     answers["Runs?"] = f"{len(found.runs)}: {counts}."
-    return tuple(Answer(question=question, answer=answer) for question, answer in answers.items())
+    return answered(answers)
 
 
 def _charts(found: Validation) -> Iterator[AnyBlock]:
@@ -131,7 +133,7 @@ def _charts(found: Validation) -> Iterator[AnyBlock]:
         spans = tuple(_span(one) for one in shown if one.quantity == quantity)
         if spans:
             yield Intervals(
-                title=f"{sentence(SPOKEN[quantity])}, {symbol}.",
+                title=f"{sentence(TERM_WORDS[quantity])}, {symbol}.",
                 alternative=f"Share of the intervals of {share(LEVEL)} that hold the truth, by groups of runs, "
                 "with bounds of 95 %; the line is what they claim.",
                 label=f"in their {share(LEVEL)} interval",
@@ -163,7 +165,7 @@ def _naming(found: Naming) -> Iterator[AnyBlock]:
     if found.confusion:
         yield _matrix(Confusion.of(found.confusion))
     columns = Column(heading="hidden"), Column(heading="said, and how often", prose=True)
-    rows = tuple((words(hidden), _said(counts)) for hidden, counts in found.confusion.items())
+    rows = tuple((words(hidden), _counts(counts)) for hidden, counts in found.confusion.items())
     yield Table(caption="What is said where one effect is hidden, or nothing", columns=columns, rows=rows)
 
 
@@ -178,7 +180,7 @@ def _matrix(found: Confusion) -> HeatMap:
     )
 
 
-def _said(counts: Mapping[str, int]) -> str:
+def _counts(counts: Mapping[str, int]) -> str:
     ordered = sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))
     return ", ".join(f"{words(name)} {number(count)}" for name, count in ordered)
 

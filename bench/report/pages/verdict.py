@@ -1,4 +1,4 @@
-"""What a diagnosis comes to, in sentences: what was missing, how sure that is, whether it moves alike, what next."""
+"""What a diagnosis comes to, in lines: what was missing, how sure that is, whether it moves alike, what next."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from bench.axis_kind import INERTIA, KINDS
 from bench.diagnose.add.refine import NULL
 from bench.diagnose.found import Gap, NamedEffect
 from bench.diagnose.show.show import Diagnosis
-from bench.report.page.blocks import Answer
-from bench.report.page.numbers import interval, number, sentence, share, unit_text, words
+from bench.names import words
+from bench.report.page.blocks import Answer, answered
+from bench.report.page.numbers import interval, number, sentence, share, unit_text
 from bench.report.pages.tables import coordinate_word, effort_word
 
 
@@ -40,8 +41,8 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
 def _named(effect: NamedEffect) -> str:
     """An effect with its quantities; a phase says nothing to a reader."""
     angles = {quantity.name for quantity in effect.effect.quantities if quantity.angle}
-    told = [f"{words(name)} {interval(found)}" for name, found in effect.parameters.items() if name not in angles]
-    return f"{words(effect.name)} ({', '.join(told)})" if told else words(effect.name)
+    values = [f"{words(name)} {interval(found)}" for name, found in effect.parameters.items() if name not in angles]
+    return f"{words(effect.name)} ({', '.join(values)})" if values else words(effect.name)
 
 
 def answers(diagnosis: Diagnosis) -> tuple[Answer, ...]:
@@ -49,39 +50,39 @@ def answers(diagnosis: Diagnosis) -> tuple[Answer, ...]:
     kind = next(kind for kind in KINDS if kind.speed_unit == diagnosis.velocity.unit)
     inertia = diagnosis.parameters[kind.parameter(INERTIA)]
     names = "; ".join(f"{_named(effect)}: {effect.effect.summary}" for effect in diagnosis.effects)
-    told = {
-        f"{sentence(kind.spoken(INERTIA))}?": f"{interval(inertia)} (95 %)",
+    rows = {
+        f"{sentence(kind.in_words(INERTIA))}?": f"{interval(inertia)} (95 %)",
         "What was missing?": names or "No effect of the catalogue.",
         "How sure?": _sure(diagnosis),
         "Does it move like the axis now?": _moves(diagnosis.velocity, bool(diagnosis.effects)),
         "What next?": following(diagnosis) or "Nothing is left open that another motion would tell.",
     }
-    return tuple(Answer(question=question, answer=answer) for question, answer in told.items())
+    return answered(rows)
 
 
 def _sure(diagnosis: Diagnosis) -> str:
     """What bears the verdict out, and what speaks against it."""
-    gap, said, effort = diagnosis.torque, [], effort_word(diagnosis.torque.unit)
+    gap, lines, effort = diagnosis.torque, [], effort_word(diagnosis.torque.unit)
     if diagnosis.because:
-        said.append(f"Not wholly: {'; '.join(map(words, diagnosis.because))}.")
+        lines.append(f"Not wholly: {'; '.join(map(words, diagnosis.because))}.")
     if gap.holdout is not None:
         before, after = gap.holdout
-        said.append(
+        lines.append(
             f"On the recording that was not fitted the {effort} gap goes from {number(before, digits=3)} to "
             f"{number(after, gap.unit, 3)}, where noise alone leaves {number(gap.noise_floor, digits=3)}."
         )
     elif diagnosis.effects:
-        said.append("The last third of the recording, kept from the fit, bears it out; no holdout was given.")
+        lines.append("The last third of the recording, kept from the fit, bears it out; no holdout was given.")
     if diagnosis.holdout.same is False:
-        said.append("The holdout is of another axis, or of this one changed.")
-    said += [
+        lines.append("The holdout is of another axis, or of this one changed.")
+    lines += [
         f"{sentence(words(effect.name))} cannot be told here from {' or '.join(map(words, effect.ambiguous_with))}."
         for effect in diagnosis.effects
         if effect.ambiguous_with
     ]
-    if not said:
-        said.append(f"What is left of the {effort} is {number(_chi(gap), digits=3)} times what noise alone leaves.")
-    return " ".join(said)
+    if not lines:
+        lines.append(f"What is left of the {effort} is {number(_chi(gap), digits=3)} times what noise alone leaves.")
+    return " ".join(lines)
 
 
 def _chi(gap: Gap) -> float:

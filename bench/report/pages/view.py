@@ -1,4 +1,4 @@
-"""The page that shows a model moving: the simulated axis, the one it is held against as a ghost, and both over time."""
+"""The page with a model in motion: the simulated axis, the measured one as a ghost, and both over time."""
 
 from __future__ import annotations
 
@@ -111,5 +111,5 @@ def _graph(shown: SideBySide) -> TimeGraph:
             ("position", kind.length_unit, shown.ghost, shown.position),
         )
     ]
-    told = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
-    return time_graph("Over time.", told, shown.time, signals, part=PART)
+    alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
+    return time_graph("Over time.", alternative, shown.time, signals, part=PART)

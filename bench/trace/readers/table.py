@@ -173,9 +173,9 @@ def _cleaned(body: Body, separator: str, width: int, path: str) -> Body:
                     f"found {len(cells)} cell{'s' * (len(cells) > 1)}",
                     f"allowed: {width}, as the header has",
                 )
-    told = {"comment": comments, "line below the samples": below}
+    left_out = {"comment": comments, "line below the samples": below}
     notes = tuple(
-        f"{count} {what}{'s' * (count > 1 and what == 'comment')} left out" for what, count in told.items() if count
+        f"{count} {what}{'s' * (count > 1 and what == 'comment')} left out" for what, count in left_out.items() if count
     )
     whole = not kept or kept[-1][0] - kept[0][0] == len(kept) - 1
     return Body(b"\n".join(line for _, line in kept) + b"\n", kept[0][0] if whole and kept else None, notes)

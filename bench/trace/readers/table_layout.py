@@ -13,9 +13,9 @@ from collections import Counter
 from dataclasses import dataclass
 
 from bench.trace.channel import split_label
-from bench.trace.known_names import unit_of
 from bench.trace.readers.moments import is_moment
-from bench.unit_text import is_unit
+from bench.trace.signal_names import unit_of
+from bench.units.text import is_unit
 
 BLANKS = " "
 SEPARATORS = ("\t", ";", ",", BLANKS)
@@ -145,8 +145,8 @@ def _is_sample(line: str, separator: str, kinds: tuple[str, ...]) -> bool:
     if len(cells) != len(kinds):
         return False
     numeric = [cell for cell, kind in zip(cells, kinds, strict=True) if kind != "text"]
-    told = sum(cell in EMPTY or is_number(cell) for cell in numeric)
-    return told > 0.5 * len(numeric) and any(is_number(cell) for cell in numeric)
+    numbers = sum(cell in EMPTY or is_number(cell) for cell in numeric)
+    return numbers > 0.5 * len(numeric) and any(is_number(cell) for cell in numeric)
 
 
 def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gzip
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -115,12 +114,6 @@ def write_case(folder: str | Path, case: Hidden, runs: tuple[Recorded, Recorded]
     for name, run in zip(("run1", "run2"), runs, strict=True):
         write_csv(run, home / f"{name}.csv.gz")
     return truth(case, runs[0])
-
-
-def write_cases(folder: str | Path, cases: Sequence[Hidden], seed: int = 0) -> None:
-    """Record cases and write them with their truth.json."""
-    entries = {case.name: write_case(folder, case, runs) for case, runs in zip(cases, record(cases, seed), strict=True)}
-    (Path(folder) / "truth.json").write_text(json.dumps(entries, indent=1), encoding="utf-8")
 
 
 def write_csv(recorded: Recorded, path: str | Path) -> None:

@@ -1,0 +1,139 @@
+"""The gate before any fit: all checks in order, each on the recording as the previous ones have repaired it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from bench.axis_kind import INERTIA
+from bench.errors import BenchError, InputError, UndeterminedError
+from bench.gate import constants, effort, losses, signals, timing, velocity, wraps
+from bench.gate.check import STATUSES, Check
+from bench.rig.rig import Rig
+from bench.trace.plausible import require_plausible
+from bench.trace.trace import Trace
+
+Looks = tuple[Callable[[Trace, Rig | None], tuple[Trace, Check]], ...]
+
+#: Checks that repair come before those that only judge.
+CHECKS: Looks = (
+    signals.moves,
+    timing.regular,
+    wraps.check,
+    velocity.check,
+    losses.check,
+    timing.rate,
+    signals.clips,
+    signals.resolution,
+    effort.check,
+    constants.check,
+)
+#: Checks that do not apply at one steady speed: signals may stay the same, and effort follows no motion.
+UNSTEADY = (signals.moves, losses.check, timing.rate, signals.resolution, effort.check)
+STEADY = tuple(check for check in CHECKS if check not in UNSTEADY)
+#: Checks of a later part of a recording: what can go wrong there, without what holds for all of it.
+PARTS = tuple(
+    check for check in CHECKS if check not in (timing.rate, signals.resolution, effort.check, constants.check)
+)
+
+
+class UnanswerableError(UndeterminedError):
+    """A sound recording that does not allow the identification.
+
+    Attributes:
+        checks: all of them.
+    """
+
+    checks: tuple[Check, ...] = ()
+
+
+@dataclass(frozen=True)
+class Gated:
+    """A recording that went through the gate.
+
+    Attributes:
+        trace: repaired where possible.
+        checks: in the order of CHECKS.
+    """
+
+    trace: Trace
+    checks: tuple[Check, ...]
+
+
+def gate(trace: Trace, rig: Rig | None = None, looks: Looks = CHECKS) -> Gated:
+    """Run checks on a recording.
+
+    Args:
+        trace: the recording, or a part of one.
+        rig: of the axis, if known.
+        looks: the checks to run.
+
+    Raises:
+        InputError: rig and recording do not fit together, or a value that no axis can have.
+    """
+    require_plausible(trace)
+    found = []
+    for look in looks:
+        trace, one = look(trace, rig)
+        found.append(one)
+    return Gated(trace, tuple(found))
+
+
+def passed(trace: Trace, rig: Rig, looks: Looks = CHECKS) -> Gated:
+    """The gated recording.
+
+    Raises:
+        InputError, UnanswerableError: the first check that fails.
+    """
+    gated = gate(trace, rig, looks)
+    require(gated.checks, trace)
+    return gated
+
+
+def require(checks: Sequence[Check], trace: Trace) -> None:
+    """Raise the first check that fails.
+
+    Args:
+        checks: of a recording.
+        trace: the recording, or a part of it.
+    """
+    failed = next((check for check in checks if check.status == "fail"), None)
+    if failed is not None:
+        raise _error(failed, tuple(checks), trace)
+
+
+def _error(failed: Check, checks: tuple[Check, ...], trace: Trace) -> BenchError:
+    if not failed.unanswerable:
+        allowed = f"allowed: {failed.allowed}; {failed.advice}"
+        return InputError(f"{trace.origin}: {failed.name}", f"found: {failed.found}", allowed)
+    wanted = trace.axis_kind.in_words(INERTIA)
+    error = UnanswerableError(wanted, f"{trace.origin}: {failed.name}: {failed.found}", failed.advice)
+    error.checks = checks
+    return error
+
+
+def joined(parts: Sequence[Sequence[Check]]) -> tuple[Check, ...]:
+    """Checks of a recording from those of its parts: the worst of each, without parts that are only unanswerable.
+
+    A part in which the axis stands still is no evidence against the others.
+
+    Args:
+        parts: the first with every check.
+    """
+    names = [check.name for check in parts[0]]
+    return tuple(_worst([one for part in parts for one in part if one.name == name]) for name in names)
+
+
+def _worst(same: Sequence[Check]) -> Check:
+    silent = [one for one in same if one.status == "not_applicable" or (one.status == "fail" and one.unanswerable)]
+    answered = [one for one in same if one not in silent] or silent
+    return min(answered, key=lambda one: STATUSES.index(one.status))
+
+
+def warnings_of(checks: Sequence[Check]) -> list[str]:
+    """A line for each check that warns."""
+    return [
+        f"{check.name}: {check.found}; {check.advice}" if check.advice else f"{check.name}: {check.found}"
+        for check in checks
+        if check.status == "warn"
+    ]

@@ -1,0 +1,187 @@
+"""Samples that a recorder lost, or wrote twice, and numbered on as if nothing had happened.
+
+Each loss is a jump in position that speed knows nothing of: with n samples lost between two, the axis has gone n*v*T
+further than the integral of its speed over one period T. A sample that repeats the one before is n = -1, and the next
+n = +1 if its time was right. What a lag, an offset or noise of the speed leaves of this difference changes slowly, and
+is taken off by its running median. Where no speed is recorded, the running median of the steps stands for it.
+
+Found samples are put right: stamps get the periods that are missing, and a recording with right stamps goes the way of
+any other, a single missing sample interpolated, a longer loss a hole.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array, rms
+from bench.gate.check import Check, absent
+from bench.gate.parts import resolution_of
+from bench.rig.rig import Rig
+from bench.trace.time_base import counted, interpolate
+from bench.trace.trace import HOLE, Trace
+
+NAME = "lost_samples"
+#: Samples of the running median, and of the shortest stretch that is looked at.
+WINDOW, SHORTEST = 9, 32
+#: A jump stands out this many times above what all but one in twenty steps show, and above the position's resolution.
+STANDS_OUT, STEPS = 6.0, 3.0
+#: Without speed, it also stands out this many times above its neighbours: a jerk is no single jump.
+ALONE = 4.0
+#: Distance of a jump, in steps of the motion, from a whole number of them.
+WHOLE = 0.3
+#: Steps below this share of their RMS are too short for a loss to show, or to matter.
+SLOW = 0.05
+#: Share of lost and repeated samples that is refused, with speed and without: up to it J stays within 1 %
+#: (`tests/gate/test_losses.py`).
+MOST, MOST_BLIND = 0.01, 0.0005
+#: Looks at the recording, each after what the last one found was put right: a jump hides others close by.
+PASSES = 3
+#: Chance that samples alike in every signal are no repetition.
+CHANCE = 0.01
+#: Signals that a sensor reports, of which a repeated sample repeats all.
+SENSED = ("position", "velocity", "current", "torque", "force", "voltage")
+
+ALLOWED = f"every sample once; up to {MOST:.0%} are put right"
+ADVICE = "record with a buffer that loses none, or with time stamps of the drive itself"
+
+
+@dataclass(frozen=True)
+class Damage:
+    """What happened between the samples of a recording.
+
+    Attributes:
+        missing: samples lost in each step; -1 where the next sample repeats this one - (n - 1,).
+        repeated: which samples repeat the one before in every signal - (n,).
+    """
+
+    missing: NDArray[np.int64]
+    repeated: NDArray[np.bool_]
+
+    @property
+    def stale(self) -> int:
+        """Samples that say again what the one before said."""
+        again = self.repeated.copy()
+        again[1:] |= self.missing < 0
+        return int(again.sum())
+
+    @property
+    def lost(self) -> int:
+        """Samples that are nowhere in the recording, those aside that a repeated one stands for."""
+        in_time = (self.missing[:-1] < 0) & (self.missing[1:] > 0)
+        return int(np.maximum(self.missing, 0).sum() - in_time.sum())
+
+
+def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
+    """The recording with lost and repeated samples put right."""
+    if len(trace) < SHORTEST or not {"position", "velocity"} & set(trace.signals):
+        return trace, absent(NAME, "too short a recording to tell, or without motion", ALLOWED)
+    right, lost, stale = trace, 0, 0
+    most = (MOST if "velocity" in trace else MOST_BLIND) * len(trace)
+    for _ in range(PASSES):
+        damage = damage_of(right)
+        lost, stale = lost + damage.lost, stale + damage.stale
+        if lost + stale > most or (not damage.lost and not damage.stale):
+            break
+        right = repaired(right, damage)
+    if not lost and not stale:
+        return trace, Check(NAME, "pass", "none found", ALLOWED)
+    found = f"{counted(lost, 'sample')} lost, {stale} repeated of {len(trace)}, though the time runs on evenly"
+    if lost + stale > most:
+        return trace, Check(NAME, "fail", found, ALLOWED, ADVICE)
+    return right, Check(NAME, "warn", f"{found}; put right", ALLOWED, ADVICE)
+
+
+def damage_of(trace: Trace) -> Damage:
+    """Lost and repeated samples of a recording."""
+    missing = np.zeros(len(trace) - 1, dtype=np.int64)
+    if "position" in trace:
+        parts = [part for part in trace.segments if part.stop - part.start >= SHORTEST]
+        steps_of_parts = [_beyond_motion(trace, part) for part in parts]
+        if steps_of_parts:
+            limit = max(
+                STANDS_OUT * float(np.percentile(np.concatenate([np.abs(jump) for jump, _ in steps_of_parts]), 95.0)),
+                STEPS * resolution_of(trace["position"]),
+            )
+            least = SLOW * rms(np.concatenate([step for _, step in steps_of_parts]))
+            for part, (jump, step) in zip(parts, steps_of_parts, strict=True):
+                alone = _alone(jump) if "velocity" not in trace else True
+                missing[part.start : part.stop - 1] = _whole_steps(jump, step, limit, least) * alone
+    return Damage(missing, _repeated(trace))
+
+
+def _beyond_motion(trace: Trace, part: slice) -> tuple[Array, Array]:
+    """What each step of the position has beyond the motion's, and the motion's step - rad (m) - (n - 1,) each."""
+    steps = np.diff(trace["position"][part])
+    if "velocity" not in trace:
+        usual = _median(steps)
+        return steps - usual, usual
+    velocity = trace["velocity"][part]
+    travelled = (velocity[1:] + velocity[:-1]) / 2.0 * trace.sample_period
+    beyond = steps - travelled
+    return beyond - _median(beyond), _median(travelled)
+
+
+def _median(values: Array) -> Array:
+    from scipy.ndimage import median_filter  # 0.1 s, which commands without a fit need not pay
+
+    return median_filter(values, WINDOW, mode="nearest")
+
+
+def _whole_steps(jump: Array, step: Array, limit: float, least: float) -> NDArray[np.int64]:
+    """How many steps of the motion a jump is, 0 where it is none."""
+    sure = (np.abs(jump) > limit) & (np.abs(step) > least)
+    ratio = np.divide(jump, step, out=np.zeros_like(jump), where=sure).clip(-jump.size, jump.size)
+    whole = np.rint(ratio)
+    near = np.abs(ratio - whole) < WHOLE * np.maximum(np.sqrt(np.abs(whole)), 1.0)
+    return np.where(near & (whole >= -1.0), whole, 0.0).astype(np.int64)
+
+
+def _alone(jump: Array) -> NDArray[np.bool_]:
+    """Where a jump stands out of its neighbours; a repeated sample's two stand beside each other."""
+    from scipy.ndimage import maximum_filter1d
+
+    size = np.pad(np.abs(jump), 2)
+    before, after = size[:-4], size[4:]
+    around = np.maximum(maximum_filter1d(before, 3, mode="nearest", origin=1), after)
+    return np.abs(jump) > ALONE * around
+
+
+def _repeated(trace: Trace) -> NDArray[np.bool_]:
+    """Which samples repeat the one before in every signal, more of them than chance makes."""
+    names = [name for name in SENSED if name in trace and np.ptp(trace[name]) > 0.0]
+    found = np.zeros(len(trace), dtype=bool)
+    speed = np.abs(trace["velocity"][1:] if "velocity" in trace else np.diff(trace["position"]))
+    moving = speed > SLOW * rms(speed)
+    if len(names) < 2 or not moving.any():
+        return found
+    same = [np.diff(trace[name]) == 0.0 for name in names]
+    all_same = np.logical_and.reduce(same) & moving
+    by_chance = np.prod([np.mean((one & ~all_same)[moving]) for one in same]) * float(moving.sum())
+    if by_chance < CHANCE:
+        found[1:] = all_same
+    return found
+
+
+def repaired(trace: Trace, damage: Damage) -> Trace:
+    """The recording with the times that its samples must have had, without repetitions, short gaps interpolated."""
+    period = trace.sample_period
+    step = np.diff(trace.time) + damage.missing * period
+    kept = np.concatenate([[True], damage.missing >= 0]) & ~damage.repeated
+    time = trace.time[0] + np.concatenate([[0.0], np.cumsum(step)])[kept]
+    gap = np.diff(time) / period
+    filled = np.flatnonzero((gap > HOLE) & (np.rint(gap) == 2.0))
+    between = time[filled] + period
+    order = np.argsort(np.concatenate([time, between]), kind="stable")
+    signals = {}
+    for name, values in trace.signals.items():
+        known = values[kept]
+        signals[name] = np.concatenate([known, interpolate(between, time, known)])[order]
+    base = trace.time_base
+    if base is not None:
+        holes = np.flatnonzero(gap > HOLE + 1.0)
+        steps_of_parts = tuple((float(time[k]), float(gap[k] * period)) for k in holes)
+        base = replace(base, holes=steps_of_parts, interpolated=base.interpolated + filled.size)
+    return replace(trace, time=np.concatenate([time, between])[order], signals=signals, time_base=base)

@@ -1,0 +1,179 @@
+"""Do the signals move, all the time and within their range, in steps fine enough?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import rms
+from bench.gate.balance import EFFORTS, balance, effort_of
+from bench.gate.check import Check, absent
+from bench.gate.parts import resolution_of, speed_of
+from bench.rig.rig import Rig
+from bench.trace.noise import white_noise
+from bench.trace.trace import Trace
+
+MOVES, CLIPS, RESOLUTION = "signal_moves", "signal_clips", "resolution"
+MOTION = ("position", "velocity")
+#: Equal values in a row that are no chance in a signal whose noise is at least so many of its steps: 0.28**50 = 2e-28.
+IN_A_ROW, NOISY = 50, 1.0
+#: Steps of a position, and share of all its travel, that its speed says it must have gone meanwhile.
+TRAVELLED, OF_ALL = 20.0, 0.02
+#: Share of all samples that stand still to be refused.
+FROZEN = 0.005
+#: Spread of speed, as share of its RMS, below which the axis keeps one speed.
+STEADY = 0.1
+#: Speed, as share of its RMS, above which an axis moves.
+MOVING = 0.5
+#: Share of samples that stand at exactly the largest value, in rows of so many, which no motion and no noise make.
+CLIPPED, ROW = 0.005, 5
+#: Distance from the drive's own limit within which standing there is the drive's doing and the value true.
+AT_LIMIT = 0.02
+#: Share of the largest value by which the motion must ask for more, for what lies beyond to be lost; and the windows.
+BEYOND, WINDOWS = 0.05, 8
+#: Samples of these windows: short, to lie within a clipped stretch.
+SHORT = (4, 16)
+#: Steps within a signal's spread that are told, and refused.
+FINE, COARSE = 8.0, 1.0
+#: Samples from which a spread says something.
+LEAST = 64
+
+ALLOWED_MOVES = "motion and effort that change, and no sensor that stands still meanwhile"
+ALLOWED_CLIPS = "no signal that stands at the end of its range"
+ALLOWED_STEPS = f"{FINE:g} steps within the spread of motion and of effort"
+
+
+def moves(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
+    """Whether motion and effort change at all, and all the time; the recording stays as it is."""
+    motion = [name for name in MOTION if name in trace]
+    efforts = [name for name in EFFORTS if name in trace]
+    still = [names for names in (motion, efforts) if names and not any(np.ptp(trace[name]) > 0.0 for name in names)]
+    if still:
+        found = " and ".join(" and ".join(names) for names in still) + " without any change"
+        advice = "record while the axis moves, and the signal that the motor's torque follows"
+        # at one speed an effort may be one number; what that leaves open, the fit says better
+        status = "warn" if efforts in still and _steady(trace) else "fail"
+        return trace, Check(MOVES, status, found, ALLOWED_MOVES, advice, unanswerable=True)
+    frozen = {name: count for name in (*motion, *efforts) if (count := _frozen(trace, name))}
+    if not frozen:
+        return trace, Check(MOVES, "pass", ", ".join((*motion, *efforts)), ALLOWED_MOVES)
+    name = max(frozen, key=lambda one: frozen[one])
+    found = f"{name} stands still for {frozen[name] * trace.sample_period:.3g} s while the axis moves"
+    status = "fail" if frozen[name] > FROZEN * len(trace) else "warn"
+    return trace, Check(MOVES, status, found, ALLOWED_MOVES, "check the sensor, or cut the recording there")
+
+
+def _steady(trace: Trace) -> bool:
+    """Whether the axis keeps one speed."""
+    parts = (speed_of(trace, part) for part in trace.segments if part.stop - part.start > 1)
+    speeds = [speed for speed in parts if speed is not None]
+    every = np.concatenate(speeds) if speeds else np.zeros(1)
+    return float(np.std(every)) <= STEADY * rms(every)
+
+
+def _frozen(trace: Trace, name: str) -> int:
+    """Samples in which a signal stands still though it cannot: the axis moves, and its own noise is above its steps."""
+    values = trace[name]
+    starts, lengths = _runs(np.diff(values) == 0.0)
+    long = lengths >= IN_A_ROW
+    if not long.any():
+        return 0
+    starts, lengths = starts[long], lengths[long]
+    step = resolution_of(values)
+    speed = trace["velocity"] if "velocity" in trace else np.gradient(trace["position"], trace.sample_period)
+    moved = np.concatenate([[0.0], np.cumsum(speed)])
+    mean = np.abs(moved[starts + lengths] - moved[starts]) / lengths
+    moving = mean > MOVING * rms(speed)
+    if name == "position":
+        gone = mean * lengths * trace.sample_period
+        least = max(TRAVELLED * step, OF_ALL * float(np.ptp(values)))
+        return int(lengths[moving & (gone > least)].sum()) if "velocity" in trace else 0
+    if white_noise(values) < NOISY * step:
+        return 0
+    off_or_rail = (values[starts] == 0.0) | (values[starts] == values.max()) | (values[starts] == values.min())
+    return int(lengths[moving & ~off_or_rail].sum())
+
+
+def _runs(standing: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Starts and lengths of the stretches that are true."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], standing, [False]]).astype(np.int8)))
+    return edges[::2], edges[1::2] - edges[::2]
+
+
+def clips(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
+    """Whether a signal stands at the end of its range; the recording stays as it is."""
+    faults: list[Check] = []
+    names = [name for name in ("current", "torque", "force", "velocity") if name in trace]
+    for name in names:
+        for side in (1.0, -1.0):
+            found = _clipped(trace, rig, name, side)
+            if found is not None:
+                faults.append(found)
+    if not names:
+        return trace, absent(CLIPS, "no speed or effort is recorded", ALLOWED_CLIPS)
+    worst = next((one for one in faults if one.status == "fail"), faults[0] if faults else None)
+    return trace, worst or Check(CLIPS, "pass", "none found", ALLOWED_CLIPS)
+
+
+def _clipped(trace: Trace, rig: Rig | None, name: str, side: float) -> Check | None:
+    values = side * trace[name]
+    top = float(values.max())
+    peak = rig.motor.peak_current if rig is not None and name == "current" else None
+    if top <= 0.0 or (peak is not None and abs(top / peak - 1.0) < AT_LIMIT):
+        return None
+    standing = values == top
+    _, lengths = _runs(standing)
+    share = float(lengths[lengths >= ROW].sum()) / len(trace)
+    if share <= CLIPPED:
+        return None
+    found = f"{share:.1%} of {name} stand at exactly {side * top:.4g} {trace.units[name]}"
+    advice = "the end of its range? What lies beyond is lost: record with a wider range, or move more gently"
+    lost = name != "velocity" and _more_demanded(trace, rig, name, standing, side)
+    status = "fail" if lost else "warn"
+    return Check(CLIPS, status, found, ALLOWED_CLIPS, advice, unanswerable=True)
+
+
+def _more_demanded(trace: Trace, rig: Rig | None, name: str, standing: NDArray[np.bool_], side: float) -> bool:
+    """Whether the motion, by what the other windows say of the axis, takes more effort than stands there."""
+    found = effort_of(trace, rig)
+    fitted = balance(trace, found[0], SHORT) if found is not None and found[1] == name else None
+    if fitted is None:
+        return False
+    counted = np.concatenate([[0], np.cumsum(standing)])
+    inside = (counted[fitted.starts + fitted.length] - counted[fitted.starts]) / fitted.length
+    clear, full = inside == 0.0, inside > 0.9
+    if full.sum() < WINDOWS or clear.sum() < WINDOWS * fitted.columns.shape[1]:
+        return False
+    scale = np.maximum(np.linalg.norm(fitted.columns[clear], axis=0), 1e-300)
+    theta = np.linalg.lstsq(fitted.columns[clear] / scale, fitted.effort[clear], rcond=1e-8)[0] / scale
+    beyond = side * (fitted.columns[full] @ theta - fitted.effort[full])
+    return float(np.median(beyond)) > BEYOND * float(np.abs(fitted.effort[full]).mean())
+
+
+def resolution(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
+    """Whether motion and effort come in steps fine enough; the recording stays as it is."""
+    if trace.time_base is not None and trace.time_base.resampled:
+        return trace, absent(RESOLUTION, "interpolated onto regular times, which hides its steps", ALLOWED_STEPS)
+    if len(trace) < LEAST:
+        return trace, absent(RESOLUTION, f"only {len(trace)} samples", ALLOWED_STEPS)
+    steps = {}
+    for what, names in (("motion", MOTION), ("effort", EFFORTS)):
+        fine = [_steps(trace, name) for name in names if name in trace and np.ptp(trace[name]) > 0.0]
+        if fine:
+            steps[what] = max(fine)
+    if not steps:
+        return trace, absent(RESOLUTION, "nothing moves", ALLOWED_STEPS)
+    found = ", ".join(f"{count:.3g} steps within the spread of the {what}" for what, count in steps.items())
+    worst = min(steps.values())
+    advice = "record in finer steps, or a larger motion"
+    if worst < COARSE:
+        return trace, Check(RESOLUTION, "fail", found, ALLOWED_STEPS, advice, unanswerable=True)
+    return trace, Check(RESOLUTION, "warn" if worst < FINE else "pass", found, ALLOWED_STEPS, advice * (worst < FINE))
+
+
+def _steps(trace: Trace, name: str) -> float:
+    """Standard deviation of a signal in its smallest steps."""
+    step = resolution_of(trace[name])
+    return float(np.std(trace[name])) / step if step > 0.0 else math.inf

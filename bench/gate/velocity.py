@@ -1,0 +1,108 @@
+"""Is reported speed the derivative of reported position?
+
+    integral of v over a span = ratio*(displacement) - lag*(change of v) + offset*(span)
+
+by least squares over spans of SPAN samples, so that a filter of the speed is a lag and a sensor's zero an offset, not
+another ratio. What remains, as share of the displacements, says whether both are the same motion at all.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.arrays import Array, rms
+from bench.gate.check import Check, absent
+from bench.gate.parts import resolution_of, stretches
+from bench.rig.rig import Rig
+from bench.trace.noise import white_noise
+from bench.trace.trace import Trace
+
+NAME = "velocity_is_derivative_of_position"
+#: Samples a span.
+SPAN = 20
+#: Deviation of the ratio from one that is told, and that is refused. Clean recordings reach 0.06, the smallest wrong
+#: scale met is 0.4 (`python -m tests.gate`).
+TOLD, REFUSED = 0.02, 0.1
+#: Remainder, as share of the displacements, that is refused; clean recordings reach 0.15.
+REMAINDER = 0.4
+#: Steps of both signals, or noise of the speed, that the displacements of a span need to make the ratio.
+STEPS = 5.0
+
+ALLOWED = f"the same motion in both: 1 within {TOLD:.0%}, a lag aside"
+
+
+def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
+    """Compare the speed of a recording with its position; the recording is unchanged."""
+    if not {"position", "velocity"} <= set(trace.signals):
+        return trace, absent(NAME, "not both position and velocity are recorded", ALLOWED)
+    found = compared(trace)
+    if found is None:
+        return trace, absent(NAME, f"hardly any motion, or no stretch of {2 * SPAN} samples without a hole", ALLOWED)
+    return trace, _judged(found)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Speed against position.
+
+    Attributes:
+        ratio: of speed to the derivative of position.
+        lag: by which speed is late - s.
+        remainder: what is not the position's, as share of the displacements.
+    """
+
+    ratio: float
+    lag: float
+    remainder: float
+
+
+def compared(trace: Trace) -> Comparison | None:
+    """Speed and position of a recording compared; None where it is too short or hardly moves."""
+    spans = [_spans(trace, part) for part in stretches(trace, 2 * SPAN)]
+    if not spans:
+        return None
+    moved, claimed, change = (np.concatenate(column) for column in zip(*spans, strict=True))
+    if max(rms(moved), rms(claimed)) <= STEPS * _step(trace):
+        return None
+    columns = np.column_stack([moved, change, np.full(moved.size, SPAN * trace.sample_period)])
+    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    theta = np.linalg.lstsq(columns / scale, claimed, rcond=1e-9)[0] / scale
+    left = rms(claimed - columns @ theta)
+    return Comparison(float(theta[0]), -float(theta[1]), left / max(rms(claimed), 1e-300))
+
+
+def _judged(both: Comparison) -> Check:
+    ratio, lag, remainder = both.ratio, both.lag, both.remainder
+    units = "check the units (and signs) of both columns and of the time, or leave one of the two columns out"
+    if abs(ratio - 1.0) > REFUSED and remainder < REMAINDER:
+        thousands = math.log10(abs(ratio)) / 3.0 if ratio else 0.0
+        likeliest = (
+            "likeliest a unit of time is wrong, ms read as s: " if abs(thousands - round(thousands)) < 0.01 else ""
+        )
+        found = f"velocity is {ratio:.4g} times the derivative of position"
+        return Check(NAME, "fail", found, ALLOWED, f"{likeliest if ratio > 0.0 else ''}{units}")
+    if remainder >= REMAINDER:
+        found = f"{min(remainder, 1.0):.0%} of velocity's travel is not in position: not the same motion"
+        return Check(NAME, "fail", found, ALLOWED, f"{units}; a sensor may stand still, or the columns be two axes'")
+    late = f", {lag * 1e3:.3g} ms late" if abs(lag) > 1e-5 else ""
+    found = f"velocity is {ratio:.4g} times the derivative of position{late}"
+    if abs(ratio - 1.0) > TOLD:
+        return Check(NAME, "warn", found, ALLOWED, "calibrate one of them: inertia and friction scale with it")
+    return Check(NAME, "pass", found, ALLOWED)
+
+
+def _spans(trace: Trace, part: slice) -> tuple[Array, ...]:
+    """Displacement by position and by speed, and change of speed, over each span - rad, rad, rad/s (m, m, m/s)."""
+    period = trace.sample_period
+    position, velocity = trace["position"][part], trace["velocity"][part]
+    travelled = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2.0)]) * period
+    return tuple(values[SPAN:] - values[:-SPAN] for values in (position, travelled, velocity))
+
+
+def _step(trace: Trace) -> float:
+    """By how much the resolution of both signals, or noise of the speed, moves a span - rad (m)."""
+    velocity = max(resolution_of(trace["velocity"]), white_noise(trace["velocity"]))
+    return max(resolution_of(trace["position"]), velocity * trace.sample_period * math.sqrt(SPAN))

@@ -1,0 +1,105 @@
+"""Names under which recorders store known signals, and the units these may have.
+
+Conservative: only whole and unambiguous names are recognised; everything else goes through the rig's `[trace.columns]`.
+"""
+
+from __future__ import annotations
+
+from bench.errors import InputError
+from bench.trace.signals import RELATIVE_TORQUE, SI_UNITS
+from bench.units.text import Scale, UnitError, scale_of
+
+#: Other names of signals; compared in lower case, with `_` as a space, after the last dot of a PLC path.
+ALIASES: dict[str, tuple[str, ...]] = {
+    "time": ("t", "timestamp", "zeit"),
+    "position": ("actual position", "actpos", "lage", "position actual value"),
+    "velocity": (
+        "actual velocity",
+        "actvel",
+        "speed",
+        "geschwindigkeit",
+        "velocity actual value",
+        "velocity actual value averaged",
+    ),
+    "acceleration": ("actual acceleration", "actacc"),
+    "current": ("iq", "strom", "current actual value", "current actual value averaged"),
+    "torque": ("actual torque", "torque actual value", "torque actual value averaged", "effort"),
+    "position_reference": ("reference position", "position demand value"),
+    "velocity_reference": ("reference velocity", "velocity demand value"),
+    "torque_reference": ("reference torque", "torque demand value"),
+}
+#: Names of columns that count samples.
+INDICES = frozenset(
+    (
+        "sample",
+        "samples",
+        "sample index",
+        "sample number",
+        "sample no",
+        "sample no.",
+        "sample nr",
+        "index",
+        "idx",
+        "n",
+        "nr",
+        "nr.",
+        "no",
+        "no.",
+        "#",
+        "row",
+        "abtastung",
+        "point",
+        "cycle",
+        "tick",
+        "ticks",
+        "count",
+        "counter",
+    )
+)
+
+_BY_ALIAS = {alias: signal for signal, aliases in ALIASES.items() for alias in aliases}
+_BY_ALIAS |= {signal.replace("_", " "): signal for signal in ("time", *SI_UNITS)}
+
+#: What stands for a unit where there is none.
+_NO_UNIT = frozenset(("", "(none)", "none", "-", "--", "n/a", "na", "null", "(-)", "?"))
+
+
+def plain_name(name: str) -> str:
+    """Last part of a name in lower case, by which names are compared."""
+    return name.lstrip("#% ").rsplit(".", 1)[-1].strip().lower().replace("_", " ")
+
+
+def signal_of(name: str) -> str | None:
+    """Signal that a column's name stands for; None when the name does not tell."""
+    return _BY_ALIAS.get(plain_name(name))
+
+
+def is_index(name: str) -> bool:
+    """Whether a column's name says that it counts samples."""
+    return plain_name(name) in INDICES
+
+
+def unit_of(text: str | None) -> str | None:
+    """Unit as written; None for `(None)`, `-` or an empty text."""
+    plain = (text or "").strip()
+    return None if plain.lower() in _NO_UNIT else plain
+
+
+def wanted_units(signal: str) -> tuple[str, ...]:
+    """SI units in which a signal (or `time`) may be kept."""
+    if signal == "time":
+        return ("s",)
+    relative = (RELATIVE_TORQUE,) if signal.startswith("torque") else ()
+    return (*dict.fromkeys(SI_UNITS[signal]), *relative)
+
+
+def scale_in(signal: str, unit: str, place: str) -> Scale:
+    """How a signal (or `time`) recorded in `unit` becomes SI.
+
+    Raises:
+        InputError: no unit, one of the wrong dimension, or of two meanings; names `place`.
+    """
+    try:
+        return scale_of(unit, wanted_units(signal))
+    except UnitError as error:
+        raise InputError(place, error.found, error.allowed) from error

@@ -1,0 +1,52 @@
+"""Lost and repeated samples are put right, or refused."""
+
+import numpy as np
+import pytest
+
+from bench.errors import InputError
+from bench.gate import losses
+from bench.gate.gate import passed
+from bench.identify.regression import identify
+from tests.gate.damage import doubled, losing, stale, with_samples, without
+from tests.independent.axes import PLAIN
+
+
+@pytest.mark.parametrize("damage", [losing, stale, doubled])
+@pytest.mark.parametrize("share", [0.001, 0.005])
+@pytest.mark.parametrize("seed", range(3))
+def test_lost_and_repeated_samples_are_put_right(sound, rig, damage, share, seed):
+    damaged = damage(sound, share, seed)
+    mended, found = losses.check(damaged, rig)
+    assert found.status == "warn"
+    assert identify(mended, rig)["moment_of_inertia"].value == pytest.approx(PLAIN.inertia, rel=0.01)
+
+
+def test_each_place_of_a_loss_is_found(sound, rig):
+    places = [900, 1800, 2700]
+    kept = np.delete(np.arange(len(sound)), places)
+    speed = np.abs(sound["velocity"][places])
+    assert speed.min() > 5.0, "the axis has to move where samples are lost"
+    damage = losses.damage_of(with_samples(sound, kept))
+    assert np.flatnonzero(damage.missing).tolist() == [k - 1 - n for n, k in enumerate(places)]
+    mended = losses.repaired(with_samples(sound, kept), damage)
+    assert mended.time == pytest.approx(sound.time)
+    assert np.abs(mended["position"] - sound["position"]).max() < 0.01 * np.abs(np.diff(sound["position"])).max()
+
+
+def test_a_longer_loss_is_a_hole(sound, rig):
+    kept = np.delete(np.arange(len(sound)), np.arange(1500, 1520))
+    mended, found = losses.check(with_samples(sound, kept), rig)
+    assert "20 samples lost" in found.found
+    assert [part.stop for part in mended.segments] == [1500, len(sound) - 20]
+    assert mended.time[-1] == pytest.approx(sound.time[-1])
+
+
+def test_many_losses_are_refused(sound, rig):
+    with pytest.raises(InputError, match="lost_samples"):
+        passed(losing(sound, 0.03), rig)
+
+
+def test_losses_that_no_speed_confirms_are_refused(sound, rig):
+    alone = without(sound, "velocity")
+    assert losses.check(alone, rig)[1].status == "pass"
+    assert losses.check(losing(alone, 0.005), rig)[1].status == "fail"
