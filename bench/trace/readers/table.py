@@ -19,7 +19,9 @@ from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.columns import parse_columns
 from bench.trace.readers.moments import seconds
 from bench.trace.readers.table_layout import BLANKS, EMPTY, HEAD, Layout, cells_of, find_layout, is_number
+from bench.trace.signal_names import signal_of, unit_of
 from bench.trace.source import Source, decode, utf8
+from bench.units.text import UnitError, scale_of
 
 FORMAT = "CSV table"
 ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", ".lvm")
@@ -135,7 +137,10 @@ def _columns(body: Body, layout: Layout, path: str) -> tuple[pa.Table, Body]:
     types = {"number": pa.float64(), "exact": _EXACT, "text": pa.string()}
     separator, count = _separator(layout), len(layout.labels)
     try:
-        kinds = [types[kind] for kind in layout.kinds]
+        kinds = [
+            types["number" if kind == "exact" and not _may_be_time(label) else kind]
+            for kind, label in zip(layout.kinds, layout.labels, strict=True)
+        ]
         return body.parsed(kinds, layout, EMPTY), body
     except pa.ArrowInvalid:
         body = _cleaned(body, separator, count, path)
@@ -216,6 +221,17 @@ def _channels(table: pa.Table, layout: Layout, line: int | None, path: str) -> I
         unnamed = label == f"column {number}" and channel.defect is None and not np.isfinite(channel.values).any()
         if not unnamed or layout.labels == tuple(f"column {n}" for n in range(1, len(layout.labels) + 1)):
             yield channel
+
+
+def _may_be_time(label: str) -> bool:
+    """Whether a column may hold instants, of which only the distances count: not one of a signal or another unit."""
+    name, unit = split_label(label)
+    if signal_of(name) not in (None, "time"):
+        return False
+    try:
+        return unit_of(unit) is None or scale_of(str(unit), ("s",)) is not None
+    except UnitError:
+        return False
 
 
 def _from_first(column: pa.ChunkedArray) -> Array:
