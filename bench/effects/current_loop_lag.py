@@ -32,6 +32,7 @@ class CurrentLoopLag(Electronics):
     summary = "torque acts later than the reported current"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
     shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
+    biased_by_noise = True
     not_beside = frozenset({"velocity_filter_lag", "current_filter_lag"})
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
