@@ -27,6 +27,11 @@ def worth(without: Fit, having: Fit) -> float:
     return without.squares - having.squares
 
 
+def over_noise(fitted: Fit) -> float:
+    """Residual over what white noise of the sensors leaves in this very balance, which its effects damp or amplify."""
+    return fitted.rms / fitted.noise.white
+
+
 @dataclass(frozen=True)
 class Promising:
     """A candidate is worth the search of its shape if it is significant even at a grid's shape and takes enough.
@@ -90,7 +95,8 @@ class Explains:
 
     Noise is what the less coloured of the two floors says: an effect that never pauses, such as the cogging of a steady
     speed, passes for coloured noise until it is named. White noise is that of the model before: an effect that filters
-    speed or copies torque lowers its own, and what it damps of noise it does not explain.
+    speed or copies torque lowers its own, and what it damps of noise it does not explain. So it has to leave less over
+    noise, too.
 
     Attributes:
         of_needed: factor on the share that each effect states as needed of itself.
@@ -100,6 +106,8 @@ class Explains:
 
     def holds(self, before: Fit, after: Fit, significant: Significant) -> bool:
         """Whether the last term of `after` explains enough, significantly."""
+        if over_noise(after) >= over_noise(before):
+            return False
         saved = explained(before, after)
         noise = min(before.floor, after.floor * before.noise.white / after.noise.white) ** 2
         excess = before.excess or max(before.squares - before.count * noise, 0.0)
@@ -133,6 +141,8 @@ class Physical:
 class NoLongerNeeded:
     """An effect is let go that saves hardly anything beside those that came after it (backward elimination).
 
+    Or that leaves no less over noise: what it saves is noise of the motion that it damps, as a coupling does.
+
     Attributes:
         share: of what is above the noise floor without it.
     """
@@ -143,6 +153,8 @@ class NoLongerNeeded:
         """Whether the term at an index, without which `less` is, may go."""
         lost = worth(less, fitted)
         own = max(len(fitted.strengths(index)) + len(fitted.terms[index].shape), 1)
+        if over_noise(less) <= over_noise(fitted):
+            return True
         return lost < significant.threshold(fitted, own) or lost < self.share * less.excess
 
 
@@ -167,7 +179,8 @@ class ReplacesClearly:
         excess = left - after.count * before.floor**2
         clearly = left - after.squares > self.share * max(excess, 0.0)
         whole = float(np.sum(after.left**2)) < before.squares
-        return clearly and whole and float(after.determined.mean()) > self.determined
+        enough = float(after.determined.mean()) > self.determined
+        return clearly and whole and enough and over_noise(after) < over_noise(before)
 
 
 @dataclass(frozen=True)
