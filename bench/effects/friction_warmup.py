@@ -19,6 +19,9 @@ from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
+#: Share of the dry amplitude that viscous friction has where none is given.
+ALL = 1.0
+
 
 class FrictionWarmup(Friction):
     """See the module."""
@@ -28,7 +31,7 @@ class FrictionWarmup(Friction):
     quantities = (
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, null=0.0),
         Quantity("time_constant", "T", "s", lower=0.0),
-        Quantity("viscous_share", "s", "dimensionless", lower=0.0, preset=1.0),
+        Quantity("viscous_share", "s", "dimensionless", lower=0.0, preset=ALL, minor=True),
     )
     shapes = (Shape(quantities[1], (0.7, 1.5, 3.0, 6.0, 12.0), measure=DURATION),)
     scales_friction = True
@@ -43,8 +46,14 @@ class FrictionWarmup(Friction):
         return strengths[0] * signals.friction * np.exp(-signals.time / shape[0])
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Amplitude relative to the Coulomb friction of the warm axis."""
-        return {"relative_amplitude": strengths[0] / base.coulomb, "time_constant": shape[0]}
+        """Amplitude relative to the Coulomb friction of the warm axis, and the same of viscous friction over it."""
+        amplitude, viscous = strengths[0] / base.coulomb, base.viscous
+        share = strengths[1] / (viscous * amplitude) if viscous > 0.0 and amplitude != 0.0 else ALL
+        return {"relative_amplitude": amplitude, "time_constant": shape[0], "viscous_share": share}
+
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+        """Dry friction decays; how viscous friction does tells little where that is small."""
+        return base.coulomb > 0.0 and strengths[0] > 0.0
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Of the dry part."""

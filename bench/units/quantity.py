@@ -20,6 +20,7 @@ class Quantity:
         null: value at which what it belongs to is exactly absent, if one says so.
         preset: value that it has where none is given, if it need not be.
         instant: whether it is a time of the recording, whose zero means nothing.
+        minor: whether what it belongs to is known without it, as with how an effect divides between dry and viscous.
     """
 
     name: str
@@ -32,3 +33,4 @@ class Quantity:
     null: float | None = None
     preset: float | None = None
     instant: bool = False
+    minor: bool = False

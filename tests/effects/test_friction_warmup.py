@@ -3,8 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
+from bench.effects.catalogue import catalogue
+from bench.effects.kinds import Axis, Moment
+from bench.effects.signals import Base
 from tests.effects.axes import FREE, Present, moved, signals
+from tests.effects.recording import signals as recording
 
 VALUES = {"relative_amplitude": 1.5, "time_constant": 0.3}
 
@@ -22,3 +27,19 @@ def test_viscous_friction_has_its_share():
     time, _, velocity = signals(moved([effect], 0.5, velocity=60.0, parameters=viscous))
     rate = 2e-3 / FREE.inertia * (time + 0.5 * 1.5 * 0.3 * (1.0 - np.exp(-time / 0.3)))
     np.testing.assert_allclose(velocity, 60.0 * np.exp(-rate), rtol=1e-5)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_what_a_fit_found_moves_as_it_was_fitted(share):
+    """Strengths of its columns, dry and viscous, as quantities: the torque of the columns is that of the model."""
+    effect, base = catalogue()["friction_warmup"], Base(1e-3, 2e-3, 0.06)
+    strengths = [1.5 * base.coulomb, share * 1.5 * base.viscous]
+    recorded = recording()
+    columns = [values for ((values, _),) in effect.columns(recorded, [0.3])]
+    values = effect.report(strengths, [0.3], base)
+    assert values == pytest.approx({**VALUES, "viscous_share": share})
+    axis = Axis(0.0, 0.0, base.viscous, base.coulomb, 0.0)
+    at = Moment(recorded.time, recorded.position, recorded.velocity, recorded.torque)
+    dry = base.coulomb * recorded.friction * (effect.friction_factor(values, axis, at) - 1.0)
+    viscous = effect.resisting_torque(values, axis, at)
+    np.testing.assert_allclose(np.array(strengths) @ columns, dry + viscous, atol=1e-12)

@@ -104,8 +104,9 @@ class MovesWorse:
 class Undetermined:
     """A quantity is undetermined: its interval is wider than its value.
 
-    A phase is wide if it may be anywhere in its turn, an instant if it may be anywhere in the recording. Friction as
-    wide counts where the torque that it leaves open is more than noise.
+    One that is minor, as a share between dry and viscous friction, does not count. A phase is wide if it may be
+    anywhere in its turn, an instant if it may be anywhere in the recording. Friction as wide counts where the torque
+    that it leaves open is more than noise.
     """
 
     def against(self, shown: Shown) -> str:
@@ -114,7 +115,7 @@ class Undetermined:
             return ""
         time = shown.recordings.trace.time
         for named in shown.effects:
-            for quantity in named.effect.quantities:
+            for quantity in (each for each in named.effect.quantities if not each.minor):
                 found = named.parameters.get(quantity.name)
                 itself = np.pi if quantity.angle else float(time[-1] - time[0]) if quantity.instant else None
                 if found is not None and found.half_width > (abs(found.value) if itself is None else itself):
