@@ -34,7 +34,6 @@ class CurrentFilterLag(Sensing):
     summary = "reported current is filtered: it shows torque later than it acts"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
     shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
-    biased_by_noise = True
     not_beside = frozenset({"current_loop_lag", "velocity_filter_lag"})
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:

@@ -117,7 +117,7 @@ class Effect:
         repeatable: whether an axis may have several, each with another shape (harmonics, events).
         occasional: whether it may occur in one recording and not in another.
         bursts: whether the residual it leaves comes in bursts.
-        biased_by_noise: whether noise of the motion biases its strength, and not only scatters it.
+        biased_by_noise: whether noise of the motion biases its strength or shape, and not only scatters it.
         not_beside: effects it is not searched together with, as a recording can identify only one of them.
         replaces: effects that it is tried instead of, once no other addition explains more.
         faulty_signal: the signal that `corrected` repairs; empty if none.

@@ -43,6 +43,7 @@ class VelocityFilterLag(Sensing):
     summary = "reported velocity lags the motion"
     quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
     shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
+    biased_by_noise = True
     not_beside = frozenset({"current_loop_lag", "current_filter_lag"})
     faulty_signal = "velocity"
 

@@ -65,7 +65,6 @@ def test_it_is_of_speed_alone_if_speed_makes_all_of_its_columns_and_they_vary(ef
 def test_columns_that_are_accelerations_hear_the_noise_of_motion(effect):
     """A vibration too small for a gap comes out of the first column as the declared noise does."""
     assert effect.of_motion == effect.overrides("noise_of_motion")
-    assert effect.of_motion or not effect.biased_by_noise
     if not effect.of_motion:
         return
     time = STEP * np.arange(4000)
@@ -90,8 +89,9 @@ def test_columns_that_are_accelerations_hear_the_noise_of_motion(effect):
 
 @every
 def test_noise_of_motion_biases_what_filters_the_motion(effect):
+    """In its own column, as a coupling does, or in all of them, as a lag: the residual is least where it is damped."""
     heard = effect.noise_of_motion(shape_of(effect), 2.0 * np.pi * np.array([1.0, 10.0, 100.0]))
-    assert effect.biased_by_noise == (np.ptp(np.abs(heard)) > 0.0)
+    assert effect.biased_by_noise == (np.ptp(np.abs(heard)) > 0.0 or effect.overrides("delays"))
 
 
 @every
