@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bench.diagnose.diagnosis import diagnose
+from bench.diagnose.name import rules
 from bench.diagnose.name import search as searching
 from bench.diagnose.name.candidates import candidates
 from bench.diagnose.name.policy import Policy
@@ -18,7 +19,8 @@ from bench.diagnose.name.rules import (
 )
 from bench.diagnose.name.search import LIMIT, search
 from bench.effects.catalogue import catalogue
-from tests.diagnose.constructed import INERTIA, RIG, SINES, bare, moved, names, offset, recorded, vibration, wave
+from bench.trace.trace import Trace
+from tests.diagnose.constructed import INERTIA, RIG, SINES, UNITS, bare, moved, names, offset, recorded, vibration, wave
 from tests.diagnose.off import without
 
 POLICY = Policy()
@@ -56,6 +58,18 @@ def test_noise_that_takes_its_share_by_chance_is_not_named(seed):
     trace = recorded(moved(3.0), seed=seed)
     assert names(POLICY, trace, WAVES) == ()
     assert names(without(Significant), trace, WAVES) == ("torque_ripple",)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_what_only_damps_noise_of_the_motion_is_no_coupling(monkeypatch, seed):
+    """Sines of an encoder, interpolated with an error: the load behind a coupling does not follow it, so squares fall."""
+    rng, motion = np.random.default_rng(seed), moved(4.0)
+    position = motion.position + 3e-4 * np.sin(256.0 * motion.position) + 1e-6 * rng.normal(size=motion.time.size)
+    signals = {"position": position, "current": recorded(motion, seed=seed)["current"]}
+    trace = Trace(motion.time, signals, {name: UNITS[name] for name in signals}, "interpolated")
+    assert searched(POLICY, trace, ["elastic_coupling"]) == ()
+    monkeypatch.setattr(rules, "over_noise", lambda fitted: fitted.rms)
+    assert searched(POLICY, trace, ["elastic_coupling"]) == ("elastic_coupling",)
 
 
 def test_a_torque_that_drives_the_axis_is_no_drag():
