@@ -62,7 +62,7 @@ def test_noise_that_takes_its_share_by_chance_is_not_named(seed):
 
 @pytest.mark.parametrize("seed", [0, 1])
 def test_what_only_damps_noise_of_the_motion_is_no_coupling(monkeypatch, seed):
-    """Sines of an encoder, interpolated with an error: the load behind a coupling does not follow it, so squares fall."""
+    """Sines of an encoder, interpolated with an error: a load behind a coupling does not follow it, so squares fall."""
     rng, motion = np.random.default_rng(seed), moved(4.0)
     position = motion.position + 3e-4 * np.sin(256.0 * motion.position) + 1e-6 * rng.normal(size=motion.time.size)
     signals = {"position": position, "current": recorded(motion, seed=seed)["current"]}
