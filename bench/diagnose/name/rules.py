@@ -27,9 +27,19 @@ def worth(without: Fit, having: Fit) -> float:
     return without.squares - having.squares
 
 
+#: Residual over white noise from which it is no noise, however much louder that is than the signals tell: encoders
+#: that interpolate with an error left 1.1 to 4 without a coupling.
+LOUD = 3.0
+
+
 def over_noise(fitted: Fit) -> float:
     """Residual over what white noise of the sensors leaves in this very balance, which its effects damp or amplify."""
     return fitted.rms / fitted.noise.white
+
+
+def only_damps(before: Fit, after: Fit) -> bool:
+    """Whether what effects save may be louder noise of the motion, which they damp, as a coupling does."""
+    return over_noise(before) < LOUD and over_noise(before) <= over_noise(after)
 
 
 @dataclass(frozen=True)
@@ -95,8 +105,7 @@ class Explains:
 
     Noise is what the less coloured of the two floors says: an effect that never pauses, such as the cogging of a steady
     speed, passes for coloured noise until it is named. White noise is that of the model before: an effect that filters
-    speed or copies torque lowers its own, and what it damps of noise it does not explain. So it has to leave less over
-    noise, too.
+    speed or copies torque lowers its own, and what it damps of noise it does not explain; nor may that be all it does.
 
     Attributes:
         of_needed: factor on the share that each effect states as needed of itself.
@@ -106,7 +115,7 @@ class Explains:
 
     def holds(self, before: Fit, after: Fit, significant: Significant) -> bool:
         """Whether the last term of `after` explains enough, significantly."""
-        if over_noise(after) >= over_noise(before):
+        if only_damps(before, after):
             return False
         saved = explained(before, after)
         noise = min(before.floor, after.floor * before.noise.white / after.noise.white) ** 2
@@ -141,7 +150,7 @@ class Physical:
 class NoLongerNeeded:
     """An effect is let go that saves hardly anything beside those that came after it (backward elimination).
 
-    Or that leaves no less over noise: what it saves is noise of the motion that it damps, as a coupling does.
+    Or all that it does may be to damp noise.
 
     Attributes:
         share: of what is above the noise floor without it.
@@ -153,7 +162,7 @@ class NoLongerNeeded:
         """Whether the term at an index, without which `less` is, may go."""
         lost = worth(less, fitted)
         own = max(len(fitted.strengths(index)) + len(fitted.terms[index].shape), 1)
-        if over_noise(less) <= over_noise(fitted):
+        if only_damps(less, fitted):
             return True
         return lost < significant.threshold(fitted, own) or lost < self.share * less.excess
 
@@ -180,7 +189,7 @@ class ReplacesClearly:
         clearly = left - after.squares > self.share * max(excess, 0.0)
         whole = float(np.sum(after.left**2)) < before.squares
         enough = float(after.determined.mean()) > self.determined
-        return clearly and whole and enough and over_noise(after) < over_noise(before)
+        return clearly and whole and enough and not only_damps(before, after)
 
 
 @dataclass(frozen=True)
