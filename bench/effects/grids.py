@@ -6,7 +6,9 @@ import numpy as np
 
 from bench.effects.signals import Measure, Scope, Shape
 
-#: Of the axes for which effects state their grids: top speed - rad/s -, width of the filter and duration - s.
+#: What quantities scale with: a speed with the top speed - rad/s -, a rate over angle with its inverse, a lag with the
+#: width of the filter - s -, a frequency with its inverse, a slow change with the duration - s. `usual`: of the axes
+#: for which effects state their grids.
 SPEED = Measure(lambda scope: scope.top_speed, usual=100.0, angular=True)
 ANGLE = Measure(lambda scope: scope.top_speed, usual=100.0, power=-1, angular=True)
 LAG = Measure(lambda scope: scope.width, usual=1.5e-3)

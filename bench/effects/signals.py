@@ -106,8 +106,8 @@ class Measure:
     """What a recording has of its own that a quantity goes with: a speed with the top speed, a lag with the filter.
 
     Attributes:
-        of: value of it in a recording.
-        usual: the value for which grids are stated.
+        of: its value in a recording - SI.
+        usual: the value for which grids are stated - the same unit.
         power: of it that the quantity goes with.
         angular: whether the quantity is one of angle, of which a linear axis has none.
     """

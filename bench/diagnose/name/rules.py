@@ -27,18 +27,18 @@ def worth(without: Fit, having: Fit) -> float:
     return without.squares - having.squares
 
 
-#: Residual over white noise from which it is no noise, however much louder that is than the signals tell: encoders
-#: that interpolate with an error left 1.1 to 4 without a coupling.
+#: Residual over white noise above which it is not noise, even if noise is louder than the signals show: encoders that
+#: interpolate with an error left 1.1 to 4 without a coupling, a servo's gear behind a coarse speed 6.4 to 7.8.
 LOUD = 3.0
 
 
 def over_noise(fitted: Fit) -> float:
-    """Residual over what white noise of the sensors leaves in this very balance, which its effects damp or amplify."""
+    """RMS residual over that of white sensor noise in the same balance, which effects damp or amplify - 1."""
     return fitted.rms / fitted.noise.white
 
 
 def only_damps(before: Fit, after: Fit) -> bool:
-    """Whether what effects save may be louder noise of the motion, which they damp, as a coupling does."""
+    """Whether the squares that `after` saves may be noise of the motion that it damps, as a coupling does."""
     return over_noise(before) < LOUD and over_noise(before) <= over_noise(after)
 
 
@@ -105,7 +105,7 @@ class Explains:
 
     Noise is what the less coloured of the two floors says: an effect that never pauses, such as the cogging of a steady
     speed, passes for coloured noise until it is named. White noise is that of the model before: an effect that filters
-    speed or copies torque lowers its own, and what it damps of noise it does not explain; nor may that be all it does.
+    speed or copies torque lowers its own, and what it damps of noise it does not explain. It must not only damp.
 
     Attributes:
         of_needed: factor on the share that each effect states as needed of itself.
@@ -150,7 +150,7 @@ class Physical:
 class NoLongerNeeded:
     """An effect is let go that saves hardly anything beside those that came after it (backward elimination).
 
-    Or all that it does may be to damp noise.
+    So is one that may only damp noise.
 
     Attributes:
         share: of what is above the noise floor without it.
