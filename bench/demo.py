@@ -8,8 +8,8 @@ from pathlib import Path
 
 from bench.assets import asset
 from bench.files import held
-from bench.identify.estimate import Estimate
-from bench.identify.regression import identify
+from bench.fit.estimate import Estimate
+from bench.fit.regression import identify
 from bench.plant.simulate import simulate
 from bench.plant.truth import write_truth
 from bench.report.identification import write_identification

@@ -13,7 +13,7 @@ from typing import TypeVar
 
 from bench.files import whole
 from bench.trace.trace import Trace
-from bench.validate import independent
+from bench.validation import independent
 
 T = TypeVar("T")
 #: Files that decide on what the integrator makes of a case.

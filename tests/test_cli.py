@@ -12,8 +12,8 @@ from bench.assets import asset
 from bench.trace.read import read
 from bench.trace.write import write
 from tests import command
+from tests.fit.motions import recording
 from tests.hostile import assert_one_line, bound_by_permissions, columns, csv_of, run
-from tests.identify.motions import recording
 
 RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nrotor_inertia = "2 kg*cm**2"\n'
 

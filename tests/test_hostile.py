@@ -12,8 +12,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from bench.bounds import Bounds, bounded
+from bench.course.flights import read_flights
 from bench.errors import InputError
-from bench.lab.flights import read_flights
 from bench.trace.channel import split_label
 from bench.trace.read import read, read_recording
 from bench.trace.stream import stream

@@ -10,7 +10,7 @@ import pytest
 from bench.assets import asset
 from bench.console import console
 from bench.files import write_text
-from bench.identify.regression import identify
+from bench.fit.regression import identify
 from bench.names import cell
 from bench.plant.model_file import StoredModel, load_model, model_toml
 from bench.plant.plant import Plant

@@ -6,7 +6,6 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
-from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,7 @@ import pytest
 import bench
 from bench.assets import asset
 from bench.trace.write import write
-from tests.identify.motions import Truth, recording
+from tests.fit.motions import Truth, recording
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "api.md").read_text(encoding="utf-8"), re.DOTALL)
@@ -52,35 +51,10 @@ def test_a_name_it_does_not_have_is_an_error():
         bench.identfy  # noqa: B018
 
 
-IDENTIFY = permutations(["import bench.identify.estimate", "bench.identify", "from bench import identify"])
-CHECK = permutations(["import bench.check.difference", "bench.check"])
-DIAGNOSE = permutations(["import bench.diagnose.diagnosis", "bench.diagnose"])
-RELOADED = ("import bench.identify", "import importlib", "importlib.reload(bench)")
-
-
-@pytest.mark.parametrize(
-    ("name", "statements"),
-    [
-        *(("identify", order) for order in (*IDENTIFY, RELOADED)),
-        *(("diagnose", order) for order in DIAGNOSE),
-        *(("check", order) for order in CHECK),
-    ],
-)
-def test_a_function_holds_in_every_order_of_imports(name, statements):
-    script = "\n".join(["import bench", *statements, f"print(bench.{name}.__name__, type(bench.{name}).__name__)"])
-    assert fresh(script).split() == [name, "function"]
-
-
-def test_the_packages_of_the_same_names_can_still_be_imported_from():
-    script = """
-import bench
-bench.identify
-from bench.identify import regression
-from bench.identify.lab import identify_as_in_the_lab
-import bench.identify.regression, sys
-print(regression is sys.modules["bench.identify.regression"], bench.identify is regression.identify)
-"""
-    assert fresh(script).split() == ["True", "True"]
+@pytest.mark.parametrize("name", ["identify", "diagnose", "check", "simulate", "replay"])
+def test_a_function_is_no_package(name):
+    assert not (ROOT / "bench" / name).exists(), "a package of this name would hide the function after its import"
+    assert not (ROOT / "bench" / f"{name}.py").exists()
 
 
 LOADED = """

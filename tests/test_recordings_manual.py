@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bench.cli import app
-from tests.identify.motions import Truth, recording
+from tests.fit.motions import Truth, recording
 from tests.trace.test_containers import JOINT_STATE
 
 MANUAL = (Path(__file__).resolve().parents[1] / "docs" / "recordings.md").read_text(encoding="utf-8")

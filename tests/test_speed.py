@@ -11,20 +11,20 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from bench.identify.regression import identify
+from bench.fit.regression import identify
 from bench.rig.rig import load_rig
 from bench.trace.read import read
 from bench.trace.write import write
-from tests.identify.motions import RIG, recording
+from tests.fit.motions import RIG, recording
 
 SAMPLES = 10_000_000
 
 STREAMED = """
 import re, sys, time
 from pathlib import Path
-from bench.identify.regression import identify
+from bench.fit.regression import identify
 from bench.trace.stream import stream
-from tests.identify.motions import RIG
+from tests.fit.motions import RIG
 began = time.perf_counter()
 found = identify(stream(sys.argv[1]), RIG)
 seconds = time.perf_counter() - began

@@ -40,7 +40,7 @@ def diagnose(
     figures: FiguresOption = Figures.PNG,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
-    from bench.diagnose.diagnosis import diagnose as run_diagnosis
+    from bench.diagnosis.diagnosis import diagnose as run_diagnosis
     from bench.effects.present import named
     from bench.files import held
     from bench.gate.gate import warnings_of

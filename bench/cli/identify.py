@@ -30,8 +30,8 @@ from bench.names import in_a_row
 
 if TYPE_CHECKING:
     from bench.cli.robot import Subject
-    from bench.identify.estimate import Estimate
-    from bench.identify.refine import Refinement
+    from bench.fit.estimate import Estimate
+    from bench.fit.refine import Refinement
     from bench.rig.rig import Rig
     from bench.trace.trace import Trace
 
@@ -62,8 +62,8 @@ def identify(
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.files import held
+    from bench.fit.estimate import RefusedEstimateError
     from bench.gate.gate import warnings_of
-    from bench.identify.estimate import RefusedEstimateError
     from bench.report.estimate import SCHEMA, estimate_json
     from bench.report.provenance import provenance
 
@@ -138,11 +138,11 @@ def _estimate(
 
     rig, trace = of.rig, traces[0]
     if estimator is Estimator.LAB:
-        from bench.identify.lab import identify_as_in_the_lab
+        from bench.fit.lab import identify_as_in_the_lab
 
         gated = passed(of.read(trace), rig)
         return replace(identify_as_in_the_lab(gated.trace, rig), checks=gated.checks), None
-    from bench.identify.regression import identify as regress
+    from bench.fit.regression import identify as regress
     from bench.report.progress import progress
     from bench.trace.stream import stream
 
@@ -150,7 +150,7 @@ def _estimate(
         if not refine:
             parts = [of.read(each) if of.robot else stream(each, rig.trace) for each in traces]
             return regress(parts, rig, cutoff), None
-        from bench.identify.refine import refine as polish  # MuJoCo: 0.1 s
+        from bench.fit.refine import refine as polish  # MuJoCo: 0.1 s
 
         recording = passed(of.read(trace), rig).trace
         return polish(recording, rig, regress(recording, rig, cutoff), done)

@@ -35,7 +35,7 @@ def lab(
     elif submissions is not None:
         _grade(submissions, truth, out)
     elif notebooks is not None:
-        from bench.lab.notebooks import write_notebooks
+        from bench.course.notebooks import write_notebooks
 
         print_files(write_notebooks(notebooks))
     elif students is not None or truth is not None:
@@ -45,8 +45,8 @@ def lab(
 
 
 def _record(folder: Path, students: int | None, seed: int) -> None:
-    from bench.lab.record import record
-    from bench.lab.students import record_class
+    from bench.course.record import record
+    from bench.course.students import record_class
     from bench.report.progress import progress
 
     with progress("recording") as done:

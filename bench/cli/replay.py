@@ -25,7 +25,7 @@ def replay(
     at: AtOption = None,
 ) -> None:
     """Run a diagnosed model along a recording; write measured and simulated signals."""
-    from bench.diagnose.replay import replay as run_replay
+    from bench.diagnosis.replay import replay as run_replay
 
     of = subject(rig, axis_name, mjcf, joint, at)
     replayed = run_replay(model, of.read(trace), of.rig)

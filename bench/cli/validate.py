@@ -12,8 +12,8 @@ from bench.errors import InputError
 from bench.plant.profile_names import DEFAULT, NAMES
 
 if TYPE_CHECKING:
-    from bench.validate.own import OwnAxis
-    from bench.validate.validate import Validation
+    from bench.validation.own import OwnAxis
+    from bench.validation.validate import Validation
 
 
 def validate(
@@ -40,10 +40,10 @@ def validate(
     from bench.report.progress import progress
     from bench.report.provenance import without_files
     from bench.report.validation import determined, sheets, validation_json
-    from bench.validate.case import AnyAxis
-    from bench.validate.hiding import Hiding
-    from bench.validate.plan import Plan
-    from bench.validate.validate import validate as run_validation
+    from bench.validation.case import AnyAxis
+    from bench.validation.hiding import Hiding
+    from bench.validation.plan import Plan
+    from bench.validation.validate import validate as run_validation
 
     if rig is None and str(profile) != DEFAULT:
         raise InputError("--profile", "found without --rig", "allowed: with the rig whose motion it is")
@@ -84,7 +84,7 @@ def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis,
     from bench.report.provenance import provenance
     from bench.rig.rig import load_rig
     from bench.trace.read import read
-    from bench.validate.own import own_axis
+    from bench.validation.own import own_axis
 
     known = load_rig(rig)
     if str(profile) in NAMES:

@@ -68,7 +68,7 @@ def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[
 
     if trace is None:
         return along_profile(model, of.rig, profile), []
-    from bench.diagnose.replay import replay
+    from bench.diagnosis.replay import replay
 
     recording = of.read(trace)
     replayed = replay(model, recording, of.rig)

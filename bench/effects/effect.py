@@ -69,7 +69,7 @@ class FittedTerm(Protocol):
 
 
 class Fitted(Protocol):
-    """A torque balance fitted to a recording, as far as effects may use it; see `bench.balance.fit.Fit`."""
+    """A torque balance fitted to a recording, as far as effects may use it; see `bench.fit.fit.Fit`."""
 
     @property
     def theta(self) -> Array: ...  # noqa: D102

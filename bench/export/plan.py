@@ -13,17 +13,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.balance.fit import fit
-from bench.balance.hypothesis import Hypothesis
-from bench.balance.parameter import Parameter
-from bench.balance.quantities import uncertain
-from bench.balance.rows import Rows
-from bench.balance.shapes import shaped
-from bench.diagnose.name.candidates import candidates
-from bench.diagnose.show.next_experiment import LONG_ENOUGH
+from bench.diagnosis.name.candidates import candidates
+from bench.diagnosis.show.next_experiment import LONG_ENOUGH
 from bench.effects.effect import Effect
 from bench.effects.present import Present
 from bench.errors import InputError, UndeterminedError
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Hypothesis
+from bench.fit.parameter import Parameter
+from bench.fit.quantities import uncertain
+from bench.fit.rows import Rows
+from bench.fit.shapes import shaped
 from bench.names import words
 from bench.plant.limits import MotionLimits
 from bench.plant.plant import Plant

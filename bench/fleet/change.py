@@ -6,7 +6,7 @@ v_k - value of recording k, in the order of time; e_k - its own error, of standa
 differ anyway, of one variance. For every place c the step is the difference of the means on both sides, its variance
 p/c + p/(n - c) with p the variance pooled about the two means, but on neither side below that of the recordings' own
 errors, and Student's t at n - 2 degrees of freedom judges it: with one recording behind c this is the prediction
-interval of the next recording (`bench.identify.between`). The chance of the largest of n - 1 steps is at most n - 1
+interval of the next recording (`bench.fit.between`). The chance of the largest of n - 1 steps is at most n - 1
 times its own (Bonferroni). Means are not weighted: weights by estimated variances alarm on up to three times the share
 they claim where errors differ much.
 """

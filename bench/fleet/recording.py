@@ -10,15 +10,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from bench.balance.parameter import Parameter
 from bench.bounds import Bounds, within
 from bench.errors import BenchError, UndeterminedError
 from bench.files import sha256
+from bench.fit.estimate import Estimate, RefusedEstimateError
+from bench.fit.parameter import Parameter
+from bench.fit.regression import identify
 from bench.fleet.remote import fetched
 from bench.gate.check import Check
 from bench.gate.gate import UnanswerableError
-from bench.identify.estimate import Estimate, RefusedEstimateError
-from bench.identify.regression import identify
 from bench.rig.rig import Rig
 from bench.trace.assemble import assemble
 from bench.trace.choose import axes_of
@@ -83,7 +83,7 @@ def _read(path: Path, task: Task) -> Trace:
 def _found(trace: Trace, task: Task) -> Plain:
     if not task.diagnose:
         return _estimated(identify(cut(trace), task.rig))
-    from bench.diagnose.diagnosis import diagnose  # MuJoCo: 0.7 s
+    from bench.diagnosis.diagnosis import diagnose  # MuJoCo: 0.7 s
 
     found = diagnose(trace, task.rig)
     try:

@@ -6,7 +6,7 @@ from matplotlib import colormaps, rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
-from bench.lab.result import Chart, Curve, Panel
+from bench.course.result import Chart, Curve, Panel
 from bench.names import plain
 from bench.report.figures import MEASURED, MODELLED, REST, STYLE, title_figure
 

@@ -9,11 +9,11 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
-from bench.check.compare import Checked
-from bench.check.comparison import SAME, Comparison
-from bench.check.measured import Measured
-from bench.check.state import Gap, NamedHere, State
-from bench.check.wording import DISPLAYED, described, formatted, headline
+from bench.baseline.compare import Checked
+from bench.baseline.comparison import SAME, Comparison
+from bench.baseline.measured import Measured
+from bench.baseline.state import Gap, NamedHere, State
+from bench.baseline.wording import DISPLAYED, described, formatted, headline
 from bench.structured import json_text
 
 SCHEMA = "bench.check/1"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.names import words
-from bench.validate.naming import NOTHING, NOTHING_MISSING
+from bench.validation.naming import NOTHING, NOTHING_MISSING
 
 
 @dataclass(frozen=True)

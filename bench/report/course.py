@@ -9,11 +9,11 @@ from pathlib import Path
 from rich import box
 from rich.table import Table
 
+from bench.course.course import RECORDED, course
+from bench.course.cover import Cover
+from bench.course.recordings import Recordings
+from bench.course.result import NotDone, Task
 from bench.files import held
-from bench.lab.course import RECORDED, course
-from bench.lab.cover import Cover
-from bench.lab.recordings import Recordings
-from bench.lab.result import NotDone, Task
 from bench.report.handin import write_sources
 from bench.report.lab import Results, write_lab_report
 from bench.report.section import section

@@ -11,10 +11,10 @@ from rich import box
 from rich.table import Table
 
 from bench.axis_kind import KINDS
-from bench.diagnose.add.same_axis import SameAxis
-from bench.diagnose.diagnosis import Diagnosis
-from bench.diagnose.found import Gap, Shrunk
-from bench.diagnose.where.where import Where
+from bench.diagnosis.add.same_axis import SameAxis
+from bench.diagnosis.diagnosis import Diagnosis
+from bench.diagnosis.found import Gap, Shrunk
+from bench.diagnosis.where.where import Where
 from bench.files import held, write_text
 from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml

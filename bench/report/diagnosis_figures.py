@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from bench.diagnose.found import Gap, Profile
-from bench.diagnose.show.show import Diagnosis
-from bench.diagnose.where.where import Where
+from bench.diagnosis.found import Gap, Profile
+from bench.diagnosis.show.show import Diagnosis
+from bench.diagnosis.where.where import Where
 from bench.names import words
 from bench.report.figures import MEASURED, MODELLED, NOISE, REST, in_style, legend_above, title_figure
 from bench.report.page.numbers import number, share, unit_text

@@ -12,14 +12,14 @@ from rich import box
 from rich.table import Table
 
 from bench.axis_kind import AxisKind
-from bench.balance.parameter import Parameter
-from bench.identify.estimate import Alone, Between, Estimate
+from bench.fit.estimate import Alone, Between, Estimate
+from bench.fit.parameter import Parameter
 from bench.names import words
 from bench.report.gate import checks_json
 from bench.structured import json_text
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
-    from bench.identify.refine import Refinement
+    from bench.fit.refine import Refinement
 
 SCHEMA = "bench.identify/1"
 

@@ -11,10 +11,10 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from rich.table import Table
 
+from bench.course.grade import Graded, Mark, grade, read_truth_of_class, unit_advice
+from bench.course.submission import find_submissions, read_submission
 from bench.errors import InputError
 from bench.files import write_text
-from bench.lab.grade import Graded, Mark, grade, read_truth_of_class, unit_advice
-from bench.lab.submission import find_submissions, read_submission
 from bench.names import cell
 
 TITLE = "Industrial Drives, Part 2: grades"

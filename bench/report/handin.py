@@ -9,13 +9,13 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.assets import asset
+from bench.course.flights import find_flights, read_flights
+from bench.course.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION, Recordings
+from bench.course.result import Task
+from bench.course.run import Run
+from bench.course.t06_inertia import KG_CM2
 from bench.errors import BenchError
 from bench.files import write_text
-from bench.lab.flights import find_flights, read_flights
-from bench.lab.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION, Recordings
-from bench.lab.result import Task
-from bench.lab.run import Run
-from bench.lab.t06_inertia import KG_CM2
 from bench.report.lab import Results
 from bench.rig.motor import DATASHEET
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from bench.axis_kind import MISALIGNMENT
 from bench.files import held, write_text
+from bench.fit.estimate import Estimate
 from bench.gate.gate import gate
-from bench.identify.estimate import Estimate
 from bench.names import in_a_row, readable
 from bench.report.estimate import estimate_json
 from bench.report.figures import save
@@ -25,7 +25,7 @@ from bench.trace.stream import stream
 from bench.trace.trace import Trace
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
-    from bench.identify.refine import Refinement
+    from bench.fit.refine import Refinement
 
 
 def write_identification(

@@ -11,8 +11,8 @@ from matplotlib.ticker import MaxNLocator
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
-from bench.identify.estimate import Estimate
-from bench.identify.modelled import modelled_effort
+from bench.fit.estimate import Estimate
+from bench.fit.modelled import modelled_effort
 from bench.names import words
 from bench.report.figures import MEASURED, MODELLED, NOISE, REST, in_style, legend_above, thinned, title_figure
 from bench.report.page.numbers import interval, unit_text

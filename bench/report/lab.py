@@ -10,9 +10,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from matplotlib import rc_context
 
+from bench.course.cover import Cover
+from bench.course.result import Chart, NotDone, Task
 from bench.files import held, whole, write_text
-from bench.lab.cover import Cover
-from bench.lab.result import Chart, NotDone, Task
 from bench.report.charts import chart_figure
 from bench.report.figures import quiet_about_glyphs
 from bench.report.lab_json import lab_json

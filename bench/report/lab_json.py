@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from bench import __version__
-from bench.lab.result import NotDone, Number, Task
+from bench.course.result import NotDone, Number, Task
 from bench.structured import json_text
 
 SCHEMA = "bench.lab/1"

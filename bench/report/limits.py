@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from bench.course.operating_range import task
+from bench.course.result import Task
 from bench.errors import InputError
-from bench.lab.operating_range import task
-from bench.lab.result import Task
 from bench.report.charts import chart_figure
 from bench.report.figures import save_as_named
 from bench.rig.rig import Rig

@@ -10,8 +10,8 @@ from pathlib import Path
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure, SubFigure
 
-from bench.lab.cover import Cover
-from bench.lab.result import Chart
+from bench.course.cover import Cover
+from bench.course.result import Chart
 from bench.names import plain
 from bench.report.charts import chart_height, draw_chart
 from bench.report.section import Row, Section

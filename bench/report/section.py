@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bench.lab.result import NotDone, Number, Task
+from bench.course.result import NotDone, Number, Task
 
 
 @dataclass(frozen=True)

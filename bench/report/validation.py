@@ -19,10 +19,10 @@ from bench.report.sheet import Sheet
 from bench.report.validation_figures import confusion_figure, coverage_figure
 from bench.statistics import NORMAL95
 from bench.structured import json_text
-from bench.validate.coverage import LEVELS, Coverage, Group, Share
-from bench.validate.naming import Naming
-from bench.validate.run import Run
-from bench.validate.validate import Validation
+from bench.validation.coverage import LEVELS, Coverage, Group, Share
+from bench.validation.naming import Naming
+from bench.validation.run import Run
+from bench.validation.validate import Validation
 
 SCHEMA = "bench.validate/1"
 #: Terms of the equation of motion as tables have them.

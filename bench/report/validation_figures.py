@@ -10,8 +10,8 @@ from matplotlib.patches import Rectangle
 
 from bench.report.confusion import Confusion
 from bench.report.figures import MEASURED, MODELLED, REST, title_figure
-from bench.validate.coverage import LEVELS, Coverage
-from bench.validate.naming import Naming
+from bench.validation.coverage import LEVELS, Coverage
+from bench.validation.naming import Naming
 
 #: Frame of the right answer.
 RIGHT = "#1c232b"

@@ -9,7 +9,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import KINDS, AxisKind
-from bench.diagnose.replay import Replay
+from bench.diagnosis.replay import Replay
 from bench.errors import InputError
 from bench.plant.drive import Cascade
 from bench.plant.limits import MotionLimits

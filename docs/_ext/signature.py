@@ -13,14 +13,14 @@ from matplotlib.figure import Figure
 
 import bench
 from bench.arrays import Array, rms
-from bench.balance.fit import Fit
-from bench.balance.rows import Rows
-from bench.diagnose.gap.gap import gap
-from bench.diagnose.name.candidates import candidates
-from bench.diagnose.where.where import LEAST, bins_of, coordinates, means_in, where
+from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.name.candidates import candidates
+from bench.diagnosis.where.where import LEAST, bins_of, coordinates, means_in, where
 from bench.effects.catalogue import catalogue, rivals
 from bench.effects.effect import Effect
 from bench.effects.present import Present, parse_effect
+from bench.fit.fit import Fit
+from bench.fit.rows import Rows
 from bench.names import words
 from bench.plant.profile_names import DEFAULT, NAMES
 from bench.plant.simulate import simulate
@@ -29,8 +29,8 @@ from bench.report.page.numbers import share, unit_text
 from bench.report.pages.tables import coordinate_word
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-from bench.validate.independent.effects import KINDS
-from bench.validate.own import own_axis
+from bench.validation.independent.effects import KINDS
+from bench.validation.own import own_axis
 
 RIG = Path(__file__).resolve().parents[1] / "axis.toml"
 #: Strength of every effect, where 1 is drastic, and seed of what is drawn beside it: phases, instants, harmonics.

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bench.balance.last_digit import plain
-from bench.balance.layout import lay_out
-from bench.balance.normal_equations import BLOCKS, normal_equations
-from bench.balance.rows import Rows
+from bench.fit.last_digit import plain
+from bench.fit.layout import lay_out
+from bench.fit.normal_equations import BLOCKS, normal_equations
+from bench.fit.rows import Rows
 from tests.benchmarks.table import Table
 from tests.benchmarks.timing import in_turn
-from tests.identify.motions import RIG, recording
+from tests.fit.motions import RIG, recording
 
 CORE, LSTSQ = "normal equations", "numpy.linalg.lstsq"
 

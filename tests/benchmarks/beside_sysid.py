@@ -23,11 +23,11 @@ from mujoco import sysid
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.mjcf import AXIS, DRIVE, LOAD
-from bench.identify.regression import identify
+from bench.fit.regression import identify
 from bench.plant.model import AxisParameters, build_spec, disk_inertia, half_step_inertia
 from bench.rig.rig import Rig
-from bench.validate.independent import Axis, Noise, Recorded, Sensors, random_motion, random_rig, simulate
-from bench.validate.independent.rig import rig_text
+from bench.validation.independent import Axis, Noise, Recorded, Sensors, random_motion, random_rig, simulate
+from bench.validation.independent.rig import rig_text
 from tests.benchmarks.table import Table
 
 PARAMETERS = ("J", "viscous", "Coulomb")

@@ -12,13 +12,13 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from bench.balance.hypothesis import Hypothesis, Term
-from bench.balance.layout import Layout, lay_out
-from bench.balance.memory import Memory
-from bench.balance.rows import Rows
 from bench.effects.catalogue import catalogue
-from bench.identify.estimate import Estimate
-from bench.identify.regression import identify
+from bench.fit.estimate import Estimate
+from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.layout import Layout, lay_out
+from bench.fit.memory import Memory
+from bench.fit.regression import identify
+from bench.fit.rows import Rows
 from bench.plant.run import run
 from bench.plant.ticks import run_ticks
 from bench.trace.read import read
@@ -26,7 +26,7 @@ from bench.trace.stream import stream
 from tests.benchmarks.table import Table, growth
 from tests.benchmarks.timing import Way, in_turn
 from tests.effects.axes import VALUES, Reversals, plant
-from tests.identify.motions import RIG, recording
+from tests.fit.motions import RIG, recording
 
 
 def measured(

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from bench.validate.independent.effects import CATALOGUE, LATER, OUTSIDE
+from bench.validation.independent.effects import CATALOGUE, LATER, OUTSIDE
 from tests.blind.score import Score, twins
 
 NOTHING, REMAINDER, REFUSED = "nothing", "remainder only", "refused"

@@ -17,14 +17,14 @@ import typer
 from rich.console import Console
 from rich.progress import track
 
-from bench.balance.fit import Fit
-from bench.balance.rows import Rows
-from bench.diagnose.gap.gap import gap
-from bench.diagnose.name.candidates import candidates
-from bench.diagnose.name.policy import Policy
-from bench.diagnose.name.rules import worth
-from bench.diagnose.name.search import search
+from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.name.candidates import candidates
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.name.rules import worth
+from bench.diagnosis.name.search import search
 from bench.effects.catalogue import catalogue
+from bench.fit.fit import Fit
+from bench.fit.rows import Rows
 from bench.rig.rig import load_rig
 from bench.trace.read import read
 from tests.blind.draw import Drawn, draw

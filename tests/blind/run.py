@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from bench.diagnose.diagnosis import Diagnosis, diagnose
+from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.errors import BenchError
 from bench.rig.rig import load_rig
 from bench.trace.read import read

@@ -7,7 +7,7 @@ import io
 from collections.abc import Callable, Sequence
 from statistics import median
 
-from bench.validate.independent.effects import CATALOGUE
+from bench.validation.independent.effects import CATALOGUE
 from tests.blind.draw import STRENGTHS
 from tests.blind.parameters import ANGLES, WHOLE, Compared
 from tests.blind.score import Score, same, twins

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.validate.independent.effects import CATALOGUE
+from bench.validation.independent.effects import CATALOGUE
 from tests.blind.confusion import REMAINDER, counted, given
 from tests.blind.draw import GROUPS, draw, one
 from tests.blind.parameters import compared, expected

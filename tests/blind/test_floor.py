@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.validate.independent.effects import CATALOGUE, OUTSIDE
+from bench.validation.independent.effects import CATALOGUE, OUTSIDE
 from tests.blind.__main__ import scored
 from tests.blind.draw import STRENGTHS, one
 from tests.blind.table import false_names, headline, wrong

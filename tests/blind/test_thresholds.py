@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.diagnose.name.policy import Policy
+from bench.diagnosis.name.policy import Policy
 from bench.effects import effect
 from tests.blind.thresholds import AS_IS, Named, Tally, key, markdown, sample
 from tests.blind.variants import FACTORS, switched_off, thresholds

@@ -16,17 +16,17 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-from bench.balance.fit import Fit
-from bench.diagnose.gap.gap import gap
-from bench.diagnose.name.doubts import Evidence, doubted
-from bench.diagnose.name.policy import Policy
-from bench.diagnose.name.search import Searched, search
-from bench.diagnose.recordings import Recordings
+from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.name.doubts import Evidence, doubted
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.name.search import Searched, search
+from bench.diagnosis.recordings import Recordings
 from bench.effects.catalogue import catalogue
 from bench.errors import BenchError
+from bench.fit.fit import Fit
 from bench.rig.rig import load_rig
 from bench.trace.read import read
-from bench.validate.independent.effects import CATALOGUE
+from bench.validation.independent.effects import CATALOGUE
 from tests.blind.__main__ import workers
 from tests.blind.draw import GROUPS, Drawn, draw
 from tests.blind.record import home, recorded, truth_of

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
-from bench.diagnose.name.policy import Policy
-from tests.diagnose.off import OFF, without
+from bench.diagnosis.name.policy import Policy
+from tests.diagnosis.off import OFF, without
 
 #: Shares and bounds that effects state of themselves: where each stands, and what it decides.
 OF_EFFECTS = (

@@ -12,7 +12,7 @@ from bench.effects.catalogue import catalogue
 from bench.effects.kinds import Mechanism
 from bench.trace.read import read
 from bench.units import Quantity
-from tests.diagnose.command import started
+from tests.diagnosis.command import started
 from tests.docs.pages import DOCS, PAGES, ROOT, bench_commands
 
 sys.path.insert(0, str(DOCS / "_ext"))

@@ -12,7 +12,7 @@ from bench.effects.present import parse_effect
 from bench.plant.simulate import simulate
 from bench.rig.rig import load_rig
 from bench.trace.write import write
-from tests.diagnose.command import started
+from tests.diagnosis.command import started
 from tests.docs.pages import PAGES, bench_commands
 from tests.export.two_links import MJCF, log, write_log
 

@@ -16,7 +16,7 @@ from bench.plant.plant import Plant
 from bench.plant.references import References
 from bench.plant.run import run
 from bench.plant.states import States
-from bench.validate.independent import KINDS, Effect, Sensors, simulate
+from bench.validation.independent import KINDS, Effect, Sensors, simulate
 from tests.independent.axes import PLAIN
 
 PERIOD = 125e-6

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from bench.diagnose.diagnosis import diagnose
+from bench.diagnosis.diagnosis import diagnose
 from bench.effects.catalogue import catalogue
 from bench.rig.rig import load_rig
-from bench.validate.independent import KINDS, Axis, Noise, Sensors, random_motion, simulate, write_rig
+from bench.validation.independent import KINDS, Axis, Noise, Sensors, random_motion, simulate, write_rig
 from tests.blind.parameters import WHOLE, compared
 from tests.kept import kept
 

@@ -10,7 +10,7 @@ import pytest
 
 from bench.effects.kinds import Mechanism, Moment
 from bench.plant.model import build_spec
-from bench.validate.independent import KINDS
+from bench.validation.independent import KINDS
 from tests.effects.axes import PARAMETERS, PERIOD, model
 from tests.effects.recording import (
     BASE,

@@ -5,7 +5,7 @@ import pytest
 
 from bench.effects.velocity_filter_lag import EFFECT
 from bench.trace.trace import Trace
-from tests.diagnose.constructed import RIG
+from tests.diagnosis.constructed import RIG
 from tests.effects.axes import PERIOD
 
 VALUES = {"time_constant": 2e-3}

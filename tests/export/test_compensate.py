@@ -17,7 +17,7 @@ from bench.plant.limits import MotionLimits
 from bench.plant.plant import Plant
 from bench.plant.profiles import plan
 from bench.rig.rig import Rig, load_rig
-from tests.diagnose.command import started
+from tests.diagnosis.command import started
 from tests.effects.axes import PARAMETERS, VALUES, model
 
 RIG = load_rig(asset("data", "rigs", "sh30701p.toml"))

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.diagnose.command import started
+from tests.diagnosis.command import started
 from tests.export.held import followed
 from tests.export.two_links import HIDDEN, MJCF, log, motion, write_log
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from bench.trace.trace import Trace
 from bench.trace.write import write
-from tests.diagnose.command import RIG
-from tests.identify.motions import UNITS, Truth, recording
+from tests.diagnosis.command import RIG
+from tests.fit.motions import UNITS, Truth, recording
 
 #: By how much recordings of one axis differ anyway, as share.
 BETWEEN = 0.01

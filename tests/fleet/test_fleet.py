@@ -18,10 +18,10 @@ from bench.fleet.fleet import fleet
 from bench.jobs.limits import Limits
 from bench.trace.write import write
 from tests.command import bench
-from tests.diagnose.command import RIG
+from tests.diagnosis.command import RIG
+from tests.fit.motions import NAMES, Truth, recording
 from tests.fleet.made import DAMAGES, fleet_of
 from tests.fleet.storage import Deadly, Never, offer
-from tests.identify.motions import NAMES, Truth, recording
 
 LIMITS = Limits(deadline=12.0)  # far beyond what a busy machine takes for the others
 

@@ -12,7 +12,7 @@ from bench.fleet.manifest import Manifest
 from bench.fleet.plan import Planned
 from bench.fleet.recording import Task
 from bench.fleet.summary import summarise
-from tests.identify.motions import NAMES, RIG
+from tests.fit.motions import NAMES, RIG
 
 TASK = Task("", "", RIG, False, bounds())
 

@@ -1,5 +1,5 @@
 """The command `bench` for tests, as those of diagnosis have it."""
 
-from tests.diagnose.conftest import bench
+from tests.diagnosis.conftest import bench
 
 __all__ = ["bench"]

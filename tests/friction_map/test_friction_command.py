@@ -7,7 +7,7 @@ import pytest
 
 from bench.trace.trace import Trace
 from bench.trace.write import write
-from tests.identify.motions import UNITS
+from tests.fit.motions import UNITS
 
 VISCOUS, COULOMB, OFFSET = 8e-4, 0.06, 0.004
 STATIC, STRIBECK = 0.075, 4.0

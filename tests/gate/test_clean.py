@@ -5,7 +5,7 @@ import json
 import pytest
 
 from bench.gate.gate import gate
-from tests.diagnose.command import started
+from tests.diagnosis.command import started
 from tests.gate.clean import independent, public, real, shared_cases
 from tests.shared import SHARED, needs_shared
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.trace.write import write
-from tests.diagnose.command import started
+from tests.diagnosis.command import started
 from tests.gate.damage import changed, losing
 from tests.independent.axes import PLAIN
 

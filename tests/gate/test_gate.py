@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
+from bench.fit.regression import identify
 from bench.gate.gate import STEADY, gate, joined, warnings_of
-from bench.identify.regression import identify
 from bench.trace.trace import Trace
 from tests.gate.damage import changed, keeping
 

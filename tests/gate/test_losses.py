@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
+from bench.fit.regression import identify
 from bench.gate import losses
 from bench.gate.gate import passed
-from bench.identify.regression import identify
 from tests.gate.damage import doubled, losing, stale, with_samples, without
 from tests.independent.axes import PLAIN
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
+from bench.fit.regression import identify
 from bench.gate import wraps
 from bench.gate.gate import passed
-from bench.identify.regression import identify
 from bench.trace.trace import Trace
 from tests.gate.damage import changed, keeping
 

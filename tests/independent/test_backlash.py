@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.validate.independent.effects import Backlash
-from bench.validate.independent.plant import Plant
+from bench.validation.independent.effects import Backlash
+from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
 
 ROTOR, LOAD = FREE.rotor_inertia, FREE.inertia - FREE.rotor_inertia

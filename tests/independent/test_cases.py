@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from bench.rig.rig import load_rig
-from bench.validate.independent.case import record, residual_ratio, truth, write_case
-from bench.validate.independent.draw import any_effects, hidden
-from bench.validate.independent.effects import CATALOGUE, OUTSIDE
-from bench.validate.independent.sensors import Noise, Sensors
+from bench.validation.independent.case import record, residual_ratio, truth, write_case
+from bench.validation.independent.draw import any_effects, hidden
+from bench.validation.independent.effects import CATALOGUE, OUTSIDE
+from bench.validation.independent.sensors import Noise, Sensors
 
 SHARED = Path(__file__).parents[3] / "shared" / "cases"
 

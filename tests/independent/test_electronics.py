@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.validate.independent.effects import CurrentLoopLag, EncoderEccentricity, VelocityFilterLag, VoltageLimit
-from bench.validate.independent.plant import Plant
+from bench.validation.independent.effects import CurrentLoopLag, EncoderEccentricity, VelocityFilterLag, VoltageLimit
+from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
 
 

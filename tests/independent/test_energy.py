@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.validate.independent.effects import (
+from bench.validation.independent.effects import (
     Backlash,
     DirectionDependentFriction,
     ElasticCoupling,
@@ -20,7 +20,7 @@ from bench.validate.independent.effects import (
     TorsionSpring,
     Unbalance,
 )
-from bench.validate.independent.plant import Plant
+from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
 
 

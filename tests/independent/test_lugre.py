@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.validate.independent.effects import PreslidingFriction, StribeckFriction
-from bench.validate.independent.plant import Plant
+from bench.validation.independent.effects import PreslidingFriction, StribeckFriction
+from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bench.validate.independent.effects import (
+from bench.validation.independent.effects import (
     KINDS,
     CoggingTorque,
     CurrentFilterLag,
@@ -32,7 +32,7 @@ from bench.validate.independent.effects import (
     Vibration,
     VoltageLimit,
 )
-from bench.validate.independent.plant import Plant
+from bench.validation.independent.plant import Plant
 from tests.independent.axes import PLAIN, run
 
 NULL = [

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.validate.independent.effects import (
+from bench.validation.independent.effects import (
     CoggingTorque,
     ElasticCoupling,
     LoadDependentFriction,
@@ -14,7 +14,7 @@ from bench.validate.independent.effects import (
     TorsionSpring,
     Unbalance,
 )
-from bench.validate.independent.plant import Plant
+from bench.validation.independent.plant import Plant
 from tests.independent.axes import PLAIN, run
 
 SETS = {

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.validate.independent import random_motion, random_rig
-from bench.validate.independent.references import Chirp, Multisine, Ramps, multisine, slow_reversals, staircase
+from bench.validation.independent import random_motion, random_rig
+from bench.validation.independent.references import Chirp, Multisine, Ramps, multisine, slow_reversals, staircase
 
 
 @pytest.mark.parametrize("seed", range(6))

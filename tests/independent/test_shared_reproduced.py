@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.validate.independent import Axis, Sensors, simulate
-from bench.validate.independent.effects import (
+from bench.validation.independent import Axis, Sensors, simulate
+from bench.validation.independent.effects import (
     DirectionDependentFriction,
     ElasticCoupling,
     FrictionWarmup,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.validate.independent.effects import (
+from bench.validation.independent.effects import (
     CoggingTorque,
     DirectionDependentFriction,
     FrictionWarmup,
@@ -21,7 +21,7 @@ from bench.validate.independent.effects import (
     Unbalance,
     Vibration,
 )
-from bench.validate.independent.plant import Plant
+from bench.validation.independent.plant import Plant
 from tests.independent.axes import PLAIN, run
 
 J, KW, K0, KT = PLAIN.inertia, PLAIN.viscous, PLAIN.coulomb, PLAIN.torque_constant

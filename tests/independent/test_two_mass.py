@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.validate.independent.effects import ElasticCoupling
-from bench.validate.independent.plant import Plant
+from bench.validation.independent.effects import ElasticCoupling
+from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, run
 
 ROTOR, LOAD = FREE.rotor_inertia, FREE.inertia - FREE.rotor_inertia

@@ -8,15 +8,15 @@ import numpy as np
 import pint
 import pytest
 
-from bench.diagnose.diagnosis import diagnose
+from bench.diagnosis.diagnosis import diagnose
 from bench.rig.rig import Rig
 from bench.trace.read import read
 from bench.trace.trace import Trace
 from bench.trace.write import write
-from bench.validate.independent import random_motion, simulate
-from bench.validate.independent.effects import KINDS
-from bench.validate.independent.rig import random_rig, rig_text
-from bench.validate.independent.sensors import Noise, random_sensors
+from bench.validation.independent import random_motion, simulate
+from bench.validation.independent.effects import KINDS
+from bench.validation.independent.rig import random_rig, rig_text
+from bench.validation.independent.sensors import Noise, random_sensors
 from tests.kept import kept
 
 OFTEN = (

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.identify.regression import identify
+from bench.fit.regression import identify
 from bench.trace.read import read
 from bench.trace.trace import Trace
-from tests.identify.motions import NAMES, RIG, UNITS, Truth, recording
+from tests.fit.motions import NAMES, RIG, UNITS, Truth, recording
 
 SEEDS = range(3)
 #: Given where the law is not about it, which takes a fifth of the time - Hz.

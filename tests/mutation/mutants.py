@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from bench.balance.stored import Balance
-from bench.diagnose.show.verdict import OBJECTIONS
+from bench.diagnosis.show.verdict import OBJECTIONS
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
 from bench.effects.kinds import Electronics, Friction, Mechanism, Sensing
 from bench.effects.signals import Signals
-from tests.diagnose.off import OFF
+from bench.fit.stored import Balance
+from tests.diagnosis.off import OFF
 
 #: Environment variable that names the mutant to be made.
 MUTANT = "SERVOBENCH_MUTANT"
@@ -93,7 +93,7 @@ def _decisions() -> Iterator[Mutant]:
     yield Mutant("judge unlimited off", partial(_replace, ADD, "unlimited", lambda *_: None), late)
 
 
-ADD, SEARCH = "bench.diagnose.add.add", "bench.diagnose.name.search"
+ADD, SEARCH = "bench.diagnosis.add.add", "bench.diagnosis.name.search"
 
 
 def _replace(module: str, name: str, value: Any) -> None:

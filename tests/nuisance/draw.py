@@ -11,9 +11,9 @@ from zlib import crc32
 
 import numpy as np
 
-from bench.validate.independent.effects import CATALOGUE, Effect
-from bench.validate.independent.references import Motion
-from bench.validate.independent.rig import Axis, random_rig
+from bench.validation.independent.effects import CATALOGUE, Effect
+from bench.validation.independent.references import Motion
+from bench.validation.independent.rig import Axis, random_rig
 from tests.nuisance.kinds import NUISANCES
 from tests.nuisance.nuisance import Nuisance, Strength, label
 from tests.nuisance.signals import FINE

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from bench.validate.independent.references import Motion, random_motion
-from bench.validate.independent.rig import Axis
+from bench.validation.independent.references import Motion, random_motion
+from bench.validation.independent.rig import Axis
 from tests.nuisance.signals import Signals, sampled
 
 if TYPE_CHECKING:

@@ -19,11 +19,11 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress
 
-from bench.validate.independent.case import Hidden, record, write_case
-from bench.validate.independent.draw import any_effects
-from bench.validate.independent.effects import CATALOGUE
-from bench.validate.independent.rig import random_rig
-from bench.validate.independent.sensors import random_sensors
+from bench.validation.independent.case import Hidden, record, write_case
+from bench.validation.independent.draw import any_effects
+from bench.validation.independent.effects import CATALOGUE
+from bench.validation.independent.rig import random_rig
+from bench.validation.independent.sensors import random_sensors
 from tests.blind.__main__ import workers
 from tests.blind.draw import Drawn
 from tests.blind.score import same, twins

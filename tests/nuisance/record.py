@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.validate.independent.rig import write_rig
-from bench.validate.independent.sensors import Sensors
-from bench.validate.independent.simulate import simulate
+from bench.validation.independent.rig import write_rig
+from bench.validation.independent.sensors import Sensors
+from bench.validation.independent.simulate import simulate
 from tests.kept import INTEGRATOR
 from tests.nuisance.draw import Case
 from tests.nuisance.signals import FINE, Signals, noisy, write_csv

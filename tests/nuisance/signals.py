@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.validate.independent.rig import Axis
-from bench.validate.independent.sensors import rounded
+from bench.validation.independent.rig import Axis
+from bench.validation.independent.sensors import rounded
 
 Array = np.ndarray
 

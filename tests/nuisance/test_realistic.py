@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.validate.independent.effects import CATALOGUE
+from bench.validation.independent.effects import CATALOGUE
 from tests.nuisance.answer import Answer
 from tests.nuisance.realistic import MANY, SEVERITY, cases_csv, draw, judged, markdown, one, severities_of
 

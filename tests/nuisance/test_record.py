@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bench.validate.independent.effects import CATALOGUE
-from bench.validate.independent.references import random_motion
-from bench.validate.independent.simulate import simulate
+from bench.validation.independent.effects import CATALOGUE
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.simulate import simulate
 from tests.independent.axes import PLAIN
 from tests.nuisance.record import IDEAL, LONGEST_STEP
 from tests.nuisance.signals import CURRENT_NOISE, SPEED_NOISE

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from bench.trace.write import write
-from tests.diagnose.command import RIG, started
-from tests.diagnose.conftest import bench
-from tests.diagnose.test_commands import run_of, with_unbalance
+from tests.diagnosis.command import RIG, started
+from tests.diagnosis.conftest import bench
+from tests.diagnosis.test_commands import run_of, with_unbalance
 
 __all__ = ["bench"]
 

@@ -10,9 +10,9 @@ from bench.report.page.blocks import Intervals, Paragraph, Points, Table
 from bench.report.page.render import html
 from bench.report.pages.check import check_page
 from bench.trace.write import write
-from tests.check.states import named, state
-from tests.check.test_command import again
-from tests.check.test_compare import checked
+from tests.baseline.states import named, state
+from tests.baseline.test_command import again
+from tests.baseline.test_compare import checked
 from tests.report.test_page import HOSTILE
 
 BASE = ("--rig", "rig.toml", "--baseline", "base.toml")

@@ -11,7 +11,7 @@ from bench.report.page.blocks import Chart
 from bench.report.page.folder import read_page
 from bench.report.page.scripted import TimeGraph
 from bench.trace.write import write
-from tests.diagnose.test_commands import run_of
+from tests.diagnosis.test_commands import run_of
 
 
 def told(page):

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.diagnose.diagnosis import diagnose
-from bench.diagnose.found import NamedEffect
+from bench.diagnosis.diagnosis import diagnose
+from bench.diagnosis.found import NamedEffect
 from bench.effects.catalogue import catalogue
 from bench.report.page.blocks import Chart, Table
 from bench.report.page.folder import read_page
@@ -16,7 +16,7 @@ from bench.report.page.scripted import TimeGraph
 from bench.report.pages.diagnosis import diagnosis_page
 from bench.report.pages.verdict import verdict_sentence
 from bench.rig.rig import Rig
-from tests.diagnose.test_commands import run_of, with_unbalance
+from tests.diagnosis.test_commands import run_of, with_unbalance
 
 RIG = {"name": "axis", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A", "rotor_inertia": "2 kg*cm**2"}}
 

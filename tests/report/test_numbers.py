@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.balance.parameter import Parameter
+from bench.fit.parameter import Parameter
 from bench.report.page.chart import ticks
 from bench.report.page.numbers import interval, number, share, unit_text
 

@@ -17,8 +17,8 @@ from bench.trace.inspect import inspect_recording
 from bench.trace.read import read_recording
 from bench.trace.reading_options import GivenOptions
 from bench.trace.write import write
-from tests.diagnose.conftest import bench
-from tests.diagnose.test_commands import run_of
+from tests.diagnosis.conftest import bench
+from tests.diagnosis.test_commands import run_of
 from tests.report.conftest import TRACE_NAME
 from tests.report.test_page import HOSTILE
 

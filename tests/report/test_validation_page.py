@@ -10,9 +10,9 @@ from bench.report.page.blocks import HeatMap, Intervals, Table
 from bench.report.page.render import html
 from bench.report.pages.validation import validation_page
 from bench.report.provenance import without_files
-from bench.validate.coverage import LEVELS, Coverage, Share
-from bench.validate.naming import Naming
-from bench.validate.validate import Validation
+from bench.validation.coverage import LEVELS, Coverage, Share
+from bench.validation.naming import Naming
+from bench.validation.validate import Validation
 from tests.report.test_page import HOSTILE
 
 NONE = Share(0, 0)

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
+from bench.fit.regression import identify
 from bench.gate.gate import warnings_of
-from bench.identify.regression import identify
 from bench.rig.rig import Rig, load_rig
 from bench.rig.values import tolerance_of
 from bench.statistics import NORMAL95
 from bench.units import parse_with_tolerance
-from tests.identify.motions import recording
+from tests.fit.motions import recording
 
 FRICTION = ("viscous_friction_coefficient", "coulomb_friction_torque")
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.balance.hypothesis import Hypothesis
-from bench.balance.layout import lay_out
-from bench.balance.rows import Rows
 from bench.errors import InputError
+from bench.fit.hypothesis import Hypothesis
+from bench.fit.layout import lay_out
+from bench.fit.rows import Rows
 from bench.trace.join import join
 from bench.trace.trace import Trace
-from tests.identify.motions import RIG, UNITS, recording
+from tests.fit.motions import RIG, UNITS, recording
 
 
 def run_of(seed, **more):

@@ -17,7 +17,7 @@ from mcap_ros2.writer import Writer
 from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
-from bench.diagnose.replay import Replay
+from bench.diagnosis.replay import Replay
 from bench.plant.references import References
 from bench.trace.read import read_recording
 from tests.trace.recordings import machine_expert_xml

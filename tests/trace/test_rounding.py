@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from bench.arrays import rms
-from bench.balance.fit import fit
-from bench.balance.hypothesis import Hypothesis
-from bench.balance.rows import Rows
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Hypothesis
+from bench.fit.rows import Rows
 from bench.trace.filter import GaussianFilter
 from bench.trace.rounding import common_step, rounding_spectrum
 from bench.trace.trace import Trace
-from tests.diagnose.constructed import COULOMB, INERTIA, RIG, VISCOUS
+from tests.diagnosis.constructed import COULOMB, INERTIA, RIG, VISCOUS
 
 PERIOD = 1e-3
 SMOOTH = GaussianFilter(2e-3, PERIOD)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from bench.trace.write import write
-from tests.diagnose.conftest import bench
-from tests.diagnose.test_commands import diagnosed, only, run_of
+from tests.diagnosis.conftest import bench
+from tests.diagnosis.test_commands import diagnosed, only, run_of
 
 __all__ = ["bench", "diagnosed"]
 ROOT = Path(__file__).resolve().parents[2]

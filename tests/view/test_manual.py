@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bench.assets import asset
-from tests.diagnose.conftest import bench
+from tests.diagnosis.conftest import bench
 from tests.view.test_command import run_alone
 
 __all__ = ["bench"]

@@ -5,7 +5,7 @@ import pytest
 
 from bench.arrays import rms
 from bench.assets import asset
-from bench.diagnose.replay import replay
+from bench.diagnosis.replay import replay
 from bench.errors import InputError
 from bench.export.tracking import tracking
 from bench.plant.axis_model import AxisModel
@@ -16,8 +16,8 @@ from bench.plant.model_file import StoredModel, model_toml
 from bench.plant.profiles import plan
 from bench.rig.rig import load_rig
 from bench.view.side_by_side import along_profile, along_recording
-from tests.diagnose.test_commands import diagnosed, only, run_of, with_unbalance
-from tests.identify.motions import RIG
+from tests.diagnosis.test_commands import diagnosed, only, run_of, with_unbalance
+from tests.fit.motions import RIG
 from tests.view.motions import AHEAD, shown
 
 __all__ = ["diagnosed"]

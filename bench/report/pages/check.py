@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from bench.check.compare import Checked
-from bench.check.comparison import CHANGED, SAME, UNDECIDED, Comparison
-from bench.check.wording import described, headline
+from bench.baseline.compare import Checked
+from bench.baseline.comparison import CHANGED, SAME, UNDECIDED, Comparison
+from bench.baseline.wording import described, headline
 from bench.names import short, words
 from bench.report.check import cells
 from bench.report.page.blocks import (

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from bench.arrays import Array
-from bench.diagnose.diagnosis import Diagnosis
-from bench.diagnose.found import Course, Profile
-from bench.diagnose.where.where import Where
+from bench.diagnosis.diagnosis import Diagnosis
+from bench.diagnosis.found import Course, Profile
+from bench.diagnosis.where.where import Where
 from bench.names import words
 from bench.report.page.blocks import (
     Axes,

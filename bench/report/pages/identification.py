@@ -10,10 +10,10 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS, AxisKind
-from bench.diagnose.name.rules import Remainder
-from bench.diagnose.where.where import LEAST, bins_of, means_in
-from bench.identify.estimate import Estimate
-from bench.identify.modelled import modelled_effort
+from bench.diagnosis.name.rules import Remainder
+from bench.diagnosis.where.where import LEAST, bins_of, means_in
+from bench.fit.estimate import Estimate
+from bench.fit.modelled import modelled_effort
 from bench.names import words
 from bench.report.page.blocks import Answer, Axes, Chart, Downloads, File, Page, Section, Series, answered
 from bench.report.page.numbers import interval, number, share, unit_text

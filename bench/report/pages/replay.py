@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.diagnose.add.refine import NULL
-from bench.diagnose.replay import LEFT, Replay
+from bench.diagnosis.add.refine import NULL
+from bench.diagnosis.replay import LEFT, Replay
 from bench.report.page.blocks import Answer, Downloads, File, Page, Points, Section
 from bench.report.page.numbers import number, share
 from bench.report.pages.over_time import Measured, time_graph

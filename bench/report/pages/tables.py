@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from bench import __version__
-from bench.balance.parameter import Parameter
+from bench.fit.estimate import Alone, Between
+from bench.fit.parameter import Parameter
 from bench.gate.check import Check
-from bench.identify.estimate import Alone, Between
 from bench.names import words
 from bench.report.page.blocks import Column, Points, Section, Series, Table
 from bench.report.page.numbers import interval, number, unit_text

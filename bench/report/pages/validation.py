@@ -27,9 +27,9 @@ from bench.report.page.numbers import number, sentence, share, unit_text
 from bench.report.pages.tables import origin
 from bench.report.sheet import Sheet
 from bench.report.validation import SYMBOLS, TITLES, bounded, by_name, covered, determined, names, outcomes
-from bench.validate.coverage import LEVELS, Coverage
-from bench.validate.naming import Naming
-from bench.validate.validate import Validation
+from bench.validation.coverage import LEVELS, Coverage
+from bench.validation.naming import Naming
+from bench.validation.validate import Validation
 
 #: The level that the chart shows; the table has the others.
 LEVEL = LEVELS[-1]

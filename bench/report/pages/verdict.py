@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from bench.axis_kind import INERTIA, KINDS
-from bench.diagnose.add.refine import NULL
-from bench.diagnose.found import Gap, NamedEffect
-from bench.diagnose.show.show import Diagnosis
+from bench.diagnosis.add.refine import NULL
+from bench.diagnosis.found import Gap, NamedEffect
+from bench.diagnosis.show.show import Diagnosis
 from bench.names import words
 from bench.report.page.blocks import Answer, answered
 from bench.report.page.numbers import interval, number, sentence, share, unit_text

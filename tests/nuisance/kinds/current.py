@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import lfilter
 
-from bench.validate.independent.sensors import rounded
+from bench.validation.independent.sensors import rounded
 from tests.nuisance.nuisance import Nuisance
 from tests.nuisance.signals import FINE
 

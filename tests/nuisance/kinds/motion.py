@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bench.validate.independent.references import Motion, Ramps, random_motion, run_up_and_down
+from bench.validation.independent.references import Motion, Ramps, random_motion, run_up_and_down
 from tests.nuisance.nuisance import DURATION, Nuisance
 
 #: Needs many speeds, both directions, or long.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bench.validate.independent.sensors import rounded
+from bench.validation.independent.sensors import rounded
 from tests.nuisance.nuisance import Nuisance
 
 TURN = 2.0 * np.pi

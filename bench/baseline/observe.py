@@ -1,0 +1,216 @@
+"""The state of an axis from recordings, by `identify` alone or by `diagnose` too."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from bench.baseline.conditions import conditions
+from bench.baseline.measured import Measured
+from bench.baseline.same_rig import rig_values
+from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, Gap, NamedHere, Shows, State
+from bench.diagnosis.diagnosis import POLICY, Diagnosis, diagnose
+from bench.diagnosis.found import NamedEffect
+from bench.diagnosis.recordings import Recordings
+from bench.fit.estimate import Alone
+from bench.fit.fit import Fit, fit
+from bench.fit.hum import with_hum
+from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.parameter import Parameter
+from bench.fit.quantities import uncertain
+from bench.fit.regression import identify
+from bench.fit.rows import WIDEST, Rows
+from bench.fit.shapes import shaped
+from bench.gate.gate import passed
+from bench.rig.rig import Rig
+from bench.trace.join import join
+from bench.trace.trace import Trace
+
+Progress = Callable[[float], None]
+#: Effects of another state, each with its match in this one.
+Others = Sequence[tuple[NamedHere, NamedHere | None]]
+
+
+@dataclass(frozen=True)
+class Under:
+    """Quantities of recordings fitted with the effects of another state.
+
+    Attributes:
+        quantities: by name.
+        torques: of those effects that are in the torque balance, by their `id`.
+        noise_floor: of the torque gap - N*m (N).
+    """
+
+    quantities: Mapping[str, Measured]
+    torques: Mapping[int, Measured]
+    noise_floor: float
+
+
+@dataclass(frozen=True)
+class Observed:
+    """A state, and the fit behind it.
+
+    Attributes:
+        state: of the axis.
+        fitted: the torque balance with the effects found, through the common filter of all states.
+        base_units: names and units of J, K_w and K_0.
+        unit: of the effort.
+    """
+
+    state: State
+    fitted: Fit | None = None
+    base_units: Mapping[str, str] = field(default_factory=dict)
+    unit: str = ""
+
+    def under(self, others: Others) -> Under:
+        """The recording fitted with the effects of another state instead of its own.
+
+        An effect that comes or goes changes J, K_w and K_0 with it: an unchanged axis agrees under both sets.
+
+        Args:
+            others: effects of the other state. Those without a match start from the shape they had there; those
+                outside the torque balance are left out.
+        """
+        own = self.fitted
+        assert own is not None
+        held = [pair for pair in others if pair[0].shape is not None]
+        hypothesis = own.hypothesis.with_terms(_term(effect, mine, own, self.state) for effect, mine in held)
+        fitted = fit(own.rows, hypothesis)
+        for index, (_, mine) in enumerate(held):
+            if mine is None:
+                fitted = shaped(fitted.rows, fitted.hypothesis, index)
+        base = uncertain(fitted).base(self.base_units)
+        torques = iter([_torque(fitted, index, self.unit) for index in range(len(held))])
+        found = {id(effect): next(torques) for effect, _ in held}
+        parameters = {name: Measured.of(one) for name, one in base.items()}
+        return Under(parameters | {TORQUE_GAP: _torque_gap(fitted, self.unit)}, found, fitted.floor)
+
+
+def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
+    """State by `identify`: parameters, and the residual over its noise floor.
+
+    Raises:
+        UndeterminedError: the recordings do not determine a parameter.
+        InputError: as `identify`.
+    """
+    traces = [passed(trace, rig).trace for trace in traces]
+    found = identify(traces, rig)
+    kind, fitted = rig.axis_kind, balance(join(traces), rig, Hypothesis())
+    names = [*kind.base_parameters()]
+    gap = _torque_gap(fitted, found.residual.unit)
+    state = State(
+        source="recordings",
+        names=False,
+        quantities=_parameters(names, found.parameters, found.recordings) | {TORQUE_GAP: gap},
+        gaps={"torque": Gap(gap.value, fitted.floor, gap.unit)},
+        conditions=conditions(traces, rig, found.cutoff),
+        rig=rig_values(rig),
+    )
+    return Observed(state)
+
+
+def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda share: None) -> Observed:
+    """State by `diagnose`: parameters together with named effects, gaps and verdict.
+
+    Raises:
+        UndeterminedError, InputError: as `diagnose`.
+    """
+    found = diagnose(traces, rig, progress=progress)
+    traces = [passed(trace, rig).trace for trace in traces]
+    recordings = Recordings.of(traces, rig, None)
+    fitted = balance(recordings.seen, rig, replace(found.balance.hypothesis, hum=()))
+    count = len(fitted.terms)
+    effects = [_named(effect, fitted, index, recordings.unit) for index, effect in enumerate(found.effects[:count])]
+    effects += [NamedHere(e.effect, _measured(e.parameters)) for e in found.effects[count:]]
+    cutoff = recordings.rows.conditioning.filter.cutoff
+    state = State(
+        source="recordings",
+        names=True,
+        quantities=_parameters(recordings.base_units, found.parameters, found.recordings)
+        | _gaps(found, fitted, recordings.unit),
+        effects=tuple(effects),
+        verdict=found.verdict,
+        gaps={
+            name: Gap(gap.identify[1], gap.noise_floor, gap.unit)
+            for name, gap in (("torque", found.torque), ("velocity", found.velocity))
+            if gap.identify is not None
+        },
+        shows=_shows(fitted),
+        conditions=conditions(traces, rig, cutoff),
+        rig=rig_values(rig),
+    )
+    return Observed(state, fitted, recordings.base_units, recordings.unit)
+
+
+def balance(trace: Trace, rig: Rig, hypothesis: Hypothesis) -> Fit:
+    """The torque balance of a recording through the common filter of all states.
+
+    The filter that a recording would choose by itself depends on its noise, and noise and torque of an effect behind it
+    depend on the filter: such states would not be comparable.
+    """
+    return with_hum(fit(Rows.of(trace, rig, width=WIDEST), hypothesis))
+
+
+def _parameters(
+    names: Sequence[str] | Mapping[str, str], found: Mapping[str, Parameter], recordings: Sequence[Alone]
+) -> dict[str, Measured]:
+    alone = {name: [one.parameters[name] for one in recordings if name in one.parameters] for name in names}
+    return {name: Measured.of(found[name], alone[name]) for name in names if name in found}
+
+
+def _measured(parameters: Mapping[str, Parameter]) -> dict[str, Measured]:
+    return {name: Measured.of(one) for name, one in parameters.items()}
+
+
+def _named(found: NamedEffect, fitted: Fit, index: int, unit: str) -> NamedHere:
+    term, torque = fitted.terms[index], _torque(fitted, index, unit)
+    return NamedHere(
+        effect=found.effect,
+        quantities=_measured(found.parameters),
+        shape=term.shape,
+        on_load=term.load is not None,
+        torque=torque,
+        ambiguous_with=found.ambiguous_with,
+        gain=(torque.value / torque.std_error) ** 2,
+    )
+
+
+def _torque(fitted: Fit, index: int, unit: str) -> Measured:
+    """RMS torque of a term that the rest of the model cannot explain.
+
+    Its square is the reduction of the mean squared residual by the term; its error is that of one amplitude fitted to
+    the rows, of which the filter leaves only some independent.
+    """
+    less = fit(fitted.rows, fitted.hypothesis.without(index))
+    saved = max(less.squares - fitted.squares, 0.0) / fitted.count
+    error = fitted.floor * np.sqrt(fitted.rows.correlation / fitted.count)
+    return Measured(float(np.sqrt(saved)), unit, float(error))
+
+
+def _torque_gap(fitted: Fit, unit: str) -> Measured:
+    """RMS residual r with its standard error, r/sqrt(2*n) with n independent rows behind the filter."""
+    independent = fitted.count / fitted.rows.correlation
+    return Measured(fitted.rms, unit, float(fitted.rms / np.sqrt(2.0 * independent)))
+
+
+def _shows(fitted: Fit) -> Shows:
+    """Torque that is significant in a recording, and that its residual may hide: up to `Remainder.chi` it is noise."""
+    significant = POLICY.significant.threshold(fitted, 1) / fitted.count
+    hidden = max(fitted.chi, POLICY.remainder.chi) ** 2 - 1.0
+    return Shows(float(np.sqrt(significant)), float(fitted.floor * np.sqrt(hidden)))
+
+
+def _gaps(found: Diagnosis, fitted: Fit, unit: str) -> dict[str, Measured]:
+    gaps, velocity = {TORQUE_GAP: _torque_gap(fitted, unit)}, found.velocity
+    if velocity.identify is not None:
+        gaps[VELOCITY_GAP] = Measured(velocity.identify[1], velocity.unit, 0.0)
+    return gaps
+
+
+def _term(effect: NamedHere, mine: NamedHere | None, own: Fit, state: State) -> Term:
+    """The term of an effect: the one of this recording, else one of the shape in the other state."""
+    if mine is not None:
+        return own.terms[[one for one in state.effects if one.shape is not None].index(mine)]
+    return Term(effect.effect, effect.shape or (), load=() if effect.on_load else None)

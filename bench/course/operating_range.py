@@ -1,0 +1,127 @@
+"""The operating range: a recording in the speed-torque diagram, and the reserve that it leaves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.course.result import Chart, Curve, Number, Panel, Task
+from bench.course.t10_peak_torque import RPM
+from bench.errors import InputError
+from bench.rig.limits import OperatingRange, Reserve, reserve
+from bench.rig.rig import Rig
+
+KEY, TITLE = "range", "Operating range"
+
+
+def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
+    """Draw a motion into the range at every mains voltage of the motor, and state its reserve.
+
+    Args:
+        rig: its motor.
+        speed, torque: of the motion, (n,) - rad/s, N*m.
+        what: it is, for the title.
+
+    Raises:
+        InputError: the motor lacks its torques or curves.
+    """
+    ranges = [
+        OperatingRange.of(rig.motor, voltage, rig.source)
+        for voltage in [curve.mains_voltage for curve in rig.motor.peak_curves] or [230.0]
+    ]
+    findings, numbers, curves = [], [], []
+    for limit in ranges:
+        volts = f"{limit.curve.mains_voltage:g} V"
+        left = reserve(limit, speed, torque)
+        findings.append(f"At {volts}: {_peak_finding(left, speed, torque)} {_thermal_finding(left)}")
+        numbers += [
+            Number(f"peak reserve, {volts}", left.peak, "N·m"),
+            Number(f"thermal reserve, {volts}", left.thermal, "A"),
+        ]
+        curves += _limit_curves(limit, volts)
+        cold = _cold(limit, rig)
+        if cold is not None:
+            numbers.append(Number(f"peak reserve, {volts}, cold", reserve(cold, speed, torque).peak, "N·m"))
+            at = np.linspace(0.0, cold.curve.no_load_speed, 300)
+            curves.append(Curve(at * RPM, cold.peak(at), f"peak, {volts}, winding at 20 °C", "thin"))
+    left = reserve(ranges[0], speed, torque)
+    findings.append(_heat_finding(left, ranges[0]))
+    if any(number.name.endswith("cold") for number in numbers):
+        findings.append(
+            "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve stands apart "
+            "and is none "
+            "to plan with. It changes nothing where the magnets limit, nor for heat."
+        )
+    numbers += [Number("RMS torque", left.rms_torque, "N·m"), Number("RMS current", left.rms_current, "A")]
+    panel = Panel(
+        "speed |n| / rpm", "torque M in the direction of motion / (N·m)", (*_motion(speed, torque, ranges[0]), *curves)
+    )
+    return Task(
+        KEY, f"{TITLE}: {what}", tuple(findings), tuple(numbers), (Chart(f"Operating range: {what}", (panel,)),)
+    )
+
+
+def _peak_finding(left: Reserve, speed: Array, torque: Array) -> str:
+    braking = speed[left.at] * torque[left.at] < 0.0
+    beyond = f"; {left.beyond:.1%} of the samples lie beyond the limit" if left.beyond else ""
+    return (
+        f"least reserve to the peak torque {left.peak:.3g} N·m ({left.peak_share:.0%}) at "
+        f"{speed[left.at] * RPM:.0f} rpm, {'braking' if braking else 'driving'}{beyond}."
+    )
+
+
+def _thermal_finding(left: Reserve) -> str:
+    hot = ", the motor would overheat if this repeats" if left.thermal < 0.0 else ""
+    return (
+        f"RMS current {left.rms_current:.3g} A at {left.mean_speed * RPM:.0f} rpm on average leaves "
+        f"{left.thermal:.3g} A "
+        f"({left.thermal_share:.0%}) to the continuous {left.continuous_current:.3g} A{hot}."
+    )
+
+
+def _heat_finding(left: Reserve, limit: OperatingRange) -> str:
+    """Why heat goes by current and not by torque."""
+    by_torque = left.rms_torque / float(limit.torque_constant(np.asarray(left.continuous_current)))
+    return (
+        f"Heat goes with the square of the current. The RMS torque of {left.rms_torque:.3g} N·m over the "
+        "torque constant "
+        f"at continuous current would say {by_torque:.3g} A; the iron saturates at the peaks, so they take more: "
+        f"{left.rms_current:.3g} A."
+    )
+
+
+def _motion(speed: Array, torque: Array, limit: OperatingRange) -> list[Curve]:
+    """The samples, those that brake below the axis, and the point that heats as they do together."""
+    left = reserve(limit, speed, torque)
+    effective = float(limit.torque_constant.torque(np.asarray(left.rms_current)))
+    return [
+        Curve(np.abs(speed) * RPM, np.sign(speed * torque) * np.abs(torque), "motion, braking below 0", "dots"),
+        Curve(np.array([left.mean_speed * RPM]), np.array([effective]), "RMS current at mean speed", "bold dots"),
+        _least(speed, torque, left),
+    ]
+
+
+def _least(speed: Array, torque: Array, left: Reserve) -> Curve:
+    """The sample with the least reserve, and how far it is from the limit."""
+    at, size = abs(float(speed[left.at])) * RPM, abs(float(torque[left.at]))
+    side = -1.0 if speed[left.at] * torque[left.at] < 0.0 else 1.0
+    label = f"least reserve to the peak, {left.peak:.3g} N·m"
+    return Curve(np.array([at, at]), side * np.array([size, size + left.peak]), label, "reach")
+
+
+def _limit_curves(limit: OperatingRange, volts: str) -> list[Curve]:
+    speed = np.linspace(0.0, limit.curve.no_load_speed, 300)
+    braking = limit.available(speed, np.full_like(speed, -1.0))
+    return [
+        Curve(speed * RPM, limit.peak(speed), f"peak, {volts}"),
+        Curve(speed * RPM, limit.continuous(speed), f"continuous, {volts}", "dashes"),
+        Curve(speed * RPM, -braking, f"peak braking, {volts}", "thin"),
+    ]
+
+
+def _cold(limit: OperatingRange, rig: Rig) -> OperatingRange | None:
+    """None where the motor does not tell its circuit."""
+    try:
+        return limit.cold(rig.motor, rig.source)
+    except InputError:
+        return None

@@ -1,0 +1,63 @@
+"""Task 2: backward difference u'[k] = (u[k] - u[k-1])/T of sin(t), t = 0 : 0.001 : 2*pi; beside it the bench's own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bench.course.result import COMPUTED, Chart, Curve, Number, Panel, Task
+from bench.fit.lab import backward_difference
+from bench.trace.filter import GaussianFilter
+
+KEY, TITLE = "2", "Backward difference"
+
+SAMPLE_PERIOD = 1e-3
+#: One period, as the course has it: t = 0 : 0.001 : 2*pi.
+DURATION = 2.0 * np.pi
+#: Width of the bench's filter, as it chooses it for the lab's recordings - s.
+WIDTH = 2.0 * SAMPLE_PERIOD
+
+
+def task() -> Task:
+    """Differentiate sin(t) both ways and compare with cos(t).
+
+    The backward difference belongs half a sample earlier, so it errs by T/2*|u''|: 5e-4 here. The bench's filter is
+    even in time and scales a sine by exp(-(omega*width)**2/2): 2e-6 here; it cannot serve the ends, six widths long.
+    """
+    time = np.arange(0.0, DURATION, SAMPLE_PERIOD)
+    backward = backward_difference(np.sin(time), SAMPLE_PERIOD)
+    smooth = GaussianFilter(WIDTH, SAMPLE_PERIOD)
+    kept = slice(smooth.margin, time.size - smooth.margin)
+    filtered = smooth(np.sin(time), 1)[0]
+    errors = backward - np.cos(time), filtered - np.cos(time[kept])
+    worst = [float(np.max(np.abs(error))) for error in (errors[0][1:], errors[1])]
+    return Task(
+        KEY,
+        TITLE,
+        (
+            f"On sin(t), t = 0 : {SAMPLE_PERIOD:g} : 2π ({time.size} samples), the backward difference is at "
+            f"most {worst[0]:.2g} away from "
+            f"cos(t), half a sample of delay; the bench's own derivative {worst[1]:.2g}. Its first value is 0 by "
+            "definition.",
+        ),
+        (
+            Number("largest error of the backward difference", worst[0], "1/s", SAMPLE_PERIOD / 2.0, COMPUTED),
+            Number("largest error of the bench's derivative", worst[1], "1/s", WIDTH**2 / 2.0, COMPUTED),
+        ),
+        (
+            Chart(
+                "Derivative of sin(t) against cos(t)",
+                (
+                    Panel(
+                        "time / s",
+                        "derivative / (1/s)",
+                        (
+                            Curve(time, np.cos(time), "cos(t)", "wide"),
+                            Curve(time, backward, "backward difference"),
+                        ),
+                    ),
+                    Panel("time / s", "error, backward / (1/s)", (Curve(time[1:], errors[0][1:]),)),
+                    Panel("time / s", "error, bench / (1/s)", (Curve(time[kept], errors[1]),)),
+                ),
+            ),
+        ),
+    )

@@ -1,0 +1,75 @@
+"""Diagnosis in five steps: gap, where, name, add, show."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from bench.axis_kind import INERTIA
+from bench.diagnosis.add.add import add
+from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.name.name import name
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.show.show import Diagnosis, show
+from bench.diagnosis.show.suspicions import suspicions
+from bench.diagnosis.where.where import where
+from bench.fit.determined import require_masses, require_significant
+from bench.fit.fit import Fit
+from bench.fit.load_inertia import load_inertia
+from bench.fit.quantities import uncertain
+from bench.gate.gate import joined, passed
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+Progress = Callable[[float], None]
+#: Default policy of naming.
+POLICY = Policy()
+
+
+def diagnose(
+    trace: Trace | Sequence[Trace],
+    rig: Rig,
+    holdout: Trace | None = None,
+    excluded: frozenset[str] = frozenset(),
+    progress: Progress = lambda share: None,
+    policy: Policy = POLICY,
+) -> Diagnosis:
+    """Find what is missing, name it, add it, and show the gap shrink.
+
+    Args:
+        trace: the recording, or a list of several of one axis, which are joined (`bench.trace.join`).
+        rig: of the axis.
+        holdout: another recording of it, not used to fit.
+        excluded: effects that are not tried.
+        progress: called with the share done.
+        policy: rules that decide on names.
+
+    Raises:
+        UndeterminedError: the recording is too short, too slow or too quiet to decide.
+        InputError: rig and recording do not fit together, or a check of a recording fails.
+    """
+    gated = [passed(each, rig) for each in ([trace] if isinstance(trace, Trace) else trace)]
+    unseen = passed(holdout, rig).trace if holdout is not None else None
+    recordings = Recordings.of([each.trace for each in gated], rig, unseen)
+    bare = gap(recordings.rows)
+    located = where(bare, rig.axis_kind, recordings.unit, recordings.current)
+    suspects = name(recordings, bare, excluded, policy)
+    require_weight(recordings, suspects.searched.last)
+    progress(0.6)
+    added = add(recordings, suspects)
+    progress(0.9)
+    return replace(show(recordings, bare, located, suspects, added), checks=joined([each.checks for each in gated]))
+
+
+def require_weight(recordings: Recordings, fitted: Fit) -> None:
+    """Refuse effects with which the recording no longer determines the inertia, before a model is made of them.
+
+    Raises:
+        UndeterminedError: the interval of the inertia contains zero, or it or the load's is negative.
+    """
+    kind = recordings.rig.axis_kind
+    found = uncertain(fitted).base(recordings.base_units)
+    suspected = suspicions(recordings.trace, recordings.rig, {})
+    require_significant(found[kind.parameter(INERTIA)], kind, suspected)
+    require_masses(found | load_inertia(found, recordings.rig), kind, suspected)

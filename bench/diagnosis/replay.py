@@ -1,0 +1,148 @@
+"""Replay: a model run along a recording, measured and simulated signals side by side."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from bench.arrays import Array, rms
+from bench.diagnosis.add.model import holding_bandwidth, without_events
+from bench.errors import InputError, UndeterminedError
+from bench.fit.layout import lay_out
+from bench.fit.rows import Rows
+from bench.fit.stored import EVERY, Balance
+from bench.plant.model_file import load_model, read_table
+from bench.plant.track import measured_position, measured_velocity
+from bench.plant.track_effects import Held, track_motion
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+#: Share of a recording's torque that the model of its axis does not leave unexplained.
+LEFT = 0.2
+
+
+@dataclass(frozen=True)
+class Replay:
+    """Signals at every sample of a recording, all (n,); nan where the model says nothing.
+
+    Attributes:
+        time: s.
+        position, position_simulated: rad (m); where none was recorded, each stretch without holes counts from zero.
+        velocity, velocity_simulated: rad/s (m/s).
+        torque, torque_simulated: both through the filter the model was fitted with - N*m (N).
+        speed_unit, effort_unit: of velocity and torque.
+        warnings: what the user should know before believing them.
+    """
+
+    time: Array
+    position: Array
+    position_simulated: Array
+    velocity: Array
+    velocity_simulated: Array
+    torque: Array
+    torque_simulated: Array
+    speed_unit: str
+    effort_unit: str
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def summary(self) -> str:
+        """Both gaps in one line; without the one that the model says nothing about."""
+        torque = f"torque gap {_rms(self.torque - self.torque_simulated):.4g} of {_rms(self.torque):.4g}"
+        velocity = f"velocity gap {_rms(self.velocity - self.velocity_simulated):.4g} of {_rms(self.velocity):.4g}"
+        gaps = f"{torque} {self.effort_unit}"
+        return f"{gaps}, {velocity} {self.speed_unit}" if np.isfinite(self.velocity_simulated).any() else gaps
+
+    def csv(self) -> str:
+        """The contract's CSV, empty cells where the model says nothing."""
+        speed, effort = self.speed_unit, self.effort_unit
+        head = f"time [s],velocity [{speed}],velocity_simulated [{speed}],torque [{effort}],torque_simulated [{effort}]"
+        table = np.column_stack([self.time, self.velocity, self.velocity_simulated, self.torque, self.torque_simulated])
+        rows = [",".join("" if value != value else f"{value:.9g}" for value in row) for row in table.tolist()]
+        return "\n".join([head, *rows]) + "\n"
+
+
+def replay(path: str | Path, trace: Trace, rig: Rig) -> Replay:
+    """Run the model of a `model.toml` along a recording.
+
+    Raises:
+        InputError: no model, one without the torque balance that `bench diagnose` writes, or of another kind of axis.
+        UndeterminedError: the recording is too short for the model's filter, or never moves clearly.
+        SimulationError: the model diverged.
+    """
+    table = read_table(path)
+    balance = load_balance(path)
+    kind = table.get("kind", rig.kind)
+    if kind != rig.kind:
+        raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
+    effort, unit = rig.net_effort(trace)
+    stored = load_model(path) if "parameters" in table else None
+    peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
+    try:
+        rows = Rows.of(trace, rig, width=balance.width, every=True, peak_effort=peak)
+    except UndeterminedError as error:
+        raise UndeterminedError(f"the torque gap along {trace.origin}", error.reason, error.record) from error
+    owners = lay_out(rows, balance.hypothesis).owners
+    if owners.size != balance.theta.size:
+        where, found = f"{path}: torque_balance.coefficients", f"found {balance.theta.size} of them"
+        raise InputError(where, found, f"allowed: {owners.size}, as its effects want")
+    samples = rows.samples()
+    torque, simulated = np.full(len(trace), np.nan), np.full(len(trace), np.nan)
+    torque[samples], simulated[samples] = rows.effort, rows.effort - balance.left(rows)
+    position, velocity = np.full((2, len(trace)), np.nan)
+    measured = measured_position(trace), measured_velocity(trace)
+    if stored is not None:
+        happening = balance.recording in (EVERY, trace.origin)
+        model = stored.model if happening else without_events(stored.model)
+        bandwidth = holding_bandwidth(model, float(np.abs(measured[1]).max()))
+        position, velocity = track_motion(Held(model, trace, effort, stored.misalignment), bandwidth)
+    warnings = []
+    if str(table.get("name", rig.name)) != rig.name:
+        warnings.append(f"the model is of '{table['name']}', the rig file of '{rig.name}'")
+    left = _rms(torque - simulated) / max(_rms(torque), 1e-300)
+    if left > LEFT:
+        warnings.append(f"the model leaves {left:.0%} of the torque unexplained: another axis, or other units?")
+    moved = measured[0], position, measured[1], velocity
+    return Replay(trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, unit, tuple(warnings))
+
+
+def _rms(values: Array) -> float:
+    known = values[np.isfinite(values)]
+    return rms(known) if known.size else 0.0
+
+
+def load_balance(path: str | Path) -> Balance:
+    """The torque balance in a `model.toml`.
+
+    Raises:
+        InputError: no such file, no TOML, or no torque balance in it.
+    """
+    table = read_table(path)
+    if "torque_balance" not in table:
+        raise InputError(f"{path}: torque_balance", "missing", "allowed: a model.toml that bench diagnose wrote")
+    where = f"{path}: torque_balance"
+    if not isinstance(table["torque_balance"], dict):
+        raise InputError(where, f"found {table['torque_balance']!r}", "allowed: a table, as bench diagnose wrote it")
+    try:
+        balance = Balance.from_table(table["torque_balance"], where)
+    except KeyError as error:
+        raise InputError(f"{where}.{error.args[0]}", "missing", "allowed: as bench diagnose wrote it") from error
+    except (TypeError, ValueError) as error:
+        raise InputError(where, f"found {error}", "allowed: as bench diagnose wrote it") from error
+    _require_sound(balance, where)
+    return balance
+
+
+def _require_sound(balance: Balance, where: str) -> None:
+    if not (np.isfinite(balance.width) and balance.width > 0.0):
+        raise InputError(f"{where}.filter_width", f"found {balance.width:g}", "allowed: a width above zero - s")
+    if not np.isfinite(balance.theta).all():
+        raise InputError(f"{where}.coefficients", "found one that is not finite", "allowed: finite numbers")
+    for term in balance.hypothesis.terms:
+        size = len(term.effect.shapes)
+        if len(term.shape) != size or not np.isfinite(term.shape).all():
+            found = f"found {list(term.shape)}"
+            raise InputError(f"{where}.effects: {term.effect.name}.shape", found, f"allowed: {size} finite numbers")

@@ -1,0 +1,92 @@
+"""Gaps of torque and velocity, on both recordings, after each accepted effect."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array, rms
+from bench.axis_kind import AxisKind
+from bench.diagnosis.add.add import Added
+from bench.diagnosis.found import Course, Gap, Profile, Shrunk
+from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.where.where import LEAST, bins_of, coordinates, means_in, where
+from bench.fit.fit import Fit
+from bench.fit.stored import Balance
+from bench.plant.track import measured_velocity
+from bench.trace.noise import white_noise
+
+
+def courses(recordings: Recordings, added: Added) -> tuple[Course, ...]:
+    """The recording, and the holdout where there is one, beside the bare axis and the model after each addition."""
+    laid_out = [rows for rows in (recordings.rows, recordings.other) if rows is not None]
+    balances = [Balance.of(stage.fitted).repeating(added.repeats) for stage in added.extension.stages]
+    found = []
+    for rows, recorded in zip(laid_out, added.recorded, strict=True):
+        velocity = [added.gaps.left(stage, recorded) for stage in added.extension.stages]
+        if added.refined.gap is not None and added.refined.model is not None:
+            (simulated,) = added.gaps.velocities([added.refined.model], [recorded])
+            velocity[-1] = None if simulated is None else recorded.left(simulated)
+        torque = tuple(balance.left(rows) for balance in balances)
+        measured = measured_velocity(recorded.trace)
+        along = recorded.name, recorded.trace.origin, recorded.trace.time, measured, tuple(velocity)
+        found.append(Course(*along, rows.samples(), rows.effort, torque))
+    return tuple(found)
+
+
+def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
+    """Gaps of the bare axis and after each addition, the last one as it was kept."""
+    return [
+        Shrunk(
+            stage.effect,
+            tuple(rms(course.torque_left[k]) for course in shown),
+            tuple(_rms_known(course.velocity_left[k]) for course in shown),
+        )
+        for k, stage in enumerate(added.extension.stages)
+    ]
+
+
+def _rms_known(left: NDArray[np.float32] | None) -> float:
+    """RMS over the samples that a model covers; nan without a model."""
+    return math.nan if left is None else rms(left[np.isfinite(left)].astype(np.float64))
+
+
+def profiles(bare: Fit, whole: Fit, kind: AxisKind, unit: str, current: Array | None) -> tuple[Profile, ...]:
+    """The gap over each coordinate before and after, by the share of the first gap it explains.
+
+    Args:
+        bare, whole: fits without and with all effects, of the same rows.
+        kind: of the axis.
+        unit: of the effort.
+        current: as reported at the rows - A - (m,); None where another effort is.
+    """
+    shares = {account.coordinate: account.share for account in where(bare, kind, unit, current)}
+    found = []
+    for one in coordinates(bare, kind, unit, current):
+        index = bins_of(one.values)
+        kept = np.bincount(index) >= LEAST
+        centres = means_in(index, one.values if one.called is None else one.called)
+        before, after = means_in(index, bare.left), means_in(index, whole.left)
+        found.append(Profile(one.name, one.unit, shares[one.name], centres[kept], before[kept], after[kept]))
+    return tuple(sorted(found, key=lambda profile: -profile.share))
+
+
+def torque_gap(steps: list[Shrunk], whole: Fit, unit: str) -> Gap:
+    """Of all effects together, over all rows; beside it what is left on those that judge the fit, where not all do."""
+    pairs = list(zip(steps[0].torque, steps[-1].torque, strict=True))
+    judged = None if whole.determined.all() else (float(whole.determined.mean()), whole.rms)
+    return Gap(unit, whole.floor, pairs[0], pairs[1] if len(pairs) > 1 else None, judged)
+
+
+def velocity_gap(recordings: Recordings, steps: list[Shrunk]) -> Gap:
+    """Of all effects together; None where MuJoCo cannot have the model or a simulation diverged."""
+    pairs = [
+        pair if all(map(math.isfinite, pair)) else None
+        for pair in zip(steps[0].velocity, steps[-1].velocity, strict=True)
+    ]
+    floor = white_noise(measured_velocity(recordings.trace))
+    unit = recordings.rig.axis_kind.speed_unit
+    return Gap(unit, floor, pairs[0], pairs[1] if len(pairs) > 1 else None)

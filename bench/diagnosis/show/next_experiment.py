@@ -1,0 +1,205 @@
+"""The motion that best distinguishes two explanations: both models are simulated along every profile of the rig.
+
+Two explanations remain if names are ambiguous, if a rival leaves hardly more of the torque than the named effect, or if
+motion in one direction does not separate dry friction from a constant torque. The criterion is the torque that one
+model would miss on the other's recording,
+
+    e = dM - J*d(dw)/dt - K_w*dw,
+
+dM, dw - differences of reported torque and velocity under the same drive - through the filter of the diagnosis, less
+what other values of J, K_w, K_0 and a shift in time would absorb, over the noise floor of the recording.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from bench.arrays import rms
+from bench.diagnosis.add.add import Added
+from bench.diagnosis.add.model import stored_model
+from bench.diagnosis.name.name import Suspects
+from bench.diagnosis.recordings import Recordings
+from bench.effects.catalogue import catalogue
+from bench.effects.present import Present
+from bench.errors import BenchError, InputError
+from bench.fit.fit import fit
+from bench.fit.rows import SIGN_WIDTHS
+from bench.plant.axis_model import AxisModel
+from bench.plant.drive import Cascade
+from bench.plant.limits import MotionLimits
+from bench.plant.plant import Plant
+from bench.plant.profiles import PROFILES, plan
+from bench.plant.references import References
+from bench.plant.run import run
+from bench.plant.sensing import reported_states
+from bench.plant.track import measured_velocity
+from bench.trace.filter import GaussianFilter
+
+#: Least duration of a recording - s: a shorter profile is repeated.
+LONG_ENOUGH = 4.0
+#: Ratio of residuals, with a rival to with the named effect, below which both explanations remain.
+NEARLY = 1.1
+#: Least separation of an experiment, in noise floors.
+TELLS = 3.0
+#: Shortest tick of the simulated drive - s: profiles are only compared.
+COARSEST_TICK = 0.5e-3
+#: Share of the top speed below which the direction is uncertain, and least number of samples of certain direction.
+CLEAR, LEAST = 0.01, 50
+
+
+@dataclass(frozen=True)
+class NextExperiment:
+    """A motion to record.
+
+    Attributes:
+        profile: of `bench simulate --profile`.
+        speed, acceleration: highest of it - rad/s, rad/s**2 (m/s, m/s**2).
+        duration: of one run - s.
+        repetitions: of it, one after the other.
+        tells_apart: the named effect and its rival.
+        separation: of the two, over the noise floor.
+        reason: why it is needed.
+        motion: with repetitions, at a coarse tick.
+    """
+
+    profile: str
+    speed: float
+    acceleration: float
+    duration: float
+    repetitions: int
+    tells_apart: tuple[str, str]
+    separation: float
+    reason: str
+    motion: References
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Two explanations, as models."""
+
+    names: tuple[str, str]
+    models: tuple[AxisModel, AxisModel]
+    reason: str
+
+
+def propose(recordings: Recordings, suspects: Suspects, added: Added) -> NextExperiment | None:
+    """The experiment for the first two explanations that can be distinguished; None if only one remains."""
+    stored = added.refined.model
+    if stored is None or recordings.rig.drive is None:
+        return None
+    width, floor = recordings.rows.conditioning.filter.width, added.extension.whole.fitted.floor
+    for rival in rivals(recordings, suspects, added, stored.model):
+        try:
+            found = [
+                (separation(recordings, rival.models, references, width) / floor, name, references)
+                for name, references in motions(recordings, stored.model)
+            ]
+        except BenchError:
+            continue
+        best, name, references = max(found, key=lambda tried: tried[0])
+        if best > TELLS:
+            speed, acceleration = (float(np.abs(v).max()) for v in (references.velocity, references.acceleration))
+            duration = float(references.time[-1])
+            again = int(np.ceil(LONG_ENOUGH / duration))
+            motion = references.repeated(again)
+            return NextExperiment(name, speed, acceleration, duration, again, rival.names, best, rival.reason, motion)
+    return None
+
+
+def rivals(recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel) -> Iterator[Rival]:
+    """Other explanations that remain, as models."""
+    for effect in added.refined.effects:
+        for other in effect.ambiguous_with:
+            values = effect.effect.counterpart(other, effect.values)
+            like = None if values is None else Present.of(other, values)
+            if like is not None:
+                kept = [present for present in model.effects if present.effect is not effect.effect]
+                models = model, model.with_effects([*kept, like])
+                yield Rival((effect.name, other), models, "this recording cannot tell them apart")
+    yield from nearly_as_good(recordings, suspects, added, model)
+    if recordings.rows.scope.one_way:
+        yield from one_direction(recordings, added.extension.whole.fitted.base.coulomb, model)
+
+
+def nearly_as_good(recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel) -> Iterator[Rival]:
+    """Candidates that, instead of the effect accepted last, leave hardly more of the torque."""
+    whole, searched = added.extension.whole.fitted, suspects.searched
+    if not whole.terms or whole.hypothesis != searched.last.hypothesis:
+        return
+    index = len(whole.terms) - 1
+    named = whole.terms[index].effect
+    for candidate in searched.steps[-1].rivals[:3]:
+        rival = candidate.term.effect
+        if rival.name in whole.hypothesis.names or rival.name in named.ambiguous(whole.scope):
+            continue
+        other = fit(recordings.rows, whole.hypothesis.without(index).plus(candidate.term))
+        if other.rms < NEARLY * whole.rms:
+            reason = f"{rival.name} leaves but {other.rms / whole.rms - 1.0:.0%} more of the torque unexplained"
+            try:
+                instead = stored_model(other, added.extension.beside, recordings.rig).model
+            except InputError:
+                continue
+            yield Rival((named.name, rival.name), (model, instead), reason)
+
+
+def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Iterator[Rival]:
+    """Dry friction against effects that look like it in one direction, `dry` in total - N*m (N)."""
+    direction = 1.0 if float(np.mean(measured_velocity(recordings.trace))) > 0.0 else -1.0
+    for effect in catalogue().values():
+        values = effect.instead_of_dry_friction(direction * dry)
+        if values is not None:
+            friction = replace(model.parameters, coulomb_friction=abs(dry))
+            nothing = replace(model.parameters, coulomb_friction=0.0)
+            instead = replace(model, parameters=nothing, effects=(*model.effects, Present.of(effect.name, values)))
+            models = replace(model, parameters=friction), instead
+            yield Rival(("coulomb_friction", effect.name), models, "the axis moved in one direction only")
+
+
+def motions(recordings: Recordings, model: AxisModel) -> list[tuple[str, References]]:
+    """Every profile within the limits of the rig, at a coarse tick."""
+    tick = max(Cascade.from_rig(recordings.rig).control_period, COARSEST_TICK)
+    limits = MotionLimits.from_rig(recordings.rig, model.parameters, tick)
+    # a rig need not state a speed; what was recorded is one that the axis has survived
+    recorded = [trace for trace in (recordings.trace, recordings.holdout) if trace is not None]
+    fastest = max(float(np.abs(measured_velocity(trace)).max()) for trace in recorded)
+    limits = replace(limits, speed=min(limits.speed, fastest))
+    return [(name, plan(name, limits)) for name in PROFILES if name != "identification"]
+
+
+def separation(
+    recordings: Recordings, models: tuple[AxisModel, AxisModel], references: References, width: float
+) -> float:
+    """RMS torque that one model would miss on the other's recording of a motion - N*m (N).
+
+    Args:
+        recordings: whose rig drives both.
+        models: the two explanations.
+        references: the motion.
+        width: of the diagnosis' filter - s.
+    """
+    cascade = replace(Cascade.from_rig(recordings.rig), control_period=references.period)
+    states = []
+    for model in models:
+        plant = Plant(model.parameters, cascade, references.period, effects=model.effects, winding=model.winding)
+        states.append(reported_states(plant.model, run([plant], [references])))
+    smooth = GaussianFilter(max(width, 1.5 * references.period), references.period)
+    one, other = states
+    torque, shift = smooth(other.torque[:, 0], 0, 1)
+    less = smooth(one.torque[:, 0], 0)[0]
+    speed, acceleration = smooth(other.velocity[:, 0], 0, 1)
+    slower, slower_change = smooth(one.velocity[:, 0], 0, 1)
+    parameters = models[0].parameters
+    missed = torque - less - parameters.inertia * (acceleration - slower_change)
+    missed = missed - parameters.viscous_friction_coefficient * (speed - slower)
+    sign = np.where(np.abs(speed) > CLEAR * np.abs(speed).max(), np.sign(speed), 0.0)
+    reach = 2 * round(SIGN_WIDTHS * smooth.width / references.period) + 1
+    clear = np.abs(uniform_filter1d(sign, reach)) > 1.0 - 1e-9
+    if np.count_nonzero(clear) < LEAST:
+        return 0.0
+    taken_up = np.stack([acceleration, speed, np.sign(speed), shift], axis=1)[clear]
+    rest = missed[clear] - taken_up @ np.linalg.lstsq(taken_up, missed[clear], rcond=None)[0]
+    return rms(rest)

@@ -1,0 +1,131 @@
+"""Where the gap is: the share of its variance that each coordinate explains, without assuming any effect."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+from bench.arrays import Array
+from bench.axis_kind import AxisKind
+from bench.fit.fit import Fit
+
+#: Number of bins of a coordinate, and least number of rows in a bin.
+BINS, LEAST = 48, 12
+
+
+@dataclass(frozen=True)
+class Where:
+    """Share of the gap that one coordinate explains.
+
+    Attributes:
+        coordinate: position velocity acceleration current time direction frequency reversal.
+        region: bounds of the bins with most of it - unit.
+        unit: of the region.
+        share: of the gap's variance, 0 to 1.
+        centres, means: bins and the gap's mean in each - unit, N*m (N) - for the plot.
+    """
+
+    coordinate: str
+    region: tuple[float, float]
+    unit: str
+    share: float
+    centres: Array
+    means: Array
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A coordinate along the rows of a recording.
+
+    Attributes:
+        name: as `Where` has it.
+        values: by which rows are sorted into bins (m,).
+        unit: of the labels of bins.
+        called: values that label the bins, if they are noisier than those that sort them (m,); None: the same.
+    """
+
+    name: str
+    values: Array
+    unit: str
+    called: Array | None = None
+
+
+def where(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None) -> list[Where]:
+    """Shares of every coordinate, largest first.
+
+    Args:
+        fitted: whose residual is the gap.
+        kind: of the axis.
+        effort_unit: of the effort.
+        current: as reported at the rows - A - (m,); None where another effort is.
+    """
+    found = [_account(one, fitted.residual) for one in coordinates(fitted, kind, effort_unit, current)]
+    found.append(_frequency(fitted))
+    return sorted(found, key=lambda account: -account.share)
+
+
+def coordinates(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None) -> list[Coordinate]:
+    """What the gap may hang on, along the rows; arguments as `where` has them."""
+    rows = fitted.rows
+    time, position, sign = rows.time, rows.values(lambda s: s.position), rows.values(lambda s: s.sign)
+    turned = np.concatenate([[0.0], np.where(np.diff(sign) != 0.0, time[1:], 0.0)])
+    turn = np.mod(position, 2.0 * np.pi) if kind.turns else position
+    return [
+        Coordinate("position", turn, kind.length_unit),
+        Coordinate("velocity", rows.values(lambda s: s.velocity), kind.speed_unit),
+        Coordinate("acceleration", fitted.columns[:, 0], kind.acceleration_unit),
+        Coordinate("current", fitted.effort, effort_unit if current is None else "A", current),
+        Coordinate("time", time, "s"),
+        Coordinate("direction", sign, "dimensionless"),
+        Coordinate("reversal", time - np.maximum.accumulate(turned), "s"),
+    ]
+
+
+def bins_of(values: Array) -> NDArray[np.int64]:
+    """Bin of each row (m,): of equal count, or of one value each where there are few."""
+    distinct, index = np.unique(values, return_inverse=True)
+    if distinct.size > BINS:
+        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
+        index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    return np.asarray(index, dtype=np.int64)
+
+
+def means_in(index: NDArray[np.int64], values: Array) -> Array:
+    """Mean of values (m,) in each bin (b,)."""
+    count = np.bincount(index)
+    return np.bincount(index, values, minlength=count.size) / np.maximum(count, 1)
+
+
+def _account(coordinate: Coordinate, gap: Array) -> Where:
+    """Share of variance between bins, less what chance puts between them."""
+    gap = gap - gap.mean()
+    index = bins_of(coordinate.values)
+    count, means = np.bincount(index), means_in(index, gap)
+    centres = means_in(index, coordinate.values if coordinate.called is None else coordinate.called)
+    kept = count >= LEAST
+    between, total = float(np.sum(count[kept] * means[kept] ** 2)), float(np.sum(gap**2))
+    used = int(kept.sum())
+    chance = (used - 1) * total / max(gap.size, 1)
+    share = float(np.clip((between - chance) / max(total - chance, 1e-300), 0.0, 1.0))
+    order = np.argsort(-(count * means**2))
+    weight = np.cumsum((count * means**2)[order])
+    main = order[: int(np.searchsorted(weight, 0.5 * weight[-1])) + 1]
+    region = (float(centres[main].min()), float(centres[main].max()))
+    return Where(coordinate.name, region, coordinate.unit, share, centres[kept], means[kept])
+
+
+def _frequency(fitted: Fit) -> Where:
+    """Share of the gap in the strongest narrow band of frequency, above an even spread over the band."""
+    smooth = fitted.rows.conditioning.filter
+    rate = 1.0 / (smooth.sample_period * smooth.stride)
+    length = min(1024, fitted.residual.size)
+    frequency, power = scipy.signal.welch(fitted.residual, rate, nperseg=length)
+    shape = np.exp(-((2.0 * np.pi * frequency * smooth.width) ** 2))
+    best = int(np.argmax(power[1:])) + 1
+    band = slice(max(best - 2, 1), best + 3)
+    share = float(np.sum(power[band]) / np.sum(power) - np.sum(shape[band]) / np.sum(shape))
+    region = (float(frequency[band][0]), float(frequency[band][-1]))
+    return Where("frequency", region, "Hz", max(share, 0.0), frequency, np.sqrt(power))

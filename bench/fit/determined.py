@@ -1,0 +1,164 @@
+"""Whether a recording determines a parameter; if not, it is refused with the reason and what to record instead."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from bench.axis_kind import ARMATURE, COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
+from bench.errors import UndeterminedError
+from bench.fit import layout
+from bench.fit.estimate import Estimate
+from bench.fit.normal_equations import NormalEquations
+from bench.fit.parameter import Parameter
+from bench.fit.rows import ONE_WAY
+from bench.names import words
+
+#: Least number of rows for each column of the regression.
+ROWS_PER_COLUMN = 20
+#: Least share of a column's power that the others do not explain; 1 % inflates its standard error tenfold.
+INDEPENDENT_SHARE = 0.01
+
+#: Columns of the terms of the equation of motion; a constant comes last.
+PLACES = {
+    INERTIA: layout.INERTIA,
+    VISCOUS: layout.VISCOUS,
+    COULOMB: layout.COULOMB,
+    MISALIGNMENT: layout.MISALIGNMENT,
+    OFFSET: -1,
+}
+
+#: Least share of the effort's variance that a model has to explain.
+LEAST_EXPLAINED = 0.5
+
+RECORD = {
+    INERTIA: "a motion that accelerates and brakes hard several times",
+    VISCOUS: "a motion with at least two clearly different speeds in each direction",
+    COULOMB: "a motion in both directions, several seconds each",
+    OFFSET: "a motion in both directions, several seconds each",
+}
+
+TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
+LINKS = "nothing; the MJCF's links, the gear_ratio or the torque are another robot's"
+SMALLER = "nothing; the rig's rotor_inertia (gear_inertia, gear_ratio) or torque constant is another one's"
+EXPLAINED = "a motion in which inertia and friction take most of the effort, and ask bench diagnose what else acts"
+
+
+def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
+    """Raise UndeterminedError for the first quantity that the rows do not determine.
+
+    Args:
+        equations: of every column, the constant included.
+        kind: of the axis.
+    """
+    require_inertia(equations, kind)
+    side = only_direction(equations)
+    if side is not None:
+        name = f"{kind.in_words(COULOMB)} apart from {kind.in_words(OFFSET)}"
+        raise UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
+    require_friction(equations, kind)
+
+
+def left_open(equations: NormalEquations, kind: AxisKind) -> frozenset[str]:
+    """Terms of the equation of motion that the rows do not determine."""
+    try:
+        require_inertia(equations, kind)
+    except UndeterminedError:
+        return frozenset({INERTIA, VISCOUS, COULOMB, OFFSET})
+    found = {COULOMB, OFFSET} if only_direction(equations) is not None else set[str]()
+    for term in (VISCOUS, COULOMB):
+        try:
+            _require_excited(equations, term, kind)
+        except UndeterminedError:
+            found.add(term)
+    return frozenset(found)
+
+
+def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
+    """Raise UndeterminedError if the rows are too few or do not determine the inertia."""
+    least = ROWS_PER_COLUMN * equations.noise.shape[0]
+    if equations.count < least:
+        reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
+        raise UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
+    _require_excited(equations, INERTIA, kind)
+
+
+def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
+    """Raise UndeterminedError if the rows do not determine viscous or Coulomb friction."""
+    for column in (VISCOUS, COULOMB):
+        _require_excited(equations, column, kind)
+
+
+def only_direction(equations: NormalEquations) -> str | None:
+    """`forward` or `backward` if the axis moves one way only: Coulomb friction and offset are then inseparable."""
+    mean_direction = equations.gram[:, PLACES[COULOMB], PLACES[OFFSET]].sum() / equations.count
+    if 0.5 * (1.0 - abs(mean_direction)) >= ONE_WAY:
+        return None
+    return "forward" if mean_direction > 0.0 else "backward"
+
+
+def _require_excited(equations: NormalEquations, column: str, kind: AxisKind) -> None:
+    """Raise UndeterminedError if too little of a column is independent of noise and of the others."""
+    share = independent_share(equations, column, [term for term in (INERTIA, VISCOUS, COULOMB) if term != column])
+    if not share >= INDEPENDENT_SHARE:
+        reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
+        raise UndeterminedError(kind.in_words(column), reason, RECORD[column])
+
+
+def independent_share(equations: NormalEquations, column: str, others: Sequence[str]) -> float:
+    """Share of a column's power that is neither noise nor explained by others; negative if it is noise alone."""
+    places = [PLACES[column], *(PLACES[term] for term in others)]
+    power = np.diag(equations.total)[places]
+    scale = np.sqrt(np.where(power > 0.0, power, 1.0))
+    matrix = equations.matrix[np.ix_(places, places)] / np.outer(scale, scale)
+    return float(matrix[0, 0] - matrix[0, 1:] @ np.linalg.lstsq(matrix[1:, 1:], matrix[1:, 0], rcond=1e-9)[0])
+
+
+def require_significant(inertia: Parameter, kind: AxisKind, suspicions: Sequence[str]) -> None:
+    """Raise UndeterminedError if the interval of the inertia contains zero.
+
+    Args:
+        inertia: as found.
+        kind: of the axis.
+        told: what else is suspicious about the recording, and may be why.
+    """
+    low, high = inertia.ci95
+    if low <= 0.0 <= high:
+        reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero", *suspicions])
+        raise UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
+
+
+def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]) -> None:
+    """Raise UndeterminedError if the whole interval of the inertia, or of the load's, is negative.
+
+    Args:
+        parameters: as found.
+        kind: of the axis.
+        told: what else is suspicious about the recording, and may be why.
+    """
+    for name in (kind.inertia, "load_moment_of_inertia", ARMATURE):
+        found = parameters.get(name)
+        if found is not None and found.ci95[1] < 0.0:
+            low, high = found.ci95
+            reason = f"it comes out negative, {found.value:.3g} {found.unit} ({low:.3g} to {high:.3g})"
+            advice = {kind.inertia: TURNED, ARMATURE: LINKS}.get(name, SMALLER)
+            raise UndeterminedError(words(name), "; ".join([reason, *suspicions]), advice)
+
+
+def require_sound(estimate: Estimate, kind: AxisKind, suspicions: Sequence[str]) -> None:
+    """Raise UndeterminedError if an estimate is meaningless.
+
+    Its inertia may be zero or is negative, the load's is negative, or the model explains less than half of the effort's
+    variance.
+
+    Args:
+        estimate: as found.
+        kind: of the axis.
+        told: what else is suspicious about the recording, and may be why.
+    """
+    require_masses(estimate.parameters, kind, suspicions)
+    require_significant(estimate[kind.inertia], kind, suspicions)
+    if estimate.explained < LEAST_EXPLAINED:
+        share = f"the model explains {max(estimate.explained, 0.0):.0%} of the {kind.effort}'s variance"
+        raise UndeterminedError(f"{kind.in_words(INERTIA)} and friction", "; ".join([share, *suspicions]), EXPLAINED)

@@ -1,0 +1,286 @@
+"""A hypothesis fitted to a recording by least squares, held against what noise alone would leave."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array
+from bench.effects.effect import Effect, Proposal
+from bench.effects.signals import Base, Scope, Signals
+from bench.fit.friction_levels import follows_load, multiply, with_friction, with_levels, with_load, with_pulls
+from bench.fit.gains import gains
+from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.last_digit import rounding
+from bench.fit.layout import COULOMB, DIGIT, INERTIA, VISCOUS, Layout, delays, lay_out, seen_by
+from bench.fit.load_side import with_loads
+from bench.fit.noise import Floor, noise_floor, noise_power
+from bench.fit.normal_equations import solved
+from bench.fit.rows import Rows
+from bench.trace.filter import Column
+
+#: Rounds in which levels of dry friction that multiply are brought in line.
+LEVEL_ROUNDS = 4
+#: Share of the noise floor by which a row's torque may hang on what the recording does not tell, an impact's instant.
+OPEN_SHARE = 0.3
+#: Numbers of all shapes tried at once, which bounds memory: 8 bytes each, some four times over.
+TOGETHER = 8_000_000
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A hypothesis fitted to a recording by least squares.
+
+    Attributes:
+        rows: the recording.
+        hypothesis, layout: what was fitted, and its columns.
+        theta: (p,): J, K_w, K_0, misalignment, last digit, sines and cosines of hum, then the effects' strengths.
+        held: places of strengths that are at a bound.
+        determined: (m,) rows whose torque the recording determines: not those that hang on the instant of an impact.
+    """
+
+    rows: Rows
+    hypothesis: Hypothesis
+    layout: Layout
+    theta: Array
+    held: tuple[int, ...]
+    determined: NDArray[np.bool_]
+
+    @property
+    def residual(self) -> Array:
+        """Measured less modelled torque (m,), 0 at rows that are not determined - N*m (N)."""
+        return self.left * self.determined
+
+    @cached_property
+    def left(self) -> Array:
+        """Measured less modelled torque at all rows (m,) - N*m (N)."""
+        return self.effort - self.columns @ self.theta
+
+    @cached_property
+    def squares(self) -> float:
+        """Sum of squared residuals - (N*m)**2 (N**2)."""
+        residual = self.residual
+        return float(residual @ residual)
+
+    @cached_property
+    def noise(self) -> Floor:
+        """What noise alone leaves under this model."""
+        step, modelled = self.hypothesis.step, self.effort - self.left
+        cut = float(self.theta[self.owners == DIGIT].sum())
+        rounded = rounding(self.rows, step, modelled, cut)
+        power = noise_power(self.rows, self.hypothesis, self.layout, self.theta)
+        return noise_floor(self.rows, power, self.left, rounded)
+
+    @property
+    def floor(self) -> float:
+        """RMS that sensor noise alone leaves, its colour included - N*m (N)."""
+        return self.noise.coloured
+
+    @property
+    def count(self) -> int:
+        """Rows that are determined."""
+        return int(np.count_nonzero(self.determined))
+
+    @property
+    def rms(self) -> float:
+        """RMS residual - N*m (N)."""
+        return float(np.sqrt(self.squares / self.count))
+
+    @property
+    def chi(self) -> float:
+        """RMS residual over noise floor: 1 where the model explains all but noise."""
+        return self.rms / self.floor
+
+    @property
+    def excess(self) -> float:
+        """Squares above the noise floor, summed over rows - (N*m)**2, not negative."""
+        return max(self.squares - self.count * self.floor**2, 0.0)
+
+    @property
+    def base(self) -> Base:
+        """J, K_w and K_0."""
+        return Base(*(float(self.theta[k]) for k in (INERTIA, VISCOUS, COULOMB)))
+
+    @property
+    def span(self) -> Array:
+        """Orthonormal basis of the columns that were free (m, p)."""
+        return self._basis
+
+    @cached_property
+    def _basis(self) -> Array:
+        free = np.delete(self.columns, self.held, 1) if self.held else self.columns
+        return np.linalg.qr(free)[0]
+
+    def strengths(self, index: int) -> list[float]:
+        """Strengths of one term."""
+        return self.theta[self.owners == index].tolist()
+
+    # What effects ask of it, see `bench.effects.effect.Fitted`.
+
+    @property
+    def scope(self) -> Scope:
+        """What the recording is able to show."""
+        return self.rows.scope
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """Of the hypothesis."""
+        return self.hypothesis.terms
+
+    @property
+    def columns(self) -> Array:
+        """(m, p)."""
+        return self.layout.columns
+
+    @property
+    def owners(self) -> NDArray[np.int64]:
+        """(p,) index of the term a column belongs to."""
+        return self.layout.owners
+
+    @property
+    def effort(self) -> Array:
+        """What the columns are to explain (m,) - N*m (N)."""
+        return self.layout.effort
+
+    @property
+    def time(self) -> Array:
+        """Of the rows (m,) - s."""
+        return self.rows.time
+
+    @cached_property
+    def beside(self) -> Rows:
+        """The recording as one term more would see it."""
+        seen = with_friction(seen_by(self.rows, self.hypothesis), self.hypothesis, len(self.terms))
+        return with_load(seen, ((term, self.strengths(index)) for index, term in enumerate(self.terms)))
+
+    def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array:
+        """Columns (m, k) of raw signals as one term more would see them; `of_motion`: accelerations or speeds."""
+        return self.beside.table(columns, delays(self.rows, self.hypothesis)[0 if of_motion else 1])
+
+    def gains(self, columns: Array, width: int) -> Array:
+        """Squares that groups of columns would take from the residual beyond what is fitted - (N*m)**2 (N**2).
+
+        Args:
+            columns: (m, groups*width), group by group.
+            width: columns of a group.
+
+        Returns:
+            (groups,).
+        """
+        return gains(
+            columns if self.determined.all() else columns * self.determined[:, None], width, self.residual, self.span
+        )
+
+    def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
+        """Shapes of an effect with what each would take: by its columns, or fitted anew where it has none."""
+        if not (effect.overrides("columns") or effect.overrides("columns_of")):
+            return [
+                Proposal(shape, self.squares - fit(self.rows, self.hypothesis.plus(Term(effect, shape))).squares)
+                for shape in shapes
+            ]
+        few = max(1, TOGETHER // (8 * self.time.size))
+        parts = [shapes[k : k + few] for k in range(0, len(shapes), few)]
+        return [proposal for part in parts for proposal in self._by_columns(effect, part)]
+
+    def _by_columns(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
+        lag = delays(self.rows, self.hypothesis)[0 if effect.of_motion else 1]
+
+        def made() -> Array:
+            return self.beside.table(lambda s: effect.columns_of(s, shapes), lag)
+
+        if effect.couples:  # of the motion alone, which most terms leave as it is
+            key = ("tried", effect.name, tuple(shapes), lag, self.beside.motion)
+            columns = self.rows.memory.get(key, made)
+        else:
+            columns = made()
+        worth = self.gains(columns, columns.shape[1] // len(shapes))
+        return [Proposal(shape, float(gain)) for shape, gain in zip(shapes, worth, strict=True)]
+
+
+def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
+    """Least squares of a hypothesis; the levels that scaled frictions see are brought in line with what is found."""
+    layout = lay_out(rows, hypothesis)
+    theta, held = _balanced(layout, None)
+    for _ in range(LEVEL_ROUNDS):
+        found = with_loads(with_levels(hypothesis, theta, layout.owners), theta, layout.owners)
+        found = with_pulls(found, theta, layout.owners)
+        loaded = follows_load(hypothesis) or any(term.load is not None for term in hypothesis.terms)
+        settled = not (loaded or multiply(hypothesis)) or _alike(found, hypothesis)
+        hypothesis = found
+        if settled:
+            break
+        layout = lay_out(rows, hypothesis)
+        theta, held = _balanced(layout, None)
+    every = np.ones(layout.effort.size, dtype=bool)
+    fitted = Fit(rows, hypothesis, layout, theta, held, every)
+    determined = _determined(fitted)
+    if determined is None or determined.all():
+        return fitted
+    theta, held = _balanced(layout, determined)
+    return Fit(rows, hypothesis, layout, theta, held, determined)
+
+
+def _determined(fitted: Fit) -> NDArray[np.bool_] | None:
+    """Rows whose modelled torque would be the same within what the recording does not tell (m,)."""
+    determined = None
+    for index, term in enumerate(fitted.terms):
+        if term.effect.overrides("open_torque"):
+            made_of = ("open", term.key, delays(fitted.rows, fitted.hypothesis), fitted.beside.motion)
+            strength = abs(fitted.strengths(index)[0]) or 1.0
+            moved = fitted.rows.memory.get(
+                made_of, lambda index=index, term=term, per=strength: _open(fitted, term, index) / per
+            )
+            sure = moved * strength < OPEN_SHARE * fitted.floor
+            determined = sure if determined is None else determined & sure
+    return determined
+
+
+def _open(fitted: Fit, term: Term, index: int) -> Array:
+    found = term.effect.open_torque(fitted, index)
+    return np.zeros(fitted.time.size) if found is None else found
+
+
+def _alike(found: Hypothesis, before: Hypothesis) -> bool:
+    """Whether levels and loads have settled."""
+    for new, old in zip(found.terms, before.terms, strict=True):
+        for values, others in ((new.level, old.level), (new.load or (), old.load or ()), (new.pull, old.pull)):
+            if len(values) != len(others) or not np.allclose(values, others, rtol=1e-3, atol=1e-6):
+                return False
+    return True
+
+
+def _balanced(layout: Layout, determined: NDArray[np.bool_] | None) -> tuple[Array, tuple[int, ...]]:
+    """Least squares (p,) within bounds, and the places of what is held at one.
+
+    Torque and speed are not further apart in time than they were latched: a larger shift is a lag, which is an effect.
+    """
+    sure = slice(None) if determined is None else determined
+    columns, effort = layout.columns[sure], layout.effort[sure]
+    theta, held = least_squares(columns, effort, layout.noise), {}
+    for place, (low, high) in layout.bounds.items():
+        if low <= theta[place] <= high:
+            continue
+        held[place] = float(np.clip(theta[place], low, high))
+        kept = np.delete(np.arange(theta.size), list(held))
+        rest = effort - columns[:, list(held)] @ list(held.values())
+        theta[list(held)] = list(held.values())
+        theta[kept] = least_squares(columns[:, kept], rest, layout.noise[np.ix_(kept, kept)])
+    return theta, tuple(held)
+
+
+def least_squares(columns: Array, effort: Array, noise: Array) -> Array:
+    """Strengths (p,) of columns (m, p) that hold noise of a covariance (p, p) in each row."""
+    return solved(columns.T @ columns, columns.T @ effort, columns.shape[0] * noise)[0]
+
+
+def explained(before: Fit, after: Fit) -> float:
+    """Squares that a fit saves, less the noise that it damps - (N*m)**2 (N**2).
+
+    An effect that filters speed or copies torque lowers its own noise, and what it damps of noise it does not explain.
+    """
+    damped = before.count * max(before.noise.white**2 - after.noise.white**2, 0.0)
+    return before.squares - after.squares - damped

@@ -1,0 +1,67 @@
+"""Mains pick-up: sharp lines at multiples of 50 or 60 Hz are the sensors' hum, not the axis'."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.fit.fit import Fit, fit
+
+#: Lines of the two grids of the world - Hz, and how far a grid strays - Hz.
+LINES, STRAYS = (50.0, 60.0, 100.0, 120.0, 150.0, 180.0), 0.1
+#: Band in which a line must stand out - Hz, and how many times above the band's median power; chance: 2**-20.
+BAND, STANDS_OUT = 6.0, 20.0
+#: Share of power that the filter must still pass.
+PASSED = 0.01
+#: Rate at which a residual is kept once its line is turned to zero frequency - Hz: at the band's edge the mean over a
+#: step of it passes 0.95 of the power.
+RATE = 8.0 * BAND
+
+
+def with_hum(fitted: Fit) -> Fit:
+    """The fit with the lines of the mains that its residual shows taken into the hypothesis."""
+    width, duration, times = fitted.rows.conditioning.filter.width, fitted.scope.duration, _by_recording(fitted)
+    found = list(fitted.hypothesis.hum)
+    for line in LINES:
+        known = any(abs(line - other) < 1.0 for other in found)
+        if known or np.exp(-((2.0 * np.pi * line * width) ** 2)) < PASSED:
+            continue
+        offsets, power = _around(times, line)
+        step = 0.5 / duration
+        near, clear = np.abs(offsets) <= max(STRAYS, step), np.abs(offsets) > 4.0 * step
+        if np.count_nonzero(clear) < 16:
+            continue
+        best = int(np.argmax(power))
+        if near[best] and power[best] > STANDS_OUT * np.median(power[clear]):
+            found.append(float(line + offsets[best]))
+    if len(found) == len(fitted.hypothesis.hum):
+        return fitted
+    return fit(fitted.rows, replace(fitted.hypothesis, hum=tuple(found)))
+
+
+def _by_recording(fitted: Fit) -> list[tuple[Array, Array]]:
+    """Times - s - and residuals (m,) of the rows of each recording that has some."""
+    edges = np.searchsorted(fitted.time, [*fitted.rows.starts[1:], np.inf])
+    times, residuals = np.split(fitted.time, edges)[:-1], np.split(fitted.residual, edges)[:-1]
+    return [(time, residual) for time, residual in zip(times, residuals, strict=True) if time.size]
+
+
+def _around(recordings: Sequence[tuple[Array, Array]], line: float) -> tuple[Array, Array]:
+    """Offsets from a line within BAND - Hz - and the periodogram there, of rows at uneven times (m,) - s.
+
+    The line is turned to zero frequency, where few sums over steps of time are left to transform: a cost that grows
+    with the recording's length, not with its square.
+    """
+    count = max(int((time[-1] - time[0]) * RATE) + 1 for time, _ in recordings)
+    power = np.zeros(2 * count)
+    for time, residual in recordings:
+        turned = residual * np.exp(-2j * np.pi * line * time)
+        place = np.floor((time - time[0]) * RATE).astype(np.intp)
+        sums = np.bincount(place, turned.real, count) + 1j * np.bincount(place, turned.imag, count)
+        power += np.abs(np.fft.fft(sums, 2 * count)) ** 2
+    offsets = np.fft.fftfreq(2 * count, 1.0 / RATE)
+    order = np.flatnonzero(np.abs(offsets) <= BAND)
+    return np.asarray(offsets[order], dtype=np.float64), np.asarray(power[order], dtype=np.float64)

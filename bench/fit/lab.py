@@ -1,0 +1,133 @@
+"""The lab course's estimators, as a student writes them: fixed thresholds on a backward difference.
+
+They are kept for comparison with the default estimator. Their faults: the backward difference amplifies speed noise by
+sqrt(2)/T and lags speed by half a sample, noise in alpha biases J towards zero, rows are chosen by thresholds that do
+not depend on noise or motion, and the covariance assumes independent residuals.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.errors import InputError, UndeterminedError
+from bench.fit.determined import RECORD
+from bench.fit.estimate import Estimate, Residual
+from bench.fit.load_inertia import load_inertia
+from bench.fit.parameter import Parameter
+from bench.rig.rig import Rig
+from bench.statistics import NORMAL95
+from bench.trace.trace import Trace
+
+#: The course drops slower samples - rad/s.
+LEAST_SPEED = 20.0
+#: The course takes J from samples above this share of the largest acceleration.
+ACCELERATION_SHARE = 0.25
+
+
+def backward_difference(values: NDArray[np.float64], sample_period: float) -> NDArray[np.float64]:
+    """u'[k] = (u[k] - u[k-1])/T, first value 0.
+
+    Args:
+        values: (n,) samples of any length - any unit.
+        sample_period: T > 0 - s.
+
+    Returns:
+        (n,) - unit per second.
+
+    Raises:
+        InputError: T is not positive.
+    """
+    if not sample_period > 0.0:
+        raise InputError("sample period", f"found {sample_period} s", "allowed: more than zero")
+    return np.diff(values, prepend=values[:1]) / sample_period
+
+
+def mean_inertia(
+    acceleration: NDArray[np.float64], torque: NDArray[np.float64]
+) -> tuple[float, float, NDArray[np.bool_]]:
+    """J as the mean of M/alpha over samples with |alpha| >= alpha_max/4, for an axis without friction.
+
+    Args:
+        acceleration: (n,) - rad/s**2.
+        torque: (n,) - N*m.
+
+    Returns:
+        J - kg*m**2, alpha_max - rad/s**2, and which samples were taken (n,).
+
+    Raises:
+        UndeterminedError: the axis never accelerates.
+    """
+    largest = float(np.max(np.abs(acceleration), initial=0.0))
+    if largest == 0.0:
+        raise UndeterminedError("moment of inertia", "the speed never changes", RECORD[INERTIA])
+    taken = np.abs(acceleration) >= ACCELERATION_SHARE * largest
+    return float(np.mean(torque[taken] / acceleration[taken])), largest, taken
+
+
+def least_squares(
+    acceleration: NDArray[np.float64], velocity: NDArray[np.float64], torque: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """J, K_w and K_0 of M = J*alpha + K_w*omega + K_0*sgn(omega) by least squares.
+
+    Args:
+        acceleration, velocity, torque: (n,) samples with |omega| >= 20 rad/s already chosen - rad/s**2, rad/s, N*m.
+
+    Returns:
+        (3,) estimate, (3,) standard errors under independent residuals, and the remaining quadratic error E - (N*m)**2.
+
+    Raises:
+        UndeterminedError: the three columns are not independent.
+    """
+    columns = np.stack([acceleration, velocity, np.sign(velocity)], axis=1)
+    theta, _, rank, _ = np.linalg.lstsq(columns, torque, rcond=None)
+    if rank < 3 or len(torque) <= 3:
+        reason = f"the {len(torque)} samples faster than {LEAST_SPEED:g} rad/s do not tell inertia and friction apart"
+        raise UndeterminedError("inertia and friction", reason, RECORD[VISCOUS])
+    error = float(np.sum((torque - columns @ theta) ** 2))
+    variance = error / (len(torque) - 3) * np.diag(np.linalg.inv(columns.T @ columns))
+    return np.asarray(theta, dtype=np.float64), np.sqrt(variance), error
+
+
+def identify_as_in_the_lab(trace: Trace, rig: Rig) -> Estimate:
+    """The course's least squares on a recording of a rotary axis.
+
+    Raises:
+        InputError: a linear axis, or no velocity.
+        UndeterminedError: too few samples faster than 20 rad/s.
+    """
+    if not rig.axis_kind.turns:
+        allowed = "allowed: rotary; the course's thresholds are in rad/s"
+        raise InputError(rig.source, f"found a {rig.kind} axis", allowed)
+    torque, unit = rig.net_effort(trace)
+    velocity = trace["velocity"]
+    acceleration = np.concatenate([backward_difference(velocity[part], trace.sample_period) for part in trace.segments])
+    fast = np.abs(velocity) >= LEAST_SPEED
+    theta, std_error, error = least_squares(acceleration[fast], velocity[fast], torque[fast])
+    parameters = {
+        rig.axis_kind.parameter(column): Parameter(
+            float(value),
+            rig.axis_kind.parameter_unit(column, unit),
+            float(deviation),
+            (float(value - reach), float(value + reach)),
+        )
+        for column, value, deviation, reach in zip(
+            (INERTIA, VISCOUS, COULOMB), theta, std_error, NORMAL95 * std_error, strict=True
+        )
+    }
+    rms = math.sqrt(error / np.count_nonzero(fast))
+    relative = math.sqrt(error / np.sum(torque[fast] ** 2))
+    return Estimate(
+        estimator="lab",
+        parameters=parameters | load_inertia(parameters, rig),
+        residual=Residual(rms, math.nan, relative, unit),
+        samples_read=len(trace),
+        samples_used=int(np.count_nonzero(fast)),
+        cutoff=math.nan,
+        source="velocity",
+        explained=1.0 - error / float(np.sum((torque[fast] - torque[fast].mean()) ** 2)),
+        warnings=("intervals take residuals for independent, as the course does: they are too narrow",),
+    )

@@ -1,0 +1,190 @@
+"""Noise floor of a fit: what the sensors' noise leaves in the residual, its colour read from the residual itself.
+
+White noise of effort and speed passes filter and model with a known spectrum. Real noise need not be white: below
+the frequencies at which its level was read it may stand higher. The residual tells by how much where it is quietest
+- noise is there at every moment and every frequency, what a model lacks comes and goes with the motion - so the
+lowest tenth over windows of time is taken at each frequency, and a first-order spectrum is laid through.
+
+    S(omega) = S_white(omega)*(1 + c/(1 + (omega/omega_c)**2))
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array
+from bench.fit.hypothesis import Hypothesis
+from bench.fit.layout import INERTIA, MISALIGNMENT, VISCOUS, Layout, delays, effort_lag
+from bench.fit.rows import Rows
+
+#: Rows of a window, longer ones first, and windows of a length that it takes; else white noise is assumed.
+LENGTHS, ENOUGH = (128, 64), 24
+#: Lowest bin clear of the window's own leakage, and share of the strongest density below which a bin is not read.
+LOWEST, HEARD = 3, 0.03
+#: Power of a line in Hann's window, at its bin and the next.
+HANN = np.array([1.0, 4.0, 1.0]) / 6.0
+#: Quantile over windows that counts as quiet. Of noise every quantile tells the same level; of a lag's residual at
+#: 4 ms a bin of the lower quartile still held 600 times the noise, of the lowest tenth 6 to 12 times.
+QUIET = 0.1
+#: Excess at low frequency that chance makes in a white recording, and that is therefore not called colour.
+CHANCE = 0.4
+#: Excesses tried, and corners, from the lowest frequency read to this many times the highest.
+EXCESSES = np.r_[0.0, np.geomspace(CHANCE, 1e4, 60)]
+CORNERS, BEYOND = 16, 3.0
+#: Power of noise in the torque balance - (N*m)**2 (N**2) - over angular frequency - rad/s -, for the power there of the
+#: noise of the signal that speed is taken from.
+Power = Callable[[Array, Array], Array]
+
+
+@dataclass(frozen=True)
+class Floor:
+    """RMS of noise in a residual, and of its white part - N*m (N)."""
+
+    coloured: float
+    white: float
+
+
+def noise_floor(rows: Rows, power: Power, residual: Array, rounded: float = 0.0) -> Floor:
+    """RMS of noise in a residual.
+
+    Args:
+        rows: the recording.
+        power: of noise in the torque balance before the filter.
+        residual: (m,) of the used rows - N*m (N).
+        rounded: RMS of what rounding of the effort leaves beside - N*m (N).
+    """
+    conditioning, smooth = rows.conditioning, rows.conditioning.filter
+    omega = np.linspace(0.0, np.pi / smooth.sample_period, 2048)
+
+    def density(at: Array, source: Array) -> Array:
+        return np.exp(-((at * smooth.width) ** 2)) * power(at, source)
+
+    def white(at: Array) -> Array:
+        return density(at, np.full(at.size, conditioning.source_noise**2))
+
+    def lines(at: Array) -> Array:
+        return density(at, conditioning.source_power(at))
+
+    excess, corner = colour(rows, white, lines, residual)
+    uncoloured = lines(omega)
+    coloured = uncoloured + white(omega) * excess / (1.0 + (omega / corner) ** 2)
+    scale = smooth.sample_period / np.pi
+    floor, least = (float(np.sqrt(scale * np.trapezoid(spectrum, omega))) for spectrum in (coloured, uncoloured))
+    return Floor(math.hypot(floor, rounded), math.hypot(least, rounded))
+
+
+def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> Power:
+    """Power of noise of effort and speed in the torque balance, over angular frequency.
+
+    s_M**2*|(1 + tau*s)*(1 + T*s)|**2*<(1 - dM_model/dM)**2> + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
+    """
+    conditioning = rows.conditioning
+    left = _left_of_effort(rows, hypothesis, layout, theta)
+    moving, _ = delays(rows, hypothesis)
+
+    def power(omega: Array, source: Array) -> Array:
+        s = 1j * omega
+        kinetic = theta[INERTIA] * s + theta[VISCOUS]
+        for index, term in enumerate(hypothesis.terms):
+            if term.effect.of_motion:
+                heard = term.effect.noise_of_motion(term.shape, omega)
+                kinetic = kinetic + theta[layout.owners == index][0] * s * heard
+        kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
+        late = (1.0 + theta[MISALIGNMENT] * s) * (1.0 + effort_lag(hypothesis) * s)
+        effort = left * conditioning.effort_noise**2 * np.abs(late) ** 2
+        known = conditioning.known_noise**2 * np.abs((1.0 + moving * s) * s) ** 2
+        return effort + known + source * np.abs(kinetic) ** 2
+
+    return power
+
+
+def _left_of_effort(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> float:
+    """Mean of (1 - dM_model/dM)**2: what effects made of the measured torque leave of its noise's power.
+
+    An effect that copies the torque copies its noise, and so would take all of it for explained.
+    """
+    copies = [(term, theta[layout.owners == k]) for k, term in enumerate(hypothesis.terms) if term.effect.copies_torque]
+    if not copies:
+        return 1.0
+    total, count = 0.0, 0
+    for part in rows.stretches:
+        signals = part.signals
+        step = 1e-6 * signals.peak_effort
+        more, slope = replace(signals, torque=signals.torque + step), np.zeros(signals.torque.size)
+        for term, strengths in copies:
+            high, low = (term.effect.columns(s, term.shape) for s in (more, signals))
+            for ((after, _),), ((before, _),), strength in zip(high, low, strengths, strict=True):
+                slope += strength * (after - before) / step
+        total, count = total + float(np.sum((1.0 - slope) ** 2)), count + slope.size
+    return total / count
+
+
+def colour(
+    rows: Rows, density: Callable[[Array], Array], lines: Callable[[Array], Array], residual: Array
+) -> tuple[float, float]:
+    """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white.
+
+    Lines that rounding leaves come and go with the speed, and stay with a steady one: neither is colour.
+
+    Args:
+        rows: the recording.
+        density: of white noise behind the filter, over angular frequency - (N*m)**2 (N**2).
+        lines: the same with what rounding leaves.
+        residual: (m,) of the used rows - N*m (N).
+    """
+    windows = _windows(rows, residual)
+    count, length = windows.shape
+    smooth = rows.conditioning.filter
+    period = smooth.stride * smooth.sample_period
+    omega = np.pi / period * np.arange(length // 2 + 1) / max(length // 2, 1)
+    white = density(omega) / smooth.stride
+    read = np.flatnonzero(white > HEARD * white.max())
+    read = read[read >= LOWEST]
+    if not count or read.size < LOWEST:
+        return 0.0, 1.0
+    taper = np.hanning(length)
+    spectra = np.abs(np.fft.rfft(windows * taper, axis=1)[:, read]) ** 2 / np.sum(taper**2)
+    known = np.maximum(white, np.convolve(lines(omega), HANN, "same") / smooth.stride)[read]
+    ratio = np.quantile(spectra, QUIET, axis=0) / _quiet_level(count) / known
+    corners = np.geomspace(omega[read[0]], BEYOND * omega[read[-1]], CORNERS)
+    shapes = 1.0 / (1.0 + (omega[read] / corners[:, None]) ** 2)
+    levels = np.log1p(EXCESSES[:, None, None] * shapes)
+    misfit = np.sum(np.abs(levels - np.log(ratio)), axis=2)  # a sharp line sways a sum of magnitudes little
+    excess, corner = np.unravel_index(int(np.argmin(misfit)), misfit.shape)
+    return float(EXCESSES[excess]), float(corners[corner])
+
+
+def _quiet_level(count: int) -> float:
+    """What the quiet quantile of `count` exponential variables is to their mean, from expected order statistics."""
+    expected = np.cumsum(1.0 / np.arange(count, 0, -1))
+    return float(np.interp(QUIET * (count - 1), np.arange(count), expected))
+
+
+def _windows(rows: Rows, residual: Array) -> Array:
+    """Half-overlapping windows of neighbouring rows, each less its straight line (k, length); none where too few."""
+    used = tuple(part.used.tobytes() for part in rows.stretches)
+    for length in LENGTHS:
+        starts = _starts(used, length)
+        if starts.size >= ENOUGH:
+            found = residual[starts[:, None] + np.arange(length)]
+            ramp = np.linspace(-1.0, 1.0, length)
+            return found - found.mean(axis=1, keepdims=True) - np.outer(found @ ramp / (ramp @ ramp), ramp)
+    return np.empty((0, LENGTHS[-1]))
+
+
+@lru_cache(maxsize=8)
+def _starts(used: tuple[bytes, ...], length: int) -> NDArray[np.int64]:
+    """First rows of the windows that span no gap."""
+    found, offset = [], 0
+    for raw in used:
+        rows = np.flatnonzero(np.frombuffer(raw, dtype=bool))
+        runs = np.split(np.arange(rows.size), np.flatnonzero(np.diff(rows) != 1) + 1)
+        found += [offset + np.arange(run[0], run[-1] - length + 2, length // 2) for run in runs if run.size >= length]
+        offset += rows.size
+    return np.concatenate(found) if found else np.empty(0, dtype=np.int64)

@@ -1,0 +1,218 @@
+"""Quantities of a fit with their intervals, which count correlated residuals and what no residual shows.
+
+Every free number of the fit, strengths and continuous shapes alike, is one column of the Jacobian of the modelled
+torque; covariance by long-run scores; quantities by the delta method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.effects.effect import Effect
+from bench.effects.grids import is_pitch
+from bench.effects.signals import Base, Signals
+from bench.fit.covariance import estimated, misfit
+from bench.fit.fit import Fit, least_squares
+from bench.fit.layout import BASE, COULOMB, INERTIA, VISCOUS, lay_out
+from bench.fit.normal_equations import block_edges, solved
+from bench.fit.parameter import Parameter
+from bench.fit.rows import Rows
+from bench.statistics import NORMAL95
+
+#: Step of a numerical derivative, relative.
+STEP = 1e-4
+#: Residual in noise floors beyond which a row counts less and less, where some rows are not determined, as in the
+#: search for a dead zone.
+SCALE = 3.0
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """The free numbers of a fit - strengths, then continuous shapes - and their covariance.
+
+    Attributes:
+        fitted: the fit.
+        values: (p + s,).
+        covariance: (p + s, p + s).
+        reach: of an interval of 95 % in standard errors.
+        slots: (term, place in its shape) of each free shape.
+    """
+
+    fitted: Fit
+    values: Array
+    covariance: Array
+    reach: float
+    slots: tuple[tuple[int, int], ...]
+
+    def parameter(self, value: float, deviation: float, unit: str) -> Parameter:
+        """A value with its interval."""
+        reach = self.reach * deviation
+        return Parameter(float(value), unit, deviation, (float(value - reach), float(value + reach)))
+
+    def base(self, units: Mapping[str, str]) -> dict[str, Parameter]:
+        """J, K_w and K_0 with their intervals; `units` by their names, in this order."""
+        deviation = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+        places = zip((INERTIA, VISCOUS, COULOMB), units.items(), strict=True)
+        return {
+            name: self.parameter(float(self.fitted.theta[k]), float(deviation[k]), unit) for k, (name, unit) in places
+        }
+
+    def quantities(self, index: int, unit_of: Callable[[Effect, str], str]) -> dict[str, Parameter]:
+        """Quantities of one term with their intervals.
+
+        Args:
+            index: of the term.
+            unit_of: unit of an effect's quantity by its name.
+        """
+        term, size = self.fitted.terms[index], self.fitted.theta.size
+
+        def values(point: Array) -> Mapping[str, float]:
+            shape = list(term.shape)
+            for slot, (owner, k) in enumerate(self.slots):
+                if owner == index:
+                    shape[k] = float(point[size + slot])
+            base = Base(*(float(point[k]) for k in (INERTIA, VISCOUS, COULOMB)))
+            return term.effect.report(point[:size][self.fitted.owners == index].tolist(), tuple(shape), base)
+
+        deviations = self._deviations(values)
+        return {
+            name: self.parameter(value, deviations[name], unit_of(term.effect, name))
+            for name, value in values(self.values).items()
+        }
+
+    def _deviations(self, values: Callable[[Array], Mapping[str, float]]) -> dict[str, float]:
+        gradient: dict[str, list[float]] = {name: [] for name in values(self.values)}
+        for k, number in enumerate(self.values):
+            step = STEP * max(abs(float(number)), 1e-9)
+            up, down = self.values.copy(), self.values.copy()
+            up[k] += step
+            down[k] -= step
+            high, low = values(up), values(down)
+            for name, slopes in gradient.items():
+                slopes.append((high[name] - low[name]) / (2.0 * step))
+        found = {name: np.array(slopes) for name, slopes in gradient.items()}
+        return {name: float(np.sqrt(max(g @ self.covariance @ g, 0.0))) for name, g in found.items()}
+
+
+def uncertain(fitted: Fit) -> Uncertain:
+    """Free numbers of a fit with their covariance; where not all rows are determined, as in a robust search."""
+    rows = fitted.rows
+    slots = tuple((index, k) for index, term in enumerate(fitted.terms) for k in _free(term.effect, rows))
+    jacobian = _jacobian(rows, fitted, slots)
+    noise = np.pad(fitted.layout.noise, (0, len(slots)))
+    numbers = np.concatenate([fitted.theta, np.zeros(len(slots))])
+    weight = np.ones(rows.effort.size)
+    if not fitted.determined.all():
+        weight = 1.0 / (1.0 + (fitted.left / (SCALE * fitted.floor)) ** 2)
+    edges = block_edges(fitted.time, rows.conditioning.filter.width)
+    count = np.diff(edges)
+    scores = np.add.reduceat(jacobian * (weight * fitted.left)[:, None], edges[:-1])
+    scores += np.outer(count, noise @ numbers)
+    place, known = fitted.theta.size, _known(fitted, slots)
+    instants = np.array([fitted.terms[index].effect.shapes[k].quantity.instant for index, k in slots], dtype=bool)
+    least = np.divide(fitted.floor, known, out=np.zeros(known.size), where=instants & (known > 0.0))
+    seen = np.linalg.norm(jacobian, axis=0) >= np.pad(least, (place, 0))
+    told = np.ix_(seen, seen)
+    gram = ((jacobian.T * weight) @ jacobian)[told]
+    inverse = np.zeros(noise.shape)
+    inverse[told] = solved(gram, numbers[seen], count.sum() * noise[told])[1]
+    conditioning = rows.conditioning
+    covariance, reach = estimated(scores, inverse, conditioning.effort_noise**2 / conditioning.filter.stride)
+    heavy = np.sqrt(weight)
+    left = misfit(jacobian[:, seen] * heavy[:, None], fitted.left * heavy, fitted.floor)
+    covariance[told] += np.diag((left / reach) ** 2)
+    covariance[place:, place:] += np.diag(known**2)
+    shapes = np.array([fitted.terms[index].shape[k] for index, k in slots])
+    for index, term in enumerate(fitted.terms):
+        own = [place + slot for slot, (owner, _) in enumerate(slots) if owner == index]
+        spread = term.effect.spread(fitted, index) if own else None
+        if spread is not None:
+            covariance[np.ix_(own, own)] += spread
+    for moved in (*_misplaced(fitted), *_louder(fitted, slots)):
+        covariance[: moved.size, : moved.size] += np.outer(moved, moved)
+    return Uncertain(fitted, np.concatenate([fitted.theta, shapes]), covariance, reach, slots)
+
+
+def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
+    """Standard errors of the shapes (s,) that no noise shows, as of an instant between two rows.
+
+    An instant that within its own changes the torque by less than noise does is known by it alone, as no row moves with
+    it. What it is of another shape, the tick of a lag or the drift of a position, comes beside what noise makes of it.
+    """
+    errors = [term.effect.shape_errors(term.shape, fitted.scope, fitted.time) for term in fitted.terms]
+    return np.array([errors[index][k] for index, k in slots])
+
+
+def _free(effect: Effect, rows: Rows) -> list[int]:
+    """Places of the shapes that are free numbers of the fit: not those that are whole, nor those that follow."""
+    return [
+        k for k, shape in enumerate(effect.shapes) if shape.step and (not shape.whole or is_pitch(shape, rows.scope))
+    ]
+
+
+def _jacobian(rows: Rows, fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
+    """Derivative of the modelled torque by strengths and shapes (m, p + s)."""
+    columns = [fitted.columns]
+    for index, k in slots:
+        term = fitted.terms[index]
+        step = term.effect.shapes[k].step * max(abs(term.shape[k]), 1e-3)
+        moved = tuple(value + step * (j == k) for j, value in enumerate(term.shape))
+        other = lay_out(rows, fitted.hypothesis.reshaped(index, moved))
+        modelled = (other.columns - fitted.columns) @ fitted.theta - (other.effort - fitted.effort)
+        columns.append(modelled[:, None] / step)
+    return np.concatenate(columns, axis=1)
+
+
+def _misplaced(fitted: Fit) -> Iterator[Array]:
+    """Standard changes of the strengths (p,) were what effects see half a tick older, or a drift further on.
+
+    A drive latches its signals within one tick: the alignment of torque is fitted, that of a wave of position is not.
+    """
+    if not fitted.terms or not fitted.determined.all():
+        return
+    plain = least_squares(fitted.columns, fitted.effort, fitted.layout.noise)
+    scope = fitted.scope
+
+    def refitted(change: Callable[[Signals], Signals]) -> Array:
+        layout = lay_out(fitted.rows.with_signals(change), fitted.hypothesis)
+        columns = np.where(layout.owners > BASE, layout.columns, fitted.columns)
+        return least_squares(columns, fitted.effort, layout.noise) - plain
+
+    def older(s: Signals) -> Signals:
+        position, velocity = (
+            values + 0.5 * scope.latched * np.gradient(values, s.sample_period) for values in (s.position, s.velocity)
+        )
+        return replace(s, position=position, velocity=velocity)
+
+    yield refitted(older) / NORMAL95
+    if scope.drift:
+        yield refitted(lambda s: replace(s, position=s.position + scope.drift))
+
+
+def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
+    """Change of strengths and shapes were noise twice as strong, by one step of Gauss and Newton.
+
+    The column of a coupling is made of the noisy motion, so noise biases it; that of the noise itself is as large.
+    J. R. Cook, L. A. Stefanski, Journal of the American Statistical Association 89, 1994, 1314-1328.
+    """
+    if not any(term.effect.biased_by_noise for term in fitted.terms) or not fitted.determined.all():
+        return
+    rng, conditioning = np.random.default_rng(0), fitted.rows.conditioning
+
+    def louder(s: Signals) -> Signals:
+        noise = conditioning.source_noise * rng.standard_normal(s.time.size)
+        effort = s.effort + conditioning.effort_noise * rng.standard_normal(s.time.size)
+        s = replace(s, effort=effort, torque=effort)
+        if conditioning.source == "velocity":
+            return replace(s, velocity=s.velocity + noise)
+        return replace(s, position=s.position + noise, velocity=s.velocity + np.gradient(noise, s.sample_period))
+
+    loud = fitted.rows.with_signals(louder)
+    layout = lay_out(loud, fitted.hypothesis)
+    jacobian = _jacobian(loud, replace(fitted, rows=loud, layout=layout), slots)
+    left = layout.effort - layout.columns @ fitted.theta
+    yield least_squares(jacobian, left, np.zeros((jacobian.shape[1],) * 2))

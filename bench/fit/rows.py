@@ -1,0 +1,289 @@
+"""A recording laid out in rows: raw signals, and any column of the torque balance through the one filter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array
+from bench.axis_kind import AxisKind
+from bench.effects.signals import Scope, Signals
+from bench.errors import UndeterminedError
+from bench.fit.memory import Memory
+from bench.rig.rig import Rig
+from bench.trace.conditioning import Conditioning, condition, known_sign, raw_speed
+from bench.trace.filter import Column, GaussianFilter
+from bench.trace.known_torque import known_column
+from bench.trace.trace import Trace
+
+#: Widest filter - s: shapes of friction live in the milliseconds around a reversal.
+WIDEST = 2e-3
+#: A row needs one sign over this many filter widths to each side, so that a lag of some widths moves no reversal in.
+SIGN_WIDTHS = 6.0
+#: Widths over which a filtered sign is within 1e-3 of one: 1 - erf(3.1/sqrt(2)) = 2e-3.
+SIGN_REACH = 3.1
+#: Share of the motion in the weaker direction below which friction and a constant torque are one number.
+ONE_WAY = 0.02
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Raw signals of one stretch without holes, and which of its filtered rows have a known direction (r,).
+
+    Attributes:
+        signals: of it.
+        used: (r,).
+        start: of its first sample in the recording.
+    """
+
+    signals: Signals
+    used: NDArray[np.bool_]
+    start: int
+
+
+@dataclass(frozen=True)
+class Rows:
+    """One recording, filtered.
+
+    Attributes:
+        stretches: raw signals, stretch by stretch.
+        conditioning: source, noises and filter.
+        origin: of the recording.
+        scope: what it is able to show.
+        effort: filtered motor torque at the used rows, less what is known to act - N*m (N) - (m,).
+        motion: what tells its motion from that of the recording as reported; () as reported.
+        memory: columns made before.
+        still: whether what follows the motion behind a coupling is kept while the motion is corrected a little.
+    """
+
+    stretches: tuple[Stretch, ...]
+    conditioning: Conditioning
+    origin: str
+    scope: Scope
+    effort: Array
+    motion: Hashable = ()
+    memory: Memory = field(default_factory=Memory, compare=False)
+    still: bool = False
+
+    @classmethod
+    def of(
+        cls,
+        trace: Trace,
+        rig: Rig,
+        *,
+        conditioning: Conditioning | None = None,
+        cutoff: float | None = None,
+        width: float | None = None,
+        every: bool = False,
+        begins: float | None = None,
+        peak_effort: float | None = None,
+    ) -> Rows:
+        """Lay out a recording, or a part of one.
+
+        Args:
+            trace: the recording.
+            rig: of the axis.
+            conditioning: instead of the one read from the recording: that of its first part.
+            cutoff: half-power frequency of the filter instead of the one chosen from the recording - Hz.
+            width: of the filter instead of the one chosen from the recording - s.
+            every: whether a row stands for every sample, which a replay wants.
+            begins: the recording, if this is a later part of it - s.
+            peak_effort: where the rig tells none, that of the recording in which a model was found - N*m (N).
+
+        Raises:
+            InputError: a signal is missing, or rig and recording do not fit together.
+            UndeterminedError: the recording is too short, or never moves clearly.
+        """
+        effort, _ = rig.own_effort(trace)
+        if conditioning is None:
+            found = condition(trace, effort, cutoff)
+            width = width or (found.filter.width if cutoff else min(WIDEST, found.filter.width))
+            smooth = GaussianFilter.from_cutoff(GaussianFilter(width, trace.sample_period).cutoff, trace.sample_period)
+            conditioning = replace(found, filter=replace(smooth, stride=1) if every else smooth)
+        constant, peak = rig.motor.torque_per_ampere, rig.motor.peak_current
+        largest = float(np.abs(effort).max())
+        peak_effort = float(constant.torque(np.asarray(peak))) if constant and peak else peak_effort or largest
+        parts = [part for part in trace.segments if part.stop - part.start > 4 * conditioning.filter.margin]
+        begins = float(trace.time[0]) if begins is None else begins
+        stretches = tuple(_stretch(trace, effort, part, conditioning, peak_effort, begins) for part in parts)
+        if not any(part.used.any() for part in stretches):
+            reason = f"no filtered sample of {trace.origin} moves clearly in one direction"
+            raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, trace.axis_kind))
+        return cls(
+            stretches,
+            conditioning,
+            trace.origin,
+            _scope(trace, rig, stretches, conditioning),
+            _explained(stretches, conditioning.filter),
+        )
+
+    @property
+    def correlation(self) -> float:
+        """Variance of a sum of filtered noise over that of independent rows: 2*sqrt(pi)*width over their distance."""
+        smooth = self.conditioning.filter
+        return max(1.0, 2.0 * np.sqrt(np.pi) * smooth.width / (smooth.stride * smooth.sample_period))
+
+    def with_signals(self, change: Callable[[Signals], Signals], made_by: Hashable = None) -> Rows:
+        """The same rows over changed raw signals (a corrected angle, another friction level).
+
+        Args:
+            change: of each stretch's signals.
+            made_by: what tells this change from others, if columns made of it may be kept; else none are.
+        """
+        stretches = tuple(replace(part, signals=change(part.signals)) for part in self.stretches)
+        pairs = [(new.signals, old.signals) for new, old in zip(stretches, self.stretches, strict=True)]
+        moved = any(new.position is not old.position or new.velocity is not old.velocity for new, old in pairs)
+        effort = self.effort
+        if any(new.effort is not old.effort for new, old in pairs):
+            effort = _explained(stretches, self.conditioning.filter)
+        memory = self.memory if made_by is not None else Memory()
+        motion = (made_by if made_by is not None else object()) if moved and not self.still else self.motion
+        return replace(self, stretches=stretches, effort=effort, motion=motion, memory=memory)
+
+    def selected(self, kept: Callable[[Array], NDArray[np.bool_]]) -> Rows:
+        """Those of the rows that are kept, by their times (r,) - s."""
+        stretches = tuple(
+            replace(part, used=part.used & kept(self._picked(part, _since_first(part.signals))))
+            for part in self.stretches
+        )
+        chosen = np.concatenate([new.used[old.used] for new, old in zip(stretches, self.stretches, strict=True)])
+        return replace(self, stretches=stretches, effort=self.effort[chosen], memory=Memory())
+
+    @property
+    def held(self) -> Rows:
+        """This recording with the motion behind its couplings as it is first asked for."""
+        return replace(self, still=True, memory=Memory())
+
+    @cached_property
+    def time(self) -> Array:
+        """Of the used rows, since the start of the recording, or of the first of several - s - (m,)."""
+        return self.values(_since_first)
+
+    @property
+    def starts(self) -> tuple[float, ...]:
+        """Of the recordings that were joined, since the start of the first - s."""
+        return tuple(dict.fromkeys(part.signals.began for part in self.stretches))
+
+    def samples(self) -> NDArray[np.int64]:
+        """Index into the recording of every used row (m,)."""
+        smooth = self.conditioning.filter
+        found = [part.start + smooth.margin + smooth.stride * np.flatnonzero(part.used) for part in self.stretches]
+        return np.concatenate(found)
+
+    def values(self, pick: Callable[[Signals], Array]) -> Array:
+        """Raw values at the used rows (m,)."""
+        return np.concatenate([self._picked(part, pick(part.signals))[part.used] for part in self.stretches])
+
+    def _picked(self, part: Stretch, values: Array) -> Array:
+        smooth = self.conditioning.filter
+        return values[smooth.margin : -smooth.margin : smooth.stride][: part.used.size]
+
+    def table(self, columns: Callable[[Signals], Sequence[Column]], lag: float = 0.0) -> Array:
+        """Filtered columns at the used rows (m, k).
+
+        Args:
+            columns: of the raw signals.
+            lag: time constant of a first-order lag to undo, 1 + j*omega*lag - s.
+        """
+        return _table(self.stretches, self.conditioning.filter, columns, lag)
+
+
+def clear_motion(conditioning: Conditioning, kind: AxisKind) -> str:
+    """What a row of the torque balance needs: one direction over the filter's reach, at a speed above the noise."""
+    speed, reach = conditioning.sign_threshold, 2.0 * SIGN_WIDTHS * conditioning.filter.width
+    return (
+        f"runs that keep one direction well over {reach:.2g} s, "
+        f"at speeds well above {speed:.3g} {kind.speed_unit}, where noise no longer makes the sign"
+    )
+
+
+def known_of(signals: Signals) -> list[Column]:
+    """The torque that is known to act, as the one column of a table."""
+    return [signals.known]
+
+
+def _explained(stretches: Sequence[Stretch], smooth: GaussianFilter) -> Array:
+    """Filtered motor torque less what is known to act, at the used rows - N*m (N) - (m,)."""
+    effort = _table(stretches, smooth, lambda s: [[(s.effort, 0)]], 0.0)[:, 0]
+    if not stretches[0].signals.known:
+        return effort
+    return effort - _table(stretches, smooth, known_of, 0.0)[:, 0]
+
+
+def _table(
+    stretches: Sequence[Stretch], smooth: GaussianFilter, columns: Callable[[Signals], Sequence[Column]], lag: float
+) -> Array:
+    parts = [smooth.columns(columns(part.signals), lag)[:, part.used] for part in stretches]
+    return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
+
+
+def _since_first(signals: Signals) -> Array:
+    """Time since the start of the first of the recordings - s."""
+    return signals.time + signals.began if signals.began else signals.time
+
+
+def _stretch(
+    trace: Trace, effort: Array, part: slice, conditioning: Conditioning, peak_effort: float, begins: float
+) -> Stretch:
+    period, source = trace.sample_period, trace[conditioning.source][part]
+    speed = raw_speed(source, conditioning.source, period)
+    velocity = speed if conditioning.source == "position" or "velocity" not in trace else trace["velocity"][part]
+    travelled = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2.0) * period])
+    position = trace["position"][part] if "position" in trace else travelled
+    sign = known_sign(speed, conditioning.sign_threshold)
+    smooth = conditioning.filter
+    wide = replace(smooth, width=smooth.width * SIGN_WIDTHS / SIGN_REACH)
+    used = np.zeros(len(range(smooth.margin, position.size - smooth.margin, smooth.stride)), dtype=bool)
+    if position.size > 2 * wide.margin:
+        (direction,) = wide(sign, 0)
+        lost = (wide.margin - smooth.margin) // smooth.stride
+        used[lost : lost + direction.size] = np.abs(direction) > 1.0 - 1e-3
+    signals = Signals(
+        time=trace.time[part] - (trace.start_of(part) if trace.joined else begins),
+        began=trace.start_of(part) - begins if trace.joined else 0.0,
+        position=position,
+        velocity=velocity,
+        sign=sign,
+        effort=effort[part],
+        torque=effort[part],
+        friction=sign,
+        peak_effort=peak_effort,
+        sample_period=period,
+        source=conditioning.source,
+        known=known_column(trace, part),
+    )
+    return Stretch(signals, used, part.start)
+
+
+def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: Conditioning) -> Scope:
+    signals = [part.signals for part in stretches]
+    smooth = conditioning.filter
+    reach = slice(smooth.margin, -smooth.margin, smooth.stride)
+    used = [part.used for part in stretches]
+    speed = np.concatenate([s.velocity[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
+    direction = np.concatenate([s.sign[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
+    ends = {s.began: float(s.time[-1]) for s in signals}
+    starts = {s.began: float(s.time[0]) for s in reversed(signals)}
+    drift = 0.0
+    if "position" not in trace:  # of the mean of integrated white noise, sigma*sqrt(T_s*T/3)
+        drift = conditioning.source_noise * float(np.sqrt(trace.sample_period * (trace.time[-1] - trace.time[0]) / 3.0))
+    return Scope(
+        kind=trace.axis_kind,
+        source=conditioning.source,
+        signals=frozenset(trace.signals),
+        one_way=bool(0.5 * (1.0 - abs(float(np.mean(direction)))) < ONE_WAY),
+        duration=max(ends[begun] - starts[begun] for begun in starts),
+        sample_period=trace.sample_period,
+        latched=rig.drive.control_period if rig.drive is not None else trace.sample_period,
+        drift=drift,
+        width=smooth.width,
+        travel=max(float(s.position.max()) for s in signals) - min(float(s.position.min()) for s in signals),
+        top_speed=max(float(np.abs(s.velocity).max()) for s in signals),
+        rms_speed=float(np.sqrt(np.mean(speed**2))),
+        peak_effort=signals[0].peak_effort,
+        rotor_inertia=rig.motor.rotor_inertia or 0.0,
+    )

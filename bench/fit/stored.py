@@ -1,0 +1,106 @@
+"""The torque balance of a diagnosed model along any recording, which is held against the measured torque."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from bench.arrays import Array, rms
+from bench.effects.present import named
+from bench.fit.fit import Fit
+from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.layout import HUM, lay_out
+from bench.fit.rows import Rows
+
+#: Stands for a recording where an event comes at the same time of every one.
+EVERY = "every recording"
+
+
+@dataclass(frozen=True)
+class Balance:
+    """A fitted torque balance, ready for other recordings of the axis.
+
+    Attributes:
+        hypothesis: its effects and their shapes.
+        theta: (p,) J, K_w, K_0, misalignment, last digit, strengths.
+        width: of the filter it was fitted through - s.
+        recording: the one it was fitted to; what is occasional happened in it and in no other, unless EVERY.
+    """
+
+    hypothesis: Hypothesis
+    theta: Array
+    width: float
+    recording: str
+
+    @classmethod
+    def of(cls, fitted: Fit) -> Balance:
+        """Balance of a fit; without hum where it is of several recordings, as each had its own phase of it."""
+        width, origin = fitted.rows.conditioning.filter.width, fitted.rows.origin
+        if len(fitted.rows.starts) == 1:
+            return cls(fitted.hypothesis, fitted.theta, width, origin)
+        return cls(replace(fitted.hypothesis, hum=()), fitted.theta[fitted.owners != HUM], width, origin)
+
+    def repeating(self, events: bool) -> Balance:
+        """The same with its events in every recording, if they happen in every one."""
+        return replace(self, recording=EVERY) if events else self
+
+    def left(self, rows: Rows) -> Array:
+        """Measured less modelled torque at the used rows of a recording - N*m (N) - (m,)."""
+        layout = lay_out(rows, self.hypothesis)
+        theta = self.theta.copy()
+        if self.recording != rows.origin:
+            theta[layout.owners == HUM] = 0.0
+        if self.recording not in (EVERY, rows.origin):
+            occasional = [index for index, term in enumerate(self.hypothesis.terms) if term.effect.occasional]
+            theta[np.isin(layout.owners, occasional)] = 0.0
+        return layout.effort - layout.columns @ theta
+
+    def gap(self, rows: Rows) -> float:
+        """RMS of measured less modelled torque along a recording - N*m (N)."""
+        return rms(self.left(rows))
+
+    def table(self) -> dict[str, Any]:
+        """The table `torque_balance` of a `model.toml`: the model as coefficients, for `bench replay`; SI."""
+        effects = [
+            {"name": term.effect.name, "shape": list(term.shape), "level": list(term.level)}
+            | ({} if term.load is None else {"load": list(term.load)})
+            | ({"pull": list(term.pull)} if term.pull else {})
+            for term in self.hypothesis.terms
+        ]
+        return {
+            "recording": self.recording,
+            "filter_width": self.width,
+            "mains": list(self.hypothesis.hum),
+            "effort_step": self.hypothesis.step,
+            "coefficients": self.theta.tolist(),
+            "effects": effects,
+        }
+
+    @classmethod
+    def from_table(cls, table: Mapping[str, Any], where: str) -> Balance:
+        """Balance of the table that `table` gave.
+
+        Raises:
+            KeyError, TypeError, ValueError: it is none.
+            InputError: it names an effect that there is not; `where` it stands.
+        """
+        terms = tuple(
+            Term(
+                named(str(entry["name"]), f"{where}.effects"),
+                _floats(entry["shape"]),
+                _floats(entry["level"]),
+                _floats(entry["load"]) if "load" in entry else None,
+                _floats(entry.get("pull", [])),
+            )
+            for entry in table.get("effects", [])
+        )
+        hypothesis = Hypothesis(terms, _floats(table.get("mains", [])), float(table.get("effort_step", 0.0)))
+        theta = np.array(_floats(table["coefficients"]))
+        return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
+
+
+def _floats(values: Any) -> tuple[float, ...]:  # noqa: ANN401 - whatever a file holds
+    return tuple(float(value) for value in values)

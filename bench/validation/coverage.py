@@ -1,0 +1,182 @@
+"""How far told values lie from the truth, and how often their intervals hold it."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from bench.validation.run import Run
+from bench.validation.score import TERMS, Scored
+
+#: Levels of the intervals that are compared with the truth.
+LEVELS = (0.5, 0.8, 0.95)
+#: Of bounds on a share.
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True)
+class Share:
+    """A share of cases with its bounds, exact by the binomial distribution.
+
+    C. J. Clopper, E. S. Pearson, Biometrika 26, 1934, 404-413.
+
+    Attributes:
+        count, of: how many, and of how many.
+    """
+
+    count: int
+    of: int
+
+    @property
+    def value(self) -> float:
+        """The share; nan of none."""
+        return self.count / self.of if self.of else math.nan
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Of 95 %: 2.5 % on each side, and 0 and 1 of none."""
+        if not self.of:
+            return 0.0, 1.0
+        found = stats.binomtest(self.count, self.of).proportion_ci(CONFIDENCE, "exact")
+        return float(found.low), float(found.high)
+
+
+@dataclass(frozen=True)
+class Group:
+    """Runs that are told together.
+
+    Attributes:
+        name: what they have in common.
+        runs: how many.
+        whole: whether these are all runs with so much hidden, or named, and not a part of them.
+    """
+
+    name: str
+    runs: int
+    whole: bool
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """One quantity over a group of runs.
+
+    Attributes:
+        by: identify or diagnose.
+        group: of runs.
+        quantity: term of the equation of motion, or quantity of the effect that the group is called by.
+        runs: of the group.
+        told: that tell the quantity.
+        bias, bias_error: mean of the errors over the true value, and its standard error.
+        spread: standard deviation of these.
+        typical: root of their mean square.
+        half_width: median, over the true value.
+        width_over_error: root of the mean square of half widths over `typical`: 1.96 of a normal distribution's.
+        inside: share of the intervals that hold the truth, by `LEVELS`.
+        whole: whether the group is all runs with so much hidden, or named, and not a part of them.
+    """
+
+    by: str
+    group: str
+    quantity: str
+    runs: int
+    told: int
+    bias: float
+    bias_error: float
+    spread: float
+    typical: float
+    half_width: float
+    width_over_error: float
+    inside: tuple[Share, ...]
+    whole: bool = True
+
+    @classmethod
+    def of(cls, by: str, group: Group, quantity: str, scored: Sequence[Scored]) -> Coverage:
+        """Coverage of a quantity; nan without estimates."""
+        error, half = (np.array([getattr(one, name) for one in scored]) for name in ("error", "half_width"))
+        several = len(scored) > 1
+        spread = float(np.std(error, ddof=1)) if several else math.nan
+        typical = float(np.sqrt(np.mean(error**2))) if scored else math.nan
+        wide = float(np.sqrt(np.mean(half**2))) if scored else math.nan
+        return cls(
+            by=by,
+            group=group.name,
+            quantity=quantity,
+            runs=group.runs,
+            told=len(scored),
+            bias=float(np.mean(error)) if scored else math.nan,
+            bias_error=spread / math.sqrt(len(scored)) if several else math.nan,
+            spread=spread,
+            typical=typical,
+            half_width=float(np.median(half)) if scored else math.nan,
+            width_over_error=wide / typical if typical > 0.0 else math.nan,
+            inside=tuple(Share(sum(one.inside(level) for one in scored), len(scored)) for level in LEVELS),
+            whole=group.whole,
+        )
+
+
+def coverage(runs: Sequence[Run]) -> list[Coverage]:
+    """Each quantity of `identify`, then of `diagnose`, over all groups of runs."""
+    found = []
+    for by in ("identify", "diagnose"):
+        for name, whole, some in _groups(runs, by):
+            scored = [one for run in some for one in run.scored if one.by == by and not one.effect]
+            for term in TERMS:
+                those = [one for one in scored if one.quantity == term]
+                found.append(Coverage.of(by, Group(name, len(some), whole), term, those))
+    return found + _of_effects(runs)
+
+
+def _groups(runs: Sequence[Run], by: str) -> Iterator[tuple[str, bool, list[Run]]]:
+    """By how much is hidden; nulls of `identify` by what else differs, diagnosed runs by whether that is named."""
+    asked = [run for run in runs if run.status != "failed" and (by == "identify" or run.named is not None)]
+    for count in sorted({len(run.hidden) for run in asked}):
+        some = [run for run in asked if len(run.hidden) == count]
+        name = ("nulls", "1 effect", f"{count} effects")[min(count, 2)]
+        yield name, True, some
+        if by == "identify" and count == 0:
+            yield from ((part, False, those) for part, those in _apart(some))
+        elif by == "diagnose" and count > 0:
+            yield f"{name} named", True, [run for run in some if run.named is not None and run.named.exact]
+
+
+def _apart(runs: Sequence[Run]) -> Iterator[tuple[str, list[Run]]]:
+    """Runs by plant, noise, kind of axis and motion; not by what all share."""
+    for group_of in (_plant, _noise, _kind, _motion):
+        names = sorted({group_of(run) for run in runs})
+        for name in names if len(names) > 1 else ():
+            yield name, [run for run in runs if group_of(run) == name]
+
+
+def _plant(run: Run) -> str:
+    return {"mujoco": "by MuJoCo", "independent": "by the integrator"}[run.plant]
+
+
+def _noise(run: Run) -> str:
+    return "white noise" if set(run.noise.split("/")) == {"white"} else "other noise too"
+
+
+def _kind(run: Run) -> str:
+    return f"{run.kind} axis"
+
+
+def _motion(run: Run) -> str:
+    return f"motion: {run.motion}"
+
+
+def _of_effects(runs: Sequence[Run]) -> list[Coverage]:
+    """Quantities of the effects that were named where they are hidden."""
+    scored: dict[tuple[str, str], list[Scored]] = {}
+    for run in runs:
+        for one in run.scored:
+            if one.effect:
+                scored.setdefault((one.effect, one.quantity), []).append(one)
+    hidden = Counter(name for run in runs if run.named is not None for name in run.hidden)
+    return [
+        Coverage.of("diagnose", Group(effect, hidden[effect], False), quantity, scored[effect, quantity])
+        for effect, quantity in sorted(scored)
+    ]

@@ -1,0 +1,179 @@
+"""Effects on friction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Self
+
+import numpy as np
+
+from bench.validation.independent.effects.effect import Effect, about, phase
+from bench.validation.independent.rig import Axis
+
+if TYPE_CHECKING:
+    from bench.validation.independent.plant import Rows
+
+
+@dataclass(frozen=True)
+class StribeckFriction(Effect):
+    """Level K_0 + (K_s - K_0)*exp(-(w/w_s)**2); K_s static friction - N*m, w_s Stribeck speed - rad/s."""
+
+    name: ClassVar[str] = "stribeck_friction"
+    static_friction: float
+    stribeck_velocity: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        rise = (0.6 + 1.8 * about(severity, rng)) * axis.coulomb
+        return cls(axis.coulomb + rise, axis.top_speed * rng.uniform(0.02, 0.05))
+
+    def friction_excess(self, rows: Rows) -> np.ndarray:
+        return (self.static_friction - rows.coulomb) * np.exp(-((rows.velocity / self.stribeck_velocity) ** 2))
+
+
+@dataclass(frozen=True)
+class PreslidingFriction(Effect):
+    """LuGre: dz/dt = w - sigma_0*|w|*z/g, friction sigma_0*z + sigma_1*dz/dt; g the level of dry friction.
+
+    sigma_0 bristle_stiffness - N*m/rad, sigma_1 bristle_damping - N*m*s/rad (0: Dahl's model).
+    Canudas de Wit et al., IEEE Trans. Automatic Control 40 (1995) 419, eqs. 1-3.
+    """
+
+    name: ClassVar[str] = "presliding_friction"
+    bristle_stiffness: float
+    bristle_damping: float = 0.0
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        deflection = axis.top_speed * 2.5e-4 * about(severity, rng)
+        stiffness = axis.coulomb / deflection
+        return cls(stiffness, rng.uniform(0.0, 0.1) * np.sqrt(stiffness * axis.inertia))
+
+    def bristle_torque(self, rows: Rows, level: np.ndarray, memory: np.ndarray) -> np.ndarray:
+        bending = rows.velocity - self.bristle_stiffness * np.abs(rows.velocity) / level * memory
+        return self.bristle_stiffness * memory + self.bristle_damping * bending
+
+    def bend(self, speed: np.ndarray, level: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
+        # exact for constant speed: z tends to g*sgn(w)/sigma_0 at the rate sigma_0*|w|/g
+        slid = np.sign(speed) * level / self.bristle_stiffness
+        return slid + (memory - slid) * np.exp(-self.bristle_stiffness * np.abs(speed) / level * step)
+
+
+@dataclass(frozen=True)
+class DirectionDependentFriction(Effect):
+    """Level K_0 +- d/2 in the two directions, d coulomb_difference - N*m.
+
+    A share of the relative difference d/(2*K_0) may go into viscous friction too.
+    """
+
+    name: ClassVar[str] = "direction_dependent_friction"
+    coulomb_difference: float
+    viscous_share: float = 0.0
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        difference = rng.choice([-1.0, 1.0]) * min(1.8 * about(severity, rng), 1.6) * axis.coulomb
+        return cls(difference, float(rng.choice([0.0, rng.uniform(0.2, 1.0)])))
+
+    def quantities(self, axis: Axis) -> dict[str, float]:
+        relative = self.viscous_share * self.coulomb_difference / axis.coulomb
+        return {"coulomb_difference": self.coulomb_difference, "viscous_difference": relative * axis.viscous}
+
+    def friction_difference(self, rows: Rows) -> np.ndarray | float:
+        return self.coulomb_difference
+
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
+        relative = self.viscous_share * self.coulomb_difference / (2.0 * rows.coulomb)
+        return relative * rows.viscous * np.abs(rows.velocity)
+
+
+@dataclass(frozen=True)
+class QuadraticDrag(Effect):
+    """Resisting torque c*w*|w|; c quadratic_drag - N*m*s**2/rad**2."""
+
+    name: ClassVar[str] = "quadratic_drag"
+    quadratic_drag: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(2.0 * about(severity, rng) * axis.torque_scale / axis.top_speed**2)
+
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
+        return self.quadratic_drag * rows.velocity * np.abs(rows.velocity)
+
+
+@dataclass(frozen=True)
+class LoadDependentFriction(Effect):
+    """Level K_0 + mu*|M|, M motor torque; mu load_friction_coefficient."""
+
+    name: ClassVar[str] = "load_dependent_friction"
+    load_friction_coefficient: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(0.25 * about(severity, rng))
+
+    def friction_excess(self, rows: Rows) -> np.ndarray:
+        return self.load_friction_coefficient * np.abs(rows.motor_torque)
+
+
+@dataclass(frozen=True)
+class DirectionalLoadFriction(Effect):
+    """Level K_0 + |K_e*M_e - K_m*M|, M_e the load's torque on the gear, against its resistance; BAM's model M5.
+
+    K_m motor_coefficient, load_ratio K_e/K_m. Duclusaud et al., arXiv 2410.08650 (2024).
+    """
+
+    name: ClassVar[str] = "directional_load_friction"
+    motor_coefficient: float
+    load_ratio: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(0.25 * about(severity, rng), float(rng.uniform(1.5, 4.0)))
+
+    def friction_excess(self, rows: Rows) -> np.ndarray:
+        external = -rows.load_torque
+        load_coefficient = self.load_ratio * self.motor_coefficient
+        return np.abs(load_coefficient * external - self.motor_coefficient * rows.motor_torque)
+
+
+@dataclass(frozen=True)
+class PositionDependentFriction(Effect):
+    """Level K_0*(1 + a*sin(q + phi)); a relative_amplitude."""
+
+    name: ClassVar[str] = "position_dependent_friction"
+    on_linear_axis: ClassVar[bool] = False
+    relative_amplitude: float
+    phase: float = 0.0
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(min(1.2 * about(severity, rng), 0.95), phase(rng))
+
+    def friction_factor(self, rows: Rows) -> np.ndarray:
+        return 1.0 + self.relative_amplitude * np.sin(rows.position + self.phase)
+
+
+@dataclass(frozen=True)
+class FrictionWarmup(Effect):
+    """Level K_0*(1 + A*exp(-t/T)); A relative_amplitude, T time_constant - s; a share of it on K_w too."""
+
+    name: ClassVar[str] = "friction_warmup"
+    relative_amplitude: float
+    time_constant: float
+    viscous_share: float = 0.0
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        share = float(rng.choice([0.0, 1.0]))
+        return cls(1.8 * about(severity, rng), duration * rng.uniform(0.2, 0.5), share)
+
+    def _excess(self, rows: Rows) -> np.ndarray:
+        return self.relative_amplitude * np.exp(-rows.time / self.time_constant)
+
+    def friction_factor(self, rows: Rows) -> np.ndarray:
+        return 1.0 + self._excess(rows)
+
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
+        return self.viscous_share * self._excess(rows) * rows.viscous * rows.velocity

@@ -1,0 +1,113 @@
+"""Effects of motor and drive electronics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Self
+
+import numpy as np
+
+from bench.validation.independent.effects.effect import Effect, about, phase
+from bench.validation.independent.rig import Axis
+
+if TYPE_CHECKING:
+    from bench.validation.independent.plant import Rows
+
+
+@dataclass(frozen=True)
+class CoggingTorque(Effect):
+    """Resisting torque A*sin(n*q + phi); A amplitude - N*m, n harmonic."""
+
+    name: ClassVar[str] = "cogging_torque"
+    on_linear_axis: ClassVar[bool] = False
+    amplitude: float
+    harmonic: float
+    phase: float = 0.0
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        harmonic = float(rng.choice([4, 6, 8, 9, 12, 14, 18, 20, 24]))
+        return cls(about(severity, rng) * axis.torque_scale, harmonic, phase(rng))
+
+    def resisting_torque(self, rows: Rows) -> np.ndarray:
+        return self.amplitude * np.sin(self.harmonic * rows.position + self.phase)
+
+
+@dataclass(frozen=True)
+class TorqueRipple(Effect):
+    """Motor torque kT*i*(1 + a*sin(n*q + phi)); a relative_amplitude, n harmonic."""
+
+    name: ClassVar[str] = "torque_ripple"
+    on_linear_axis: ClassVar[bool] = False
+    relative_amplitude: float
+    harmonic: float
+    phase: float = 0.0
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        harmonic = float(rng.choice([2, 3, 4, 6, 8, 12, 18, 24]))
+        return cls(min(0.28 * about(severity, rng), 0.5), harmonic, phase(rng))
+
+    def torque_factor(self, rows: Rows) -> np.ndarray:
+        return 1.0 + self.relative_amplitude * np.sin(self.harmonic * rows.position + self.phase)
+
+
+@dataclass(frozen=True)
+class TorqueConstantSaturation(Effect):
+    """kT(i) = kT*(1 - d*(i/i_peak)**2); d drop_at_peak."""
+
+    name: ClassVar[str] = "torque_constant_saturation"
+    drop_at_peak: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        # torque must still rise with current at the peak, which d < 1/3 makes sure
+        return cls(min(0.35 * about(severity, rng), 0.3))
+
+    def torque_factor(self, rows: Rows) -> np.ndarray:
+        return 1.0 - self.drop_at_peak * (rows.acting_current / rows.peak_current) ** 2
+
+
+@dataclass(frozen=True)
+class VoltageLimit(Effect):
+    """L*di/dt = v - R*i - K_e*w with |v| <= voltage - V; the drive meets its demand as fast as that allows."""
+
+    name: ClassVar[str] = "voltage_limit"
+    voltage: float
+
+    @classmethod
+    def possible(cls, axis: Axis) -> bool:
+        return axis.back_emf_constant > 0.0
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        # motions reach 0.85 of top speed or more, which a weak limit must still cut off
+        return cls(axis.back_emf_constant * axis.top_speed * (0.93 - 0.35 * min(about(severity, rng), 1.0)))
+
+    def driven_current(self, rows: Rows, demand: np.ndarray, current: np.ndarray, step: float) -> np.ndarray:
+        decay = -np.expm1(-rows.resistance / rows.inductance * step)
+        emf = rows.back_emf_constant * rows.velocity
+        needed = emf + rows.resistance * (current + (demand - current) / decay)
+        settled = (np.clip(needed, -self.voltage, self.voltage) - emf) / rows.resistance
+        return current + (settled - current) * decay
+
+
+@dataclass(frozen=True)
+class CurrentLoopLag(Effect):
+    """Acting current follows the reported one: T*di/dt = reported - i; T time_constant - s."""
+
+    name: ClassVar[str] = "current_loop_lag"
+    never_beside: ClassVar[str] = "velocity_filter_lag"
+    time_constant: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(8e-3 * about(severity, rng) * _slowness(axis))
+
+    def acting_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
+        return current + (memory - current) * np.exp(-step / self.time_constant)
+
+
+def _slowness(axis: Axis) -> float:
+    """A drive of 150 rad/s bears lags of some milliseconds; a faster one shorter ones, or it would not be stable."""
+    return min(150.0 * axis.inertia / axis.velocity_gain, 1.5)

@@ -1,0 +1,270 @@
+"""Many axes, integrated side by side: exact stick-slip between, second-order splitting around it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bench.validation.independent.effects import Effect, stack
+from bench.validation.independent.rig import Axis
+from bench.validation.independent.stick_slip import distance_weight, move, speed_weight
+
+CONSTANTS = (
+    "inertia",
+    "viscous",
+    "coulomb",
+    "torque_constant",
+    "peak_current",
+    "resistance",
+    "inductance",
+    "back_emf_constant",
+)
+
+
+@dataclass
+class Rows:
+    """State and constants of those axes of a plant that have an effect, as the effect's hooks see them - (k,) each."""
+
+    plant: Plant
+    index: np.ndarray | slice
+    effect: Effect
+    memory: np.ndarray = field(init=False)
+    level: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.memory = np.zeros_like(self.plant.velocity[self.index])
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        return getattr(self.plant, name)[self.index]
+
+    @property
+    def time(self) -> float:
+        """Time at the middle of the step - s."""
+        return self.plant.midtime
+
+
+class Plant:
+    """Axes with their effects. `demand` in, motion out; nothing here knows of a drive.
+
+    The step is drift, kick, drift: position-dependent torques act at the position half a step on, which makes the
+    undamped axis symplectic and the whole second order; speed-dependent ones use the speed extrapolated to there. The
+    kick solves J*dw/dt = M - K_w*w - K_0*sgn(w) exactly, with stops and breakaways within the step (`stick_slip.move`).
+
+    Attributes:
+        position, velocity: of the motor - rad, rad/s - (n,).
+        load_position, load_velocity: of the load, where a coupling separates it; unused elsewhere.
+        current, acting_current: that the drive measures, and that makes torque - A.
+        recorded_current: the one that is measured, behind its filter if there is one - A.
+        motor_torque, load_torque: during the last step, of the motor and of what its gear carries - N*m.
+        measured_position, measured_velocity: what ideal electronics would read from the sensor.
+        sensed_velocity: the same before the filter on the speed, if there is one.
+    """
+
+    def __init__(
+        self, axes: Sequence[Axis], effects: Sequence[Sequence[Effect]], position: float = 0.0, velocity: float = 0.0
+    ) -> None:
+        n = len(axes)
+        constants = [np.array([getattr(axis, name) for axis in axes], dtype=float) for name in CONSTANTS]
+        self.inertia, self.viscous, self.coulomb, self.torque_constant, self.peak_current = constants[:5]
+        self.resistance, self.inductance, self.back_emf_constant = constants[5:]
+        self.position, self.velocity = np.full(n, position, dtype=float), np.full(n, velocity, dtype=float)
+        self.current, self.motor_torque, self.time, self.midtime = np.zeros(n), np.zeros(n), 0.0, 0.0
+        self.recorded_current, self._before = self.current, self.velocity
+        self._acting = _members(self, effects)
+        self.load_position, self.load_velocity = self.position.copy(), self.velocity.copy()
+        self._load_before = self.load_velocity.copy()
+        self._separate_bodies(axes)
+        self._rate = self.viscous / self._body
+        self._weights: dict[float, tuple[np.ndarray, np.ndarray]] = {}
+        self._sense_at_start()
+
+    def _separate_bodies(self, axes: Sequence[Axis]) -> None:
+        self._body = self.inertia.copy()
+        joints = np.zeros(len(axes), dtype=int)
+        for rows in self._with("transmitted_torque"):
+            joints[rows.index] += 1
+            self._body[rows.index] = np.array([axis.rotor_inertia for axis in axes])[rows.index]
+        if joints.max() > 1:
+            raise ValueError("an axis has one coupling between motor and load")
+        self._load_inertia = self.inertia - self._body
+
+    def _with(self, hook: str) -> list[Rows]:
+        return self._acting.get(hook, [])
+
+    def advance(self, demand: np.ndarray, step: float) -> None:
+        """Advance by `step` - s - while the drive demands a current - A - (n,)."""
+        self.midtime = self.time + step / 2.0
+        start, speed = self.position, self.velocity
+        self.position = start + speed * (step / 2.0)  # hooks see the middle of the step
+        self.velocity = 1.5 * speed - 0.5 * self._before
+        self.acting_current = self._drive_current(demand, step)
+        self.motor_torque = self.torque_constant * self.acting_current
+        for rows in self._with("torque_factor"):
+            self.motor_torque[rows.index] *= rows.effect.torque_factor(rows)
+        net = self.motor_torque.copy()
+        self.load_torque = np.zeros_like(net)
+        for rows in self._with("resisting_torque"):
+            torque = rows.effect.resisting_torque(rows)
+            net[rows.index] -= torque
+            self.load_torque[rows.index] += torque * rows.effect.transmitted
+        for rows in self._with("transmitted_torque"):
+            net[rows.index] -= self._move_load(rows, step)
+        forward, backward = self._friction_levels()
+        for rows in self._with("bristle_torque"):
+            net[rows.index] -= self._bend_half(rows, speed, forward, backward, step)
+        body, rate, weights = self._inertia(step)
+        for rows in self._with("bristle_torque"):
+            forward[rows.index] = backward[rows.index] = 0.0
+        after, distance = move(speed, net, forward, backward, body, rate, weights, step)
+        self._remember(after, step)
+        self._sense(start, speed, start + distance, after, step)
+        self._before, self.velocity, self.position = speed, after, start + distance
+        self.time += step
+
+    def _drive_current(self, demand: np.ndarray, step: float) -> np.ndarray:
+        """Current that makes torque, at the middle of the step; the measured one is advanced to its end."""
+        limited = self._with("driven_current")
+        lagging, misread = self._with("acting_current"), self._with("true_current")
+        before, self.current = self.current, demand
+        middle = demand
+        if limited or lagging or misread:
+            self.current, middle = demand.copy(), demand.copy()
+        for rows in limited:
+            i = rows.index
+            self.current[i] = rows.effect.driven_current(rows, demand[i], before[i], step)
+            middle[i] = 0.5 * (before[i] + self.current[i])
+        for rows in misread:
+            middle[rows.index] = rows.effect.true_current(rows, middle[rows.index])
+        for rows in lagging:
+            measured, start = middle[rows.index].copy(), rows.memory
+            middle[rows.index] = rows.effect.acting_current(measured, start, step / 2.0)
+            rows.memory = rows.effect.acting_current(measured, start, step)
+        self.recorded_current = self.current
+        for rows in self._with("recorded_current"):
+            rows.memory = rows.effect.recorded_current(self.current[rows.index], rows.memory, step)
+            self.recorded_current = self.recorded_current.copy()
+            self.recorded_current[rows.index] = rows.memory
+        return middle
+
+    def _friction_levels(self) -> tuple[np.ndarray, np.ndarray]:
+        """(K_0 + excess +- difference/2)*factor, against positive and against negative motion."""
+        level = self.coulomb.copy()
+        for rows in self._with("friction_excess"):
+            level[rows.index] += rows.effect.friction_excess(rows)
+        forward, backward = level, level.copy()
+        for rows in self._with("friction_difference"):
+            half = 0.5 * rows.effect.friction_difference(rows)
+            forward[rows.index] += half
+            backward[rows.index] -= half
+        for rows in self._with("friction_factor"):
+            factor = rows.effect.friction_factor(rows)
+            forward[rows.index] *= factor
+            backward[rows.index] *= factor
+        return np.maximum(forward, 0.0), np.maximum(backward, 0.0)
+
+    def _bend_half(
+        self, rows: Rows, speed: np.ndarray, forward: np.ndarray, backward: np.ndarray, step: float
+    ) -> np.ndarray:
+        i = rows.index
+        rows.level = np.maximum(np.where(self.velocity[i] > 0.0, forward[i], backward[i]), 1e-12)
+        rows.memory = rows.effect.bend(speed[i], rows.level, rows.memory, step / 2.0)
+        return rows.effect.bristle_torque(rows, rows.level, rows.memory)
+
+    def _move_load(self, rows: Rows, step: float) -> np.ndarray:
+        """Torque from motor to load at the middle of the step, and the load moved by it."""
+        i = rows.index
+        speed = self.load_velocity[i]
+        middle = self.load_position[i] + speed * (step / 2.0)
+        expected = 1.5 * speed - 0.5 * self._load_before[i]
+        torque = rows.effect.transmitted_torque(rows, self.position[i] - middle, self.velocity[i] - expected)
+        after = speed + step * torque / self._load_inertia[i]
+        self._load_before[i], self.load_velocity[i] = speed, after
+        self.load_position[i] = middle + after * (step / 2.0)
+        return torque
+
+    def _inertia(self, step: float) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
+        varying = self._with("added_inertia")
+        if not varying:
+            if step not in self._weights:
+                whole = np.full_like(self._rate, step)
+                self._weights[step] = speed_weight(self._rate, whole), distance_weight(self._rate, whole)
+            return self._body, self._rate, self._weights[step]
+        body = self._body.copy()
+        for rows in varying:
+            body[rows.index] += rows.effect.added_inertia(rows)
+        rate, whole = self.viscous / body, np.full_like(body, step)
+        return body, rate, (speed_weight(rate, whole), distance_weight(rate, whole))
+
+    def _remember(self, after: np.ndarray, step: float) -> None:
+        for rows in self._with("remember"):
+            rows.memory = rows.effect.remember(rows, rows.memory, step)
+        for rows in self._with("bristle_torque"):
+            rows.memory = rows.effect.bend(after[rows.index], rows.level, rows.memory, step / 2.0)
+
+    def _sensed(self, position: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        members = self._with("measured")
+        if members:
+            position, speed = position.copy(), speed.copy()
+        for rows in members:
+            i = rows.index
+            position[i], speed[i] = rows.effect.measured(position[i], speed[i])
+        return position, speed
+
+    def _sense_at_start(self) -> None:
+        self.measured_position, self.measured_velocity = self._sensed(self.position, self.velocity)
+        self.sensed_velocity = self.measured_velocity
+        for rows in self._with("filtered"):
+            rows.memory = self.measured_velocity[rows.index].copy()
+
+    def _sense(
+        self, start: np.ndarray, speed: np.ndarray, position: np.ndarray, after: np.ndarray, step: float
+    ) -> None:
+        before = self.sensed_velocity
+        self.measured_position, self.sensed_velocity = self._sensed(position, after)
+        self.measured_velocity = self.sensed_velocity
+        filters = self._with("filtered")
+        if filters:
+            self.measured_velocity = self.sensed_velocity.copy()
+        for rows in filters:
+            i = rows.index
+            rows.memory = rows.effect.filtered(before[i], self.sensed_velocity[i], rows.memory, step)
+            self.measured_velocity[i] = rows.memory
+
+
+HOOKS = (
+    "resisting_torque",
+    "friction_excess",
+    "friction_factor",
+    "friction_difference",
+    "added_inertia",
+    "torque_factor",
+    "remember",
+    "bristle_torque",
+    "transmitted_torque",
+    "driven_current",
+    "acting_current",
+    "true_current",
+    "recorded_current",
+    "measured",
+    "filtered",
+)
+
+
+def _members(plant: Plant, effects: Sequence[Sequence[Effect]]) -> dict[str, list[Rows]]:
+    """For each hook the effects that act through it, each stacked over its axes."""
+    found: dict[tuple[type[Effect], int], list[tuple[int, Effect]]] = {}
+    for row, those in enumerate(effects):
+        for order, effect in enumerate(those):
+            repeats = sum(type(other) is type(effect) for other in those[:order])
+            found.setdefault((type(effect), repeats), []).append((row, effect))
+    acting: dict[str, list[Rows]] = {}
+    for (kind, _), pairs in found.items():
+        index = np.array([row for row, _ in pairs])
+        everywhere = len(index) == len(effects)
+        rows = Rows(plant, slice(None) if everywhere else index, stack([effect for _, effect in pairs]))
+        for hook in HOOKS:
+            if kind.overrides(hook):
+                acting.setdefault(hook, []).append(rows)
+    return acting

@@ -1,0 +1,209 @@
+"""Motions that a drive is told to make: position, speed and acceleration in closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from bench.validation.independent.rig import Axis
+
+
+class Ramps:
+    """Speed through given points, linear between them, averaged over `jerk_time`: acceleration has no jumps.
+
+    A drive's own generator limits jerk too; and a jump of current between two samples could not be recorded.
+
+    Args:
+        points: (time - s, speed - rad/s), the first at time 0, at rest at both ends.
+        jerk_time: in which acceleration goes from one value to the next - s.
+    """
+
+    def __init__(self, points: Sequence[tuple[float, float]], jerk_time: float) -> None:
+        self._time, self._speed = (np.array(column, dtype=float) for column in zip(*points, strict=True))
+        length, rise = np.diff(self._time), np.diff(self._speed)
+        gone = self._speed[:-1] * length + rise * length / 2.0
+        self._gone = np.concatenate([[0.0], np.cumsum(gone)])
+        area = self._gone[:-1] * length + self._speed[:-1] * length**2 / 2.0 + rise * length**2 / 6.0
+        self._area = np.concatenate([[0.0], np.cumsum(area)])
+        self._jerk_time = jerk_time
+        self.duration, self.distance = float(self._time[-1]) + jerk_time, float(self._gone[-1])
+
+    def _sharp(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Integral of position, position, and speed before averaging."""
+        inside = np.clip(time, 0.0, self._time[-1])
+        piece = np.clip(np.searchsorted(self._time, inside, side="right") - 1, 0, self._time.size - 2)
+        length, rise = np.diff(self._time)[piece], np.diff(self._speed)[piece]
+        x, speed, gone = inside - self._time[piece], self._speed[piece], self._gone[piece]
+        slope = rise / length
+        area = self._area[piece] + gone * x + speed * x**2 / 2.0 + slope * x**3 / 6.0
+        beyond = np.maximum(time - self._time[-1], 0.0)
+        return area + beyond * self.distance, gone + speed * x + slope * x**2 / 2.0, speed + slope * x
+
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
+        ends = zip(self._sharp(time), self._sharp(time - self._jerk_time), strict=True)
+        return tuple((now - then) / self._jerk_time for now, then in ends)
+
+
+class Multisine:
+    """Position sum of sines, faded in and out by sin(pi*t/duration)**2 so that it starts and ends at rest.
+
+    Args:
+        speeds, frequencies, phases: amplitude of each sine's speed - rad/s, its frequency - Hz, its phase - rad.
+    """
+
+    distance = 0.0
+
+    def __init__(self, duration: float, speeds: np.ndarray, frequencies: np.ndarray, phases: np.ndarray) -> None:
+        self.duration = duration
+        self._omega, self._phases = 2.0 * np.pi * frequencies, phases
+        self._amplitudes = speeds / self._omega
+
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
+        angle = np.outer(time, self._omega) + self._phases
+        # summed by rows: a matrix product rounds differently with the number of times asked for
+        x = np.sum(np.sin(angle) * self._amplitudes, axis=1)
+        dx = np.sum(np.cos(angle) * self._amplitudes * self._omega, axis=1)
+        ddx = -np.sum(np.sin(angle) * self._amplitudes * self._omega**2, axis=1)
+        return _faded(time, self.duration, x, dx, ddx)
+
+
+class Chirp:
+    """Speed amplitude*sin of a phase that sweeps its frequency linearly, faded like the multisine's position.
+
+    Args:
+        amplitude: of the position - rad. first, last: frequencies - Hz.
+    """
+
+    distance = 0.0
+
+    def __init__(self, duration: float, amplitude: float, first: float, last: float) -> None:
+        self.duration, self._amplitude, self._first, self._last = duration, amplitude, first, last
+
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
+        sweep = (self._last - self._first) / self.duration
+        angle = 2.0 * np.pi * (self._first * time + 0.5 * sweep * time**2)
+        omega, slope = 2.0 * np.pi * (self._first + sweep * time), 2.0 * np.pi * sweep
+        x, dx = self._amplitude * np.sin(angle), self._amplitude * omega * np.cos(angle)
+        return _faded(time, self.duration, x, dx, self._amplitude * (slope * np.cos(angle) - omega**2 * np.sin(angle)))
+
+
+def _faded(
+    time: np.ndarray, duration: float, x: np.ndarray, dx: np.ndarray, ddx: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Position, speed, acceleration of x*sin(pi*t/duration)**2."""
+    turn = 2.0 * np.pi / duration
+    f, df, ddf = 0.5 - 0.5 * np.cos(turn * time), 0.5 * turn * np.sin(turn * time), 0.5 * turn**2 * np.cos(turn * time)
+    return f * x, df * x + f * dx, ddf * x + 2.0 * df * dx + f * ddx
+
+
+class Phase(Protocol):
+    """A part of a motion.
+
+    Attributes:
+        duration: of it - s.
+        distance: gone in it - rad.
+    """
+
+    duration: float
+    distance: float
+
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
+        ...
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Phases one after the other; at rest where they end afterwards."""
+
+    phases: tuple[Phase, ...]
+
+    @property
+    def duration(self) -> float:
+        """Of all phases - s."""
+        return sum(phase.duration for phase in self.phases)
+
+    def at(self, time: np.ndarray) -> np.ndarray:
+        """Position, speed and acceleration reference - rad, rad/s, rad/s**2 - (3, n)."""
+        reference = np.zeros((3, time.size))
+        start = origin = 0.0
+        for phase in self.phases:
+            now = (time >= start) & (time < start + phase.duration)
+            if now.any():
+                reference[:, now] = phase.at(time[now] - start)
+            reference[0, now] += origin
+            start, origin = start + phase.duration, origin + phase.distance
+        reference[0, time >= start] = origin
+        return reference
+
+
+def run_up_and_down(speed: float, acceleration: float, dwell: float, repeats: int, jerk_time: float) -> Ramps:
+    """Fast trapezoids to both sides, as the lab's accelerate and decelerate run."""
+    return _through([speed, -speed] * repeats + [0.0], acceleration, dwell, jerk_time)
+
+
+def staircase(top: float, steps: int, acceleration: float, dwell: float, jerk_time: float) -> Ramps:
+    """Speeds in geometric steps up to `top`, held, then the same in the other direction."""
+    levels = top * np.geomspace(0.02, 1.0, steps)
+    return _through([*levels, 0.0, *-levels, 0.0], acceleration, dwell, jerk_time)
+
+
+def _through(speeds: Sequence[float], acceleration: float, dwell: float, jerk_time: float) -> Ramps:
+    points = [(0.0, 0.0)]
+    for speed in speeds:
+        time, now = points[-1]
+        time += abs(speed - now) / acceleration
+        points += [(time, float(speed)), (time + dwell, float(speed))]
+    return Ramps(points, jerk_time)
+
+
+def slow_reversals(speeds: Sequence[float], half_period: float, jerk_time: float) -> Ramps:
+    """Triangles of speed through zero, one for each given amplitude."""
+    points = [(0.0, 0.0)]
+    for speed in speeds:
+        time = points[-1][0]
+        points += [(time + half_period * share, speed * sign) for share, sign in ((0.5, 1), (1.5, -1), (2.0, 0))]
+    return Ramps(points, jerk_time)
+
+
+def multisine(speed: float, acceleration: float, duration: float, rng: np.random.Generator) -> Multisine:
+    """Sines of 2 to 18 Hz on a geometric grid, random phases; peaks about `speed` - rad/s - and `acceleration`."""
+    frequencies = np.geomspace(2.0, 18.0, 9) * rng.uniform(0.95, 1.05, 9)
+    # nine sines rarely peak above 2.5 times their RMS
+    peak_of_unit = 2.5 * np.sqrt([9.0 / 2.0, np.sum((2.0 * np.pi * frequencies) ** 2) / 2.0])
+    speeds = np.full(9, min(speed / peak_of_unit[0], acceleration / peak_of_unit[1]))
+    return Multisine(duration, speeds, frequencies, rng.uniform(-np.pi, np.pi, 9))
+
+
+def random_motion(axis: Axis, rng: np.random.Generator, duration: float = 8.0) -> Motion:
+    """A mixed recording in random order: fast runs both ways, staircase, slow reversals, and a multisine or a chirp."""
+    top = axis.top_speed * rng.uniform(0.85, 1.0)
+    peak = axis.peak_torque / axis.inertia
+    acceleration = min(rng.uniform(0.45, 0.75) * peak, top / 0.03)
+    gentle = acceleration * rng.uniform(0.4, 0.9)
+    jerk_time = float(np.exp(rng.uniform(np.log(0.01), np.log(0.06))))
+    ramp = top / acceleration + jerk_time
+    repeats = 2 if 12 * ramp < 0.3 * duration else 1
+    run_dwell = max((0.3 * duration - 4 * repeats * ramp) / (2 * repeats + 1), 0.006 * duration)
+    stair_top = top * rng.uniform(0.7, 1.0)
+    stair_dwell = max((0.3 * duration - 4 * stair_top / gentle) / 18, 0.006 * duration)
+    slow = axis.top_speed * rng.uniform(0.02, 0.08, 4) * rng.choice([-1, 1])
+    phases: list[Phase] = [
+        run_up_and_down(top, acceleration, run_dwell, repeats, jerk_time),
+        staircase(stair_top, 8, gentle, stair_dwell, jerk_time),
+        slow_reversals(slow, 0.2 * duration / 8, jerk_time),
+    ]
+    if rng.random() < 0.6:
+        phases.append(multisine(0.3 * top, 0.4 * peak, 0.2 * duration, rng))
+    else:
+        highest = rng.uniform(8.0, 16.0)
+        phases.append(Chirp(0.2 * duration, 0.3 * peak / (2.0 * np.pi * highest) ** 2, 1.0, highest))
+    order = rng.permutation(len(phases))
+    rest = Ramps([(0.0, 0.0), (float(rng.uniform(0.02, 0.1)), 0.0)], jerk_time)
+    return Motion((rest, *(phases[i] for i in order), rest))

@@ -1,0 +1,204 @@
+"""One's own axis: its rig, its motion and its sensors, so that only noise is drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.ndimage import gaussian_filter1d
+
+from bench.arrays import Array
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.errors import InputError
+from bench.fit.regression import identify
+from bench.plant.axis_model import winding_of
+from bench.plant.drive import Cascade
+from bench.plant.limits import MotionLimits
+from bench.plant.model import AxisParameters
+from bench.plant.profiles import plan
+from bench.rig.rig import Rig
+from bench.rig.simulation import Simulation
+from bench.rig.suffices import require
+from bench.trace.noise import resolution, white_noise
+from bench.trace.trace import Trace
+from bench.validation.case import PLANTS, Case, Plant
+from bench.validation.independent.references import Motion
+from bench.validation.independent.rig import Axis
+from bench.validation.independent.sensors import Noise, Sensors
+
+#: Width by which a measured speed is smoothed before a drive is told to follow it - s.
+SMOOTHED = 5e-3
+#: In which a motion comes from rest, or to it, where its recording does not - s.
+RAMP = 0.1
+
+
+class Sampled:
+    """A motion by its speed at some times, between which it has no overshoot; it starts and ends at rest.
+
+    Args:
+        time: (n,) rising - s.
+        speed: (n,) - rad/s (m/s).
+    """
+
+    def __init__(self, time: Array, speed: Array) -> None:
+        time = np.concatenate([[time[0] - RAMP], time, [time[-1] + RAMP]]) - (time[0] - RAMP)
+        self._speed = PchipInterpolator(time, np.concatenate([[0.0], speed, [0.0]]))
+        self._position, self._acceleration = self._speed.antiderivative(), self._speed.derivative()
+        self.duration = float(time[-1])
+        self.distance = float(self._position(self.duration))
+        self.top = float(np.abs(speed).max())
+
+    def at(self, time: Array) -> tuple[Array, Array, Array]:
+        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
+        return self._position(time), self._speed(time), self._acceleration(time)
+
+
+@dataclass(frozen=True)
+class OwnAxis:
+    """The same axis in every run; noise and the age of the current are drawn.
+
+    Attributes:
+        rig: of the axis.
+        axis: its true values.
+        motion, motion_name: that its drive is told to make.
+        sensors: that record it.
+        plants: that can move it.
+    """
+
+    rig: Rig
+    axis: Axis
+    motion: Motion
+    motion_name: str
+    sensors: Sensors
+    plants: tuple[Plant, ...]
+
+    def plain(self, index: int, rng: np.random.Generator) -> Case:
+        """As the protocol has it."""
+        plant = self.plants[int(rng.integers(len(self.plants)))]
+        sensors = replace(self.sensors, current_age=int(rng.integers(2)))
+        return Case(index, plant, self.axis, self.rig, self.motion, self.motion_name, sensors)
+
+
+def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
+    """The axis of a rig along a motion of its own.
+
+    What the rig does not say of the simulated axis and its sensors, in `[simulation]`, is taken from the recording.
+
+    Args:
+        rig: with `[drive]`.
+        profile: name of a motion (`bench.plant.profiles`), or what the recording is called.
+        recording: of the motion; None to take the named one.
+
+    Raises:
+        InputError: rig or recording lack something.
+        UndeterminedError: what the rig does not say, the recording does not tell.
+    """
+    if rig.load is not None and rig.load.eccentric_mass is not None:
+        raise InputError(f"{rig.source}: load.eccentric_mass", "found one", "allowed: none; the plants do not swing it")
+    if rig.simulation is None and recording is not None and _has_effort(recording):
+        rig = rig.model_copy(update={"simulation": as_recorded(rig, recording)})
+    require(rig, "validate")
+    parameters, cascade = AxisParameters.from_rig(rig), Cascade.from_rig(rig)
+    if recording is None:
+        references = plan(profile, MotionLimits.from_rig(rig, parameters, cascade.control_period))
+        motion = Sampled(references.time, references.velocity)
+    else:
+        motion = motion_of(recording)
+    axis = _axis(rig, parameters, cascade, motion.top)
+    sensors = _sensors(rig, recording, cascade.control_period)
+    return OwnAxis(rig, axis, Motion((motion,)), profile, sensors, _plants(rig))
+
+
+def motion_of(recording: Trace) -> Sampled:
+    """The motion that a recording's drive was told to make; where that is not recorded, the one that it made."""
+    time = recording.time
+    if "velocity_reference" in recording:
+        speed = recording["velocity_reference"]
+    elif "position_reference" in recording:
+        speed = np.gradient(recording["position_reference"], time)
+    else:
+        measured = recording["velocity"] if "velocity" in recording else np.gradient(recording["position"], time)
+        speed = gaussian_filter1d(np.interp(time, *_known(time, measured)), SMOOTHED / recording.sample_period)
+    return Sampled(*_known(time, speed))
+
+
+def _known(time: Array, values: Array) -> tuple[Array, Array]:
+    there = np.isfinite(values)
+    return time[there], values[there]
+
+
+def _has_effort(recording: Trace) -> bool:
+    return bool({"current", "torque", "force"} & set(recording.signals))
+
+
+def as_recorded(rig: Rig, recording: Trace) -> Simulation:
+    """What a recording tells of an axis that the rig says nothing of: inertia and friction.
+
+    Raises:
+        UndeterminedError: it does not tell one of them.
+    """
+    found = identify(recording, rig)
+    inertia, viscous, coulomb = (found[rig.axis_kind.parameter(term)].value for term in (INERTIA, VISCOUS, COULOMB))
+    values = {
+        rig.axis_kind.inertia: inertia,
+        "viscous_friction_coefficient": max(viscous, 0.0),
+        "coulomb_friction": max(coulomb, 0.0),
+        "sample_period": recording.sample_period,
+        "encoder_resolution": _step(recording, "position"),
+        "velocity_noise": white_noise(recording["velocity"]) if "velocity" in recording else 0.0,
+        "current_noise": white_noise(recording["current"]) if "current" in recording else 0.0,
+    }
+    return Simulation().model_copy(update=values)
+
+
+def _step(recording: Trace | None, name: str) -> float:
+    return resolution(recording[name]) if recording is not None and name in recording else 0.0
+
+
+def _axis(rig: Rig, parameters: AxisParameters, cascade: Cascade, top_speed: float) -> Axis:
+    constant = rig.motor.torque_per_ampere
+    assert constant is not None and rig.drive is not None  # `require` has seen to it
+    axis = Axis(
+        name=rig.name,
+        inertia=parameters.inertia,
+        viscous=parameters.viscous_friction_coefficient,
+        coulomb=parameters.coulomb_friction,
+        rotor_inertia=parameters.motor_inertia,
+        torque_constant=constant.constant,
+        peak_current=float(cascade.torque_limit) / constant.constant,
+        position_gain=rig.drive.position_gain,
+        velocity_gain=rig.drive.velocity_gain,
+        integral_gain=rig.drive.integral_gain,
+        inertia_feedforward=rig.drive.inertia_feedforward,
+        control_period=cascade.control_period,
+        top_speed=top_speed,
+        linear=not rig.axis_kind.turns,
+    )
+    winding = winding_of(rig)
+    if winding is None:
+        return replace(axis, back_emf_constant=0.0)
+    return replace(
+        axis, resistance=winding.resistance, inductance=winding.inductance, back_emf_constant=winding.back_emf_constant
+    )
+
+
+def _sensors(rig: Rig, recording: Trace | None, control_period: float) -> Sensors:
+    simulation = rig.simulation
+    assert simulation is not None  # `require` has seen to it
+    ticks = max(1, round(simulation.sample_period / control_period))
+    return Sensors(
+        sample_period=ticks * control_period,
+        encoder_resolution=simulation.encoder_resolution,
+        velocity=Noise(white=simulation.velocity_noise, resolution=_step(recording, "velocity")),
+        current=Noise(white=simulation.current_noise, resolution=_step(recording, "current")),
+        position_recorded=recording is None or "position" in recording,
+    )
+
+
+def _plants(rig: Rig) -> tuple[Plant, ...]:
+    """Those that can be the axis: the independent one has a motor that does not saturate, and no load torque."""
+    simulation, constant = rig.simulation, rig.motor.torque_per_ampere
+    assert simulation is not None and constant is not None  # `require` has seen to it
+    plain = simulation.friction == "mechanics" and not simulation.load_torque and not constant.curvature
+    return PLANTS if plain else ("mujoco",)

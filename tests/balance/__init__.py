@@ -1,1 +1,0 @@
-"""The engine: rows, hypotheses and their fits."""

@@ -1,0 +1,244 @@
+"""`bench check` as a user has it: statuses, JUnit, annotations, and text from files that stays text."""
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bench.cli.common import WRITTEN
+from bench.names import plain
+from bench.report.annotations import MOST, command
+from bench.report.junit import text
+from bench.trace.write import write
+from tests.fit.motions import Truth, recording
+from tests.hostile import room_for
+
+BASE = ("check", "--rig", "rig.toml", "--baseline", "base.toml")
+
+
+AS_IT_WAS = Truth()
+
+
+def again(seed, truth=AS_IT_WAS, cogging=0.0):
+    """The same motion with other noise."""
+    first = recording(np.random.default_rng(5), truth, position=True)
+    rng = np.random.default_rng(seed)
+    noisy = {
+        "velocity": first["velocity"] + 0.02 * rng.normal(size=len(first)),
+        "current": first["current"]
+        + 0.01 * rng.normal(size=len(first))
+        + cogging / 0.8 * np.sin(6.0 * first["position"]),
+    }
+    return replace(first, signals={**first.signals, **noisy})
+
+
+@pytest.fixture
+def axis(bench):
+    """A folder with a baseline, made of one recording without names."""
+    write(again(1), Path("before.csv"))
+    assert bench("check", "before.csv", *BASE[1:], "--update", "--without-names")[0] == 0
+    return bench
+
+
+def test_an_axis_that_is_the_same(axis):
+    write(again(2), Path("now.csv"))
+    status, printed, _ = axis(*BASE, "now.csv")
+    assert status == 0
+    assert "The same" in printed
+
+
+def test_an_update_on_a_full_disk_leaves_the_baseline_as_it_was(axis):
+    before = Path("base.toml").read_bytes()
+    write(again(2), Path("now.csv"))
+    update = ("check", "now.csv", *BASE[1:], "--update", "--without-names")
+    with room_for(len(before) // 2):
+        status, _, told = axis(*update)
+    assert (status, told.splitlines()[-1].split("; ")[0]) == (2, "bench: base.toml: cannot be written (File too large)")
+    assert Path("base.toml").read_bytes() == before
+    assert {path.name for path in Path.cwd().iterdir()} == {"base.toml", "before.csv", "now.csv", "rig.toml"}
+    assert axis(*update)[0] == 0
+    assert Path("base.toml").read_bytes() != before
+
+
+def test_an_axis_that_has_changed(axis):
+    write(again(2, Truth(coulomb=0.069)), Path("now.csv"))
+    status, printed, _ = axis(*BASE, "now.csv", "--json", "c.json", "--junit", "j.xml")
+    found = json.loads(Path("c.json").read_text(encoding="utf-8"))
+    assert status == 3
+    assert "Coulomb friction torque rose from 0.0" in printed
+    assert (found["schema"], found["result"], found["false_alarm_rate"]) == ("bench.check/1", "changed", 0.01)
+    (friction,) = (one for one in found["quantities"] if one["name"] == "coulomb_friction_torque")
+    assert friction["result"] == "changed"
+    assert friction["difference95"][0] > friction["margin"] > 0.0
+    assert {*found["provenance"], *found["provenance"]["baseline"]} >= {"version", "rig_sha256", "traces"}
+    suite = ElementTree.parse("j.xml").getroot().find("testsuite")
+    assert suite is not None
+    assert (suite.get("tests"), suite.get("failures")) == (str(len(found["quantities"])), "1")
+    assert suite.find("testcase[@name='coulomb_friction_torque']/failure") is not None
+
+
+def test_a_new_effect_is_named(bench):
+    write(again(1), Path("before.csv"))
+    write(again(2, cogging=0.05), Path("now.csv"))
+    assert bench("check", "before.csv", *BASE[1:], "--update")[0] == 0
+    status, printed, _ = bench(*BASE, "now.csv", "--json", "c.json")
+    found = json.loads(Path("c.json").read_text(encoding="utf-8"))
+    assert status == 3
+    assert "Cogging torque (harmonic 6) appeared: amplitude 0.0" in printed
+    (effect,) = found["effects"]["appeared"]
+    assert effect["parameters"]["amplitude"]["value"] == pytest.approx(0.05, rel=0.05)
+    assert effect["evidence"]["torque"]["now"] > effect["evidence"]["torque"]["margin"]
+    assert found["verdict"] == {"baseline": "nothing_missing", "now": "explained"}
+    assert {one["name"] for one in found["quantities"] if one["result"] == "changed"} <= {"torque_gap"}
+    assert bench("check", "now.csv", *BASE[1:], "--update")[0] == 0
+    status, printed, _ = bench(*BASE, "before.csv")
+    assert status == 3
+    assert "Cogging torque (harmonic 6) is gone" in printed
+
+
+def test_another_rig_file_is_reported(axis):
+    Path("rig.toml").write_text(Path("rig.toml").read_text().replace("0.8 N*m/A", "0.9 N*m/A"), encoding="utf-8")
+    write(again(2), Path("now.csv"))
+    status, printed, _ = axis(*BASE, "now.csv")
+    assert status == 1
+    assert "motor.torque_constant: 0.8 -> 0.9" in printed
+
+
+def test_what_only_the_simulation_and_the_check_read_is_no_other_rig(axis):
+    more = '[check.margin]\ncoulomb_friction_torque = "20 %"\n'
+    Path("rig.toml").write_text(Path("rig.toml").read_text().replace('"axis"', '"x"') + more, encoding="utf-8")
+    write(again(2, Truth(coulomb=0.066)), Path("now.csv"))
+    assert axis(*BASE, "now.csv")[0] == 0
+
+
+WRONG = {
+    "no baseline": (("check", "before.csv", "--rig", "rig.toml", "--baseline", "none.toml"), "--update"),
+    "no recording": (BASE, "--simulated MODEL"),
+    "no rig": (("check", "before.csv", "--baseline", "base.toml"), "--rig: missing"),
+    "no model": (("check", "--simulated", "none.toml", "--baseline", "base.toml"), "found that of recordings"),
+    "both": ((*BASE, "before.csv", "--simulated", "before.csv"), "found with recordings"),
+    "names now": ((*BASE, "before.csv", "--without-names"), "when the baseline is made"),
+    "an output that is the baseline": ((*BASE, "before.csv", "--junit", "base.toml"), "is an input"),
+    "a baseline that is a recording": (
+        ("check", "before.csv", "--rig", "rig.toml", "--baseline", "before.csv", "--update"),
+        "is an input",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_what_is_wrong_is_one_line_and_status_2(what, axis):
+    arguments, message = WRONG[what]
+    before = Path("base.toml").read_bytes()
+    status, _, told = axis(*arguments)
+    assert status == 2
+    assert message in told
+    assert len(told.strip().splitlines()) == 1
+    assert Path("base.toml").read_bytes() == before
+
+
+def test_github_gets_commands_of_its_own_alone(axis, monkeypatch):
+    name = "now ::error::x ##[error]%0A<b>|`.csv"
+    write(again(2, Truth(coulomb=0.069)), Path(name))
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", "summary.md")
+    Path("summary.md").write_text("before\n", encoding="utf-8")
+    status, printed, _ = axis(*BASE, name, "--format", "github")
+    assert status == 3
+    lines = printed.splitlines()
+    stop = lines[0].removeprefix("::stop-commands::")
+    outside = lines[lines.index(f"::{stop}::") + 1 :]
+    assert len(stop) == 32
+    assert 0 < len(outside) <= MOST
+    assert all(line.startswith(("::error file=base.toml,line=", "::warning file=base.toml,line=")) for line in outside)
+    assert "rose from" in outside[0]
+    summary = Path("summary.md").read_text(encoding="utf-8")
+    assert summary.startswith("before\n### bench check: ")
+    assert "coulomb" in summary
+    assert "<b>" not in summary
+
+
+def test_a_workflow_command_is_escaped_as_github_does():
+    told = command("error", "a\r\nb::c % \x1b", {"file": "a:b,c\n%.toml"})
+    assert told == "::error file=a%3Ab%2Cc%0A%25.toml,title=bench check::a\\r%0Ab::c %25 \\x1b"
+
+
+def test_gitlab_gets_a_code_quality_report(axis):
+    write(again(2, Truth(coulomb=0.069)), Path("now.csv"))
+    status, printed, _ = axis(*BASE, "now.csv", "--format", "gitlab")
+    issues = json.loads(printed)
+    assert status == 3
+    assert issues[0]["severity"] == "major"
+    assert {"description", "check_name", "fingerprint", "severity", "location"} <= issues[0].keys()
+    line = issues[0]["location"]["lines"]["begin"]
+    assert Path("base.toml").read_text().splitlines()[line - 1] == "[quantities.coulomb_friction_torque]"
+    assert len({issue["fingerprint"] for issue in issues}) == len(issues)
+
+
+def test_xml_holds_any_text():
+    element = ElementTree.Element("a")
+    element.text = text("\x00\x1b<&]]>\ud800\ufffe\u202e")
+    assert ElementTree.fromstring(ElementTree.tostring(element, encoding="utf-8")).text
+
+
+def test_the_baseline_is_no_output_like_others():
+    assert "baseline" not in WRITTEN  # it is read, and replaced where that is asked for
+
+
+def test_models_are_held_against_each_other(bench):
+    write(again(1), Path("a.csv"))
+    write(again(1, cogging=0.05), Path("b.csv"))
+    for name in "ab":
+        assert bench("diagnose", f"{name}.csv", "--rig", "rig.toml", "--out", name)[0] == 0
+    assert bench("check", "--simulated", "a/model.toml", "--baseline", "m.toml", "--update")[0] == 0
+    assert bench("check", "--simulated", "a/model.toml", "--baseline", "m.toml")[0] == 0
+    assert bench("check", "--simulated", "a/model.toml", "--baseline", "a/model.toml")[0] == 0
+    status, printed, _ = bench("check", "--simulated", "b/model.toml", "--baseline", "m.toml")
+    assert status == 3
+    assert "Cogging torque (harmonic 6) appeared" in printed
+    key = 'viscous_friction_coefficient = "'
+    heavier = Path("a/model.toml").read_text(encoding="utf-8").replace(key, f"{key}1")
+    Path("c.toml").write_text(heavier, encoding="utf-8")
+    status, printed, _ = bench("check", "--simulated", "c.toml", "--baseline", "a/model.toml")
+    assert status == 3
+    assert "Viscous friction coefficient rose" in printed
+
+
+def test_a_simulator_that_moves_otherwise_is_a_change(bench):
+    write(again(1), Path("a.csv"))
+    bench("diagnose", "a.csv", "--rig", "rig.toml", "--out", "a")
+    bench("check", "--simulated", "a/model.toml", "--baseline", "m.toml", "--update")
+    lines = Path("m.toml").read_text(encoding="utf-8").splitlines()
+    at = lines.index("torque = [") + 5
+    lines[at] = f"    {1.2 * float(lines[at].strip(' ,')) + 0.1!r},"
+    Path("m.toml").write_text("\n".join(lines), encoding="utf-8")
+    status, printed, _ = bench("check", "--simulated", "a/model.toml", "--baseline", "m.toml")
+    assert status == 3
+    assert "response torque" in printed
+
+
+@given(st.text())
+def test_any_text_comes_back_from_junit(said):
+    """But for the two characters that XML has not, and such as are written out."""
+    element = ElementTree.Element("failure", {"message": text(said)})
+    element.text = text(said)
+    again = ElementTree.fromstring(ElementTree.tostring(element, encoding="unicode").encode())
+    expected = re.sub("[\ufffe\uffff]", "", plain(said))
+    assert (again.text or "", again.get("message")) == (expected, expected)
+
+
+@given(st.text(), st.text())
+def test_any_text_comes_back_from_an_annotation(said, file):
+    """Taken apart as a runner of GitHub's does."""
+    line = command("error", said, {"file": file})
+    assert "\n" not in line and "\r" not in line
+    head, message = line.removeprefix("::error ").split("::", 1)
+    properties = dict(one.split("=", 1) for one in head.split(","))
+    unescaped = properties["file"].replace("%3A", ":").replace("%2C", ",")
+    for coded, plainly in ((message, said), (unescaped, file)):
+        assert coded.replace("%0D", "\r").replace("%0A", "\n").replace("%25", "%") == plain(plainly)

@@ -1,0 +1,44 @@
+"""`bench lab`, run once for all tests that read its tasks, its report or what it prints."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from bench.course.result import Task
+from bench.report import course
+from tests.command import bench
+
+
+@dataclass(frozen=True)
+class Lab:
+    """What the command left: its exit status, what it printed, and its results before they were printed."""
+
+    folder: Path
+    status: object
+    printed: str
+    results: list
+
+
+@pytest.fixture(scope="session")
+def lab(tmp_path_factory):
+    """`bench lab --out here` on the synthetic recordings."""
+    folder, reports = tmp_path_factory.mktemp("lab"), []
+
+    def kept(*arguments, report=course.report_course):
+        reports.append(report(*arguments))
+        return reports[-1]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setattr(course, "report_course", kept)
+        ended = bench("lab", "--out", "here")
+    return Lab(folder, ended.status, ended.out, [*reports[0].results])
+
+
+@pytest.fixture(scope="session")
+def done(lab):
+    """Tasks of the course on the synthetic recordings by their key."""
+    missed = [task for task in lab.results if not isinstance(task, Task)]
+    assert not missed, [f"{task.key}: {task.reason}" for task in missed]
+    return {task.key: task for task in lab.results}

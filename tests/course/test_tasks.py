@@ -1,0 +1,233 @@
+"""Every number of every task against the truth of the synthetic recordings, closed forms, or the datasheet."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from bench.course.catapult import FLIGHTS, fly
+from bench.course.corner import decline, extrapolated_corner
+from bench.course.recordings import Recordings
+from bench.course.rig import lab_rig
+from bench.course.run import Run
+from bench.course.t01_catapult import by_normal_equations, by_orthogonal_solver, columns
+from bench.course.t04_torque_constant_curve import coefficients
+from bench.course.t08_fast_samples import WIDTH, fast_samples, filtered_acceleration, lateness
+from bench.course.t10_peak_torque import run_up
+from bench.errors import InputError, UndeterminedError
+from bench.fit.lab import backward_difference
+
+RPM = 60.0 / (2.0 * np.pi)
+
+
+def near(number, share):
+    """The number against its truth."""
+    assert number.truth is not None
+    off = number.value / number.truth - 1.0
+    print(f"{number.name}: {number.value:.6g} {number.unit}, truth {number.truth:.6g}, {off:+.3%}")
+    assert number.value == pytest.approx(number.truth, rel=share)
+
+
+def test_1_catapult_recovers_the_throw_within_its_scatter(done):
+    task = done["1"]
+    flights = np.array([fly(factor, angle).coefficients for factor, angle in ((1.015, 2.3562), (0.985, 2.3562))])
+    spread = np.abs(flights[0] - flights[1]) / 2.0
+    assert len(task.charts[0].panels[0].curves) == FLIGHTS + 1
+    for name, reach in zip("abc", spread, strict=True):
+        number = task[name]
+        # ten launches, each as far off as one standard deviation of stiffness makes it; the release scatters alike
+        assert abs(number.value - number.truth) < 4.0 * reach / np.sqrt(FLIGHTS) + 0.01
+    y, z = np.concatenate([np.stack([c.x, c.y]) for c in task.charts[0].panels[0].curves[:FLIGHTS]], axis=1)
+    expected = np.polyfit(y, z, 2)
+    assert [task[name].value for name in "abc"] == pytest.approx(expected.tolist(), rel=1e-9)
+    assert task["E"].value == pytest.approx(np.sum((z - np.polyval(expected, y)) ** 2), rel=1e-9)
+
+
+def test_1_a_flight_in_mujoco_is_the_ballistic_parabola():
+    flight = fly()
+    assert flight.y.size == 20
+    assert np.abs(np.polyval(flight.coefficients, flight.y) - flight.z).max() < 1e-9
+
+
+def test_1_both_solvers_agree_until_the_condition_number_is_squared():
+    y, theta = np.linspace(0.0, 2.0, 50), np.array([-0.5, 0.8, 0.6])
+    for shift, tolerance in ((0.0, 1e-12), (1e3, 1e-2)):
+        matrix = columns(y + shift)
+        b = columns(y) @ theta
+        normal, orthogonal = (
+            np.abs(matrix @ f(matrix, b) - b).max() for f in (by_normal_equations, by_orthogonal_solver)
+        )
+        assert orthogonal < 1e-8
+        assert normal < tolerance if shift == 0.0 else normal > 100.0 * orthogonal
+
+
+def test_2_backward_difference_is_half_a_sample_late(done):
+    near(done["2"]["largest error of the backward difference"], 1e-3)
+    near(done["2"]["largest error of the bench's derivative"], 0.05)
+    time = done["2"].charts[0].panels[0].curves[0].x
+    assert (time.size, time[0], time[-1]) == (6284, 0.0, pytest.approx(6.283))
+    assert backward_difference(np.array([3.0]), 1.0).tolist() == [0.0]
+    assert backward_difference(np.array([]), 1.0).size == 0
+    assert backward_difference(np.array([1.0, 3.0, 2.0]), 0.5).tolist() == [0.0, 4.0, -2.0]
+    for period in (0.0, -1e-3, np.nan):
+        with pytest.raises(InputError):
+            backward_difference(np.zeros(3), period)
+
+
+def test_3_and_4_torque_constant_is_exact(done):
+    assert done["3"]["kT from stall"].value == pytest.approx(1.4 / 1.8, rel=1e-15)
+    assert done["3"]["kT from peak"].value == pytest.approx(3.5 / 5.7, rel=1e-15)
+    rig = lab_rig()
+    a, b, c = coefficients(rig.motor, rig.source)
+    assert b == pytest.approx(0.0, abs=1e-15)
+    assert a * 1.8**2 + c == pytest.approx(1.4 / 1.8, rel=1e-14)
+    assert a * 5.7**2 + c == pytest.approx(3.5 / 5.7, rel=1e-14)
+    constant = rig.motor.torque_per_ampere
+    assert (constant.curvature, constant.constant) == pytest.approx((a, c), rel=1e-13)
+    curve = done["4"].charts[0].panels[0].curves[0]
+    assert curve.x[0] == 0.0
+    assert curve.x[-1] == 5.7
+    assert np.all(np.diff(curve.y) < 0.0)
+
+
+def test_5_and_7_four_signals_on_one_time_axis_in_si(done):
+    for key in ("5", "7"):
+        panels = done[key].charts[0].panels
+        assert [panel.y_label for panel in panels] == [
+            "angle φ / rad",
+            "speed ω / (rad/s)",
+            "acceleration α / (rad/s²)",
+            "torque M / (N·m)",
+        ]
+        assert {panel.x_label for panel in panels} == {"time / s"}
+        assert 100.0 < done[key]["largest speed"].value < 200.0
+        assert 2.0 < done[key]["largest torque"].value < 3.5
+        angle, speed = (panels[k].curves[0] for k in (0, 1))
+        assert angle.y[-1] == pytest.approx(np.trapezoid(speed.y, speed.x), abs=1e-9)
+        assert "four graphs and names three" in done[key].findings[1]
+
+
+def test_6_inertia_within_half_a_percent(done):
+    near(done["6"]["J"], 0.005)
+    near(done["6"]["J_load"], 0.005)
+    mass = 7850.0 * np.pi / 4.0 * (0.14**2 - 0.014**2) * 0.0065
+    theory = 1e4 * mass / 8.0 * (0.14**2 + 0.014**2)
+    assert done["6"]["J_load, theory"].value == pytest.approx(theory, rel=1e-12)
+    assert 0.10 < done["6"]["J_load"].value / theory - 1.0 < 0.20
+    text = " ".join(done["6"].findings)
+    assert "In which unit?" in text
+    measured, modelled = done["6"].charts[0].panels[0].curves
+    residual = done["6"].charts[0].panels[1].curves[0]
+    assert residual.y == pytest.approx(measured.y - modelled.y)
+    assert f"{done['6']['RMS of M - J·α'].value:.3g} N·m" in text
+
+
+def test_8_filtered_acceleration_is_in_step_and_slow_samples_are_gone():
+    run = Recordings.in_folder(None).run("JLoadAndFriction")
+    acceleration, synchronous = filtered_acceleration(run)
+    u = run.velocity
+    assert acceleration == pytest.approx((u[WIDTH:] - u[:-WIDTH]) / (WIDTH * run.sample_period))
+    assert run.time[synchronous].size == acceleration.size
+    kept = fast_samples(run)
+    assert np.abs(kept.velocity).min() >= 20.0
+    assert kept.time.size == np.count_nonzero(np.abs(u[synchronous]) >= 20.0)
+
+
+def test_9_inertia_within_half_a_percent_and_friction_within_three(done):
+    near(done["9"]["J"], 0.005)
+    near(done["9"]["J_load"], 0.005)
+    near(done["9"]["K_fric_w"], 0.03)
+    near(done["9"]["K_fric_0"], 0.03)
+    assert done["9"]["J_load"].value == pytest.approx(done["6"]["J_load"].value, rel=0.005)
+    assert done["9"]["E"].value < 2.0
+
+
+def test_9_the_torque_is_reconstructed_for_all_samples(done):
+    measured, estimated = done["9"].charts[0].panels[0].curves
+    assert estimated.x.size == measured.x.size == done["7"].charts[0].panels[0].curves[0].x.size
+    assert done["9"]["samples of M_est"].value == measured.x.size
+    assert np.isfinite(estimated.y).all()
+    assert done["9"]["RMS of M - M_est, all samples"].value == pytest.approx(
+        np.sqrt(np.mean((measured.y - estimated.y) ** 2))
+    )
+
+
+def test_8_the_filtered_acceleration_is_in_step_with_the_speed(done):
+    assert done["8"]["alpha_filt late, on t_sync"].value == pytest.approx(0.0, abs=0.01)
+    assert done["8"]["alpha_filt late, as it comes"].value == pytest.approx(2.0, abs=0.05)
+    names = [curve.label for curve in done["8"].charts[1].panels[0].curves]
+    assert names == ["α", "α_filt on t_sync"]
+
+
+def test_8_lateness_of_a_known_shift():
+    random = np.random.default_rng(1)
+    period = 1e-3
+    time = period * np.arange(4000)
+    speed = 100.0 * np.sin(7.0 * time) + 0.02 * random.standard_normal(time.size)
+    run = Run(time, speed, 0.0 * time, backward_difference(speed, period), 0.0 * time, 0.0 * time, period)
+    for late in (0, 1, 2):
+        assert lateness(run, late) == pytest.approx(late, abs=0.01)
+
+
+def test_10_peak_torque_and_corner(done):
+    near(done["10"]["peak torque"], 0.005)
+    near(done["10"]["measured corner"], 0.002)
+    assert done["10"]["datasheet's corner"].value == pytest.approx(2100.0)
+    measured, sheet, _ = done["10"].charts[0].panels[0].curves
+    assert measured.y.min() >= 0.2
+    assert measured.y[0] > 3.0
+    assert np.stack([sheet.x, sheet.y], axis=1) == pytest.approx(np.array([[0.0, 3.5], [2100.0, 3.5], [5000.0, 0.0]]))
+
+
+def test_10_a_run_that_never_reaches_full_torque_is_refused():
+    run = Recordings.in_folder(None).run("JLoadAndFriction")
+    with pytest.raises(UndeterminedError, match="3 N"):
+        run_up(run, lab_rig())
+
+
+def test_10_corner_of_the_exact_circuit():
+    speed = np.linspace(0.0, 500.0, 400)
+    current = np.minimum(5.7, (398.0 - 0.76 * speed) / 40.0)
+    assert extrapolated_corner(speed, current) == pytest.approx((398.0 - 5.7 * 40.0) / 0.76, rel=1e-9)
+    held = (
+        np.append(speed[speed < 420.0], np.full(50, 420.0)),
+        np.append(current[speed < 420.0], np.linspace(2.0, 0.5, 50)),
+    )
+    assert extrapolated_corner(*held) == pytest.approx((398.0 - 5.7 * 40.0) / 0.76, rel=1e-9)
+    with pytest.raises(UndeterminedError):
+        extrapolated_corner(speed, np.full(400, 5.7))
+
+
+def test_10_table_of_peak_torque_and_the_tail(done):
+    task, rig = done["10"], lab_rig()
+    speeds = [n.name for n in task.numbers if n.name.startswith("M_max") and n.name.endswith("rpm")]
+    assert len(speeds) == 7
+    for name in speeds:
+        speed = float(name.split()[-2])
+        sheet = 3.5 * min(1.0, (5000.0 - speed) / 2900.0)
+        assert task[f"{name}, datasheet"].value == pytest.approx(sheet)
+    assert task["M_max at 2500 rpm"].value == pytest.approx(rig.motor.peak_torque, rel=2e-3)
+    assert any("tail above" in text and "set to about 44" in text for text in task.findings)
+
+
+@pytest.mark.parametrize("lag", [0.0, 1e-3, 3e-3, 8e-3])
+def test_10_the_corner_is_where_the_decline_begins_whatever_the_lag(lag):
+    """Against an integrator of the circuit: U = R*I + L*dI/dt + Ke*w, with noise as the lab's."""
+    ke, resistance, voltage, peak, inertia = 0.76, 28.0, 398.0, 5.7, 2.2e-3
+    corner = (voltage - resistance * peak) / ke
+
+    def rates(t, state):
+        speed, current = state
+        wanted = min(peak, (voltage - ke * speed) / resistance)
+        return [0.75 * current / inertia, (wanted - current) / max(lag, 2e-5)]
+
+    time = np.arange(0.0, 0.45, 1e-3)
+    speed, current = solve_ivp(rates, (0.0, 0.45), [0.0, peak], "LSODA", time, rtol=1e-9, atol=1e-9).y
+    random = np.random.default_rng(3)
+    noisy = current + 0.005 * random.standard_normal(time.size), speed + 0.026 * random.standard_normal(time.size)
+    found = decline(noisy[1], noisy[0], 1e-3)
+    print(f"lag {lag * 1e3:g} ms: corner {(found.corner - corner) * RPM:+.2f} rpm, lag {found.lag * 1e3:.2f} ms")
+    assert found.corner == pytest.approx(corner, abs=13.0 / RPM)  # one sample of the run-up
+    assert found.lag == pytest.approx(lag, abs=0.7e-3)
+    assert found.no_load == pytest.approx(voltage / ke, rel=2e-3)
+    if lag >= 3e-3:  # the line through the fall takes the lag for a shift
+        assert found.extrapolated - corner > 20.0 / RPM

@@ -1,0 +1,128 @@
+"""The simulated winding against an independent integrator, and the split of task 11 against closed forms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from bench.course.corner import extrapolated_corner
+from bench.course.rig import lab_rig, torque_constant
+from bench.course.t11_corner import TIME_CONSTANTS, VELOCITY_GAIN, cross_voltage
+from bench.course.winding import CURRENT_LOOP, STEP, Winding, run_winding
+from bench.plant.model import AxisParameters
+from bench.rig.circuit import COLD, HOT, Circuit
+
+RPM = 60.0 / (2.0 * np.pi)
+
+
+@pytest.fixture
+def circuit():
+    rig = lab_rig()
+    return Circuit.from_motor(rig.motor, rig.motor.peak_curves[0], rig.source)
+
+
+def test_circuit_from_the_datasheets_curve(circuit):
+    top, corner, voltage = 5000.0 / RPM, 2100.0 / RPM, np.sqrt(3.0) * 230.0
+    assert circuit.back_emf_constant * top == pytest.approx(voltage)
+    assert circuit.back_emf_constant * corner + circuit.resistance * 5.7 == pytest.approx(voltage)
+    assert circuit.resistance_at(COLD) == pytest.approx(0.7 * circuit.resistance)
+    assert circuit.inductance / circuit.resistance_at(COLD) == pytest.approx(3e-3)
+    # energy: back-EMF and torque constant of the unsaturated motor are one; the datasheet's four numbers confirm it
+    assert circuit.back_emf_constant == pytest.approx(torque_constant(lab_rig()).constant, rel=0.05)
+
+
+def independent(winding, axis, demand, duration):
+    """The same equations by an integrator with adaptive steps; current, speed, warming."""
+    c, k, limit = winding.circuit, winding.torque_constant, winding.peak_current
+    inductance = c.inductance
+
+    def rates(t, state):
+        current, speed, warm = state
+        target = np.clip(VELOCITY_GAIN / k.constant * (demand - speed), -limit, limit)
+        resistance = c.resistance * (1.0 + c.temperature_coefficient * (winding.temperature + warm - HOT))
+        voltage = resistance * target + c.back_emf_constant * speed + inductance / CURRENT_LOOP * (target - current)
+        voltage = np.clip(voltage, -c.voltage, c.voltage)
+        torque = (k.constant + k.curvature * current**2) * current
+        friction = axis.viscous_friction_coefficient * speed + axis.coulomb_friction * np.tanh(speed / 1e-3)
+        heat = resistance * current**2 - warm / c.thermal_resistance
+        # as MuJoCo has it, L/R stays that of the start: L follows R by the warming, at most a percent
+        slowed = inductance * resistance / winding.resistance
+        return [
+            (voltage - resistance * current - c.back_emf_constant * speed) / slowed,
+            (torque - friction) / axis.inertia,
+            heat * c.thermal_resistance / c.thermal_time_constant,
+        ]
+
+    grid = np.arange(0.0, duration, 1e-3)
+    solution = solve_ivp(rates, (0.0, duration), [0.0, 0.0, 0.0], "LSODA", grid, rtol=1e-8, atol=1e-9, max_step=5e-4)
+    return solution.y
+
+
+def test_run_through_the_winding_agrees_with_an_independent_integrator(circuit):
+    rig = lab_rig()
+    axis = AxisParameters.from_rig(rig)
+    winding = Winding(circuit, torque_constant(rig), 5.7, COLD, True)
+    top, duration = 5000.0 / RPM, 0.6
+    run = run_winding(winding, axis, np.full(round(duration / STEP), top), VELOCITY_GAIN)
+    every = slice(None, None, round(1e-3 / STEP))
+    current, speed, warming = independent(winding, axis, top, duration)
+    off = np.abs(run.velocity[every] - speed).max(), np.abs(run.current[every] - current)[5:].max()
+    corners = extrapolated_corner(speed, current) * RPM, extrapolated_corner(run.velocity, run.current) * RPM
+    print(f"speed off by {off[0]:.2g} rad/s, current by {off[1]:.2g} A, corner by {corners[1] - corners[0]:+.2g} rpm")
+    assert off[0] < 0.15
+    assert off[1] < 0.01
+    assert corners[1] == pytest.approx(corners[0], abs=1.0)
+    assert run.warming == pytest.approx(warming[-1], rel=0.01)
+    assert np.abs(run.voltage).max() <= circuit.voltage * (1.0 + 1e-12)
+
+
+def test_11_split_against_closed_forms(done, circuit):
+    task = done["11"]
+    hot = task["corner, hot, quasi-static"].value
+    cold = task["corner, cold, quasi-static"].value
+    # without warming, n = n_0 - (n_0 - n_c)*R/R_hot
+    assert hot == pytest.approx(2100.0, abs=20.0)
+    assert cold == pytest.approx(5000.0 - 0.7 * 2900.0, abs=20.0)
+    assert hot < 2100.0
+    assert cold < 2970.0
+    assert task["shift by temperature"].value == pytest.approx(870.0, abs=5.0)
+    assert task["shift by inductance"].value == pytest.approx(
+        task["corner, cold, with inductance"].value - cold, abs=1e-9
+    )
+    assert task["shift by inductance"].value == pytest.approx(0.0, abs=1.0)
+    for tau in TIME_CONSTANTS:
+        assert task[f"corner, L/R = {tau * 1e3:g} ms"].value == pytest.approx(cold, abs=1.0)
+    # U = R*Imax + Ke*w with the winding as it starts, and as warm as it ends
+    ends = [(circuit.voltage - circuit.resistance_at(t) * 5.7) / circuit.back_emf_constant * RPM for t in (20.0, 22.3)]
+    assert ends[1] < cold < ends[0]
+    shifts = [task[f"fall later by, L/R = {tau * 1e3:g} ms"].value for tau in TIME_CONSTANTS]
+    axis = AxisParameters.from_rig(lab_rig())
+    full = (3.5 - axis.coulomb_friction) / axis.inertia * np.array(TIME_CONSTANTS) * RPM
+    print("shift in rpm by L/R:", dict(zip(TIME_CONSTANTS, np.round(shifts, 1).tolist(), strict=True)))
+    # proportional to L/R; less than alpha*L/R of full torque, as torque falls where the corner is read
+    assert np.all(np.array(shifts) < full)
+    assert np.all(np.array(shifts) > 0.8 * full)
+
+
+def test_11_without_warming_the_hot_corner_is_the_datasheets(circuit):
+    rig = lab_rig()
+    axis = AxisParameters.from_rig(rig)
+    slow = replace(circuit, thermal_time_constant=1e9)
+    winding = Winding(slow, torque_constant(rig), 5.7, HOT, False)
+    run = run_winding(winding, axis, np.full(round(0.6 / STEP), 5000.0 / RPM), VELOCITY_GAIN)
+    assert extrapolated_corner(run.velocity, run.current) * RPM == pytest.approx(2100.0, abs=0.5)
+
+
+def test_11_voltage_at_a_right_angle_meets_both_curves(circuit):
+    low, high = lab_rig().motor.peak_curves
+    shift, ratio = cross_voltage(circuit, low, high)
+    ke, voltage = circuit.back_emf_constant, circuit.voltage
+    # p*L*I = ratio*R_cold*I and R_hot*I = R_cold*I/0.7, both corners, one unknown
+    drops = []
+    for curve in (low, high):
+        w, u = curve.corner_speed, voltage * curve.mains_voltage / low.mains_voltage
+        a, b, c = 1.0 + (0.7 * ratio * w) ** 2, 2.0 * ke * w, (ke * w) ** 2 - u**2
+        drops.append((-b + np.sqrt(b**2 - 4.0 * a * c)) / (2.0 * a))
+    assert drops[0] == pytest.approx(drops[1], rel=1e-9)
+    assert 0.0 < shift < 870.0 / RPM

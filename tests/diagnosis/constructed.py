@@ -1,0 +1,114 @@
+"""Recordings whose torque balance is exact by construction: an analytic motion, its torque, white noise on both."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.name.doubts import Evidence, doubted
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.name.search import search
+from bench.effects.catalogue import catalogue
+from bench.fit.fit import Fit
+from bench.fit.rows import Rows
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+RIG = Rig.of(
+    {
+        "name": "constructed",
+        "kind": "rotary",
+        "motor": {"torque_constant": "0.7 N*m/A", "rotor_inertia": "4 kg*cm**2", "peak_current": "6 A"},
+    }
+)
+UNITS = {"position": "rad", "velocity": "rad/s", "current": "A"}
+INERTIA, VISCOUS, COULOMB, CONSTANT = 1.5e-3, 8e-4, 0.08, 0.7
+#: White noise of speed - rad/s -, torque - N*m - and angle - rad -, the last so coarse that none takes speed from it.
+SPEED_NOISE, TORQUE_NOISE, ANGLE_NOISE = 0.03, 6e-3, 1e-4
+#: Amplitude of the position - rad -, frequency - Hz - and phase of the sines that the motion is made of.
+SINES = ((6.0, 0.43, 0.3), (1.6, 1.31, 1.1), (0.5, 2.9, 2.0), (0.12, 6.1, 0.0))
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Samples of a motion: s, rad, rad/s, rad/s**2, and the sign of the speed - (n,) each."""
+
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    sign: np.ndarray
+
+
+#: A resisting torque along a motion - N*m - (n,).
+Torque = Callable[[Motion], np.ndarray]
+
+
+def moved(duration: float = 5.0, sines=SINES, drift: float = 0.0, period: float = 1e-3) -> Motion:
+    """A sum of sines and a constant speed `drift` - rad/s."""
+    time = np.arange(round(duration / period)) * period
+    position, velocity, acceleration = drift * time, np.full_like(time, drift), np.zeros_like(time)
+    for amplitude, frequency, phase in sines:
+        omega = 2.0 * np.pi * frequency
+        angle = omega * time + phase
+        position = position + amplitude * np.sin(angle)
+        velocity = velocity + amplitude * omega * np.cos(angle)
+        acceleration = acceleration - amplitude * omega**2 * np.sin(angle)
+    return Motion(time, position, velocity, acceleration, np.sign(velocity))
+
+
+def base(motion: Motion) -> np.ndarray:
+    """J*alpha + K_w*omega + K_0*sgn(omega)."""
+    return INERTIA * motion.acceleration + VISCOUS * motion.velocity + COULOMB * motion.sign
+
+
+def recorded(motion: Motion, *more: Torque, seed: int = 0, noise: float = 1.0, pick_up: Torque | None = None) -> Trace:
+    """The motion with the torque that it takes, and `more`; `pick_up` is reported and does not act."""
+    rng = np.random.default_rng(seed)
+    torque = base(motion) + sum(each(motion) for each in more)
+    torque = torque + (0.0 if pick_up is None else pick_up(motion))
+    torque = torque + noise * TORQUE_NOISE * rng.normal(size=motion.time.size)
+    signals = {
+        "position": motion.position + noise * ANGLE_NOISE * rng.normal(size=motion.time.size),
+        "velocity": motion.velocity + noise * SPEED_NOISE * rng.normal(size=motion.time.size),
+        "current": torque / CONSTANT,
+    }
+    return Trace(motion.time, signals, UNITS, "constructed")
+
+
+def bare(trace: Trace, rig: Rig = RIG) -> Fit:
+    """What inertia and friction leave."""
+    return gap(Rows.of(trace, rig))
+
+
+def wave(amplitude: float, number: float, phase: float = 0.0) -> Torque:
+    """A wave of position."""
+    return lambda motion: amplitude * np.sin(number * motion.position + phase)
+
+
+def vibration(amplitude: float, frequency: float, phase: float = 0.4) -> Torque:
+    """A wave of time, which no effect of the catalogue is."""
+    return lambda motion: amplitude * np.sin(2.0 * np.pi * frequency * motion.time + phase)
+
+
+def only_during(torque: float, start: float, stop: float) -> Torque:
+    """A torque for a stretch of time - N*m, s."""
+    return lambda motion: torque * ((motion.time >= start) & (motion.time < stop))
+
+
+def offset(torque: float) -> Torque:
+    """A constant torque."""
+    return lambda motion: np.full_like(motion.time, torque)
+
+
+def names(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace | None = None) -> tuple[str, ...]:
+    """Names that a policy leaves, of effects that it may try."""
+    without_effect = bare(trace)
+    found = search(without_effect, [catalogue()[name] for name in effects], policy)
+    width = without_effect.rows.conditioning.filter.width
+    other = None if holdout is None else Rows.of(holdout, RIG, width=width)
+    evidence = Evidence(without_effect, other, frozenset(catalogue()) - set(effects), policy)
+    return doubted(found, evidence, policy.doubts).last.hypothesis.names

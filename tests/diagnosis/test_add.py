@@ -1,0 +1,75 @@
+"""Effects are added one by one and judged by motion that was not fitted; truth from the independent integrator."""
+
+import numpy as np
+import pytest
+
+from bench.diagnosis.add.add import add
+from bench.diagnosis.name.name import Suspects
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.name.search import Searched, Step
+from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.show.gaps import courses, shrinking
+from bench.effects.catalogue import catalogue
+from bench.effects.effect import Detected
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Hypothesis, Term
+from bench.rig.rig import load_rig
+from bench.validation.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
+from bench.validation.independent.effects import KINDS
+from tests.kept import kept
+
+AXIS = Axis(
+    "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
+)
+SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
+#: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
+STEP = 62.5e-6
+SPRING = Term(catalogue()["torsion_spring"])
+LAG = {catalogue()["velocity_filter_lag"]: Detected({"time_constant": 4e-3}, {"time_constant": 1e-5})}
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """The axis with a torsion spring, recorded twice."""
+    spring = (KINDS["torsion_spring"].draw(AXIS, 0.6, np.random.default_rng(0), 4.0),)
+    motions = [random_motion(AXIS, np.random.default_rng(k), 4.0) for k in range(2)]
+    together = [AXIS] * 2, motions, [spring] * 2, [SENSORS] * 2
+    first, second = kept(lambda: [run.trace for run in simulate(*together, seed=6, longest_step=STEP)], __file__)
+    path = tmp_path_factory.mktemp("rig") / "rig.toml"
+    write_rig(AXIS, path)
+    return load_rig(path), first, second
+
+
+def added(recorded, terms, detected=None, with_holdout=True):
+    rig, trace, holdout = recorded
+    recordings = Recordings.of(trace, rig, holdout if with_holdout else None)
+    searched = Searched((Step(fit(recordings.rows, Hypothesis(tuple(terms)))),))
+    return recordings, add(recordings, Suspects(searched, detected or {}, False, Policy()))
+
+
+@pytest.mark.parametrize("with_holdout", [True, False])
+def test_a_true_effect_is_kept_and_both_gaps_shrink(recorded, with_holdout):
+    recordings, result = added(recorded, [SPRING], with_holdout=with_holdout)
+    assert result.rejected == ()
+    before, after = shrinking(result, courses(recordings, result))
+    assert (before.effect, after.effect) == ("", "torsion_spring")
+    assert len(after.torque) == len(after.velocity) == (2 if with_holdout else 1)
+    assert all(late < 0.3 * early for early, late in zip(before.velocity, after.velocity, strict=True))
+    assert all(late < 0.3 * early for early, late in zip(before.torque, after.torque, strict=True))
+
+
+@pytest.mark.parametrize("with_holdout", [True, False])
+def test_an_effect_that_makes_the_simulation_worse_is_rejected_with_the_reason(recorded, with_holdout):
+    _, result = added(recorded, [SPRING], LAG, with_holdout)
+    (rejected,) = result.rejected
+    assert rejected.name == "velocity_filter_lag"
+    assert "velocity gap" in rejected.reason
+    assert ("holdout" in rejected.reason) is with_holdout
+    assert [effect.name for effect in result.refined.effects] == ["torsion_spring"]
+
+
+def test_what_was_refined_stays_within_its_interval(recorded):
+    _, result = added(recorded, [SPRING])
+    (stiffness,) = result.refined.effects[0].parameters.values()
+    plain = result.extension.whole.fitted.strengths(0)[0]
+    assert abs(stiffness.value - plain) <= 1.01 * 0.5 * (stiffness.ci95[1] - stiffness.ci95[0])

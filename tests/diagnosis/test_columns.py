@@ -1,0 +1,113 @@
+"""Columns of the hypotheses against closed forms: two masses, dead zone, lag, eccentric encoder."""
+
+import numpy as np
+import pytest
+import scipy.signal
+from scipy.interpolate import CubicSpline
+
+from bench.diagnosis.where.where import Coordinate, _account
+from bench.effects.backlash.dead_zone import load_positions
+from bench.effects.catalogue import catalogue
+from bench.effects.first_order import lagged
+from bench.effects.presliding_friction import bristles
+from bench.effects.signals import Signals
+
+PERIOD = 1e-3
+
+
+def signals(position, velocity):
+    count = position.size
+    sign = np.sign(velocity)
+    zero = np.zeros(count)
+    return Signals(np.arange(count) * PERIOD, position, velocity, sign, zero, zero, sign, 1.0, PERIOD)
+
+
+def test_a_load_without_a_gap_follows_the_motor():
+    time = np.arange(4000) * PERIOD
+    position = 10.0 * (1.0 - np.cos(3.0 * time))
+    found = load_positions(position, PERIOD, np.array([[1e-9, 400.0, 0.7, 0.0]]))[:, 0]
+    assert np.gradient(np.gradient(found, PERIOD), PERIOD)[200:-2] == pytest.approx(
+        90.0 * np.cos(3.0 * time[200:-2]), abs=0.02
+    )
+
+
+def test_a_load_within_the_gap_feels_nothing():
+    time = np.arange(1000) * PERIOD
+    position = 0.01 * (1.0 - np.cos(20.0 * time))
+    found = load_positions(position, PERIOD, np.array([[0.1, 400.0, 0.5, 0.0]]))
+    assert np.abs(found - found[0]).max() < 1e-6
+
+
+def test_a_load_thrown_across_the_gap_is_the_contacts_equation_integrated():
+    time, gap, frequency, damping = np.arange(3000) * PERIOD, 0.05, 300.0, 0.4
+    position = 0.8 * np.sin(6.0 * time) ** 3
+    twenty = 20
+    fine = CubicSpline(time, position)
+    x, v, expected, step = position[0], 0.0, np.empty(3000), PERIOD / twenty
+
+    def slopes(t, x, v):
+        twist = fine(t) - x
+        penetration = twist - np.clip(twist, -0.5 * gap, 0.5 * gap)
+        rate = (fine(t, 1) - v) * (penetration != 0.0)
+        return v, frequency**2 * penetration + 2.0 * damping * frequency * rate
+
+    for k in range(3000 * twenty):
+        if k % twenty == 0:
+            expected[k // twenty] = x
+        a = slopes(k * step, x, v)
+        b = slopes((k + 0.5) * step, x + 0.5 * step * a[0], v + 0.5 * step * a[1])
+        x, v = x + step * b[0], v + step * b[1]
+    found = load_positions(position, PERIOD, np.array([[gap, frequency, damping, 0.0]]))[:, 0]
+    assert found == pytest.approx(expected, abs=0.01 * gap)
+
+
+def test_a_lag_is_the_first_order_response():
+    time = np.arange(2000) * PERIOD
+    ramp = 5.0 * time
+    expected = 5.0 * (time - 0.02 * (1.0 - np.exp(-time / 0.02)))
+    assert lagged(ramp, 0.02, PERIOD) == pytest.approx(expected, abs=1e-12)
+
+
+@pytest.mark.parametrize("amplitude", [0.02, 0.5])
+def test_an_eccentric_encoder_is_corrected(amplitude):
+    time = np.arange(3000) * PERIOD
+    angle, speed = 40.0 * time**2, 80.0 * time
+    measured = angle + amplitude * np.sin(angle + 0.7)
+    reported = speed * (1.0 + amplitude * np.cos(angle + 0.7))
+    shape = (amplitude * np.cos(0.7), amplitude * np.sin(0.7))
+    found = catalogue()["encoder_eccentricity"].see(signals(measured, reported), shape)
+    assert found.position == pytest.approx(angle, abs=1e-9)
+    assert found.velocity == pytest.approx(speed, abs=1e-7)
+
+
+def test_bristles_are_dahls_equation_integrated():
+    time = np.arange(4000) * PERIOD
+    position, rate = 0.05 * np.sin(4.0 * time), 60.0
+    velocity = 0.2 * np.cos(4.0 * time)
+    fine = np.interp(np.arange(4000 * 20) / 20, np.arange(4000), position)
+    state, expected = 0.0, np.empty(4000)
+    for k, step in enumerate(np.diff(fine, prepend=fine[0])):
+        state += rate * (1.0 - state * np.sign(step)) * step
+        if k % 20 == 0:
+            expected[k // 20] = state
+    found = bristles(position, np.sign(velocity), np.ones(4000), rate)
+    assert found == pytest.approx(expected, abs=0.02)
+
+
+def test_a_coupling_hears_noise_as_its_transfer_function_says():
+    """The load's acceleration over the motor's by scipy, less one."""
+    antiresonance, damping = 150.0, 0.05
+    omega = np.linspace(1.0, 400.0, 50)
+    numerator = [2.0 * damping / antiresonance, 1.0]
+    denominator = [1.0 / antiresonance**2, 2.0 * damping / antiresonance, 1.0]
+    _, transfer = scipy.signal.freqs(numerator, denominator, omega)
+    found = catalogue()["elastic_coupling"].noise_of_motion((antiresonance, damping), omega)
+    assert found == pytest.approx(transfer - 1.0)
+
+
+def test_a_gap_of_two_directions_belongs_to_direction():
+    rng = np.random.default_rng(0)
+    sign = np.sign(rng.normal(size=4000))
+    account = _account(Coordinate("direction", sign, "dimensionless"), 3.0 + 0.5 * sign + 0.1 * rng.normal(size=4000))
+    assert account.centres == pytest.approx([-1.0, 1.0])
+    assert account.share == pytest.approx(0.25 / 0.26, abs=0.01)

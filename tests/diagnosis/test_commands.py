@@ -1,0 +1,300 @@
+"""`bench diagnose` and `bench replay` as a user meets them: the contract's files, and one line for what is wrong."""
+
+import csv
+import json
+import os
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from bench.trace.trace import Trace
+from bench.trace.write import write
+from tests.diagnosis.command import started
+from tests.fit.motions import UNITS, Truth, recording
+
+PENDULUM = 0.12
+
+
+def run_of(seed=1, **changes):
+    """Two seconds that nothing is hidden in, unless changed."""
+    return recording(np.random.default_rng(seed), **{"duration": 2.0, "position": True, **changes})
+
+
+def with_unbalance(trace):
+    """The same motion under an eccentric mass: closed form, its torque beside the current's."""
+    more = PENDULUM * np.sin(trace["position"]) / 0.8
+    return replace(trace, signals={**trace.signals, "current": trace["current"] + more})
+
+
+def only(trace, *names):
+    return Trace(trace.time, {n: trace[n] for n in names}, {n: UNITS[n] for n in names}, trace.origin)
+
+
+def moving(speed, seconds=4.0):
+    """A recording of any speed over time, without position."""
+    time = np.arange(round(seconds * 1e3)) * 1e-3
+    rng, omega = np.random.default_rng(0), speed(time)
+    torque = 1.5e-3 * np.gradient(omega, 1e-3) + 8e-4 * omega + 0.06 * np.sign(omega)
+    noisy = {"velocity": omega + rng.normal(scale=0.03, size=time.size)}
+    noisy["current"] = (torque + rng.normal(scale=0.01, size=time.size)) / 0.8
+    return Trace(time, noisy, UNITS, "closed form")
+
+
+@pytest.fixture(scope="module")
+def diagnosed(tmp_path_factory):
+    """Folder with two recordings of one axis, an unbalance in them, and what `bench diagnose` made of them."""
+    folder, before = tmp_path_factory.mktemp("diagnosed"), Path.cwd()
+    bench = started(folder)
+    for k in (1, 2):
+        write(with_unbalance(run_of(seed=k, duration=4.0)), folder / f"run{k}.csv")
+    try:
+        assert bench("diagnose", "run1.csv", "--rig", "rig.toml", "--holdout", "run2.csv", "--out", "found") == 0
+    finally:
+        os.chdir(before)
+    return folder
+
+
+def test_the_json_follows_the_contract_key_by_key(diagnosed):
+    found = json.loads((diagnosed / "found" / "diagnosis.json").read_text())
+    keys = "schema verdict effects where unexplained parameters gap steps next_experiment model warnings"
+    assert set(keys.split()) <= set(found)
+    assert (found["schema"], found["verdict"], found["warnings"]) == ("bench.diagnose/1", "explained", [])
+    (effect,) = found["effects"]
+    assert {"name", "parameters", "ambiguous_with", "evidence"} <= set(effect)
+    assert (effect["name"], effect["ambiguous_with"]) == ("unbalance", [])
+    for parameter in (*effect["parameters"].values(), *found["parameters"].values()):
+        assert parameter["ci95"][0] <= parameter["value"] <= parameter["ci95"][1]
+        assert parameter["unit"]
+    assert {"moment_of_inertia", "viscous_friction_coefficient", "coulomb_friction_torque"} <= set(found["parameters"])
+    coordinates = {"position", "velocity", "acceleration", "current", "time", "direction", "frequency", "reversal"}
+    assert {entry["coordinate"] for entry in found["where"]} == coordinates
+    assert found["where"][0]["coordinate"] == "position"
+    for entry in found["where"]:
+        assert entry["region"][0] <= entry["region"][1]
+        assert 0.0 <= entry["share"] <= 1.0
+        assert entry["unit"]
+    assert {"share", "where"} <= set(found["unexplained"])
+    for gap, unit in (("torque", "N*m"), ("velocity", "rad/s")):
+        assert found["gap"][gap]["unit"] == unit
+        for recording_ in ("identify", "holdout"):
+            assert found["gap"][gap][recording_]["after"] < 0.5 * found["gap"][gap][recording_]["before"]
+    assert found["gap"]["torque"]["holdout"]["after"] < 1.2 * found["gap"]["torque"]["noise_floor"]
+    assert [step["effect"] for step in found["steps"]] == ["unbalance"]
+    assert {"effect", "torque_gap", "velocity_gap"} <= set(found["steps"][0])
+    assert found["next_experiment"] is None or isinstance(found["next_experiment"], dict)
+    assert found["model"] == {"mjcf": "model.xml", "toml": "model.toml"}
+
+
+def test_an_effects_values_and_the_inertia_are_those_of_the_closed_form(diagnosed):
+    found = json.loads((diagnosed / "found" / "diagnosis.json").read_text())
+    amplitude = found["effects"][0]["parameters"]["amplitude"]
+    assert amplitude["ci95"][0] < PENDULUM < amplitude["ci95"][1]
+    assert found["parameters"]["moment_of_inertia"]["value"] == pytest.approx(Truth().inertia, rel=2e-3)
+
+
+def test_the_model_opens_in_mujoco_alone(diagnosed):
+    assert mujoco.MjModel.from_xml_path(str(diagnosed / "found" / "model.xml")).njnt >= 1
+
+
+def test_replay_writes_the_contracts_columns_and_the_diagnosed_gap(bench, diagnosed):
+    model, trace = diagnosed / "found" / "model.toml", diagnosed / "run2.csv"
+    status, out, err = bench("replay", model, trace, "--rig", "rig.toml", "--out", "replay.csv")
+    assert (status, err) == (0, "")
+    assert "torque gap" in out
+    with Path("replay.csv").open(encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    names = "time [s],velocity [rad/s],velocity_simulated [rad/s],torque [N*m],torque_simulated [N*m]"
+    assert head == names.split(",")
+    table = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows])
+    assert len(table) == 4000
+    gap = json.loads((diagnosed / "found" / "diagnosis.json").read_text())["gap"]
+    known = table[np.isfinite(table).all(axis=1)]
+    assert np.sqrt(np.mean((known[:, 3] - known[:, 4]) ** 2)) == pytest.approx(
+        gap["torque"]["holdout"]["after"], rel=0.1
+    )
+    assert np.sqrt(np.mean((table[:, 1] - table[:, 2]) ** 2)) == pytest.approx(
+        gap["velocity"]["holdout"]["after"], rel=0.1
+    )
+
+
+def test_nothing_hidden_is_nothing_missing(bench):
+    write(run_of(), "run.csv")
+    status, out, err = bench("diagnose", "run.csv", "--rig", "rig.toml", "--json", "-")
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    assert (found["verdict"], found["effects"], found["unexplained"]["where"]) == ("nothing_missing", [], [])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_slow_motion_under_noisy_torque_is_given_no_name(bench, seed):
+    """What copies the measured torque, or filters speed, takes up noise and so explains less than it saves."""
+    write(only(run_of(seed, speed=0.06, duration=4.0), "velocity", "current"), "run.csv")
+    status, out, _ = bench("diagnose", "run.csv", "--rig", "rig.toml", "--json", "-")
+    assert status == 0
+    assert json.loads(out)["effects"] == []
+
+
+@pytest.mark.parametrize(
+    ("trace", "words"),
+    [
+        (run_of(duration=0.05), ["run.csv holds 50 samples", "0.53 s at least"]),
+        (run_of(duration=0.3), ["run.csv holds 300 samples", "0.53 s at least"]),
+        (moving(lambda t: 0.02 * np.sin(9.0 * t)), ["no filtered sample", "speeds well above 0.1"]),
+        (moving(lambda t: 1.5 * np.sin(9.0 * t) * np.cos(2.0 * t)), ["noise of velocity", "accelerations above"]),
+        (run_of(torque_noise=3.0), ["torque varies", "its noise", "more than"]),
+        (run_of(velocity_noise=80.0, position=False), ["no filtered sample", "speeds well above"]),
+        (moving(lambda t: 50.0 + 0.0 * t), ["record instead: a motion that accelerates"]),
+        (moving(lambda t: np.where(t < 2.0, 50.0, -50.0)), ["record instead: a motion that accelerates"]),
+        (run_of(period=0.02, duration=12.0), ["keep one direction well over"]),
+    ],
+    ids=["0.05 s", "0.3 s", "standing", "slow", "torque quiet", "speed quiet", "one speed", "two speeds", "20 ms"],
+)
+def test_what_cannot_be_decided_is_status_one_with_what_to_record(bench, tmp_path, trace, words):
+    write(trace, "run.csv")
+    status, out, err = bench("diagnose", "run.csv", "--rig", "rig.toml", "--json", "found.json", "--out", "found")
+    assert (status, out, err.count("\n")) == (1, "", 1), err
+    assert "record instead" in err
+    for word in words:
+        assert word in err
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["rig.toml", "run.csv"]
+
+
+def turned(trace, name, factor):
+    return replace(trace, signals={**trace.signals, name: factor * trace[name]})
+
+
+@pytest.mark.parametrize(
+    ("trace", "words"),
+    [
+        (only(run_of(), "position", "velocity"), ["run.csv", "current"]),
+        (only(run_of(), "current"), ["run.csv", "velocity"]),
+        (turned(run_of(), "velocity", 180.0 / np.pi), ["57.29 times", "units"]),
+        (turned(run_of(), "position", -1.0), ["-1 times", "position"]),
+        (turned(run_of(), "current", -1.0), ["opposite signs", "[trace.columns]"]),
+    ],
+    ids=["no current", "no motion", "deg as rad", "position turned", "current turned"],
+)
+def test_signals_that_contradict_each_other_are_status_two(bench, tmp_path, trace, words):
+    write(trace, "run.csv")
+    status, out, err = bench("diagnose", "run.csv", "--rig", "rig.toml", "--json", "found.json", "--out", "found")
+    assert (status, out, err.count("\n")) == (2, "", 1), err
+    for word in words:
+        assert word in err
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["rig.toml", "run.csv"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--without", "coging_torque"), ["--without", "cogging_torque"]),
+        (("--holdout", "nowhere.csv"), ["nowhere.csv", "no such file"]),
+        (("--holdout", "rig.toml"), ["rig.toml"]),
+        (("--holdout", "run.csv"), ["--holdout", "the recording itself"]),
+        (("--out", "rig.toml"), ["rig.toml", "is an input"]),
+        (("--json", "."), ["found a folder", "name a file"]),
+    ],
+)
+def test_bad_arguments_are_one_line_and_status_two(bench, tmp_path, arguments, words):
+    write(run_of(), "run.csv")
+    status, _, err = bench("diagnose", "run.csv", "--rig", "rig.toml", *arguments)
+    assert (status, err.count("\n")) == (2, 1), err
+    for word in words:
+        assert word in err
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["rig.toml", "run.csv"]
+
+
+@pytest.mark.parametrize(
+    ("truth", "words"),
+    [
+        (Truth(inertia=1.2 * Truth.inertia), ["1.2 times the inertia", "not used as proof"]),
+        (Truth(inertia=20.0 * Truth.inertia), ["20 times the inertia", "not used as proof"]),
+        (Truth(coulomb=2.5 * Truth.coulomb), ["times the Coulomb friction", "not used as proof"]),
+        (Truth(coulomb=0.8 * Truth.coulomb, viscous=0.6 * Truth.viscous), []),
+        (Truth(), []),
+    ],
+    ids=["20 % more inertia", "20 times the inertia", "other friction", "the same axis, warm", "the same axis"],
+)
+def test_a_holdout_of_another_axis_is_noticed(bench, truth, words):
+    write(run_of(), "run.csv")
+    write(run_of(seed=2, truth=truth), "other.csv")
+    status, out, err = bench("diagnose", "run.csv", "--rig", "rig.toml", "--holdout", "other.csv", "--json", "-")
+    assert status == 0
+    warnings = json.loads(out)["warnings"]
+    assert len(warnings) == (1 if words else 0), warnings
+    for word in words:
+        assert word in warnings[0]
+        assert word in err
+
+
+def test_a_holdout_too_short_is_named(bench):
+    write(run_of(), "run.csv")
+    write(run_of(seed=2, duration=0.2), "other.csv")
+    status, _, err = bench("diagnose", "run.csv", "--rig", "rig.toml", "--holdout", "other.csv")
+    assert (status, err.count("\n")) == (1, 1)
+    assert "other.csv" in err
+
+
+def test_a_wrong_unit_of_current_and_a_clipped_current_are_reported(bench):
+    write(turned(run_of(), "current", 1e-3), "run.csv")
+    status, _, err = bench("diagnose", "run.csv", "--rig", "rig.toml")
+    assert status == 1
+    assert "load moment of inertia" in err
+    assert "comes out negative" in err
+    trace = run_of()
+    for limit, expected in ((2.2, 0), (0.3, 1)):  # a third of the samples lost leave no inertia
+        write(replace(trace, signals={**trace.signals, "current": np.minimum(trace["current"], limit)}), "run.csv")
+        status, _, err = bench("diagnose", "run.csv", "--rig", "rig.toml")
+        assert status == expected
+        assert f"exactly {limit} A" in err
+
+
+def test_a_recording_standing_still_most_of_the_time_in_coarse_steps_is_no_traceback(bench):
+    trace = moving(lambda t: 50.0 * np.sin(8.0 * t) * np.cos(3.0 * t) * (t > 2.5))
+    rounded = {"velocity": np.round(trace["velocity"], 0), "current": np.round(trace["current"], 1)}
+    write(replace(trace, signals=rounded), "run.csv")
+    status, _, _ = bench("diagnose", "run.csv", "--rig", "rig.toml")
+    assert status in (0, 1)
+
+
+DAMAGE = {
+    "nothing": (r"[\s\S]*", "", ["torque_balance", "missing"]),
+    "cut": (r"\]\s*$", "", ["TOML"]),
+    "no coefficients": (r"coefficients = \[[^\]]*\]", "", ["torque_balance.coefficients", "missing"]),
+    "few coefficients": (r"coefficients = \[[^\]]*\]", "coefficients = [1.0]", ["found 1", "allowed: 6"]),
+    "not finite": (r"coefficients = \[[^,]*", "coefficients = [nan", ["coefficients", "finite"]),
+    "no width": (r"filter_width = .*", "filter_width = 0.0", ["filter_width", "found 0"]),
+    "unknown effect": (r'name = "unbalance", shape', 'name = "unbalanse", shape', ["unbalanse", "unbalance"]),
+    "shape": (r"shape = \[\]", "shape = [1.0]", ["unbalance.shape", "allowed: 0"]),
+    "unit": (r"kg\*m\*\*2", "kg", ["moment_of_inertia", "kg"]),
+    "kind": (r'kind = "rotary"', 'kind = "linear"', ["kind", "linear", "rotary"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_damaged_model_is_one_line_and_status_two(bench, diagnosed, tmp_path, damage):
+    pattern, other, words = DAMAGE[damage]
+    text = re.sub(pattern, other, (diagnosed / "found" / "model.toml").read_text(), count=1)
+    (tmp_path / "model.toml").write_text(text)
+    status, out, err = bench("replay", "model.toml", diagnosed / "run2.csv", "--rig", "rig.toml", "--out", "replay.csv")
+    assert (status, out, err.count("\n")) == (2, "", 1), err
+    assert "model.toml" in err
+    for word in words:
+        assert word in err
+    assert not (tmp_path / "replay.csv").exists()
+
+
+def test_replay_along_another_axis_is_reported_and_too_short_a_recording_refused(bench, diagnosed, tmp_path):
+    model = diagnosed / "found" / "model.toml"
+    write(run_of(seed=2, truth=Truth(inertia=3.0 * Truth.inertia)), "other.csv")
+    status, _, err = bench("replay", model, "other.csv", "--rig", "rig.toml", "--out", "replay.csv")
+    assert status == 0
+    assert "another axis" in err
+    write(run_of(seed=2, duration=0.05), "short.csv")
+    status, _, err = bench("replay", model, "short.csv", "--rig", "rig.toml", "--out", "short_replay.csv")
+    assert (status, err.count("\n")) == (1, 1)
+    assert "short.csv" in err
+    assert not (tmp_path / "short_replay.csv").exists()

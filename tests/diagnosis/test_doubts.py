@@ -1,0 +1,142 @@
+"""Every doubt decides somewhere: it takes back a name that the search took up, and without it the name would stay.
+
+The truth is a torque that the test adds: one that no effect is, or one whose own name the search may not try.
+"""
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter1d
+
+from bench.diagnosis.name.doubts import (
+    Contested,
+    Evidence,
+    NotCredible,
+    NotInHoldout,
+    OneForMany,
+    Simpler,
+    TwoForOne,
+    Unbelievable,
+    WrongForm,
+)
+from bench.diagnosis.name.policy import Policy
+from bench.effects.catalogue import catalogue
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Term
+from tests.diagnosis.constructed import SINES, bare, moved, names, offset, only_during, recorded, vibration, wave
+from tests.diagnosis.off import without
+
+POLICY = Policy()
+MOTION = moved(4.0)
+OTHER = moved(4.0, sines=tuple((amplitude, 1.1 * f, phase + 1.0) for amplitude, f, phase in SINES))
+EVENT = ("load_torque_event",)
+RIGID = [name for name, effect in catalogue().items() if not effect.couples]
+
+
+def but(*names):
+    """Effects on one body, less some."""
+    return [name for name in RIGID if name not in names]
+
+
+def test_an_event_that_the_holdout_does_not_show_is_one():
+    trace = recorded(MOTION, only_during(0.08, 1.0, 1.5))
+    assert names(POLICY, trace, EVENT, recorded(OTHER, seed=1)) == EVENT
+
+
+def test_an_event_at_the_same_time_of_the_holdout_is_one():
+    trace, holdout = (recorded(motion, only_during(0.08, 1.0, 1.5), seed=k) for k, motion in enumerate((MOTION, OTHER)))
+    assert names(POLICY, trace, EVENT, holdout) == EVENT
+
+
+def test_what_happens_in_the_holdout_at_any_time_is_no_event():
+    trace = recorded(MOTION, only_during(0.08, 1.0, 1.5))
+    holdout = recorded(OTHER, only_during(0.08, 2.5, 3.0), seed=1)
+    assert names(POLICY, trace, EVENT, holdout) == ()
+    assert names(without(NotInHoldout), trace, EVENT, holdout) == EVENT
+
+
+@pytest.mark.parametrize(("damping", "stays"), [(0.1, True), (0.6, False)])
+def test_a_coupling_that_hardly_rings_is_none(damping, stays):
+    plain = bare(recorded(MOTION))
+    fitted = fit(plain.rows, plain.hypothesis.plus(Term(catalogue()["elastic_coupling"], (200.0, damping))))
+    left = NotCredible().left(fitted, Evidence(plain, None, frozenset(), POLICY))
+    assert left.hypothesis.names == (("elastic_coupling",) if stays else ())
+
+
+def test_a_vibration_in_step_with_the_motion_is_no_spring():
+    """Position swings at 0.43 Hz, and so does the torque: over ten periods a spring explains nine tenths of it."""
+    trace = recorded(moved(), vibration(0.05, 0.43))
+    assert names(POLICY, trace, RIGID) == ()
+    assert names(without(Contested), trace, RIGID) == ("torsion_spring",)
+
+
+def test_a_name_that_explains_another_part_is_not_contested():
+    """Beside a vibration cogging keeps all its worth, so the rival takes nothing from it."""
+    trace = recorded(moved(), vibration(0.02, 0.9), wave(0.03, 6.0))
+    assert names(POLICY, trace, RIGID) == ("cogging_torque",)
+
+
+def test_a_wave_of_acceleration_is_no_ripple():
+    """Three cycles a revolution it has, but goes with acceleration: an inertia's, which may not be named here."""
+    trace = recorded(moved(), lambda motion: 2e-4 * motion.acceleration * np.sin(3.0 * motion.position))
+    assert names(POLICY, trace, but("position_dependent_inertia")) == ()
+    assert names(without(WrongForm), trace, but("position_dependent_inertia")) == ("torque_ripple",)
+
+
+def test_one_wave_is_not_called_two():
+    """A wave that goes with the square of speed is the half of what inertia and ripple make together."""
+    trace = recorded(MOTION, lambda motion: 5e-5 * motion.velocity**2 * np.sin(2.0 * motion.position + 0.7))
+    assert names(POLICY, trace, RIGID) == ()
+    assert set(names(without(TwoForOne), trace, RIGID)) == {"position_dependent_inertia", "torque_ripple"}
+
+
+def test_two_waves_of_one_period_stay_where_no_single_one_replaces_them():
+    trace = recorded(
+        MOTION,
+        lambda motion: 0.3 * motion.sign * 0.08 * np.sin(motion.position),
+        wave(0.06, 1.0, 1.0),
+    )
+    assert set(names(POLICY, trace, RIGID)) == {"position_dependent_friction", "unbalance"}
+
+
+def test_a_bump_at_one_angle_is_no_series_of_waves():
+    trace = recorded(moved(), lambda motion: 0.06 * np.exp(-0.5 * (np.angle(np.exp(1j * motion.position)) / 0.5) ** 2))
+    assert names(POLICY, trace, RIGID) == ()
+    assert "cogging_torque" in names(without(OneForMany), trace, RIGID)
+
+
+def test_waves_of_several_numbers_are_a_series():
+    trace = recorded(moved(), wave(0.03, 1.0), wave(0.03, 6.0, 1.0), wave(0.03, 12.0, 2.0))
+    assert set(names(POLICY, trace, RIGID)) == {"unbalance", "cogging_torque"}
+
+
+def test_friction_that_differs_by_a_constant_is_an_offset():
+    trace = recorded(MOTION, offset(0.05))
+    assert names(POLICY, trace, RIGID) == ("torque_offset",)
+    assert names(without(Simpler), trace, RIGID) == ("direction_dependent_friction",)
+
+
+def test_friction_that_differs_by_more_is_no_offset():
+    trace = recorded(MOTION, lambda motion: 0.05 + 5e-4 * np.abs(motion.velocity))
+    assert names(POLICY, trace, RIGID) == ("direction_dependent_friction",)
+
+
+def wandering(seed, torque):
+    """A torque of that RMS - N*m - that changes at random within a tenth of a second or so."""
+    wander = gaussian_filter1d(np.random.default_rng(seed).normal(size=MOTION.time.size), 120)
+    return lambda motion: torque * (wander - wander.mean()) / wander.std()
+
+
+@pytest.mark.parametrize("seed", [7, 20])
+def test_a_torque_that_wanders_is_no_event(seed):
+    """Half of what wanders may pass for an event; what stays beside it says that it is none."""
+    trace = recorded(MOTION, wandering(seed, 0.1))
+    assert names(POLICY, trace, RIGID) == ()
+    assert "load_torque_event" in names(without(Unbelievable), trace, RIGID)
+
+
+def test_of_names_beside_a_large_remainder_an_event_goes_first():
+    """Most of the torque is cogging; what wanders beside it speaks against an event, and not against cogging."""
+    trace = recorded(MOTION, wandering(7, 0.06), wave(0.3, 6.0))
+    kept, all_of_them = names(POLICY, trace, RIGID), names(without(Unbelievable), trace, RIGID)
+    assert "cogging_torque" in kept
+    assert set(all_of_them) - set(kept) == {"load_torque_event"}

@@ -1,0 +1,33 @@
+"""Names that were nearest when nothing stood beside them are exchanged for those that leave less."""
+
+import numpy as np
+import pytest
+
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.name.search import exchanged
+from bench.effects.catalogue import catalogue
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Hypothesis, Term
+from tests.diagnosis.constructed import bare, moved, recorded, wave
+
+EFFECTS = [catalogue()[name] for name in ("quadratic_drag", "cogging_torque", "stribeck_friction", "torque_offset")]
+COGGING = Term(catalogue()["cogging_torque"], (7.0,))
+
+
+def drag(motion):
+    return 1e-4 * motion.velocity * np.abs(motion.velocity)
+
+
+@pytest.mark.parametrize("wrong", [Term(catalogue()["stribeck_friction"], (8.0,)), Term(catalogue()["torque_offset"])])
+def test_a_name_is_exchanged_for_the_one_that_leaves_less(wrong):
+    without = bare(recorded(moved(), drag, wave(0.02, 7.0)))
+    found = exchanged(fit(without.rows, Hypothesis((wrong, COGGING))), EFFECTS, Policy())
+    assert found is not None
+    assert sorted(found.hypothesis.names) == ["cogging_torque", "quadratic_drag"]
+    assert found.chi < 1.1
+
+
+def test_names_that_leave_noise_alone_stay():
+    without = bare(recorded(moved(), drag, wave(0.02, 7.0)))
+    right = fit(without.rows, Hypothesis((Term(catalogue()["quadratic_drag"]), COGGING)))
+    assert exchanged(right, EFFECTS, Policy()) is None

@@ -1,0 +1,84 @@
+"""Dry frictions of one axis together: bristles slide at the level that all others make."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.integrate
+
+from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.name.search import search
+from bench.effects.catalogue import catalogue
+from bench.effects.presliding_friction import bristles, sliding_level
+from bench.fit.rows import Rows
+from bench.rig.rig import load_rig
+from bench.validation.independent.effects.friction import (
+    DirectionDependentFriction,
+    FrictionWarmup,
+    PositionDependentFriction,
+    PreslidingFriction,
+    StribeckFriction,
+)
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.rig import Axis, write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate
+from tests.kept import kept
+
+AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
+SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
+BRISTLES = PreslidingFriction(4.0, 5e-3)
+BESIDE = {
+    "rise": (StribeckFriction(0.16, 3.0),),
+    "direction": (DirectionDependentFriction(0.05),),
+    "angle": (PositionDependentFriction(0.5, 1.0),),
+    "rise and warmth": (StribeckFriction(0.16, 3.0), FrictionWarmup(0.5, 2.0)),
+}
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """The rig, and a recording by what is beside the bristles."""
+    path = tmp_path_factory.mktemp("rig") / "rig.toml"
+    write_rig(AXIS, path)
+    count, motion = len(BESIDE), random_motion(AXIS, np.random.default_rng(5), 6.0)
+    together = [AXIS] * count, [motion] * count, [(BRISTLES, *more) for more in BESIDE.values()], [SENSORS] * count
+    runs = kept(lambda: [run.trace for run in simulate(*together, 5, longest_step=62.5e-6)], __file__)
+    return load_rig(path), dict(zip(BESIDE, runs, strict=True))
+
+
+def test_bristles_slide_at_the_level_of_the_other_frictions():
+    """LuGre's equation with Stribeck's level, integrated by scipy."""
+    time = np.arange(0.0, 3.0, 1e-3)
+    position, velocity = 0.4 * np.sin(4.0 * time), 1.6 * np.cos(4.0 * time)
+    rate, rise, width = 60.0, 0.8, 0.5
+
+    def bending(t, y):
+        speed = 1.6 * np.cos(4.0 * t)
+        return rate * (speed - abs(speed) * y / (1.0 + rise * np.exp(-((speed / width) ** 2))))
+
+    expected = scipy.integrate.solve_ivp(bending, (0.0, 3.0), [0.0], t_eval=time, rtol=1e-9, atol=1e-11, max_step=1e-3)
+    friction = np.sign(velocity) * (1.0 + rise * np.exp(-((velocity / width) ** 2)))
+    found = bristles(position, np.sign(velocity), sliding_level(np.sign(velocity), friction), rate)
+    np.testing.assert_allclose(found, expected.y[0], atol=4e-3)
+
+
+@pytest.mark.parametrize("name", BESIDE)
+def test_bristles_are_named_beside_other_frictions(recorded, name):
+    rig, traces = recorded
+    fitted = search(gap(Rows.of(traces[name], rig)), list(catalogue().values()), Policy()).last
+    hidden = (BRISTLES, *BESIDE[name])
+    assert sorted(fitted.hypothesis.names) == sorted(effect.name for effect in hidden)
+    assert fitted.chi < 1.1
+    index = fitted.hypothesis.names.index(BRISTLES.name)
+    values = fitted.terms[index].effect.report(fitted.strengths(index), fitted.terms[index].shape, fitted.base)
+    assert values["bristle_stiffness"] == pytest.approx(BRISTLES.bristle_stiffness, rel=0.05)
+    assert fitted.theta[:3] == pytest.approx([AXIS.inertia, AXIS.viscous, AXIS.coulomb], rel=0.03)
+
+
+@pytest.mark.parametrize(("rate", "credible"), [(0.5, False), (50.0, True)])
+def test_bristles_that_bend_over_most_of_the_travel_are_a_spring(recorded, rate, credible):
+    rig, traces = recorded
+    scope = replace(Rows.of(traces["rise"], rig).scope, travel=4.0)
+    assert catalogue()["presliding_friction"].plausible([[0.08, 0.0]], [(rate,)], scope) is credible

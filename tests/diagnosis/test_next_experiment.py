@@ -1,0 +1,107 @@
+"""The experiment that is proposed tells the two explanations apart: recorded along it, each is named as it is.
+
+Truth comes from the independent integrator.
+"""
+
+import numpy as np
+import pytest
+
+from bench.diagnosis.diagnosis import diagnose
+from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.show.next_experiment import motions
+from bench.plant.references import References
+from bench.rig.rig import load_rig
+from bench.validation.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
+from bench.validation.independent.effects import KINDS
+from bench.validation.independent.references import Motion, Ramps
+
+AXIS = Axis(
+    "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
+)
+SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
+#: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
+STEP = 62.5e-6
+
+
+@pytest.fixture(scope="module")
+def rig(tmp_path_factory):
+    path = tmp_path_factory.mktemp("rig") / "rig.toml"
+    write_rig(AXIS, path)
+    return load_rig(path)
+
+
+def offset(seconds):
+    return (KINDS["torque_offset"].draw(AXIS, 0.6, np.random.default_rng(1), seconds),)
+
+
+def recorded(cases, seed):
+    """Recordings by the names of cases, effects and a motion each; simulated together, with the same noise."""
+    effects, motions = zip(*cases.values(), strict=True)
+    count = len(cases)
+    together = [AXIS] * count, motions, effects, [SENSORS] * count
+    runs = simulate(*together, seed, numbers=[0] * count, longest_step=STEP)
+    return {name: run.trace for name, run in zip(cases, runs, strict=True)}
+
+
+def one_way(seconds=6.0):
+    """Speeds between 20 and 120 rad/s, never reversed."""
+    rng = np.random.default_rng(0)
+    time = np.concatenate([[0.0, 0.1], 0.3 + np.arange(24) * (seconds - 0.6) / 24, [seconds - 0.1, seconds]])
+    speed = np.concatenate([[0.0, 0.0], rng.uniform(20.0, 120.0, 24), [0.0, 0.0]])
+    return Motion((Ramps(list(zip(time, speed, strict=True)), 0.02),))
+
+
+def along(references: References, repetitions: int) -> Motion:
+    """A planned motion as the independent drive follows it."""
+    points = list(zip(references.time[::20].tolist(), references.velocity[::20].tolist(), strict=True))
+    return Motion(tuple(Ramps([*points, (float(references.time[-1]) + 0.05, 0.0)], 0.005) for _ in range(repetitions)))
+
+
+#: What is hidden in a motion of one direction.
+HIDDEN = {"nothing": (), "an offset": offset(6.0)}
+
+
+@pytest.fixture(scope="module")
+def recordings():
+    cases = {name: (effects, one_way()) for name, effects in HIDDEN.items()}
+    cases["reversals, an offset"] = offset(5.0), random_motion(AXIS, np.random.default_rng(2), 5.0)
+    cases["reversals, nothing"] = (), random_motion(AXIS, np.random.default_rng(3), 5.0)
+    return recorded(cases, seed=4)
+
+
+@pytest.fixture(scope="module")
+def followed(rig, recordings):
+    """Diagnosis, experiment it proposes and recording along that, by what is hidden in a motion of one direction."""
+    found, planned, cases = {}, {}, {}
+    for name, effects in HIDDEN.items():
+        first = found[name] = diagnose(recordings[name], rig)
+        assert first.next_experiment is not None and first.model is not None, name
+        proposals = dict(motions(Recordings.of(recordings[name], rig, None), first.model.model))
+        planned[name] = proposals[first.next_experiment.profile]
+        cases[name] = effects, along(planned[name], first.next_experiment.repetitions)
+    along_them = recorded(cases, seed=5)
+    return {name: (found[name], planned[name], along_them[name]) for name in HIDDEN}
+
+
+@pytest.mark.parametrize("hidden", HIDDEN)
+def test_motion_in_one_direction_is_followed_by_reversals_that_tell(rig, recordings, followed, hidden):
+    first, proposed, along_it = followed[hidden]
+    assert first.next_experiment.tells_apart == ("coulomb_friction", "torque_offset")
+    assert first.next_experiment.speed <= 1.01 * np.abs(recordings[hidden]["velocity"]).max()
+    assert float(proposed.time[-1]) == pytest.approx(first.next_experiment.duration)
+    second = diagnose(along_it, rig)
+    names = {"torque_offset" if e.name == "direction_dependent_friction" else e.name for e in second.effects}
+    assert names == {effect.name for effect in HIDDEN[hidden]}
+    assert second.parameters["coulomb_friction_torque"].value == pytest.approx(AXIS.coulomb, rel=0.1)
+
+
+def test_names_that_no_motion_parts_have_no_experiment(rig, recordings):
+    found = diagnose(recordings["reversals, an offset"], rig)
+    assert found.effects[0].ambiguous_with
+    assert found.next_experiment is None
+
+
+def test_nothing_missing_needs_no_experiment(rig, recordings):
+    found = diagnose(recordings["reversals, nothing"], rig)
+    assert found.verdict == "nothing_missing"
+    assert found.next_experiment is None

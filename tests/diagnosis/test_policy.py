@@ -1,0 +1,187 @@
+"""Every rule of the search decides somewhere: with it the outcome is right, with the rule off it is another."""
+
+import numpy as np
+import pytest
+
+from bench.diagnosis.diagnosis import diagnose
+from bench.diagnosis.name import rules
+from bench.diagnosis.name import search as searching
+from bench.diagnosis.name.candidates import candidates
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.name.rules import (
+    Explains,
+    NoLongerNeeded,
+    Physical,
+    Promising,
+    Remainder,
+    ReplacesClearly,
+    Significant,
+)
+from bench.diagnosis.name.search import LIMIT, search
+from bench.effects.catalogue import catalogue
+from bench.trace.trace import Trace
+from tests.diagnosis.constructed import (
+    INERTIA,
+    RIG,
+    SINES,
+    UNITS,
+    bare,
+    moved,
+    names,
+    offset,
+    recorded,
+    vibration,
+    wave,
+)
+from tests.diagnosis.off import without
+
+POLICY = Policy()
+MOTION = moved(4.0)
+#: The same motion in less than a revolution each way, twice as fast.
+SHORT_STROKE = moved(4.0, sines=tuple((0.4 * amplitude, 2.0 * f, phase) for amplitude, f, phase in SINES))
+WAVES = ("cogging_torque", "torque_ripple", "unbalance", "quadratic_drag", "stribeck_friction")
+
+
+def searched(policy, trace, effects):
+    """Names before any doubt."""
+    return search(bare(trace), [catalogue()[name] for name in effects], policy).last.hypothesis.names
+
+
+def test_no_shape_is_searched_where_the_grid_promises_nothing(monkeypatch):
+    """Promising spares work: beside noise alone no shape of any effect is searched."""
+    asked, refined = [], searching.refined
+    monkeypatch.setattr(searching, "refined", lambda current, term: asked.append(term) or refined(current, term))
+    null, few = bare(recorded(MOTION)), [catalogue()[name] for name in WAVES]
+    assert search(null, few, POLICY).last is null
+    assert asked == []
+    search(null, few, without(Promising))
+    assert len(asked) == len(few)
+
+
+def test_a_significant_part_of_something_else_is_not_named():
+    trace = recorded(MOTION, vibration(0.05, 3.3))
+    assert searched(POLICY, trace, WAVES[:3]) == ()
+    assert searched(without(Explains), trace, WAVES[:3]) != ()
+
+
+@pytest.mark.parametrize("seed", [3, 11])
+def test_noise_that_takes_its_share_by_chance_is_not_named(seed):
+    """Where no effect is, a quarter of almost nothing above the floor is soon explained."""
+    trace = recorded(moved(3.0), seed=seed)
+    assert names(POLICY, trace, WAVES) == ()
+    assert names(without(Significant), trace, WAVES) == ("torque_ripple",)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_what_only_damps_noise_of_the_motion_is_no_coupling(monkeypatch, seed):
+    """Sines of an encoder, interpolated with an error: a load behind a coupling does not follow it, so squares fall."""
+    rng, motion = np.random.default_rng(seed), moved(4.0)
+    position = motion.position + 3e-4 * np.sin(256.0 * motion.position) + 1e-6 * rng.normal(size=motion.time.size)
+    signals = {"position": position, "current": recorded(motion, seed=seed)["current"]}
+    trace = Trace(motion.time, signals, {name: UNITS[name] for name in signals}, "interpolated")
+    assert searched(POLICY, trace, ["elastic_coupling"]) == ()
+    monkeypatch.setattr(rules, "over_noise", lambda fitted: fitted.rms)
+    assert searched(POLICY, trace, ["elastic_coupling"]) == ("elastic_coupling",)
+
+
+def test_a_torque_that_drives_the_axis_is_no_drag():
+    """A torque along the motion, growing with the square of speed: a drag of negative strength fits it."""
+    trace = recorded(MOTION, lambda motion: -5e-5 * motion.velocity * np.abs(motion.velocity))
+    assert names(POLICY, trace, ["quadratic_drag"]) == ()
+    assert names(without(Physical), trace, ["quadratic_drag"]) == ("quadratic_drag",)
+
+
+def test_a_name_that_later_ones_make_good_goes():
+    """Half a revolution of a spring and a wave of two cycles look like an unbalance until both are there."""
+    trace = recorded(SHORT_STROKE, lambda motion: 0.02 * motion.position, wave(0.04, 2.0), offset(0.05))
+    effects = ["torsion_spring", "unbalance", "cogging_torque", "torque_offset"]
+    hidden = {"torsion_spring", "cogging_torque", "torque_offset"}
+    assert set(names(POLICY, trace, effects)) == hidden
+    assert set(names(without(NoLongerNeeded), trace, effects)) == {*hidden, "unbalance"}
+
+
+def coupled(share, antiresonance, damping):
+    """What a load that is joined by a spring takes more than a rigid one, sine by sine by its transfer function."""
+
+    def torque(motion):
+        more = np.zeros_like(motion.time)
+        for amplitude, frequency, phase in SINES:
+            omega = 2.0 * np.pi * frequency
+            s = 1j * omega / antiresonance
+            beyond = (1.0 + 2.0 * damping * s) / (1.0 + 2.0 * damping * s + s**2) - 1.0
+            turning = np.exp(1j * (omega * motion.time + phase))
+            more -= share * INERTIA * amplitude * omega**2 * np.imag(beyond * turning)
+        return more
+
+    return torque
+
+
+def test_a_coupling_beside_something_else_is_no_gap():
+    """Where the coupling leaves a remainder a dead zone is tried in its place, and explains less."""
+    trace, effects = recorded(MOTION, coupled(0.6, 70.0, 0.04), vibration(0.02, 11.0)), ["elastic_coupling", "backlash"]
+    assert searched(POLICY, trace, effects) == ("elastic_coupling",)
+    assert searched(without(ReplacesClearly), trace, effects) == ("backlash",)
+
+
+def test_what_no_effect_explains_is_reported():
+    trace = recorded(MOTION, vibration(0.01, 3.3))
+    others = frozenset(catalogue()) - {"unbalance"}
+    assert diagnose(trace, RIG, excluded=others).verdict == "unexplained_remainder"
+    assert diagnose(trace, RIG, excluded=others, policy=without(Remainder)).verdict == "nothing_missing"
+
+
+def test_noise_alone_is_no_remainder():
+    others = frozenset(catalogue()) - {"unbalance"}
+    assert [diagnose(recorded(MOTION, seed=k), RIG, excluded=others).verdict for k in range(6)] == [
+        "nothing_missing"
+    ] * 6
+
+
+def test_few_finalists_are_searched_and_the_best_of_them():
+    current = bare(recorded(MOTION, wave(0.05, 6.0), offset(0.05)))
+    tried = candidates(current, catalogue().values())
+    kept = POLICY.promising.of(current, tried, POLICY.significant)
+    assert kept == tried[: len(kept)]
+    assert 1 <= len(kept) <= POLICY.promising.finalists < len(tried)
+
+
+def test_a_search_that_its_limit_ends_says_so():
+    trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
+    effects = [catalogue()[name] for name in ("torque_offset", "cogging_torque")]
+    cut = search(bare(trace), effects, Policy(most=1))
+    assert (len(cut.last.terms), cut.stopped) == (1, LIMIT)
+    whole = search(bare(trace), effects, Policy(most=2))
+    assert (set(whole.last.hypothesis.names), whole.stopped) == ({"torque_offset", "cogging_torque"}, None)
+
+
+def test_a_family_of_harmonics_is_one_effect():
+    trace = recorded(MOTION, wave(0.05, 6.0), wave(0.05, 9.0, 1.0))
+    found = search(bare(trace), [catalogue()["cogging_torque"]], Policy(most=1))
+    assert sorted(term.shape for term in found.last.terms) == [(6.0,), (9.0,)]
+    assert found.stopped is None
+    cut = search(bare(trace), [catalogue()["cogging_torque"]], Policy(members=1))
+    assert len(cut.last.terms) == 1
+    assert cut.stopped == LIMIT
+
+
+class OneAtATime(NoLongerNeeded):
+    """Lets go of the first effect as soon as there is a second one."""
+
+    def holds(self, fitted, less, index, significant):
+        return index == 0
+
+
+def test_what_is_taken_up_and_let_go_in_turn_ends():
+    """Each of two effects is worth taking up beside the other, and the other is let go for it."""
+    trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
+    effects = [catalogue()[name] for name in ("torque_offset", "cogging_torque")]
+    found = search(bare(trace), effects, Policy(no_longer_needed=OneAtATime()))
+    assert [len(step.fitted.terms) for step in found.steps] == [0, 1, 1]
+    assert found.stopped is None
+
+
+def test_what_the_limit_cut_off_is_a_remainder():
+    trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
+    others = frozenset(catalogue()) - {"torque_offset", "cogging_torque"}
+    cut = diagnose(trace, RIG, excluded=others, policy=Policy(most=1, doubts=()))
+    assert (cut.verdict, cut.stopped) == ("unexplained_remainder", LIMIT)

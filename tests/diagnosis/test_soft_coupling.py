@@ -1,0 +1,91 @@
+"""The load behind a soft coupling: against its equation integrated elsewhere, and found in simulated recordings."""
+
+import numpy as np
+import pytest
+import scipy.integrate
+
+from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.name.search import search
+from bench.effects.catalogue import catalogue
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.rows import Rows
+from bench.rig.rig import Rig, load_rig
+from bench.trace.trace import Trace
+from bench.validation.independent.effects.friction import PreslidingFriction
+from bench.validation.independent.effects.transmission import ElasticCoupling
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.rig import Axis, write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate
+from tests.kept import kept
+
+ELASTIC = catalogue()["elastic_coupling"]
+PERIOD = 1e-3
+AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
+SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
+#: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
+STEP = 62.5e-6
+
+
+COUPLING, BRISTLES = ElasticCoupling(14.0, 2.5e-3), PreslidingFriction(3.0, 8e-3)
+SEED = 5
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory) -> tuple[Rig, dict[str, Trace]]:
+    """The rig, and a recording by the name of the effect in it."""
+    path = tmp_path_factory.mktemp("rig") / "rig.toml"
+    write_rig(AXIS, path)
+    effects, motion = (COUPLING, BRISTLES), random_motion(AXIS, np.random.default_rng(SEED), 6.0)
+    together = [AXIS] * 2, [motion] * 2, [(effect,) for effect in effects], [SENSORS] * 2
+    runs = kept(lambda: [run.trace for run in simulate(*together, SEED, numbers=[0, 0], longest_step=STEP)], __file__)
+    return load_rig(path), {effect.name: trace for effect, trace in zip(effects, runs, strict=True)}
+
+
+@pytest.mark.parametrize(("drag", "ends"), [(0.0, 4.0), (0.02, 4.0), (0.0, 3.7)])
+def test_the_load_moves_as_its_equation_says(tmp_path, drag, ends):
+    """A recording that ends in motion rings on behind its end, and none of that comes back at its start."""
+    antiresonance, damping = 150.0, 0.01
+    write_rig(AXIS, tmp_path / "rig.toml")
+    rig = load_rig(tmp_path / "rig.toml")
+    time = np.arange(0.0, ends, PERIOD)
+    turn, speed = 2.0 * np.pi / 4.0, 60.0
+    angle, velocity = speed / turn * (1.0 - np.cos(turn * time)), speed * np.sin(turn * time)
+    values = {"position": angle, "velocity": velocity, "current": 0.12 * np.cos(turn * time) + 0.1 * np.sign(velocity)}
+    rows = Rows.of(Trace(time, values, {"position": "rad", "velocity": "rad/s", "current": "A"}, "swing"), rig)
+
+    def equation(t, state):
+        motor, rate = speed / turn * (1.0 - np.cos(turn * t)), speed * np.sin(turn * t)
+        pull = antiresonance**2 * (motor - state[0]) + 2.0 * damping * antiresonance * (rate - state[1])
+        return [state[1], pull - drag * state[1] * abs(state[1])]
+
+    load = scipy.integrate.solve_ivp(equation, (0.0, ends), [0.0, 0.0], t_eval=time, rtol=1e-8, atol=1e-9).y
+    acting = [(catalogue()["quadratic_drag"], (), (drag,))] if drag else []
+    found = rows.table(lambda s: ELASTIC.columns_of(s, [(antiresonance, damping)], acting))[:, 0]
+    excess = drag * (load[1] * np.abs(load[1]) - velocity * np.abs(velocity))
+    expected = rows.table(lambda s: [[(load[0] - angle, 2), (excess, 0)]])[:, 0]
+    assert found == pytest.approx(expected, abs=2e-3 * np.abs(expected).max())
+
+
+def test_a_soft_coupling_leaves_noise_alone(recorded):
+    (rig, traces), effect = recorded, COUPLING
+    rows = Rows.of(traces[effect.name], rig)
+    antiresonance = np.sqrt(effect.stiffness / (AXIS.inertia - AXIS.rotor_inertia))
+    shape = float(antiresonance), 0.5 * effect.damping * float(antiresonance) / effect.stiffness
+    fitted = fit(rows, Hypothesis((Term(ELASTIC, shape),)))
+    assert 0.9 < fitted.chi < 1.1
+    assert fitted.theta[0] == pytest.approx(AXIS.inertia, rel=1e-3)
+    assert fitted.strengths(0)[0] == pytest.approx(AXIS.inertia - AXIS.rotor_inertia, rel=3e-3)
+
+
+def test_bristles_are_named_with_their_damping(recorded):
+    (rig, traces), effect = recorded, BRISTLES
+    fitted = search(gap(Rows.of(traces[effect.name], rig)), list(catalogue().values()), Policy()).last
+    assert fitted.hypothesis.names == ("presliding_friction",)
+    assert fitted.chi < 1.1
+    values = fitted.terms[0].effect.report(fitted.strengths(0), fitted.terms[0].shape, fitted.base)
+    assert values["bristle_stiffness"] == pytest.approx(effect.bristle_stiffness, rel=0.03)
+    assert values["bristle_damping"] == pytest.approx(effect.bristle_damping, rel=0.15)
+    assert fitted.theta[0] == pytest.approx(AXIS.inertia, rel=1e-3)

@@ -1,0 +1,34 @@
+"""How recordings differ beyond their own errors, against formulas."""
+
+import numpy as np
+import pytest
+
+from bench.fit.between import between, excess
+from bench.fit.parameter import Parameter
+from bench.statistics import NORMAL95
+
+
+def numbers(values, error):
+    reach = NORMAL95 * error
+    return [Parameter(value, "", error, (value - reach, value + reach)) for value in values]
+
+
+def test_the_variance_between_recordings_is_that_of_the_method_of_moments():
+    values, error = [1.0, 2.0, 4.0, 5.0], 0.5
+    found = excess([numbers(values, error)])
+    assert found.variance == pytest.approx(np.var(values, ddof=1) - error**2)
+    assert found.degrees == 3
+    assert excess([numbers([1.0, 1.1], 0.5)]).variance == 0.0
+    assert excess([numbers([1.0], 0.5), numbers([7.0], 0.5)]).degrees == 0
+    grouped = excess([numbers([1.0, 2.0], error), numbers([11.0, 12.0], error)])
+    assert (grouped.variance, grouped.degrees) == (pytest.approx(0.5 - error**2), 2)
+
+
+def test_the_expected_interval_is_students_and_never_below_the_recordings_own_errors():
+    wide = between(numbers([1.0, 2.0, 3.0], 1e-3))
+    assert wide.std_dev == pytest.approx(1.0)
+    assert wide.predictive95 == pytest.approx(
+        (2.0 - 4.302653 * np.sqrt(4.0 / 3.0), 2.0 + 4.302653 * np.sqrt(4.0 / 3.0))
+    )
+    low, high = between(numbers([2.0, 2.0], 0.1)).predictive95
+    assert high - low == pytest.approx(2.0 * NORMAL95 * 0.1 * np.sqrt(1.5))

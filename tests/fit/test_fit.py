@@ -1,0 +1,92 @@
+"""One engine: identify and diagnose tell the same of the same rows, and the floor is the noise's, whatever moves."""
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from bench.diagnosis.diagnosis import diagnose
+from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.name.policy import Policy
+from bench.effects.catalogue import catalogue
+from bench.fit.regression import identify
+from bench.fit.rows import Rows
+from bench.trace.trace import Trace
+from tests.diagnosis.constructed import (
+    CONSTANT,
+    RIG,
+    base,
+    moved,
+    names,
+    offset,
+    only_during,
+    recorded,
+    wave,
+)
+
+RIGID = [name for name, effect in catalogue().items() if not effect.couples]
+
+
+def coloured(motion):
+    white = np.random.default_rng(8).normal(scale=0.01, size=motion.time.size)
+    return lfilter([0.4], [1.0, -0.8], white)
+
+
+def hum(motion):
+    return 0.03 * np.sin(2.0 * np.pi * 50.0 * motion.time)
+
+
+def coarse(motion):
+    return np.round(base(motion) / 0.01) * 0.01 - base(motion)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("noise", [None, coloured, hum, coarse], ids=["white", "coloured", "hum", "coarse"])
+def test_identify_and_diagnose_tell_the_same_of_a_null(seed, noise):
+    trace = recorded(moved(), seed=seed, pick_up=noise)
+    told = diagnose(trace, RIG, excluded=frozenset(catalogue()) - {"unbalance"}).parameters
+    found = identify(trace, RIG).parameters
+    for name in ("moment_of_inertia", "viscous_friction_coefficient", "coulomb_friction_torque"):
+        assert told[name].value == pytest.approx(found[name].value, rel=1e-9)
+        assert told[name].ci95 == pytest.approx(found[name].ci95, rel=1e-6)
+
+
+def test_six_effects_on_one_axis_are_all_named():
+    def stribeck(motion):
+        return 0.06 * motion.sign * np.exp(-((motion.velocity / 4.0) ** 2))
+
+    six = [wave(0.04, 6.0, 0.3), wave(0.06, 1.0, 1.0), offset(0.05), stribeck]
+    six += [lambda motion: 0.01 * motion.position, lambda motion: 1e-4 * motion.velocity * np.abs(motion.velocity)]
+    named = names(Policy(), recorded(moved(6.0), *six), RIGID)
+    assert sorted(named) == [
+        "cogging_torque",
+        "quadratic_drag",
+        "stribeck_friction",
+        "torque_offset",
+        "torsion_spring",
+        "unbalance",
+    ]
+
+
+def test_an_event_shorter_than_the_filter_resolves_is_not_named():
+    """Of 4 ms through a filter of 2 ms, torque and duration are one number: a larger one, half as long, looks alike."""
+    trace = recorded(moved(), only_during(0.5, 2.0, 2.004))
+    assert 2.355 * Rows.of(trace, RIG).conditioning.filter.width > 0.004
+    assert names(Policy(), trace, ["load_torque_event"]) == ()
+    assert names(Policy(), recorded(moved(), only_during(0.5, 2.0, 2.04)), ["load_torque_event"]) == (
+        "load_torque_event",
+    )
+
+
+@pytest.mark.parametrize(("duration", "period"), [(1.0, 1e-3), (300.0, 2e-3)])
+def test_a_clean_recording_in_one_direction_leaves_noise_alone(duration, period):
+    """Position ends far from where it began, a step to any transform that takes the stretch for one period."""
+    motion = moved(duration, sines=((0.8, 2.0, 0.2), (0.2, 5.3, 1.0)), drift=150.0, period=period)
+    assert (motion.velocity > 0.0).all()
+    rng = np.random.default_rng(4)
+    signals = {
+        "position": motion.position + 1e-6 * rng.normal(size=motion.time.size),
+        "current": (base(motion) + 6e-3 * rng.normal(size=motion.time.size)) / CONSTANT,
+    }
+    trace = Trace(motion.time, signals, {"position": "rad", "current": "A"}, "one way")
+    narrowest = 1.0 / period
+    assert gap(Rows.of(trace, RIG, cutoff=narrowest)).chi < 1.12

@@ -1,0 +1,70 @@
+"""One's own axis: the motion of a recording, the axis of a rig, and what is missing in either."""
+
+import numpy as np
+import pytest
+
+from bench.assets import asset
+from bench.errors import InputError
+from bench.rig.rig import Rig, load_rig
+from bench.trace.trace import Trace
+from bench.validation.own import Sampled, motion_of, own_axis
+from tests.fit.motions import Truth, recording
+
+DRIVE = {"position_gain": "30 1/s", "velocity_gain": "0.15 N*m*s/rad", "integral_gain": "3 N*m/rad"}
+TABLE = {
+    "name": "own",
+    "kind": "rotary",
+    "motor": {"torque_constant": "0.8 N*m/A", "peak_current": "8 A", "rotor_inertia": "2 kg*cm**2"},
+    "drive": DRIVE,
+}
+
+
+def test_a_sampled_motion_starts_and_ends_at_rest_and_goes_through_its_speeds():
+    time = np.linspace(2.0, 3.0, 201)
+    motion = Sampled(time, 5.0 + 3.0 * np.sin(12.0 * time))
+    dense = np.linspace(0.0, motion.duration, 4001)
+    position, speed, acceleration = motion.at(dense)
+    assert speed[[0, -1]] == pytest.approx([0.0, 0.0])
+    assert np.interp(0.1 + 0.5, dense, speed) == pytest.approx(5.0 + 3.0 * np.sin(12.0 * 2.5), abs=1e-3)
+    assert np.gradient(position, dense) == pytest.approx(speed, abs=0.05)
+    assert position[-1] == pytest.approx(motion.distance)
+    assert np.trapezoid(acceleration, dense) == pytest.approx(0.0, abs=1e-2)
+
+
+def test_the_motion_is_the_reference_where_there_is_one():
+    made = recording(np.random.default_rng(2), duration=2.0)
+    reference = np.sin(made.time)
+    units = {"velocity": "rad/s", "current": "A", "velocity_reference": "rad/s"}
+    told = Trace(made.time, {**made.signals, "velocity_reference": reference}, units, "told")
+    assert motion_of(told).top == pytest.approx(np.abs(reference).max())
+    assert motion_of(made).top == pytest.approx(np.abs(made["velocity"]).max(), rel=0.05)
+
+
+def test_what_the_rig_does_not_say_the_recording_does():
+    truth = Truth()
+    own = own_axis(Rig.of(TABLE), "monday.csv", recording(np.random.default_rng(1), truth, duration=10.0))
+    assert [own.axis.inertia, own.axis.coulomb] == pytest.approx([truth.inertia, truth.coulomb], rel=0.02)
+    assert own.sensors.velocity.white == pytest.approx(0.03, rel=0.1)
+    assert own.sensors.current.white == pytest.approx(0.01 / 0.8, rel=0.1)
+    assert own.plants == ("independent", "mujoco")
+    assert own.axis.back_emf_constant == 0.0  # so that no voltage limit is hidden in it
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"drive": None}, "drive"),
+        ({"motor": {"torque_constant": "0.8 N*m/A"}}, "peak_current"),
+        ({"load": {"eccentric_mass": "0.1 kg", "eccentric_radius": "10 mm"}}, "eccentric_mass"),
+    ],
+)
+def test_what_a_rig_lacks_is_reported(change, told):
+    table = {key: value for key, value in (TABLE | change).items() if value is not None}
+    with pytest.raises(InputError, match=told):
+        own_axis(Rig.of(table), "monday.csv", recording(np.random.default_rng(1), duration=10.0))
+
+
+def test_a_motor_that_saturates_is_mujocos_alone():
+    own = own_axis(load_rig(asset("data", "rigs", "sh30701p.toml")), "fast_reversals", None)
+    assert own.rig.motor.torque_per_ampere is not None
+    assert own.plants == (("mujoco",) if own.rig.motor.torque_per_ampere.curvature else ("independent", "mujoco"))
