@@ -27,8 +27,8 @@ from bench.units import Quantity
 if TYPE_CHECKING:
     from bench.effects.kinds import Axis, Number
 
-#: Share of the squared residual above noise that an effect must explain (see `tests.blind.margins`), and that of a
-#: pitch with more than MANY half cycles in a linear axis' travel, which no smooth error imitates.
+#: Share of the squared residual above noise that an effect must explain (see `tests.studies.blind.margins`), and
+#: that of a pitch with more than MANY half cycles in a linear axis' travel, which no smooth error imitates.
 SHARE, PITCH_SHARE, MANY = 0.25, 0.1, 20.0
 
 #: An effect on the load behind a coupling: the effect, its shape, its strengths divided by the load inertia.

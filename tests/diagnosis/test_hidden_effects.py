@@ -1,6 +1,6 @@
 """What is hidden by the independent integrator is named, nothing hidden is not, and the foreign stays unnamed.
 
-Every effect, on axes and electronics drawn at random: `tests/blind`.
+Every effect, on axes and electronics drawn at random: `tests/studies/blind`.
 """
 
 import json

@@ -12,8 +12,8 @@ from bench.diagnosis.diagnosis import diagnose
 from bench.effects.catalogue import catalogue
 from bench.rig.rig import load_rig
 from bench.validation.independent import KINDS, Axis, Noise, Sensors, random_motion, simulate, write_rig
-from tests.blind.parameters import WHOLE, compared
 from tests.kept import kept
+from tests.studies.blind.parameters import WHOLE, compared
 
 AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3

@@ -5,8 +5,8 @@
     python -m tests.studies.outputs compare before after   # exit status 1 where they differ
 
 A job is a list of commands that run one after the other in a folder of their own; each leaves its files, its exit
-status and all that it prints. Numbers in JSON, TOML and CSV files are the same within a relative tolerance; provenance, which
-names versions and paths, is left out.
+status and all that it prints. Numbers in JSON, TOML and CSV files are the same within a relative tolerance; provenance,
+which names versions and paths, is left out.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Rules of the search for names, in the order in which they are asked; the list of them below reads as the policy.
 
 Every rule is one object that says why it is there; its threshold stands beside the measurement behind it. Halved and
-doubled over the blind set, one after the other, the thresholds give the table that `python -m tests.blind.thresholds`
-writes.
+doubled over the blind set, one after the other, the thresholds give the table that
+`python -m tests.studies.blind.thresholds` writes.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class Significant:
 
     Attributes:
         least: gain over noise power, per number fitted and independent row. Of 100 nulls the best candidate saves
-            6 in the middle and 116 at most per number of its shape (`python -m tests.blind.margins`).
+            6 in the middle and 116 at most per number of its shape (`python -m tests.studies.blind.margins`).
     """
 
     least: float = 40.0
@@ -198,7 +198,7 @@ class Remainder:
 
     Attributes:
         chi: residual over noise floor. Nulls of the blind set leave 1.095 at 95 %, 1.40 at most
-            (`python -m tests.blind.margins`).
+            (`python -m tests.studies.blind.margins`).
     """
 
     chi: float = 1.12

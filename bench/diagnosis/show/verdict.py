@@ -1,7 +1,7 @@
 """The verdict, with every objection to a model that claims to explain everything.
 
 Each objection is one object that gives its reason; OBJECTIONS is the policy. The thresholds are measured on every fifth
-case of the blind set with all effects in the catalogue (`python -m tests.blind.margins`).
+case of the blind set with all effects in the catalogue (`python -m tests.studies.blind.margins`).
 """
 
 from __future__ import annotations

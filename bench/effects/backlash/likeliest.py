@@ -41,9 +41,9 @@ AROUND = (np.linspace(-0.12, 0.12, 7), np.linspace(-0.6, 0.6, 5), np.linspace(-0
 #: Length of what is drawn: longer than a load rings after an impact - s.
 STRETCH = 0.2
 #: Standard errors that all resampled recordings share, as shares: rebounds run faster than samples of 1 ms follow.
-#: Of 11 drawn axes (`python -m tests.blind --only backlash --seed 9`) ten gaps came out within 2 % and one 4 % too
-#: narrow; frequencies of contact 15 % too low on average and 22 % off by root mean square, of which resampling shows
-#: 14 %; damping 1.5 to 7 times too high.
+#: Of 11 drawn axes (`python -m tests.studies.blind --only backlash --seed 9`) ten gaps came out within 2 % and one 4 %
+#: too narrow; frequencies of contact 15 % too low on average and 22 % off by root mean square, of which resampling
+#: shows 14 %; damping 1.5 to 7 times too high.
 SHARED = np.array([0.01, 0.16, 0.32])
 #: Resampled recordings.
 DRAWS = 400

@@ -1,4 +1,0 @@
-"""The nuisance set: sound recordings of an independent integrator, damaged as the world damages recordings.
-
-`python -m tests.nuisance --help`; what it measures and last measured: docs/nuisance.md.
-"""

@@ -1,0 +1,114 @@
+"""Command line of the benchmarks: `python -m tests.studies.benchmarks [NAME...] [--out docs]`."""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections.abc import Callable, Iterable, Mapping
+from datetime import date
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import track
+
+from tests.studies.benchmarks.table import Table
+
+PAGE = "benchmarks.md"
+INTRODUCTION = """# Benchmarks
+
+    python -m tests.studies.benchmarks --out docs
+
+measures what follows (`pip install -e '.[dev,benchmarks]'`). With names, as in
+`python -m tests.studies.benchmarks lstsq --out docs`, it measures some of it anew and leaves the rest as it is. Ways
+that are held against each other are measured within one run, in turn, so that they share what else the machine does; times are medians, and a ratio is the median
+of the ratios within each round. A time of one machine says little about another, a ratio more.
+"""
+
+
+def sysid() -> list[Table]:
+    try:  # an extra of MuJoCo, which hides that it is not there
+        from mujoco.sysid import optimize as _  # noqa: F401
+    except ImportError as error:
+        raise typer.BadParameter("mujoco.sysid is not complete; pip install -e '.[benchmarks]'") from error
+    from tests.studies.benchmarks.beside_sysid import measured
+
+    return measured()
+
+
+def lstsq() -> list[Table]:
+    from tests.studies.benchmarks.beside_lstsq import measured
+
+    return measured()
+
+
+def stepping() -> list[Table]:
+    from tests.studies.benchmarks.beside_stepping import measured
+
+    return measured()
+
+
+def reading() -> list[Table]:
+    from tests.studies.benchmarks.beside_pyarrow import measured
+
+    return measured()
+
+
+def growing() -> list[Table]:
+    from tests.studies.benchmarks.growth import measured
+
+    return measured()
+
+
+#: Headings of the page's sections in their order, and what measures them, by the names of the command line.
+BENCHMARKS: dict[str, tuple[str, Callable[[], list[Table]]]] = {
+    "sysid": ("Identification beside mujoco.sysid", sysid),
+    "lstsq": ("Least squares beside NumPy's", lstsq),
+    "stepping": ("Simulation beside bare stepping", stepping),
+    "reading": ("Reading beside pyarrow", reading),
+    "growth": ("Growth with samples, axes and effects", growing),
+}
+
+
+def section(tables: Iterable[Table]) -> str:
+    """What stands under a heading: when and with what, and the tables."""
+    packages = ", ".join(f"{name} {version(name)}" for name in ("mujoco", "numpy", "scipy", "pyarrow"))
+    told = f"{date.today()}, Python {platform.python_version()}, {packages}, {os.cpu_count()} cores."
+    return "\n\n".join([told, *(table.markdown for table in tables)])
+
+
+def sections(page: str) -> dict[str, str]:
+    """Text under each heading of a page."""
+    parts = (part.split("\n", 1) for part in page.split("\n## ")[1:])
+    return {heading: text.strip() for heading, text in parts}
+
+
+def page(known: Mapping[str, str]) -> str:
+    """The page of all sections that are known."""
+    headings = [heading for heading, _ in BENCHMARKS.values() if heading in known]
+    return INTRODUCTION + "".join(f"\n## {heading}\n\n{known[heading]}\n" for heading in headings)
+
+
+def main(
+    names: Annotated[list[str] | None, typer.Argument(help=f"Of {', '.join(BENCHMARKS)}; all if none.")] = None,
+    out: Annotated[Path | None, typer.Option(help=f"Folder of {PAGE}; sections not measured stay.")] = None,
+) -> None:
+    """Measure the bench beside what it is made of and what does the same."""
+    unknown = sorted(set(names or []) - set(BENCHMARKS))
+    if unknown:
+        raise typer.BadParameter(f"found {', '.join(unknown)}; allowed: {', '.join(BENCHMARKS)}")
+    wanted = [name for name in BENCHMARKS if name in (names or BENCHMARKS)]
+    for name in track(wanted, console=Console(stderr=True)):
+        heading, measured = BENCHMARKS[name]
+        text = section(measured())
+        typer.echo(f"## {heading}\n\n{text}\n")
+        if out is not None:  # what is measured is kept, whatever comes next
+            path = out / PAGE
+            known = sections(path.read_text(encoding="utf-8")) if path.exists() else {}
+            path.write_text(page({**known, heading: text}), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    typer.run(main)

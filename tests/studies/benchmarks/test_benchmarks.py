@@ -1,0 +1,104 @@
+"""The benchmarks run, at sizes that measure nothing, and their page is written; no time is asserted."""
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from tests.hostile import ROOT
+from tests.studies.benchmarks import __main__ as command
+from tests.studies.benchmarks import beside_lstsq, beside_pyarrow, beside_stepping, growth
+from tests.studies.benchmarks.table import Table
+from tests.studies.benchmarks.table import growth as exponents
+from tests.studies.benchmarks.timing import Timed, in_turn
+
+
+@pytest.mark.parametrize(
+    ("measured", "rows"),
+    [
+        (lambda: beside_lstsq.measured((3.0,), 1), (1,)),
+        (lambda: beside_stepping.measured(steps=40, axes=3, few=20, rounds=1), (10,)),
+        (lambda: beside_pyarrow.measured((2000,), 1), (2,)),
+        (lambda: growth.measured((1000, 2000), (1, 2), (1, 21), ticks=20, rounds=1), (2, 2, 2)),
+    ],
+    ids=["lstsq", "stepping", "reading", "growth"],
+)
+def test_each_measures_every_way(measured, rows):
+    tables = measured()
+    assert tuple(len(table.rows) for table in tables) == rows
+    for table in tables:
+        lines = table.markdown.splitlines()
+        assert len({line.count("|") for line in lines[2:]}) == 1
+        assert all(line.startswith("| ") for line in lines[2:])
+
+
+@pytest.mark.slow
+def test_beside_sysid_both_find_the_axis():
+    pytest.importorskip("tabulate", reason="pip install -e '.[benchmarks]'")
+    from tests.studies.benchmarks import beside_sysid
+
+    (run,) = beside_sysid.recordings(1, 3.0)
+    ours, theirs = beside_sysid.by_bench(run), beside_sysid.by_sysid(run, 1e-3)
+    np.testing.assert_allclose(ours.values, 1.0, atol=0.1)
+    np.testing.assert_allclose(theirs.values, 1.0, atol=0.5)
+    assert len(beside_sysid.compared({beside_sysid.OURS: [ours], "theirs": [theirs]}, 3.0).rows) == 2
+
+
+def test_ways_take_turns():
+    turns = []
+    timed = in_turn({name: lambda name=name: turns.append(name) for name in "ab"}, 3)
+    assert turns == ["a", "b"] * 4  # the first turn does not count
+    assert [len(seconds) for seconds in timed.seconds.values()] == [3, 3]
+
+
+def test_a_ratio_is_the_median_of_the_rounds():
+    timed = Timed({"a": (2.0, 8.0, 90.0), "b": (1.0, 2.0, 3.0)})
+    assert timed.ratio("a", "b") == 4.0
+    assert timed.median("a") == 8.0
+
+
+def test_exponent_of_a_square_is_two():
+    assert exponents((1, 10, 1000), (1.0, 100.0, 1e6)) == ("", "2.00", "2.00")
+
+
+@pytest.fixture
+def one_row(monkeypatch):
+    """Two benchmarks that measure nothing; the second one's figure is what a test sets."""
+    figure = ["1.00"]
+
+    def table():
+        return [Table("Told.", ("", "ratio"), (("a", figure[0]),))]
+
+    monkeypatch.setattr(command, "BENCHMARKS", {"first": ("First", table), "second": ("Second", table)})
+    return figure
+
+
+def run(*arguments):
+    import typer
+
+    app = typer.Typer()
+    app.command()(command.main)
+    return CliRunner().invoke(app, [str(each) for each in arguments])
+
+
+def test_the_page_holds_what_was_measured_and_keeps_what_was_not(one_row, tmp_path):
+    assert run("--out", tmp_path).exit_code == 0
+    whole = (tmp_path / command.PAGE).read_text(encoding="utf-8")
+    assert whole.index("## First") < whole.index("## Second")
+    one_row[0] = "2.00"
+    assert run("second", "--out", tmp_path).exit_code == 0
+    again = command.sections((tmp_path / command.PAGE).read_text(encoding="utf-8"))
+    assert "1.00" in again["First"]
+    assert "2.00" in again["Second"]
+
+
+def test_an_unknown_name_is_reported(one_row):
+    told = run("third")
+    assert told.exit_code == 2
+    assert "allowed: first, second" in " ".join(told.output.split())
+
+
+def test_the_committed_page_is_of_these_benchmarks():
+    page = (ROOT / "docs" / command.PAGE).read_text(encoding="utf-8")
+    found = command.sections(page)
+    assert list(found) == [heading for heading, _ in command.BENCHMARKS.values()]
+    assert page == command.page(found)

@@ -1,0 +1,97 @@
+"""How far the search's thresholds stand from what the blind set shows: `python -m tests.studies.blind.margins`.
+
+Of nulls: the most that any candidate would save, over noise power, per number and independent row (`Significant`), and
+residual over noise floor (`Remainder`). Of singles named rightly: the share of what stands above the noise floor that
+the hidden effect explains when it is taken up (`Explains`), and residual over noise floor with it. Of all that is
+explained: the torque gap of the holdout over that of the recording, noise at least (`HoldoutApart`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.progress import track
+
+from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.name.candidates import candidates
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.name.rules import worth
+from bench.diagnosis.name.search import search
+from bench.effects.catalogue import catalogue
+from bench.fit.fit import Fit
+from bench.fit.rows import Rows
+from bench.rig.rig import load_rig
+from bench.trace.read import read
+from tests.studies.blind.draw import Drawn, draw
+from tests.studies.blind.record import home, truth_of
+from tests.studies.blind.run import diagnosis_of
+from tests.studies.blind.score import same
+
+REMAINS = Policy().remainder.chi
+
+
+def bare(folder: Path) -> Fit:
+    """The fit without an effect of a case's first recording."""
+    rig = load_rig(folder / "rig.toml")
+    return gap(Rows.of(read(folder / "run1.csv.gz", rig.trace.columns), rig))
+
+
+def of_nulls(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[float]]:
+    """Significance of the best candidate, and residual over noise floor, of each."""
+    significance, chi = [], []
+    for case in track(cases, "nulls", console=Console(stderr=True)):
+        fitted = bare(folder / case.name)
+        best = candidates(fitted, catalogue().values())[0]
+        numbers = max(len(best.term.shape), 1)
+        significance.append(best.gain / (numbers * fitted.rows.correlation * fitted.floor**2))
+        chi.append(fitted.chi)
+    return significance, chi
+
+
+def of_singles(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[float]]:
+    """Share explained by the hidden effect when taken up, and residual over noise floor, where it alone is named."""
+    shares, chi = [], []
+    for case in track(cases, "singles", console=Console(stderr=True)):
+        steps = search(bare(folder / case.name), list(catalogue().values()), Policy()).steps
+        if len(steps) == 2 and same(steps[1].fitted.hypothesis.names) == same(truth_of(folder, case.name)["effects"]):
+            before, after = steps[0].fitted, steps[1].fitted
+            shares.append(worth(before, after) / before.excess if before.excess else 1.0)
+            chi.append(after.chi)
+    return shares, chi
+
+
+def of_holdouts(folder: Path, cases: Sequence[Drawn]) -> list[float]:
+    """Gap of the holdout over that of the recording, noise at least, where nothing else speaks against a model."""
+    ratios = []
+    for case in track(cases, "holdouts", console=Console(stderr=True)):
+        torque = diagnosis_of(folder / case.name, frozenset()).torque
+        if torque.identify is not None and torque.holdout is not None:
+            least = max(torque.identify[1], torque.noise_floor)
+            ratios += [torque.holdout[1] / least] * (torque.identify[1] < REMAINS * torque.noise_floor)
+    return ratios
+
+
+def main(every: Annotated[int, typer.Option(min=1, help="Take every so many of singles and holdouts.")] = 5) -> None:
+    """Print the margins; the blind set must have been recorded by `python -m tests.studies.blind`."""
+    folder, drawn = home(1, 8.0, None), draw(1, {"single": 252, "pair": 60, "null": 100, "outside": 32}, 8.0)
+    significance, null_chi = of_nulls(folder, [case for case in drawn if case.hidden.group == "null"])
+    shares, chi = of_singles(folder, [case for case in drawn if case.hidden.group == "single"][::every])
+    typer.echo(
+        f"{len(significance)} nulls: best candidate {np.max(significance):.1f} at most, median "
+        f"{np.median(significance):.1f}; chi {np.quantile(null_chi, 0.95):.3f} at 95 %, {np.max(null_chi):.3f} at most"
+    )
+    typer.echo(
+        f"{len(shares)} singles: share explained {np.min(shares):.2f} at least, {np.quantile(shares, 0.05):.2f} at "
+        f"5 %; chi {np.quantile(chi, 0.95):.3f} at 95 %, {np.max(chi):.3f} at most"
+    )
+    apart = of_holdouts(folder, drawn[::every])
+    typer.echo(f"{len(apart)} holdouts: gap {np.quantile(apart, 0.9):.2f} times at 90 %, {np.max(apart):.2f} at most")
+
+
+if __name__ == "__main__":
+    typer.run(main)

@@ -1,0 +1,55 @@
+"""Thresholds are found in the rules, changed one at a time and put back; a variant's names are counted as the set's."""
+
+import pytest
+
+from bench.diagnosis.name.policy import Policy
+from bench.effects import effect
+from tests.studies.blind.thresholds import AS_IS, Named, Tally, key, markdown, sample
+from tests.studies.blind.variants import FACTORS, switched_off, thresholds
+
+TRUTHS = [{"group": "single", "effects": ["unbalance"]}, {"group": "null", "effects": []}]
+
+
+def test_every_threshold_says_what_it_decides():
+    found = thresholds()
+    assert {"Significant.least", "Contested.kept", "Policy.most"} <= {f"{each.owner}.{each.name}" for each in found}
+    assert all(each.decides for each in found)
+
+
+@pytest.mark.parametrize("threshold", thresholds(), ids=lambda each: f"{each.owner}.{each.name}")
+def test_one_threshold_changes_and_comes_back(threshold):
+    before = thresholds()
+    with threshold.times(2.0) as policy:
+        if "." in threshold.owner:
+            assert [each.value for each in thresholds()] != [each.value for each in before]
+        else:
+            assert policy != Policy()
+            assert (policy.doubts == Policy().doubts) is not threshold.of_doubts
+    assert thresholds() == before
+    assert effect.SHARE == 0.25
+
+
+def test_a_sample_holds_every_effect_and_group():
+    drawn = sample(1, 8.0, 6)
+    assert len({case.hidden.effects[0].name for case in drawn if case.name.startswith("single")}) == 21
+    assert {case.name.split("-")[0] for case in drawn} == {"single", "pair", "null", "outside"}
+
+
+def test_right_and_wrong_names_are_counted():
+    assert str(Tally.of(TRUTHS, [Named(("unbalance",)), Named(("backlash",))])) == "1 0 0 0, 1"
+    outside = [{"group": "outside", "effects": ["vibration"]}]
+    assert str(Tally.of(outside, [Named((), True)])) == "0 0 0 1, 0"
+    assert str(Tally.of(outside, [Named((), False)])) == "0 0 0 0, 0"
+
+
+def test_a_threshold_that_changes_nothing_is_marked():
+    keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in FACTORS), *switched_off()]
+    same = [dict.fromkeys(keys, Named(("unbalance",))), dict.fromkeys(keys, Named())]
+    same[0]["Significant.least half"] = Named(("unbalance", "backlash"))
+    rows = markdown(TRUTHS, same, "command").splitlines()
+    idle = [row for row in rows if "changes nothing here" in row]
+    assert len(idle) == len(thresholds()) - 1
+    assert next(row for row in rows if row.startswith("| Significant.least")).split("|")[4:6] == [
+        " 0 0 1 0, 1 ",
+        " 1 0 1 0, 0 ",
+    ]

@@ -1,0 +1,178 @@
+"""Every threshold halved and doubled over a part of the blind set: `python -m tests.studies.blind.thresholds --help`.
+
+A case's recordings are laid out once and named under every policy. Names are those of the search and its doubts; the
+judgement of held-out motion that follows has no threshold of its own and is left out for its time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import Progress
+
+from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.name.doubts import Evidence, doubted
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.name.search import Searched, search
+from bench.diagnosis.recordings import Recordings
+from bench.effects.catalogue import catalogue
+from bench.errors import BenchError
+from bench.fit.fit import Fit
+from bench.rig.rig import load_rig
+from bench.trace.read import read
+from bench.validation.independent.effects import CATALOGUE
+from tests.studies.blind.__main__ import workers
+from tests.studies.blind.draw import GROUPS, Drawn, draw
+from tests.studies.blind.record import home, recorded, truth_of
+from tests.studies.blind.score import same
+from tests.studies.blind.variants import FACTORS, Threshold, switched_off, thresholds
+
+COUNTS = {"single": 252, "pair": 60, "null": 100, "outside": 32}
+AS_IS = "as is"
+
+
+@dataclass(frozen=True)
+class Named:
+    """What one policy makes of a case: names, and whether something is left unexplained; refused: neither."""
+
+    names: tuple[str, ...] = ()
+    remains: bool = False
+    refused: bool = False
+
+
+def variants_of(folder: Path) -> dict[str, Named]:
+    """A case under the policy as it is, with each threshold halved and doubled, and with each rule off."""
+    rig = load_rig(folder / "rig.toml")
+    runs = [read(folder / f"{run}.csv.gz", rig.trace.columns) for run in ("run1", "run2")]
+    keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in FACTORS), *switched_off()]
+    try:
+        recordings = Recordings.of(runs[0], rig, runs[1])
+    except BenchError:
+        return dict.fromkeys(keys, Named(refused=True))
+    bare = gap(recordings.rows)
+    as_is = search(bare, [*catalogue().values()], Policy())
+    found = {AS_IS: named(recordings, bare, Policy(), as_is)}
+    for each in thresholds():
+        for label, factor in FACTORS.items():
+            with each.times(factor) as policy:
+                found[key(each, label)] = named(recordings, bare, policy, as_is if each.of_doubts else None)
+    for rule, policy in switched_off().items():
+        found[rule] = named(recordings, bare, policy, as_is if policy.doubts != Policy().doubts else None)
+    return found
+
+
+def key(threshold: Threshold, factor: str) -> str:
+    """Of a variant."""
+    return f"{threshold.owner}.{threshold.name} {factor}"
+
+
+def named(recordings: Recordings, bare: Fit, policy: Policy, searched: Searched | None) -> Named:
+    """Names under a policy; `searched` where its search is known, as doubts alone differ."""
+    searched = searched or search(bare, [*catalogue().values()], policy)
+    last = doubted(searched, Evidence(bare, recordings.other, frozenset(), policy), policy.doubts).last
+    names = (*last.hypothesis.names, *(effect.name for effect in recordings.detected))
+    return Named(names, policy.remainder.holds(last) or searched.stopped is not None)
+
+
+@dataclass(frozen=True)
+class Tally:
+    """Cases of each group that are right, and cases in which a name is wrong."""
+
+    right: Mapping[str, int]
+    wrong: int
+
+    @classmethod
+    def of(cls, truths: Sequence[Mapping[str, Any]], found: Sequence[Named]) -> Tally:
+        """Of cases under one policy."""
+        right, wrong = dict.fromkeys(GROUPS, 0), 0
+        for truth, said in zip(truths, found, strict=True):
+            hidden = set() if truth["group"] == "outside" else same(truth["effects"])
+            exact = not said.refused and same(said.names) == hidden
+            right[truth["group"]] += exact and (said.remains or truth["group"] != "outside")
+            wrong += bool(same(said.names) - hidden)
+        return cls(right, wrong)
+
+    def __str__(self) -> str:
+        return " ".join(str(self.right[group]) for group in GROUPS) + f", {self.wrong}"
+
+
+def sample(seed: int, duration: float, one_in: int) -> list[Drawn]:
+    """Every so many-th case of each group; of singles a later one in each round of effects, so that all come."""
+    kept = []
+    for group, count in COUNTS.items():
+        cases = draw(seed, {group: count}, duration)
+        rounds = len(CATALOGUE) if group == "single" else count
+        kept += [case for k, case in enumerate(cases) if (k % rounds + k // rounds) % one_in == 0]
+    return kept
+
+
+def markdown(truths: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, Named]], command: str) -> str:
+    """The table."""
+
+    def tally(variant: str) -> Tally:
+        return Tally.of(truths, [variants[variant] for variants in found])
+
+    cases = [sum(truth["group"] == group for truth in truths) for group in GROUPS]
+    as_is, rows = tally(AS_IS), []
+    for each in thresholds():
+        half, double = (tally(key(each, factor)) for factor in FACTORS)
+        idle = " (changes nothing here)" if half == double == as_is else ""
+        owner = each.owner.rsplit(".", 1)[-1]
+        rows.append(f"| {owner}.{each.name} | {each.value:g} | {each.decides}{idle} | {half} | {as_is} | {double} |")
+    off = [f"| {rule} | {as_is} | {tally(rule)} |" for rule in switched_off()]
+    lines = [
+        "# Thresholds",
+        "",
+        f"Each halved and doubled by itself over {len(truths)} cases of the [blind set](blind.md). `{command}`",
+        "",
+        "Counts: singles, pairs, nulls and cases outside the catalogue that are right,",
+        f"of {', '.join(map(str, cases))}; then cases with a wrong name. Names before held-out motion judges them.",
+        "",
+        "| threshold | value | what it decides | half | as is | double |",
+        "|---|---|---|---|---|---|",
+        *rows,
+        "",
+        "Rules off, one at a time:",
+        "",
+        "| rule | as is | off |",
+        "|---|---|---|",
+        *off,
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def main(
+    one_in: Annotated[int, typer.Option(min=1, help="Share of the cases: each so many-th of a group.")] = 6,
+    most: Annotated[int, typer.Option(min=1, help="Cases at most, for a try.")] = sum(COUNTS.values()),
+    seed: int = 1,
+    duration: Annotated[float, typer.Option(help="Of the first recording, about - s.")] = 8.0,
+    jobs: Annotated[int, typer.Option(min=1)] = 2,
+    out: Annotated[Path | None, typer.Option(help="Folder for thresholds.md.")] = None,
+) -> None:
+    """Halve and double each threshold that decides on names, and count what becomes of the blind set."""
+    drawn, folder = sample(seed, duration, one_in)[:most], home(seed, duration, None)
+    with workers(jobs) as pool, Progress(console=Console(stderr=True)) as progress:
+        bar = progress.add_task("recording", total=len(drawn))
+        for done in recorded(folder, drawn, seed, pool):
+            progress.advance(bar, done)
+        bar = progress.add_task("naming", total=len(drawn))
+        tasks = {case.name: pool.submit(variants_of, folder / case.name) for case in drawn}
+        for _ in as_completed(tasks.values()):
+            progress.advance(bar)
+    truths = [truth_of(folder, case.name) for case in drawn]
+    command = f"python -m tests.studies.blind.thresholds --one-in {one_in} --seed {seed} --duration {duration:g}"
+    told = markdown(truths, [tasks[case.name].result() for case in drawn], command)
+    typer.echo(told)
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "thresholds.md").write_text(told, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    typer.run(main)

@@ -1,0 +1,86 @@
+"""A few kills and faults of one command, and what the long run (`python -m tests.studies.crash`) judges by."""
+
+import gzip
+import re
+import shlex
+
+import pytest
+
+from tests.hostile import ROOT, bound_by_permissions
+from tests.studies.crash.__main__ import options
+from tests.studies.crash.commands import COMMANDS
+from tests.studies.crash.faults import full_disk, read_only, two_writers
+from tests.studies.crash.kills import EACH, Trial
+from tests.studies.crash.look import left, whole
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    (tmp_path / "trial").mkdir()
+    return tmp_path / "trial"
+
+
+def test_kills_leave_whole_files_and_a_run_to_the_end_puts_everything_right(folder):
+    tally = Trial(COMMANDS["export"], folder).killed(EACH, float("inf"))
+    assert tally.faults == []
+    assert tally.kills.total() + tally.missed >= EACH
+    assert tally.ended > 0
+
+
+def test_a_kill_just_before_the_output_takes_its_name_leaves_it_under_way_and_the_next_run_removes_it(folder):
+    trial = Trial(COMMANDS["export"], folder)
+    naming = trial.pace.steps - 1  # the last one removes what is not there any more
+    assert trial.kill("step", (naming - 0.5) / trial.pace.steps)
+    assert len(left(trial.out)) == 1
+    trial.end(clear=False)
+    assert trial.tally.faults == []
+
+
+def test_a_full_disk_is_told_in_one_line_and_leaves_what_was_there(folder):
+    told = full_disk(COMMANDS["export"], folder, shares=(0.0, 0.6))
+    assert told.faults == []
+    assert told.runs >= 2  # and a third on a small file system, where root may mount one
+
+
+@pytest.mark.skipif(bound_by_permissions() is None, reason="root, and no setpriv")
+def test_a_folder_closed_by_permissions_is_told_in_one_line(folder):
+    told = read_only(COMMANDS["export"], folder)
+    assert (told.runs, told.faults) == (1, [])
+
+
+def test_the_page_has_commands_that_there_are():
+    page = (ROOT / "docs" / "robustness.md").read_text(encoding="utf-8")
+    lines = re.findall(r"^python -m tests\.crash(.*)$", page, re.MULTILINE)
+    assert lines
+    for line in lines:
+        options().parse_args(shlex.split(line))
+    for name in COMMANDS:
+        assert f"| `{name}` |" in page
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["simulate", "identify", "fleet"])
+def test_of_two_runs_with_one_folder_one_wins_whole(folder, name):
+    assert two_writers(COMMANDS[name], folder).faults == []
+
+
+@pytest.mark.parametrize(
+    ("name", "good"),
+    [
+        ("x.json", b'{"a": 1}'),
+        ("x.toml", b"a = [\n1]"),
+        ("x.xml", b"<a>1</a>"),
+        ("x.csv.gz", gzip.compress(b"1\n", mtime=0)),
+        ("x.png", b"\x89PNG IEND\xaeB`\x82"),
+        ("x.pdf", b"%PDF\n%%EOF"),
+        ("x.html", b"<html></html>"),
+        ("x.py", b"print(1)"),
+        ("x.csv", b"1,2\n"),
+    ],
+)
+def test_half_a_file_is_told_from_a_whole_one(tmp_path, name, good):
+    path = tmp_path / name
+    for content, is_whole in ((good, True), (good[:-1], False), (b"", False)):
+        path.write_bytes(content)
+        assert whole(path) is is_whole

@@ -1,0 +1,51 @@
+"""Short fuzzing runs of each target, with a deadline that sees hangs; the long ones are commands (CONTRIBUTING)."""
+
+import os
+import subprocess
+import sys
+from importlib.util import find_spec
+
+import pytest
+
+from tests.hostile import ROOT
+
+TARGETS = ("units", "rig", "model", "readers")
+
+
+def ran(cwd, *arguments):
+    env = {**os.environ, "PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1", "TMPDIR": str(cwd)}
+    return subprocess.run(
+        [sys.executable, *arguments],
+        cwd=cwd, env=env, capture_output=True, text=True, errors="replace", timeout=300, check=False,
+    )  # fmt: skip
+
+
+def test_nothing_is_found_without_coverage(tmp_path):
+    done = ran(tmp_path, "-m", "tests.studies.fuzz.plain", *TARGETS, "--runs", "1500")
+    assert done.returncode == 0, done.stderr[-3000:]
+
+
+@pytest.mark.parametrize(
+    ("fault", "told"),
+    [
+        ("if b'1' not in data: {}['x']", "KeyError: 'x'"),
+        ("while b'1' not in data: pass", "Timeout (0:00:02)!"),
+        ("if b'1' not in data: bytes(1 << 32)", "MemoryError"),
+    ],
+)
+def test_faults_are_found_and_their_input_lies_there(tmp_path, fault, told):
+    (tmp_path / "faulty.py").write_text(
+        "from tests.studies.fuzz.plain import fuzz\n"
+        f"def target(data):\n    {fault}\nfuzz(target, [b'1 2'], 99, deadline=2)\n"
+    )
+    done = ran(tmp_path, "faulty.py")
+    assert done.returncode != 0
+    assert told in done.stderr and "in target" in done.stderr
+    assert b"1" not in (tmp_path / "input").read_bytes()
+
+
+@pytest.mark.skipif(find_spec("atheris") is None, reason="the extra `fuzz` is not installed")
+@pytest.mark.parametrize("target", TARGETS)
+def test_nothing_is_found_in_a_short_run(tmp_path, target):
+    done = ran(tmp_path, "-m", "tests.studies.fuzz", target, "--runs", "300")
+    assert done.returncode == 0, done.stderr[-3000:]
