@@ -23,8 +23,9 @@ INTRODUCTION = """# Benchmarks
 
 measures what follows (`pip install -e '.[dev,benchmarks]'`). With names, as in
 `python -m tests.studies.benchmarks lstsq --out docs`, it measures some of it anew and leaves the rest as it is. Ways
-that are held against each other are measured within one run, in turn, so that they share what else the machine does; times are medians, and a ratio is the median
-of the ratios within each round. A time of one machine says little about another, a ratio more.
+that are held against each other are measured within one run, in turn, so that they share what else the machine does;
+times are medians, and a ratio is the median of the ratios within each round. A time of one machine says little about
+another, a ratio more.
 """
 
 
