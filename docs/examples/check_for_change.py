@@ -1,0 +1,18 @@
+"""Has an axis changed? A baseline of what it was, and a recording of today held against it, as `bench check` does."""
+
+import bench
+from bench.assets import asset
+from bench.baseline.baseline import read_baseline, write_baseline
+from bench.baseline.check import observe
+from bench.effects.present import parse_effect
+
+rig = bench.load_rig(asset("data", "rigs", "sh30701p.toml"))
+was = [bench.simulate(rig, "speed_staircase", seed=seed).trace for seed in range(5)]
+write_baseline("axis.toml", observe(was, rig).state)
+
+worn = [parse_effect("cogging_torque:amplitude=0.03,harmonic=12")]
+for what, effects in (("as it was", []), ("worn", worn)):
+    now = bench.simulate(rig, "speed_staircase", seed=9, effects=effects).trace
+    checked = bench.check(now, rig, read_baseline("axis.toml"))
+    appeared = [named.name for named, _ in checked.appeared]
+    print(f"{what}: {checked.result}, appeared: {appeared}")
