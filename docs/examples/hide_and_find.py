@@ -1,4 +1,4 @@
-"""Hide an effect in a simulated axis, find it from the recording alone, and see the gap close on one it has not seen."""
+"""Hide an effect in a simulated axis, find it from the recording alone, and see the gap close on another one."""
 
 import bench
 from bench.assets import asset
@@ -15,6 +15,5 @@ for effect in found.effects:
         low, high = quantity.ci95
         print(f"{effect.name}, {name}: {quantity.value:.4g} ({low:.4g} to {high:.4g}) {quantity.unit}")
 before, after = found.torque.holdout
-print(
-    f"torque gap on the other recording: {before:.4f} before, {after:.4f} after, noise {found.torque.noise_floor:.4f}"
-)
+floor = found.torque.noise_floor
+print(f"torque gap on the other recording: {before:.4f} N*m before, {after:.4f} after, noise alone {floor:.4f}")

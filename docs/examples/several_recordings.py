@@ -1,4 +1,4 @@
-"""Several recordings of one axis, fitted together: what one lacks the others give, and where the next one is expected."""
+"""Several recordings of one axis, fitted together: what one lacks the others give, and what the next will say."""
 
 import bench
 from bench.assets import asset
