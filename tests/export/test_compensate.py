@@ -10,12 +10,13 @@ import pytest
 from bench.assets import asset
 from bench.effects.present import Present
 from bench.export.drive_units import DriveUnits
-from bench.export.feedforward import Table, feedforward
+from bench.export.feedforward import Feedforward, Table, feedforward
 from bench.export.resisting import resisting_torque
 from bench.export.tracking import tracking
 from bench.plant.limits import MotionLimits
 from bench.plant.plant import Plant
 from bench.plant.profiles import plan
+from bench.plant.references import References
 from bench.rig.rig import Rig, load_rig
 from tests.diagnosis.command import started
 from tests.effects.axes import PARAMETERS, VALUES, model
@@ -82,6 +83,46 @@ def test_what_the_tables_do_not_hold_is_named():
     told = feedforward(model("torque_ripple", "cogging_torque", "current_loop_lag"), 20.0, (-1.0, 1.0))
     assert set(told.left) == {"torque_ripple", "current_loop_lag"}
     assert told.cogging.period == pytest.approx(2.0 * np.pi)
+
+
+def test_torque_over_position_is_the_mean_of_both_directions():
+    """Cogging stands in both directions, friction that varies with position turns its sign and is none of it."""
+    told = feedforward(model("cogging_torque", "position_dependent_friction"), 20.0, (-1.0, 1.0))
+    at, values = told.cogging.coordinate, VALUES["cogging_torque"]
+    cogging = values["amplitude"] * np.sin(values["harmonic"] * at + values["phase"])
+    np.testing.assert_allclose(told.cogging.torque, cogging, atol=1e-9)
+    # over a whole turn what varies with position has no mean
+    speeds = told.friction.coordinate
+    np.testing.assert_allclose(told.friction.torque, KW * speeds + K0 * np.sign(speeds), atol=1e-9)
+
+
+def test_a_constant_torque_stands_once_over_speed_and_none_over_position():
+    told = feedforward(model("torque_offset"), 20.0, (-1.0, 1.0))
+    np.testing.assert_allclose(told.cogging.torque, 0.0, atol=1e-12)
+    assert told.friction(np.array([10.0, -10.0])) == pytest.approx([10.0 * KW + K0 - 0.12, -10.0 * KW - K0 - 0.12])
+
+
+def test_references_get_the_torque_of_both_tables():
+    told = feedforward(model("cogging_torque"), 20.0, (-1.0, 1.0))
+    speed, place = np.array([5.0, -5.0]), np.array([0.3, 0.9])
+    values = VALUES["cogging_torque"]
+    cogging = values["amplitude"] * np.sin(values["harmonic"] * place + values["phase"])
+    still = np.zeros(2)
+    along = told.along(References(np.array([0.0, 1e-3]), place, speed, still))
+    np.testing.assert_allclose(along.torque, KW * speed + K0 * np.sign(speed) + cogging, atol=1e-4)
+    assert along.feedforward(told.inertia) == pytest.approx(along.torque)
+
+
+def test_the_inertias_feedforward_is_in_the_units_of_the_drive():
+    """1e-3 kg*m**2 at 0.5 N*m/A are 2 mA per rad/s**2, of which a rpm/s is 2*pi/60."""
+    columns = {"velocity": "Axis.Vel [rpm]", "current": "Axis.Iq [mA]"}
+    rig = Rig.of(
+        {"name": "axis", "kind": "rotary", "motor": {"torque_constant": "0.5 N*m/A"}, "trace": {"columns": columns}}
+    )
+    nothing = Table(np.zeros(1), np.zeros(1))
+    (_, inertia, unit), (_, current, per) = DriveUnits.of(rig).inertia(Feedforward(1e-3, nothing, nothing, ()))
+    assert (inertia, unit) == (1e-3, "kg*m**2")
+    assert (current, per) == (pytest.approx(2.0 * 2.0 * np.pi / 60.0), "mA/(rpm/s)")
 
 
 def test_a_torque_that_does_not_repeat_itself_spans_the_travel():

@@ -162,6 +162,21 @@ def test_a_servo_of_ones_own_is_asked_for_its_torque():
     assert force > 0.1
 
 
+@pytest.mark.parametrize(("control", "torque"), [(0.05, 0.6), (-0.05, -0.6), (3.0, 1.2), (-3.0, -1.2), (0.25, 1.5)])
+def test_a_motors_torque_is_its_input_within_its_limits(control, torque):
+    """Gain 4 and gear 3 make 12 N*m per input; inputs up to 0.1, or forces up to 0.5, behind a ratio of 1."""
+    limit = 'ctrlrange="-.1 .1"' if control != 0.25 else 'forcerange="-.5 .5"'
+    xml = ARM.replace("</actuator>", f'<general name="m" joint="elbow" gear="3" gainprm="4" {limit}/></actuator>')
+    spec = mujoco.MjSpec.from_string(xml)
+    model_ = stored(("torque_ripple", {"relative_amplitude": 0.5, "harmonic": 1.0, "phase": np.pi / 2.0}))
+    onto(spec, "elbow", model_)
+    simulation = spec.compile()
+    data, effects = mujoco.MjData(simulation), bench.Effects(model_, "elbow")
+    data.ctrl[simulation.actuator("m").id] = control
+    effects.step(simulation, data)
+    assert data.qfrc_applied[1] == pytest.approx(0.5 * torque)
+
+
 def test_what_cannot_be_stepped_is_reported():
     simulation = mujoco.MjModel.from_xml_string(ARM)
     effects = bench.Effects(stored(), "ellbow")

@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
-from bench.export.joint import Share, armature_of, onto
+from bench.export.joint import Share, armature_of, link_inertia, onto
 from bench.export.mjcf import commented, joint_alone, read_mjcf, robot_with
 from bench.plant.model_file import model_xml
 from bench.plant.quiet import quiet
 from tests.export.arms import ARM, PARAMETERS, stored
+from tests.export.two_links import C2, I2, M2, MJCF
 
 COGGING = ("cogging_torque", {"amplitude": 0.05, "harmonic": 6.0, "phase": 0.3})
 OFFSET = ("torque_offset", {"torque": 0.02})
@@ -76,6 +77,54 @@ def test_what_the_joint_had_is_replaced_and_the_rest_kept():
     assert model.actuator(0).name == "lift"
     assert carried.native == ("cogging_torque",)
     assert carried.left == (("stribeck_friction", "bench.Effects steps it"),)
+
+
+def test_a_joint_keeps_its_own_spring_beside_the_models():
+    """What a spring on the motor's shaft is to the joint, i**2 as much, adds to the joint's own."""
+    xml = ARM.replace('name="elbow"', 'name="elbow" stiffness="3"')
+    for effects, expected in (((), 3.0), ((SPRING,), 3.0 + 0.03 * 100.0)):
+        spec = mujoco.MjSpec.from_string(xml)
+        onto(spec, "elbow", stored(*effects, gear_ratio=10.0))
+        assert spec.compile().joint("elbow").stiffness[0] == pytest.approx(expected, rel=1e-12)
+
+
+def test_links_are_told_without_the_joints_own_armature():
+    """The forearm of two_links about its elbow, I + m*c**2, whose joint has an armature of 0.5 kg*m**2 beside."""
+    assert link_inertia(mujoco.MjSpec.from_string(MJCF), "elbow") == pytest.approx(I2 + M2 * C2**2, rel=1e-9)
+    carried = onto(mujoco.MjSpec.from_string(MJCF), "elbow", stored())
+    assert f"the links beyond the joint have {I2 + M2 * C2**2:.4g} kg*m**2" in carried.notes[0]
+
+
+@pytest.mark.parametrize("angle", ["degree", "radian"])
+@pytest.mark.parametrize("ratio", [1.0, 5.0])
+def test_a_gap_is_as_wide_whatever_the_mjcf_writes_angles_in(angle, ratio):
+    spec = mujoco.MjSpec.from_string(ARM.replace("<option", f'<compiler angle="{angle}"/><option'))
+    onto(spec, "shoulder", stored(BACKLASH, gear_ratio=ratio))
+    model = spec.compile()
+    between = next(model.joint(k) for k in range(model.njnt) if "backlash" in model.joint(k).name)
+    assert between.range == pytest.approx([-0.01 / ratio, 0.01 / ratio])
+
+
+def test_drag_and_damping_grow_with_powers_of_the_gear():
+    spec = mujoco.MjSpec.from_string(ARM)
+    onto(spec, "elbow", stored(DRAG, gear_ratio=10.0))
+    np.testing.assert_allclose(spec.joint("elbow").damping, [1.1e-3 * 1e2, 2e-5 * 1e3, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("share", "motor", "links", "armature"),
+    [
+        (None, 1e-4, 0.0, 1e-2),
+        (None, 0.0, 0.0, 0.1),
+        (None, 1e-4, 0.03, 0.07),
+        (Share.ALL, 1e-4, 0.0, 0.1),
+        (Share.MOTOR, 1e-4, 0.03, 1e-2),
+    ],
+)
+def test_armature_is_the_share_that_is_asked_for_or_known(share, motor, links, armature):
+    """Of 1e-3 kg*m**2 behind a gear of 10."""
+    model = stored(parameters=replace(PARAMETERS, motor_inertia=motor), gear_ratio=10.0, link_inertia=links)
+    assert armature_of(model, share).value == pytest.approx(armature)
 
 
 def test_a_measurement_fault_is_reported_to_be_none_of_the_motion():

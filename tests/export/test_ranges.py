@@ -1,12 +1,13 @@
 """Ranges hold what a recording leaves open, and what recordings differ by."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
 from bench.errors import InputError
 from bench.export.ranges import ranges_json
-from tests.export.arms import stored
+from tests.export.arms import PARAMETERS, stored
 
 FOUND = {
     "schema": "bench.diagnose/1",
@@ -47,6 +48,22 @@ def test_a_joint_has_them_behind_its_gear_and_never_below_zero(tmp_path):
     assert joint["frictionloss"] == pytest.approx({"value": 0.8, "low": 0.5, "high": 0.9})
     assert joint["damping"] == pytest.approx({"value": 0.1, "low": 0.0, "high": 0.21})
     assert joint["armature"] == pytest.approx({"value": 1e-2, "low": 1e-2, "high": 1e-2})
+
+
+@pytest.mark.parametrize(
+    ("motor", "links", "told", "expected"),
+    [
+        (0.0, 0.0, "moment_of_inertia", (1e-1, 0.99e-1, 1.01e-1)),
+        (1e-4, 0.02, "armature", (1e-3, 0.99e-3, 1.01e-3)),
+        (0.0, 0.0, "other", (0.0, 0.0, 0.0)),
+    ],
+)
+def test_a_joints_armature_is_the_range_of_what_it_is_made_of(tmp_path, motor, links, told, expected):
+    """All that moves, on the joint's side; an armature that was found beside the links stands there already."""
+    parameters = {told: FOUND["parameters"]["moment_of_inertia"]}
+    model = stored(parameters=replace(PARAMETERS, motor_inertia=motor), gear_ratio=10.0, link_inertia=links)
+    joint = json.loads(ranges_json(model, written(tmp_path, {**FOUND, "parameters": parameters})))["joint"]
+    assert joint["armature"] == pytest.approx(dict(zip(("value", "low", "high"), expected, strict=True)))
 
 
 @pytest.mark.parametrize(

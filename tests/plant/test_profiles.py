@@ -108,6 +108,19 @@ def test_limits_follow_the_rig(rig_of):
     assert volts.speed == pytest.approx(40.0)
 
 
+def test_limits_by_hand(rig_of):
+    """0.7 N*m/A at 5 A are 3.5 N*m, of which 0.5 N*m stand against the motion; a mN*m*s/rad takes half at top speed."""
+    strong = AxisParameters(2e-3, 1e-2, 0.1, load_torque=-0.4)
+    limits = MotionLimits.from_rig(rig_of(), strong, 250e-6)
+    assert limits.full_acceleration == pytest.approx(3.0 / 2e-3)
+    assert limits.speed == pytest.approx((1.75 - 0.5) / 1e-2)
+    assert limits.acceleration == pytest.approx(0.8 * (3.5 - 1.75) / 2e-3)
+    assert limits.ramp_time == pytest.approx(0.1 * 125.0 / 700.0)
+    free = MotionLimits.from_rig(rig_of(), AxisParameters(2e-3), 250e-6)
+    assert free.speed == pytest.approx(0.1 * 1750.0)
+    assert free.travel == np.inf
+
+
 def test_limits_refuse_what_the_motor_cannot_move(rig_of):
     with pytest.raises(InputError, match="friction and load"):
         MotionLimits.from_rig(rig_of(), AxisParameters(2.2e-3, 0.0, 2.0), 250e-6)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -35,6 +36,34 @@ def test_it_is_that_of_lagranges_equations(arm, joint, torque, place):
 
 def test_its_own_inertia_is_that_where_the_mjcf_stands(arm):
     assert Robot.of(arm, "elbow").inertia == pytest.approx(I2 + M2 * C2**2, rel=1e-12)
+
+
+def test_a_spring_of_the_robot_is_taken_off_with_its_sign(tmp_path, arm):
+    """A motor that bends a joint against its spring gives k*(q - q_0), beside what the links ask."""
+    sprung = tmp_path / "sprung.xml"
+    sprung.write_text(MJCF.replace('<joint name="elbow"', '<joint name="elbow" stiffness="3" springref="20"'))
+    q, w = np.array([[0.3, -0.4], [0.1, 0.9]]), np.array([[1.0, 2.0], [-0.5, 0.0]])
+    plain, found = (Robot.of(path, "elbow").rest(q, w)[0] for path in (arm, sprung))
+    np.testing.assert_allclose(found - plain, 3.0 * (q[:, 1] - np.deg2rad(20.0)), rtol=1e-12)
+
+
+def test_it_is_that_of_mujocos_inverse_dynamics(tmp_path, arm):
+    """Springs, damping of the other joint and gravity compensation included, at a pose and an acceleration by hand."""
+    text = MJCF.replace('name="shoulder"', 'name="shoulder" damping="2" stiffness="5"')
+    text = text.replace('<body name="forearm"', '<body name="forearm" gravcomp="0.4"')
+    path = tmp_path / "compensated.xml"
+    path.write_text(text)
+    q, w, a, step = np.array([0.4, -0.7]), np.array([1.3, -2.1]), np.array([5.0, 9.0]), 1e-5
+    robot = Robot.of(path, "elbow")
+    time = step * np.array([-1.0, 0.0, 1.0])[:, None]
+    r, p = robot.rest(q + w * time + a * time**2 / 2.0, w + a * time)
+    found = r[1] + (p[2] - p[0]) / (2.0 * step) + robot.inertia * a[1]
+    model = mujoco.MjModel.from_xml_path(str(path))
+    model.dof_armature[1] = model.dof_damping[1] = model.dof_frictionloss[1] = 0.0
+    data = mujoco.MjData(model)
+    data.qpos, data.qvel, data.qacc = q, w, a
+    mujoco.mj_inverse(model, data)
+    assert found == pytest.approx(data.qfrc_inverse[1], rel=1e-6)
 
 
 def identified(path, arm, rig=ELBOW, **stated):
