@@ -103,6 +103,11 @@ def test_11_split_against_closed_forms(done, circuit):
     # proportional to L/R; less than alpha*L/R of full torque, as torque falls where the corner is read
     assert np.all(np.array(shifts) < full)
     assert np.all(np.array(shifts) > 0.8 * full)
+    # drawn beside them: alpha*L/R with what friction leaves of the full torque, 3.415 N*m over 22.5 kg*cm**2
+    line, drawn, theory = done["11"].charts[1].panels[0].curves[:3]
+    assert (line.x, drawn.y) == (pytest.approx([1.0, 2.0, 3.0, 5.0, 8.0]), pytest.approx(shifts))
+    assert theory.x == pytest.approx([0.0, 1.0, 2.0, 3.0, 5.0, 8.0])
+    assert theory.y[1] == pytest.approx((3.5 - 0.085) / 22.5e-4 * 1e-3 * RPM, rel=1e-3)  # axis as task 9 finds it
 
 
 def test_11_without_warming_the_hot_corner_is_the_datasheets(circuit):

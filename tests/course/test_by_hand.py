@@ -1,0 +1,123 @@
+"""Tasks on recordings made by hand, whose answers need no computing: limits, signs, what is left out."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bench.course import operating_range, t06_inertia, t09_least_squares, t10_peak_torque
+from bench.course.rig import lab_rig
+from bench.course.run import Run
+from bench.course.sources import Sources
+from bench.errors import UndeterminedError
+from bench.fit.lab import backward_difference
+
+RPM = 60.0 / (2.0 * math.pi)
+PERIOD = 1e-3
+INERTIA, VISCOUS, COULOMB = 2e-3, 1e-3, 0.08
+EMBEDDED = Sources.of(None)
+
+
+def run_of(velocity, torque):
+    """A recording of speed - rad/s - and torque - N*m."""
+    velocity, torque = (np.asarray(signal, dtype=np.float64) for signal in (velocity, torque))
+    time = PERIOD * np.arange(velocity.size)
+    alpha = backward_difference(velocity, PERIOD)
+    return Run(time, velocity, torque / 0.75, alpha, torque, np.cumsum(velocity) * PERIOD, PERIOD)
+
+
+def there_and_back(backward):
+    """A motion of 1000 samples, this share of those faster than 20 rad/s backward, and its exact torque."""
+    count = round(1000 * backward)
+    forward = 60.0 + 30.0 * np.sin(0.03 * np.arange(1000 - count))
+    velocity = np.concatenate([forward, -60.0 - 30.0 * np.sin(0.05 * np.arange(count))])
+    # alpha_filt of task 8 by its definition: four differences around a sample
+    alpha = np.zeros(velocity.size)
+    alpha[2:-2] = (velocity[4:] - velocity[:-4]) / (4.0 * PERIOD)
+    return run_of(velocity, INERTIA * alpha + VISCOUS * velocity + COULOMB * np.sign(velocity))
+
+
+def test_6_what_the_load_is_beside_its_theory():
+    """J = 20 kg*cm**2 less a rotor of 0.25 over a disk of 18.9578: 4.178 % more."""
+    numbers, findings = t06_inertia.load_inertia(20e-4, lab_rig(), EMBEDDED, true=22.5)
+    load, theory = numbers
+    disk = 1e4 * math.pi / 32.0 * 7850.0 * 0.0065 * (0.14**4 - 0.014**4)
+    assert (load.value, load.truth) == pytest.approx((19.75, 22.25), rel=1e-12)
+    assert theory.value == pytest.approx(disk, rel=1e-12)
+    assert f"{19.75 / disk - 1.0:+.2%} off" in findings[1]
+    for inertia in (0.0, -1e-3, math.nan):
+        with pytest.raises(UndeterminedError, match="opposite signs"):
+            t06_inertia.require_positive(inertia)
+
+
+def test_6_inertia_is_the_mean_over_a_quarter_of_the_largest_acceleration_and_more():
+    """Steps of speed that make alpha 40, 10, -40 and 9.99 rad/s**2; the last is below a quarter."""
+    steps = np.array([0.0, 0.04, 0.01, -0.04, 0.00999])
+    alpha = steps / PERIOD
+    task = t06_inertia.task(run_of(np.cumsum(steps), alpha * [1.0, 1e-3, 3e-3, 2e-3, 0.5]), lab_rig(), EMBEDDED)
+    assert task["alpha_max"].value == pytest.approx(40.0)
+    assert task["J"].value == pytest.approx(1e4 * 2e-3, rel=1e-9)
+    assert task.findings[0].startswith("3 of 5 samples")
+    # J*alpha leaves 40, 0 and 40 times a thousandth
+    assert task["RMS of M - J·α"].value == pytest.approx(math.sqrt((0.01**2 + 0.04**2) / 3.0), rel=1e-9)
+
+
+@pytest.mark.parametrize(("backward", "told"), [(0.017, False), (0.023, True), (0.977, True), (0.983, False)])
+def test_9_both_directions_are_needed_by_a_fiftieth_of_the_samples(backward, told):
+    run = there_and_back(backward)
+    if told:
+        assert t09_least_squares.identify_friction(run).coulomb == pytest.approx(COULOMB, rel=1e-9)
+    else:
+        with pytest.raises(UndeterminedError, match="one way only"):
+            t09_least_squares.identify_friction(run)
+
+
+def test_9_what_is_exact_is_found_and_reconstructed_exactly():
+    run = there_and_back(0.4)
+    found = t09_least_squares.identify_friction(run)
+    assert (found.inertia, found.viscous, found.coulomb) == pytest.approx((INERTIA, VISCOUS, COULOMB), rel=1e-9)
+    assert found.error == pytest.approx(0.0, abs=1e-15)
+    task = t09_least_squares.task(run, lab_rig(), EMBEDDED, None)
+    measured, estimated = task.charts[0].panels[0].curves
+    inner = slice(2, -2)  # at the ends the filter has no samples, and another derivative stands in
+    assert estimated.y[inner] == pytest.approx(measured.y[inner], abs=1e-12)
+    assert task["J_load"].value == pytest.approx(1e4 * INERTIA - 0.25, rel=1e-9)
+
+
+def test_10_the_run_up_begins_at_full_torque_and_leaves_out_what_is_below_a_fifth_of_a_newton_metre():
+    torque = [0.5, 2.5, 2.99, 3.01, 2.0, 3.4, 0.21, 0.19, -1.0, 0.2]
+    velocity, kept, current = t10_peak_torque.run_up(run_of(np.arange(10.0), torque), lab_rig())
+    assert kept.tolist() == [3.01, 2.0, 3.4, 0.21, 0.2]
+    assert velocity.tolist() == [3.0, 4.0, 5.0, 6.0, 9.0]
+    assert current == pytest.approx(kept / 0.75)
+    with pytest.raises(UndeterminedError, match=r"reaches 2\.99"):
+        t10_peak_torque.run_up(run_of(np.arange(3.0), torque[:3]), lab_rig())
+
+
+def test_10_a_row_of_the_table_is_the_median_within_five_radians_a_second_on_the_way_up():
+    at = 2000.0 / RPM
+    velocity = np.array([at - 5.1, at - 4.9, at, at + 4.9, at + 5.1, 400.0, at, at])
+    torque = np.array([9.0, 3.0, 1.0, 2.0, 9.0, 0.5, 7.0, 7.0])
+    corners = np.array([[0.0, 2000.0 / RPM, 4000.0 / RPM], [3.5, 3.5, 0.0]])
+    rows = t10_peak_torque.table(velocity, torque, corners)
+    assert [round(speed * RPM) for speed, _, _ in rows] == [1500, 2000, 2500, 3000, 3500, 4000, 4500]
+    measured, sheet = zip(*((row[1], row[2]) for row in rows), strict=True)
+    assert measured[1] == 2.0
+    assert [math.isnan(value) for value in measured] == [True, False, *[True] * 5]
+    assert sheet == pytest.approx((3.5, 3.5, 2.625, 1.75, 0.875, 0.0, 0.0))
+
+
+def test_range_of_a_motion_at_one_speed():
+    """2 N*m at 1000 rpm, driving and braking: 1.5 N*m to the peak either way, and drawn below zero where it brakes."""
+    velocity, torque = np.full(4, 1000.0 / RPM), np.array([2.0, -2.0, 2.0, -1.0])
+    task = operating_range.task(lab_rig(), velocity, torque, "by hand")
+    assert task["peak reserve, 230 V"].value == pytest.approx(1.5)
+    assert task["RMS torque"].value == pytest.approx(math.sqrt(13.0 / 4.0))
+    motion, heat, least = task.charts[0].panels[0].curves[:3]
+    assert motion.y.tolist() == [2.0, -2.0, 2.0, -1.0]
+    assert motion.x == pytest.approx(1000.0)
+    assert heat.x == pytest.approx(1000.0)
+    assert least.y.tolist() == pytest.approx([2.0, 3.5])
+    backward = operating_range.task(lab_rig(), -velocity, torque, "by hand").charts[0].panels[0].curves
+    assert backward[0].y.tolist() == [-2.0, 2.0, -2.0, 1.0]
+    assert backward[2].y.tolist() == pytest.approx([-2.0, -3.5])
