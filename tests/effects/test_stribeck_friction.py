@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from bench.effects.stribeck_friction import EFFECT
 from tests.effects.axes import FREE, moved, present, signals
+from tests.effects.recording import SCOPES
 
 DRY = replace(FREE, coulomb_friction=0.06)
 
@@ -21,3 +23,11 @@ def test_time_to_stop():
     time, _, velocity = signals(moved([present("stribeck_friction")], 0.5, velocity=15.0, parameters=DRY))
     needed, _ = quad(lambda w: DRY.inertia / (0.06 + 0.08 * np.exp(-((w / 5.0) ** 2))), 0.0, 15.0)
     assert time[np.argmax(velocity < 1e-3)] == pytest.approx(needed, abs=2.5e-4)
+
+
+def test_a_rise_ends_within_a_fifth_of_the_top_speed():
+    """Weak drag without its name was met by rises of 0.20 to 0.29 of it."""
+    scope = replace(SCOPES[0], top_speed=100.0)
+    assert EFFECT.plausible([[0.08]], [(19.9,)], scope)
+    assert not EFFECT.plausible([[0.08]], [(20.1,)], scope)
+    assert not EFFECT.plausible([[0.08], [0.01]], [(19.9,), (20.1,)], scope)

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from bench.effects.voltage_limit import EFFECT
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, WINDING, Present, model, moved, signals
 
 STEP = 1e-3
@@ -52,3 +54,59 @@ def test_a_winding_without_inductance_jumps():
     one = np.ones(1)
     mean, end = EFFECT.flowing({"voltage": 40.0 * one}, effect, 0.0 * one, 0.7 * one, 0.0 * one, STEP)
     assert (mean[0], end[0]) == pytest.approx((0.7, 0.7))
+
+
+def behind(standing, lack=10.0, below=30.0, samples=4000):
+    """A recording whose last half falls behind its reference, at 36 V for a share of it and below for the rest."""
+    time, half = 1e-3 * np.arange(samples), samples // 2
+    needed = np.full(samples, 20.0)
+    needed[half:] = below
+    needed[half : half + round(standing * half)] = 36.0
+    speed = np.full(samples, 50.0)
+    speed[half:] -= lack
+    current = (needed - WINDING.back_emf_constant * speed) / WINDING.resistance
+    columns = {"time [s]": time, "velocity [rad/s]": speed, "current [A]": current}
+    return Trace.from_arrays({**columns, "velocity_reference [rad/s]": np.full(samples, 50.0)})
+
+
+MOTOR = {"torque_constant": f"{AXIS.torque_constant} N*m/A", "resistance": f"{AXIS.resistance} ohm"}
+RIG = Rig.of(
+    {
+        "name": "winding",
+        "kind": "rotary",
+        "motor": {**MOTOR, "back_emf_constant": f"{WINDING.back_emf_constant} V*s/rad", "peak_current": "8 A"},
+    }
+)
+
+
+@pytest.mark.parametrize(("standing", "found"), [(0.53, True), (0.47, False)])
+def test_the_voltage_stands_at_its_top_for_half_of_what_is_behind(standing, found):
+    detected = EFFECT.detect(behind(standing), RIG, 1.5e-3)
+    assert (detected is not None) == found
+    assert detected is None or detected.values["voltage"] == pytest.approx(36.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(("below", "found"), [(36.0 * 0.987, True), (36.0 * 0.983, False)])
+def test_within_a_hundredth_and_a_half_of_the_top_it_stands_there(below, found):
+    assert (EFFECT.detect(behind(0.4, below=below), RIG, 1.5e-3) is not None) == found
+
+
+@pytest.mark.parametrize(("lack", "found"), [(1.1, True), (0.9, False)])
+def test_a_fiftieth_of_the_reference_is_behind(lack, found):
+    assert (EFFECT.detect(behind(0.9, lack=lack), RIG, 1.5e-3) is not None) == found
+
+
+def test_speed_beyond_its_reference_is_not_behind():
+    assert EFFECT.detect(behind(0.9, lack=-10.0), RIG, 1.5e-3) is None
+
+
+def test_it_is_shown_from_the_rest_before_it_is_first_reached():
+    """At rest until 1 s, then running up; 36 V are first needed at 2.5 s, for good."""
+    time = 1e-3 * np.arange(8000)
+    reference = np.where(time < 1.0, 0.0, 50.0)
+    speed = np.interp(time, [1.0, 2.5], [0.0, 40.0])
+    current = np.where(time < 2.5, 0.0, (36.0 - WINDING.back_emf_constant * speed) / WINDING.resistance)
+    columns = {"time [s]": time, "velocity [rad/s]": speed, "current [A]": current}
+    trace = Trace.from_arrays({**columns, "velocity_reference [rad/s]": reference})
+    shown = EFFECT.shown_in(trace, RIG, {"voltage": 36.0})
+    assert shown.time[[0, -1]] == pytest.approx([0.999, 3.999], abs=1.5e-3)
