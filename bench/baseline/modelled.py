@@ -135,6 +135,6 @@ def _of_response(baseline: State, now: State) -> list[Comparison]:
 
 
 def _exact(name: str, unit: str, values: tuple[float, float], away: float, margin: float) -> Comparison:
-    same = abs(away) <= margin
+    same = away == 0.0 or abs(away) <= margin < math.inf  # a share of an infinite value is no margin
     difference = Difference(away, 0.0, math.inf)
     return Comparison(name, unit, *values, (difference,), margin, chance=float(same), result=SAME if same else CHANGED)
