@@ -1,16 +1,19 @@
 """Two states held against each other: what alarms, what does not, and what nobody can tell."""
 
+import math
 from dataclasses import replace
 
 import pytest
+from scipy.stats import norm
 
 from bench.baseline.allowed import Allowed
 from bench.baseline.compare import compare
 from bench.baseline.measured import Measured
 from bench.baseline.wording import headline
+from bench.effects.catalogue import catalogue
 from bench.errors import InputError
 from bench.rig.rig import Rig
-from tests.baseline.states import GivenObserved, named, state
+from tests.baseline.states import VALUES, GivenObserved, named, state
 
 RIG = {"name": "a", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A"}}
 
@@ -176,3 +179,139 @@ def test_what_is_not_determined_now_is_not_called_the_same():
     assert found.result == "undecided"
     assert results(found)["coulomb_friction_torque"] == "undecided"
     assert "it is not told now" in headline(found)
+
+
+def chances(found):
+    return {one.name: one.chance for one in found.comparisons}
+
+
+def both_tails(away, margin, error):
+    """Of a normal distribution: |D| >= away where the true one is the margin."""
+    return norm.sf((away - margin) / error) + norm.sf((away + margin) / error)
+
+
+def appeared(torque):
+    """Cogging of so much torque - N*m - where the baseline names none; with its effects alone friction is as it was."""
+    now = state({"coulomb_friction_torque": 1.15}, [named("cogging_torque", torque, **COGGING)], "explained")
+    return checked(state(), now, observed=GivenObserved(now, factors={"coulomb_friction_torque": 1.0 / 1.15}))
+
+
+@pytest.mark.parametrize(("torque", "sure"), [(0.0033, False), (0.0036, True)])
+def test_a_name_is_sure_at_the_rate_of_the_family_and_not_at_that_of_one(torque, sure):
+    """Between the two rates friction still is compared under both sets of effects, beyond them under its own."""
+    found = appeared(torque)
+    # own errors of 1e-4 each, 5 % of the torque from recording to recording; seen from 0.0025 N*m on
+    chance = both_tails(torque, 0.0025, math.sqrt(2e-8 + 2.0 * (0.05 * torque) ** 2))
+    assert chances(found)["cogging_torque (harmonic 6)"] == pytest.approx(chance)
+    assert bool(chance <= 0.01 / found.family) is sure
+    assert chance < 0.01
+    assert results(found)["coulomb_friction_torque"] == ("changed" if sure else "undecided")
+
+
+def test_the_family_is_all_that_could_have_alarmed():
+    """Quantities of the baseline, names that differ, quantities of names that both have, and effects nobody named."""
+    effects = set(catalogue())
+    assert checked(state(), state()).family == 4 + len(effects)
+    assert appeared(0.0036).family == 4 + 1 + len(effects) - 1
+    cogging = named("cogging_torque", 0.03, **COGGING)
+    assert checked(state(None, [cogging]), state(None, [cogging])).family == 4 + 1 + len(effects) - 1
+    before = replace(state(), shows=None)
+    assert checked(before, state()).family == 4
+
+
+def test_a_torque_gap_has_to_rise_over_the_noise_floor_too():
+    """1.8 times the torque, floors equal: (0.8 - 0.25)/(sqrt(2)*0.12) standard deviations of a ratio of floors."""
+    found = checked(state(), state({"torque_gap": 1.8}))
+    assert chances(found)["torque_gap"] == pytest.approx(both_tails(0.8, 0.25, math.sqrt(2.0) * 0.12))
+    alone = both_tails(0.8 * 0.005, 0.25 * 0.005, math.sqrt(2e-8 + 2.0 * (0.04 * 0.005) ** 2))
+    assert alone < 1e-6  # which is what it would be if sensors could not become louder
+    half = checked(state(floor=0.0025), state({"torque_gap": 1.8}, floor=0.0025))  # over floors of half the gap
+    assert chances(half)["torque_gap"] == pytest.approx(both_tails(1.6, 0.5, math.sqrt(2.0) * 0.12 * 2.0))
+
+
+def test_presets_are_shares_of_the_baselines_value():
+    found = {one.name: one for one in checked(state(), state()).comparisons}
+    for name, value, margin, between in (
+        ("moment_of_inertia", 1.5e-3, 0.005, 0.001),
+        ("viscous_friction_coefficient", 8e-4, 0.15, 0.03),
+        ("coulomb_friction_torque", 0.06, 0.03, 0.0075),
+        ("torque_gap", 0.005, 0.25, 0.04),
+    ):
+        own = VALUES[name][2]
+        assert found[name].margin == pytest.approx(margin * value)
+        assert found[name].difference.std_error == pytest.approx(math.sqrt(2.0 * (own**2 + (between * value) ** 2)))
+
+
+def test_a_margin_is_at_least_a_thousandth_of_the_motions_torque():
+    """rms_effort 0.7 N*m at 400 rad/s**2 and 60 rad/s, a hundred times as much as these parameters make of it."""
+    found = {one.name: one for one in checked(state(rms_effort=100.0), state(rms_effort=100.0)).comparisons}
+    assert found["moment_of_inertia"].margin == pytest.approx(70.0 * 1e-3 / 400.0)
+    assert found["viscous_friction_coefficient"].margin == pytest.approx(70.0 * 1e-3 / 60.0)
+    assert found["coulomb_friction_torque"].margin == pytest.approx(70.0 * 1e-3)
+    assert found["torque_gap"].margin == pytest.approx(0.25 * 0.005)
+
+
+def test_another_motion_counts_five_times_the_spread_of_each():
+    own, between = VALUES["coulomb_friction_torque"][2], 0.0075 * 0.06
+    for factor, times in ((1.09, 1.0), (1.11, 26.0), (1.0 / 1.11, 26.0)):
+        found = checked(state(), state(top_speed=factor))
+        one = next(one for one in found.comparisons if one.name == "coulomb_friction_torque")
+        assert one.difference.std_error == pytest.approx(math.sqrt(2.0 * (own**2 + times * between**2)))
+    effort = checked(state(), state(rms_effort=2.0, cutoff=2.0))  # what follows from noise and the axis' own change
+    assert not effort.conditions
+
+
+def test_quantities_of_effects_have_margins_of_a_quarter():
+    for factor, result in ((1.1, "same"), (1.25, "undecided"), (1.8, "changed")):
+        then, now = (named("cogging_torque", 0.03, **{**COGGING, "amplitude": 0.05 * by}) for by in (1.0, factor))
+        found = checked(state(None, [then], "explained"), state(None, [now], "explained"))
+        (one,) = (one for one in found.comparisons if "amplitude" in one.name)
+        assert (one.result, one.margin) == (result, pytest.approx(0.25 * 0.05))
+        own = math.hypot(0.01 * 0.05, 0.01 * 0.05 * factor)
+        assert one.difference.std_error == pytest.approx(math.hypot(own, math.sqrt(2.0) * 0.05 * 0.05))
+
+
+def test_the_torque_of_an_effect_that_is_gone_is_compared_at_a_quarter_of_it():
+    before = state(None, [named("cogging_torque", 0.03, **COGGING)], "explained")
+    found = checked(before, state(), observed=GivenObserved(state(), torques={"cogging_torque": 0.02}))
+    (pair,) = found.gone
+    error = math.sqrt(2e-8 + 2.0 * (0.05 * 0.03) ** 2)
+    assert pair[1].margin == pytest.approx(0.25 * 0.03)
+    assert pair[1].chance == pytest.approx(both_tails(0.01, 0.25 * 0.03, error))
+
+
+def test_waves_are_the_same_within_a_hundredth_of_their_harmonic():
+    before = state(None, [named("cogging_torque", 0.03, **COGGING)], "explained")
+    for harmonic, same in ((6.05, True), (6.07, False)):
+        now = state(None, [named("cogging_torque", 0.03, **{**COGGING, "harmonic": harmonic})], "explained")
+        found = checked(before, now, observed=GivenObserved(now, torques={"cogging_torque": 1e-4}))
+        assert (not found.appeared and not found.gone) is same
+
+
+def test_effects_outside_the_torque_balance_come_and_go_without_an_alarm():
+    lag = replace(named("current_loop_lag", 0.0, time_constant=2e-3), torque=None, shape=None)
+    now = state(None, [lag], "explained")
+    found = checked(state(), now, observed=GivenObserved(now))
+    assert found.result == "undecided"
+    assert "told by its signals alone" in headline(found)
+    back = checked(now, state(), observed=GivenObserved(state()))
+    assert back.result == "undecided"
+    assert "its strength is not told" in headline(back)
+
+
+def test_comparisons_stand_worst_first_and_alike_by_chance():
+    now = state({"coulomb_friction_torque": 1.2, "moment_of_inertia": 1.0069, "viscous_friction_coefficient": 1.2})
+    found = checked(state(), now)
+    assert [one.result for one in found.comparisons] == ["changed", "undecided", "undecided", "same"]
+    assert [one.chance for one in found.comparisons[1:3]] == sorted(one.chance for one in found.comparisons[1:3])
+
+
+def test_chances_are_held_against_the_rate_by_holms_procedure():
+    """The surest against the rate over the family; the next against the rate over one fewer."""
+    now = state({"coulomb_friction_torque": 1.0756, "moment_of_inertia": 1.1})
+    found = checked(state(), now)
+    chance = chances(found)["coulomb_friction_torque"]
+    assert chances(found)["moment_of_inertia"] < 1e-9
+    for rate, result in ((1.001, "changed"), (0.999, "undecided")):
+        again = checked(state(), now, rate=chance * (found.family - 1) * rate)
+        assert results(again)["coulomb_friction_torque"] == result

@@ -1,10 +1,12 @@
 """The statistics of a check: laws of its chances, and the rates it promises, on drawn numbers."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import binomtest
+from scipy.stats import binomtest, norm
+from scipy.stats import t as student
 
 from bench.baseline.difference import ENOUGH, NOT_EQUIVALENT, Difference
 from bench.baseline.measured import Measured
@@ -73,3 +75,71 @@ def test_an_interval_of_small_samples_keeps_its_degrees():
     found = Measured.of(Parameter(1.0, "", 0.1, (1.0 - reach * 0.1, 1.0 + reach * 0.1)))
     assert found.degrees == pytest.approx(4.0, rel=0.01)
     assert math.isinf(Measured.of(Parameter(1.0, "", 0.1, (0.8041, 1.1959))).degrees)
+
+
+def test_few_recordings_add_their_own_errors_and_the_stated_spread():
+    """s_n**2/k_n + s_b**2/k_b + tau**2*(1/k_n + 1/k_b), with tau the larger of the stated one and what they show."""
+    baseline = Measured(10.0, "N*m", 0.3, recordings=3, spread=0.5)  # shows tau = 0.4 beyond its own errors
+    now = Measured(12.0, "N*m", 0.6, recordings=2)
+    shares = 1.0 / 2.0 + 1.0 / 3.0
+    stated, shown = (Difference.of(baseline, now, between=tau) for tau in (1.0, 0.1))
+    own = 0.36 / 2.0 + 0.09 / 3.0
+    assert (stated.value, stated.std_error) == (2.0, pytest.approx(math.sqrt(own + shares)))
+    assert shown.std_error == pytest.approx(math.sqrt(own + 0.16 * shares))
+    assert Difference.of(replace(baseline, spread=None), now, 0.0).std_error == pytest.approx(math.sqrt(own))
+    assert math.isinf(stated.degrees)
+
+
+def test_states_known_to_differ_otherwise_count_that_spread_once_each():
+    alone = Difference.of(Measured(1.0, "", 0.3), Measured(1.0, "", 0.4), between=0.0, beside=2.0)
+    assert alone.std_error == pytest.approx(math.sqrt(0.09 + 0.16 + 2.0 * 4.0))
+
+
+def test_enough_recordings_judge_by_their_own_spread_alone():
+    """Total variance of five, with Student's t at 4 degrees; more only by what this recording is worse than theirs."""
+    baseline = Measured(10.0, "N*m", 0.3, recordings=5, spread=0.5)
+    alike = Difference.of(baseline, Measured(11.0, "N*m", 0.2, degrees=7.0), between=9.0)
+    assert (alike.std_error, alike.degrees) == (pytest.approx(0.5 * math.sqrt(1.2)), pytest.approx(4.0))
+    worse = Difference.of(baseline, Measured(11.0, "N*m", 0.5, degrees=7.0, recordings=2), between=9.0)
+    total, more = 0.25 * (1.0 / 2.0 + 1.0 / 5.0), (0.25 - 0.09) / 2.0
+    assert worse.std_error == pytest.approx(math.sqrt(total + more))
+    assert worse.degrees == pytest.approx((total + more) ** 2 / (total**2 / 4.0 + more**2 / 7.0))
+    four = Difference.of(replace(baseline, recordings=4), Measured(11.0, "N*m", 0.0), between=9.0)
+    assert four.std_error == pytest.approx(math.sqrt(0.09 / 4.0 + 81.0 * 1.25))
+
+
+def test_degrees_add_up_as_satterthwaite_says():
+    found = Difference.of(Measured(0.0, "", 3.0, degrees=4.0), Measured(0.0, "", 4.0, degrees=9.0), between=0.0)
+    assert found.degrees == pytest.approx(25.0**2 / (81.0 / 4.0 + 256.0 / 9.0))
+
+
+@pytest.mark.parametrize(("degrees", "reach"), [(4.0, 2.776445), (math.inf, 1.959964)])
+def test_an_interval_is_students(degrees, reach):
+    assert Difference(1.0, 0.5, degrees).interval(0.95) == pytest.approx((1.0 - 0.5 * reach, 1.0 + 0.5 * reach))
+
+
+def test_the_same_is_shown_by_two_one_sided_tests_at_a_twentieth():
+    reach = 1.644854  # of a normal distribution at 95 % on one side
+    for side in (-1.0, 1.0):
+        assert Difference(side * (1.0 - 0.1 * (reach + 0.01)), 0.1, math.inf).within(1.0)
+        assert not Difference(side * (1.0 - 0.1 * (reach - 0.01)), 0.1, math.inf).within(1.0)
+
+
+def test_a_chance_counts_both_directions():
+    expected = norm.sf((3.0 - 1.0) / 2.0) + norm.sf((3.0 + 1.0) / 2.0)
+    assert Difference(-3.0, 2.0, math.inf).chance(1.0) == pytest.approx(expected)
+    assert Difference(3.0, 2.0, 5.0).chance(1.0) == pytest.approx(student.sf(1.0, 5) + student.sf(2.0, 5))
+
+
+def test_several_recordings_have_the_mean_of_their_squared_errors_and_the_least_degrees():
+    def found(value, error, reach):
+        return Parameter(value, "N*m", error, (value - reach * error, value + reach * error))
+
+    alone = [found(1.0, 0.3, 1.959964), found(2.0, 0.4, 2.776445), found(4.0, math.nan, 1.0)]
+    several = Measured.of(found(1.7, 0.2, 1.959964), alone)
+    assert (several.value, several.recordings) == (1.7, 2)
+    assert several.std_error == pytest.approx(math.sqrt(0.5 * (0.09 + 0.16)))
+    assert several.spread == pytest.approx(math.sqrt(0.5))
+    assert several.degrees == pytest.approx(4.0, rel=1e-3)
+    one = Measured.of(found(1.7, 0.2, 1.959964), alone[1:])
+    assert (one.std_error, one.recordings, one.spread) == (0.2, 1, None)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from bench.fleet.change import change
+from bench.fleet.change import change, expected
 
 
 def test_one_more_recording_is_judged_by_the_prediction_interval_of_the_next():
@@ -31,6 +31,30 @@ def test_values_that_agree_by_chance_are_no_surer_than_their_own_errors():
     found = change(np.array([1.0, 1.0, 1.0, 1.001]), np.full(4, 0.01))
     assert found.size < 1.0
     assert found.chance == 1.0
+
+
+def test_the_floor_of_a_step_is_the_own_errors_of_each_side():
+    """Values that agree on both sides: sqrt(s_1**2/1 + (s_2**2 + s_3**2 + s_4**2)/9), at two degrees of freedom."""
+    found = change(np.array([1.0, 2.0, 2.0, 2.0]), np.array([0.3, 0.1, 0.2, 0.2]))
+    error = np.sqrt(0.09 + 0.09 / 9.0)
+    assert (found.place, found.before, found.after) == (1, pytest.approx(1.0), pytest.approx(2.0))
+    assert found.size == pytest.approx(1.0 / error)
+    assert found.reach == pytest.approx(stats.t.ppf(0.975, 2) * error)
+    assert found.chance == pytest.approx(3.0 * 2.0 * stats.t.sf(1.0 / error, 2))
+
+
+def test_the_next_recording_is_expected_by_the_scatter_about_both_means():
+    """Mean -+ t*sqrt(p*(1 + 1/c)): of two and three values, p = (2*0.5**2 + 2*1)/3 at three degrees of freedom."""
+    values, few = np.array([1.0, 2.0, 5.0, 6.0, 7.0]), np.full(5, 0.1)
+    pooled, student = (0.5 + 2.0) / 3.0, stats.t.ppf(0.975, 3)
+    before, after = expected(values, few, 2)
+    for interval, mean, count in ((before, 1.5, 2.0), (after, 6.0, 3.0)):
+        reach = student * np.sqrt(pooled * (1.0 + 1.0 / count))
+        assert interval == pytest.approx((mean - reach, mean + reach))
+    before, after = expected(values, np.array([3.0, 4.0, 0.1, 0.1, 0.1]), 2)  # own errors, of one side
+    reach = student * np.sqrt(12.5 * 1.5)
+    assert before == pytest.approx((1.5 - reach, 1.5 + reach))
+    assert after[1] - after[0] == pytest.approx(2.0 * student * np.sqrt(pooled * 4.0 / 3.0))
 
 
 @pytest.mark.parametrize("values", [[], [1.0], [1.0, 2.0]])

@@ -8,6 +8,7 @@ import pytest
 from scipy import stats
 
 from bench.bounds import bounds
+from bench.fleet.change import change
 from bench.fleet.manifest import Manifest
 from bench.fleet.plan import Planned
 from bench.fleet.recording import Task
@@ -78,6 +79,42 @@ def test_a_recording_that_says_little_neither_alarms_nor_hides():
     values[0, 6:11] += 0.15
     (changed,) = looked_over(values, errors=errors).changed
     assert changed.counts == (6, 5)
+
+
+@pytest.mark.parametrize(("factor", "compared"), [(4.99, True), (5.01, False)])
+def test_a_recording_counts_up_to_five_times_the_median_error(factor, compared):
+    values = np.random.default_rng(1).normal(1.0, 0.01, (1, 12))
+    values[0, 6:] += 0.15
+    errors = np.full(12, 1e-3)
+    errors[11] *= factor
+    (changed,) = looked_over(values, errors=errors).changed
+    assert sum(changed.counts) == 11 + compared
+    assert changed.series.values.size == 11 + compared
+
+
+def test_an_alarm_is_held_against_one_in_a_hundred_of_all_axes_together():
+    """Of axes that are alike the chance of each is its own times how many there are that are no surer."""
+    step = np.array([1.0, 1.1, 0.9, 1.0, 1.05, 0.95, 1.4, 1.35, 1.45])
+    still = np.tile([1.0, 1.1, 0.9], 3)
+    alone = change(step, np.full(9, 1e-3)).chance
+    (changed,) = looked_over(np.array([step, *[still] * 9])).changed
+    assert changed.chance == pytest.approx(10.0 * alone)
+    both = looked_over(np.array([step, step, *[still] * 8])).changed
+    assert [one.chance for one in both] == pytest.approx([10.0 * alone] * 2)
+    assert not looked_over(np.array([step, *[still] * round(0.0101 / alone)])).changed
+    assert looked_over(np.array([step, *[still] * (round(0.0099 / alone) - 1)])).changed
+
+
+def test_what_was_not_done_or_has_no_error_is_not_compared():
+    values = np.random.default_rng(1).normal(1.0, 0.01, (1, 12))
+    values[0, 6:] += 0.3
+    told = [found(value, 1e-3) for value in values[0]]
+    for place, other in ((3, {"status": "refused", "reason": "no"}), (8, {"status": "done"})):
+        told[place] = {**told[place], **other}
+    told[9]["parameters"][NAMES[0]]["std_error"] = None
+    (changed,) = looked_over(values, results=told).changed
+    assert changed.series.rows == (0, 1, 2, 4, 5, 6, 7, 8, 10, 11)
+    assert changed.counts == (5, 5)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,49 @@
+"""What a recording was made under, against closed forms; and from where on another motion is one."""
+
+import numpy as np
+import pytest
+
+from bench.baseline.conditions import conditions, unlike
+from bench.baseline.measured import Measured
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+RIG = Rig.of({"name": "a", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A"}})
+SPEED, OMEGA = 20.0, 2.0 * np.pi * 0.5
+
+
+def recorded(duration, glitch=0.0):
+    time = 1e-3 * np.arange(round(1000.0 * duration) + 1)
+    speed = SPEED * np.sin(OMEGA * time)
+    speed[100] += glitch
+    signals = {"velocity": speed, "current": np.full(time.size, 0.5)}
+    return Trace(time, signals, {"velocity": "rad/s", "current": "A"}, "a sine")
+
+
+def test_a_sines_conditions_are_those_of_its_formula():
+    found = {name: one.value for name, one in conditions([recorded(4.0)], RIG, 80.0).items()}
+    assert found["top_speed"] == pytest.approx(SPEED * np.sin(0.5 * np.pi * 0.99), rel=1e-3)  # 99 of 100 lie below
+    assert found["rms_speed"] == pytest.approx(SPEED / np.sqrt(2.0), rel=1e-3)
+    assert found["rms_acceleration"] == pytest.approx(SPEED * OMEGA / np.sqrt(2.0), rel=5e-3)
+    assert (found["rms_effort"], found["duration"]) == (pytest.approx(0.4), pytest.approx(4.0))
+    assert (found["sample_period"], found["cutoff"]) == (pytest.approx(1e-3), 80.0)
+
+
+def test_one_glitch_is_no_top_speed_and_several_recordings_count_alike():
+    assert conditions([recorded(4.0, 1e3)], RIG, 80.0)["top_speed"].value == pytest.approx(SPEED, rel=1e-2)
+    both = conditions([recorded(2.0), recorded(4.0)], RIG, 80.0)
+    assert both["duration"].value == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("name", ["top_speed", "rms_speed", "rms_acceleration", "duration", "sample_period"])
+def test_a_tenth_more_or_less_is_another_motion(name):
+    before = {name: Measured(2.0, "s", 0.0)}
+    for factor, differs in ((1.099, False), (1.0 / 1.099, False), (1.101, True), (1.0 / 1.101, True)):
+        assert bool(unlike(before, {name: Measured(2.0 * factor, "s", 0.0)})) is differs
+    assert unlike(before, {}) == []
+    assert unlike(before, {name: Measured(3.0, "s", 0.0)}) == [f"{name.replace('_', ' ')}: 2 -> 3 s"]
+
+
+@pytest.mark.parametrize("name", ["rms_effort", "cutoff"])
+def test_what_follows_from_the_axis_and_the_noise_is_no_other_motion(name):
+    assert unlike({name: Measured(1.0, "Hz", 0.0)}, {name: Measured(9.0, "Hz", 0.0)}) == []
