@@ -5,15 +5,28 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from bench.arrays import rms
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.found import Gap, NamedEffect
-from bench.diagnosis.show.verdict import OBJECTIONS, HoldoutApart, MovesWorse, NegativeFriction, Undetermined, verdict
+from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.show.verdict import (
+    OBJECTIONS,
+    HoldoutApart,
+    MovesWorse,
+    NegativeFriction,
+    Remains,
+    Shown,
+    Undetermined,
+    Unfinished,
+    verdict,
+)
 from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
 from bench.fit.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95
-from tests.diagnosis.constructed import COULOMB, RIG, moved, offset, recorded
+from tests.diagnosis.constructed import COULOMB, RIG, bare, moved, offset, recorded
+from tests.diagnosis.hand_made import level, made
 
 NONE = frozenset(catalogue())
 MOTION = moved(4.0)
@@ -82,10 +95,58 @@ def test_friction_that_is_not_determined_counts_where_its_torque_does():
     assert Undetermined().against(shown(friction=(0.08, 0.09))) == ""
 
 
+def test_what_is_minor_may_be_open():
+    """How warming friction divides between viscous and dry is minor; how much it is, is not."""
+    known, either = {"relative_amplitude": (0.3, 0.02), "time_constant": (2.0, 0.1)}, {"viscous_share": (0.4, 3.0)}
+    assert Undetermined().against(shown(named("friction_warmup", **known, **either))) == ""
+    for name, (value, _) in known.items():
+        wide = known | either | {name: (value, 1.1 * value)}
+        assert name.replace("_", " ") in Undetermined().against(shown(named("friction_warmup", **wide)))
+
+
+def test_the_torque_of_friction_is_that_of_its_own_column():
+    """Viscous friction times the RMS speed of the rows, Coulomb friction times one."""
+    fitted = bare(recorded(MOTION))
+    parameters = {
+        "viscous_friction_coefficient": parameter(8e-4, 1e-5),
+        "coulomb_friction_torque": parameter(0.08, 0.001),
+    }
+    added = SimpleNamespace(
+        extension=SimpleNamespace(whole=SimpleNamespace(fitted=fitted)), refined=SimpleNamespace(parameters=parameters)
+    )
+    recordings = SimpleNamespace(rig=RIG)
+    friction = Shown(recordings, None, added, None, None).friction  # pyright: ignore[reportArgumentType]
+    speed = rms(fitted.rows.values(lambda signals: signals.velocity))
+    for name, torque in (("viscous_friction_coefficient", speed), ("coulomb_friction_torque", 1.0)):
+        assert friction[name][0] is parameters[name]
+        assert friction[name][1] == pytest.approx(torque, rel=5e-3)
+    assert speed > 10.0
+
+
 def test_friction_resists():
     assert "is negative" in NegativeFriction().against(shown(friction=(-0.002, 0.001)))
     assert "is negative" in NegativeFriction().against(shown(friction=(-0.02, 0.03)))
     assert NegativeFriction().against(shown(friction=(-0.002, 0.003))) == ""
+
+
+@pytest.mark.parametrize(
+    ("stopped", "withheld", "said"),
+    [
+        (None, False, ""),
+        (None, True, "an effect that was not to be tried"),
+        ("limit", False, "limit"),
+        ("limit", True, "limit"),
+    ],
+)
+def test_a_search_that_was_cut_or_kept_from_a_name_explains_nothing(stopped, withheld, said):
+    suspects = SimpleNamespace(searched=SimpleNamespace(stopped=stopped), withheld=withheld)
+    assert Unfinished().against(SimpleNamespace(suspects=suspects)) == said
+
+
+@pytest.mark.parametrize(("chi", "said"), [(1.11, ""), (1.13, "the torque gap is 1.13 times what noise leaves")])
+def test_twelve_hundredths_above_the_floor_remain(chi, said):
+    suspects = SimpleNamespace(policy=Policy())
+    assert Remains().against(SimpleNamespace(suspects=suspects, whole=made(level(100.0 * chi**2)))) == said
 
 
 def test_a_holdout_at_three_times_what_is_left_here_stands_apart():
