@@ -124,7 +124,7 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> Chosen:
     if cutoff is not None:
         return Chosen(highest, np.zeros(3))
     usable = [tried for tried in (highest, *_lower(first, rig, highest)) if tried.determines_inertia]
-    return _chosen(usable, rig.axis_kind) if usable else Chosen(highest, np.zeros(3))
+    return among(usable, rig.axis_kind) if usable else Chosen(highest, np.zeros(3))
 
 
 def _lower(first: Trace, rig: Rig, highest: Tried) -> Iterator[Tried]:
@@ -138,8 +138,13 @@ def _lower(first: Trace, rig: Rig, highest: Tried) -> Iterator[Tried]:
             return
 
 
-def _chosen(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
-    """The choice among estimates from high to low cut-off."""
+def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
+    """The choice among estimates.
+
+    Args:
+        usable: that determine the inertia, from high to low cut-off.
+        kind: of the axis.
+    """
     accepted = [usable[-1]]
     for tried in usable[-2::-1]:
         if not all(tried.agrees(lower) for lower in accepted):

@@ -28,10 +28,11 @@ def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
     fitted = balance(trace, effort)
     if fitted is None:
         return trace, absent(NAME, f"too few samples, or {name} never changes", ALLOWED)
-    return trace, _judged(fitted, name)
+    return trace, judged(fitted, name)
 
 
-def _judged(fitted: Balance, name: str) -> Check:
+def judged(fitted: Balance, name: str) -> Check:
+    """What a balance of the effort of a name says."""
     by_motion, by_position = max(fitted.by_motion, 0.0), max(fitted.by_position, 0.0)
     inertia, _, coulomb, _ = fitted.theta
     explained = f"motion explains {by_motion:.0%} of {name}, with position {by_position:.0%}"

@@ -41,7 +41,7 @@ def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
     found = compared(trace)
     if found is None:
         return trace, absent(NAME, f"hardly any motion, or no stretch of {2 * SPAN} samples without a hole", ALLOWED)
-    return trace, _judged(found)
+    return trace, judged(found)
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,8 @@ def compared(trace: Trace) -> Comparison | None:
     return Comparison(float(theta[0]), -float(theta[1]), left / max(rms(claimed), 1e-300))
 
 
-def _judged(both: Comparison) -> Check:
+def judged(both: Comparison) -> Check:
+    """What a comparison of speed and position says."""
     ratio, lag, remainder = both.ratio, both.lag, both.remainder
     units = "check the units (and signs) of both columns and of the time, or leave one of the two columns out"
     if abs(ratio - 1.0) > REFUSED and remainder < REMAINDER:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.fit.between import between, excess
+from bench.fit.between import Excess, between, excess, widened
 from bench.fit.parameter import Parameter
 from bench.statistics import NORMAL95
 
@@ -32,3 +32,14 @@ def test_the_expected_interval_is_students_and_never_below_the_recordings_own_er
     )
     low, high = between(numbers([2.0, 2.0], 0.1)).predictive95
     assert high - low == pytest.approx(2.0 * NORMAL95 * 0.1 * np.sqrt(1.5))
+
+
+def test_a_joint_value_counts_what_averaging_leaves_of_the_spread():
+    """Of two recordings alike half the variance between them, at one degree of freedom."""
+    own = numbers([1.0, 1.2], 0.1)
+    joint = numbers([1.1], 0.1 / np.sqrt(2.0))[0]
+    found = widened(joint, Excess(variance=0.02, degrees=1, chance=0.0), own)
+    assert found.std_error == pytest.approx(np.sqrt(0.005 + 0.01))
+    assert found.half_width == pytest.approx(np.hypot(joint.half_width, 12.7062 * 0.1), rel=1e-5)
+    assert found.value == joint.value
+    assert widened(joint, Excess(0.0, 1, 1.0), own) is joint

@@ -1,15 +1,17 @@
 """An estimate that moves with the cut-off, that leaves much, or that cannot be: told, widened or refused."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from bench.arrays import rms
-from bench.fit.cutoffs import BELOW, choose
+from bench.fit.cutoffs import BELOW, Tried, among, choose
 from bench.fit.estimate import RefusedEstimateError
 from bench.fit.regression import identify
 from bench.rig.rig import Rig
+from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
 from bench.trace.write import write
 from tests.diagnosis.command import started
@@ -33,6 +35,43 @@ def test_a_clean_recording_keeps_the_highest_cut_off():
     assert chosen.tried.cutoff == pytest.approx(identify(trace, RIG).cutoff)
     assert not chosen.doubt.any() and not chosen.warnings
     assert chosen.tried.cutoff == pytest.approx(66.3, rel=0.01)
+
+
+def estimates(*inertias, widths):
+    """Estimates of J at falling cut-offs, from 100 Hz, with half widths of 95 %; friction alike at all."""
+    found = []
+    for k, (inertia, width) in enumerate(zip(inertias, widths, strict=True)):
+        smooth = GaussianFilter.from_cutoff(100.0 * 10.0 ** (-0.25 * k), 1e-4)
+        rows = SimpleNamespace(conditioning=SimpleNamespace(filter=smooth))
+        theta, reach = np.array([inertia, 1.0, 1.0]), np.array([width, 0.1, 0.1])
+        found.append(Tried(rows, None, None, theta, reach))
+    return found
+
+
+@pytest.mark.parametrize(("narrow", "taken"), [(0.61, 0), (0.59, 2), (0.35, 2)])
+def test_a_lower_cut_off_is_taken_where_its_interval_is_clearly_narrower(narrow, taken):
+    tried = estimates(1.0, 1.0, 1.0, widths=(0.1, 0.09, 0.1 * narrow))
+    chosen = among(tried, RIG.axis_kind)
+    assert chosen.tried is tried[taken]
+    assert not chosen.warnings
+
+
+@pytest.mark.parametrize(("inertia", "rejected"), [(1.13, False), (1.15, True)])
+def test_an_estimate_counts_where_it_agrees_with_those_at_all_lower_cut_offs(inertia, rejected):
+    """Two half widths of 0.1 leave 0.1414 of room, and rounding 1e-4."""
+    tried = estimates(inertia, 1.0, 1.0, widths=(0.1, 0.1, 0.1))
+    chosen = among(tried, RIG.axis_kind)
+    assert (chosen.tried is not tried[0]) == rejected == bool(chosen.warnings)
+
+
+def test_what_may_still_be_off_is_what_the_next_moved_but_no_more_than_lower_ones_leave():
+    moved = among(estimates(1.3, 1.0, 1.0, widths=(0.1, 0.1, 0.3)), RIG.axis_kind)
+    assert moved.doubt == pytest.approx([0.3, 0.0, 0.0])
+    bounded = among(estimates(2.0, 1.0, 1.02, widths=(0.1, 0.1, 0.3)), RIG.axis_kind)
+    assert bounded.tried.theta[0] == 1.0
+    assert bounded.doubt[0] == pytest.approx(0.02 + 0.3)
+    lowest = among(estimates(2.0, 1.0, widths=(0.1, 0.1)), RIG.axis_kind)
+    assert lowest.doubt[0] == pytest.approx(1.0)
 
 
 def test_noise_that_the_drive_feeds_back_moves_the_cut_off_and_leaves_the_inertia():

@@ -1,11 +1,13 @@
 """An effect too weak to be named: what it may move is counted; what is not there is not."""
 
 import numpy as np
+import pytest
 
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hint import hint
-from bench.fit.hypothesis import Hypothesis
+from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.layout import lay_out
 from bench.fit.regression import identify
 from bench.fit.rows import Rows
 from tests.fit.motions import RIG, Truth, recording
@@ -14,9 +16,9 @@ from tests.fit.motions import RIG, Truth, recording
 DRIFT = 0.01
 
 
-def drifting(trace):
+def drifting(trace, drift=DRIFT):
     """The recording of an axis whose motor gives more torque per ampere in the end."""
-    gain = 1.0 + DRIFT * trace.time / trace.time[-1]
+    gain = 1.0 + drift * trace.time / trace.time[-1]
     return trace.with_signals({"current": trace["current"] / gain}, {"current": "A"})
 
 
@@ -34,6 +36,23 @@ def test_a_weak_drift_is_hinted_at():
     beside = hinted(drifting(recording(np.random.default_rng(1))))
     assert beside is not None
     assert beside.hypothesis.names == ("torque_constant_drift",)
+
+
+def standard_errors(trace):
+    """By how many of its own a drift beside the plain axis differs from zero, by plain least squares."""
+    fitted = fit(Rows.of(trace, RIG), Hypothesis())
+    drift = lay_out(fitted.rows, Hypothesis((Term(catalogue()["torque_constant_drift"]),)))
+    theta, *_ = np.linalg.lstsq(drift.columns, drift.effort, rcond=None)
+    variance = np.linalg.inv(drift.columns.T @ drift.columns)[-1, -1]
+    return abs(theta[-1]) / (np.sqrt(variance * fitted.rows.correlation) * fitted.floor)
+
+
+@pytest.mark.parametrize(("seed", "drift"), [(0, 2.5e-3), (2, 2.3e-3), (0, 2.1e-3), (2, 1.9e-3)])
+def test_three_standard_errors_are_a_hint(seed, drift):
+    trace = drifting(recording(np.random.default_rng(seed)), drift)
+    away = standard_errors(trace)
+    assert 2.6 < away < 3.5 and abs(away - 3.0) > 0.1
+    assert (hinted(trace) is not None) == (away > 3.0)
 
 
 def test_the_interval_of_the_inertia_holds_it_under_a_weak_drift():

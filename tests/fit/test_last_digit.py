@@ -1,11 +1,13 @@
 """What the last digit of a coarse current does to a torque balance, against the digit it was made with."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
-from bench.fit.last_digit import plain
+from bench.fit.last_digit import cut_beforehand, plain, rounding
 from bench.fit.layout import DIGIT
 from bench.fit.regression import identify
 from bench.fit.rows import Rows
@@ -68,3 +70,19 @@ def test_identify_finds_the_inertia_beneath_it(digit):
 
 def test_a_fine_current_has_no_digit_that_matters():
     assert plain(Rows.of(recorded(lambda current: current), RIG)).step == 0.0
+
+
+@pytest.mark.parametrize(("dither", "left"), [(0.0, 1.0), (0.25, 0.29121), (0.15, 0.64138)])
+def test_noise_over_the_steps_leaves_its_characteristic_function_of_what_rounding_adds(dither, left):
+    """exp(-2*(pi*s/q)**2) of it at a deviation s of the noise beside that of the rounding itself, q**2/12."""
+    rows, step = Rows.of(recorded(rounded), RIG), STEP * CONSTANT
+    loud = replace(rows.conditioning, effort_noise=step * np.sqrt(1.0 / 12.0 + dither**2))
+    quiet = replace(rows.conditioning, effort_noise=0.5 * step / np.sqrt(12.0))
+    modelled = 3.0 * step * np.sin(3.0 * rows.time)
+    whole = rounding(replace(rows, conditioning=quiet), step, modelled, 0.0)
+    assert whole > 0.05 * step
+    assert rounding(replace(rows, conditioning=loud), step, modelled, 0.0) == pytest.approx(left * whole, rel=1e-4)
+
+
+def test_what_is_cut_off_is_evenly_spread_over_half_a_step():
+    assert cut_beforehand(0.4) == pytest.approx((0.1, 0.2**2 / 12.0))

@@ -86,6 +86,16 @@ def test_an_offset_that_was_not_asked_for_is_reported():
     assert not any("--offset" in told for told in identify(runs, OFFSET).warnings)
 
 
+@pytest.mark.parametrize(("offset", "told"), [(7e-4, False), (1.4e-3, True)])
+def test_an_offset_is_reported_from_its_own_interval_on(offset, told):
+    """Beside friction of 0.06 N*m, which alone decides how well it is known: half or one and a half half widths."""
+    runs = [moving_at(side * np.array([20.0, 60.0]), seed, offset) for seed, side in enumerate((1.0, -1.0))]
+    asked = identify(runs, OFFSET, CUTOFF)["torque_offset"]
+    assert 0.2 < abs(asked.value) / asked.half_width < 2.0
+    assert (abs(asked.value) > asked.half_width) == told
+    assert any("--offset" in warning for warning in identify(runs, RIG, CUTOFF).warnings) == told
+
+
 def moving_at(speeds, seed, offset=0.0):
     """Steady speeds one after the other, gone from one to the next in 0.3 s, in closed form."""
     rng, time, period, truth = np.random.default_rng(seed), np.arange(8000) * 1e-3, 1e-3, Truth()

@@ -1,10 +1,13 @@
 """Effort that does not follow the motion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from bench.errors import InputError
 from bench.gate import effort
+from bench.gate.balance import balance
 from bench.gate.gate import passed
 from tests.gate.damage import changed
 
@@ -33,3 +36,38 @@ def test_gravity_is_named_as_likeliest(sound, rig):
     found = effort.check(heavy, rig)[1]
     assert found.status == "pass"
     assert "gravity" in found.advice
+
+
+@pytest.fixture(scope="module")
+def fitted(sound):
+    return balance(sound, sound["current"])
+
+
+@pytest.mark.parametrize(
+    ("by_motion", "by_position", "audible", "status", "advice"),
+    [
+        (0.46, 0.46, 1.0, "pass", ""),
+        (0.44, 0.44, 9.0, "warn", "bench diagnose"),
+        (0.31, 0.31, 9.0, "warn", "bench diagnose"),
+        (0.29, 0.29, 9.0, "fail", "another axis"),
+        (0.29, 0.29, 3.1, "fail", "another axis"),
+        (0.29, 0.29, 2.9, "warn", "accelerations too small"),
+        (0.44, 0.44, 2.9, "warn", "accelerations too small"),
+        (0.60, 0.91, 9.0, "pass", "gravity"),
+        (0.60, 0.89, 9.0, "pass", ""),
+        (0.10, 0.41, 9.0, "warn", "gravity"),
+    ],
+)
+def test_shares_explained_are_judged_by_their_borders(fitted, by_motion, by_position, audible, status, advice):
+    found = effort.judged(replace(fitted, by_motion=by_motion, by_position=by_position, audible=audible), "current")
+    assert found.status == status
+    assert (advice in found.advice) if advice else not found.advice
+
+
+@pytest.mark.parametrize("kept", [None, "inertia", "friction", "power"])
+def test_signs_are_opposite_where_inertia_friction_and_power_are_negative_and_not_where_one_is_not(fitted, kept):
+    signs = np.array([-1.0, 1.0, -1.0, 1.0])
+    signs[{"inertia": 0, "friction": 2}.get(kept, 1)] = 1.0
+    turned = replace(fitted, theta=signs, power=1.0 if kept == "power" else -1.0)
+    found = effort.judged(turned, "current")
+    assert (found.status == "fail" and "opposite signs" in found.found) == (kept is None)

@@ -5,6 +5,7 @@ import pytest
 
 from bench.gate import signals
 from bench.gate.gate import CHECKS, UnanswerableError, passed
+from bench.trace.trace import Trace
 from tests.gate.damage import changed
 
 
@@ -47,3 +48,57 @@ def test_coarse_steps_are_reported(sound, rig, steps, status):
     step = np.std(sound["current"]) / steps
     rounded = changed(sound, current=np.round(sound["current"] / step) * step)
     assert signals.resolution(rounded, rig)[1].status == status
+
+
+TIME = 1e-3 * np.arange(20000)
+
+
+def turning(current, noise=0.0):
+    """An axis that turns by sines of its speed, never at rest for long, and a current."""
+    speed = 20.0 * np.sin(7.0 * TIME) + 8.0 * np.sin(1.3 * TIME)
+    loud = noise * np.random.default_rng(0).normal(size=TIME.size)
+    return Trace(TIME, {"velocity": speed, "current": current + loud}, {"velocity": "rad/s", "current": "A"}, "sines")
+
+
+@pytest.mark.parametrize(("samples", "status"), [(45, "pass"), (95, "warn"), (105, "fail")])
+def test_a_sensor_may_stand_still_for_half_a_per_cent(samples, status):
+    trace = turning(np.cos(7.0 * TIME), noise=0.01)
+    fast = 9000 + int(np.argmax(np.abs(np.convolve(trace["velocity"][9000:10000], np.ones(105), "valid"))))
+    stuck = trace["current"].copy()
+    stuck[fast : fast + samples + 1] = stuck[fast]
+    found = signals.moves(changed(trace, current=stuck), None)[1]
+    assert found.status == status
+    assert ("current stands still for" in found.found) == (status != "pass")
+
+
+def clipped(top, bottom):
+    """Torque of inertia and friction in closed form, cut off at both ends."""
+    speed = 20.0 * np.sin(7.0 * TIME) + 8.0 * np.sin(1.3 * TIME)
+    rate = 140.0 * np.cos(7.0 * TIME) + 10.4 * np.cos(1.3 * TIME)
+    return turning(np.clip(0.01 * rate + 0.002 * speed, bottom, top))
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_current_clipped_at_either_end_is_seen(side):
+    top, bottom = (1.2, -9.0) if side > 0.0 else (9.0, -1.2)
+    found = signals.clips(clipped(top, bottom), None)[1]
+    assert found.status == "fail"
+    assert f"exactly {side * 1.2:.4g} A" in found.found
+
+
+@pytest.mark.parametrize(("share", "status"), [(0.004, "pass"), (0.006, "fail")])
+def test_half_a_per_cent_of_all_samples_may_stand_at_the_end(share, status):
+    whole = clipped(9.0, -9.0)["current"]
+    top = np.quantile(whole, 1.0 - share)
+    assert (signals.clips(clipped(top, -9.0), None)[1].status == "pass") == (status == "pass")
+
+
+@pytest.mark.parametrize(("more", "status"), [(0.04, "warn"), (0.07, "fail")])
+def test_what_is_lost_is_where_the_motion_asks_for_five_per_cent_more(more, status):
+    """A current that stands at 1 A while inertia alone asks for a share more."""
+    asked = 1.0 + more
+    plateau = np.where(np.sin(0.5 * TIME) > 0.6, asked, 0.8 * np.sin(11.0 * TIME))
+    speed = np.cumsum(plateau / 0.01) * 1e-3
+    seen = {"velocity": speed - np.linspace(0.0, speed[-1], speed.size), "current": np.minimum(plateau, 1.0)}
+    trace = Trace(TIME, seen, {"velocity": "rad/s", "current": "A"}, "plateaus")
+    assert signals.clips(trace, None)[1].status == status

@@ -49,3 +49,58 @@ def test_noise_of_the_speed_is_no_undersampling(sound, rig):
     rng = np.random.default_rng(0)
     noisy = changed(sound, velocity=sound["velocity"] + rng.normal(scale=200.0, size=len(sound)))
     assert timing.rate(noisy, rig)[1].status == "pass"
+
+
+def stamped(jitter, resampled):
+    """A sound grid of stamps one of which is off by a share of a period."""
+    time = 1e-3 * np.arange(3000)
+    time[1500] += jitter * 1e-3
+    signals, units = {"velocity": np.sin(time)}, {"velocity": "rad/s"}
+    if resampled:
+        return Trace.from_arrays({"time": time, **signals}, {"time": "s", **units})
+    return Trace(time, signals, units, "stamps")
+
+
+@pytest.mark.parametrize(
+    ("jitter", "resampled", "status"),
+    [
+        (0.045, True, "pass"),
+        (0.06, True, "warn"),
+        (0.095, True, "warn"),
+        (0.095, False, "pass"),
+        (0.105, False, "fail"),
+    ],
+)
+def test_jitter_is_judged_by_its_borders(jitter, resampled, status):
+    assert timing.regular(stamped(jitter, resampled), None)[1].status == status
+
+
+def turning(hertz, turned, period=60.0):
+    """A motion so slow that it is followed at any rate, at whose 95 % of speed the axis turns so far a sample."""
+    time = np.arange(round(40.0 * hertz)) / hertz
+    speed = np.sin(2.0 * np.pi * time / period)
+    speed *= turned * hertz / np.percentile(np.abs(speed), 95.0)
+    return Trace(time, {"velocity": speed}, {"velocity": "rad/s"}, "slow")
+
+
+@pytest.mark.parametrize(
+    ("hertz", "turned", "status"), [(10.0, 3.1, "pass"), (10.0, 3.2, "fail"), (19.0, 3.2, "fail"), (21.0, 9.0, "pass")]
+)
+def test_below_twenty_hertz_half_a_turn_from_sample_to_sample_is_too_fast(hertz, turned, status):
+    found = timing.rate(turning(hertz, turned), None)[1]
+    assert found.status == status
+    assert ("from one sample to the next" in found.found) == (status == "fail")
+
+
+@pytest.mark.parametrize(("motion", "status"), [(47.0, "fail"), (2.0, "pass")])
+def test_a_motion_between_the_samples_is_missed_also_where_the_axis_turns_little(motion, status):
+    """Speed and effort of a motion whose frequency wanders about: at 100 Hz one of 2 Hz is followed, one of 47 not."""
+    rng, time = np.random.default_rng(0), 0.01 * np.arange(4000)
+    phase = 2.0 * np.pi * motion * time + np.cumsum(0.1 * rng.normal(size=time.size))
+    signals = {"velocity": np.sin(phase), "current": np.cos(phase)}
+    found = timing.rate(Trace(time, signals, {"velocity": "rad/s", "current": "A"}, "fast"), None)[1]
+    assert found.status == status
+    if status == "fail":
+        assert "of its spread" in found.found
+        steady = changed(Trace(time, signals, {"velocity": "rad/s", "current": "A"}, "x"), current=np.sin(0.01 * time))
+        assert timing.rate(steady, None)[1].status == "pass"  # noise of the speed alone

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bench.gate import velocity
+from bench.trace.trace import Trace
 from tests.gate.damage import changed
 
 
@@ -42,3 +43,35 @@ def test_a_standstill_compares_nothing(sound, rig):
     rng = np.random.default_rng(0)
     still = changed(sound, velocity=rng.normal(scale=0.02, size=len(sound)), position=np.zeros(len(sound)))
     assert velocity.check(still, rig)[1].status == "not_applicable"
+
+
+@pytest.mark.parametrize(
+    ("ratio", "remainder", "status"),
+    [
+        (1.019, 0.0, "pass"),
+        (1.021, 0.0, "warn"),
+        (0.981, 0.39, "pass"),
+        (0.979, 0.39, "warn"),
+        (1.099, 0.0, "warn"),
+        (1.101, 0.0, "fail"),
+        (0.901, 0.0, "warn"),
+        (0.899, 0.0, "fail"),
+        (1.0, 0.41, "fail"),
+        (1.5, 0.41, "fail"),
+    ],
+)
+def test_ratio_and_remainder_are_judged_by_their_borders(ratio, remainder, status):
+    found = velocity.judged(velocity.Comparison(ratio, 0.0, remainder))
+    assert found.status == status
+    assert ("not the same motion" in found.found) == (remainder > 0.4)
+
+
+def test_ratio_lag_and_offset_of_a_motion_in_closed_form_are_found():
+    """0.7*(v - T*dv/dt) of a sine, held against itself: (1 - j*w*T)*(1 + j*w*T) = 1 + (w*T)**2."""
+    time = 1e-3 * np.arange(4000)
+    position, speed, rate = np.sin(3.0 * time), 3.0 * np.cos(3.0 * time), -9.0 * np.sin(3.0 * time)
+    seen = {"position": position, "velocity": 0.7 * (speed - 5e-3 * rate) + 0.4}
+    found = velocity.compared(Trace(time, seen, {"position": "rad", "velocity": "rad/s"}, "sine"))
+    assert found.ratio == pytest.approx(0.7 * (1.0 + 0.015**2), rel=1e-5)
+    assert found.lag == pytest.approx(5e-3, rel=1e-3)
+    assert found.remainder < 1e-4

@@ -1,0 +1,106 @@
+"""Covariance and reach of intervals, against closed forms and against fits without each part of the rows."""
+
+import numpy as np
+import pytest
+from scipy import special
+from scipy.signal import lfilter
+
+from bench.fit.covariance import estimated, left_out, long_run_covariance, misfit
+
+#: 97.5 % quantile of Student's t by degrees of freedom, from a printed table.
+STUDENT = {1: 12.7062, 3: 3.18245, 7: 2.36462, 10: 2.22814, 26: 2.05553}
+
+
+def impulse(count, place=5, height=3.0):
+    """Scores of blocks (count, 1) of which one differs from zero: all their covariances but that at lag 0 vanish."""
+    scores = np.zeros((count, 1))
+    scores[place] = height
+    return scores
+
+
+@pytest.mark.parametrize(("count", "degrees"), [(14, 10), (30, 26), (5, 1), (4, 1)])
+def test_independent_blocks_give_their_squares_and_students_reach_at_as_many_degrees(count, degrees):
+    """Four of the degrees go to the plain axis' columns: S = sum of squares*count/(count - 4)."""
+    inverse = np.array([[0.5]])
+    covariance, reach = estimated(impulse(count, 2), inverse, least=0.0)
+    assert covariance[0, 0] == pytest.approx(0.5 * 9.0 * 0.5 * count / degrees)
+    assert reach == pytest.approx(STUDENT[degrees], rel=1e-5)
+
+
+def test_an_interval_is_never_narrower_than_white_noise_alone_makes_it():
+    inverse = np.diag([4.0, 1.0])
+    scores = np.column_stack([impulse(14)[:, 0], impulse(14, 9)[:, 0]])
+    floor = 100.0  # between 4*9*4*1.4 = 201.6 over 4 and 9*1.4 = 12.6 over 1
+    covariance, _ = estimated(scores, inverse, least=floor)
+    assert np.diag(covariance) == pytest.approx([400.0, 100.0])
+    covariance, _ = estimated(scores, inverse, least=20.0)
+    assert np.diag(covariance) == pytest.approx([201.6, 20.0])
+
+
+def test_the_long_run_covariance_of_two_neighbours_weighs_them_by_the_kernel():
+    """S = a**2 + b**2 + 2*k(1/bandwidth)*a*b, k the quadratic spectral kernel."""
+    scores = np.zeros((40, 1))
+    scores[10], scores[11] = 2.0, 1.0
+    found, bandwidth = long_run_covariance(scores)
+    rho = 2.0 / 5.0
+    ratio = 4.0 * rho**2 / (1.0 - rho) ** 4
+    assert bandwidth == pytest.approx(1.5 * 1.3221 * (ratio * 40) ** 0.2)
+    angle = 6.0 * np.pi / 5.0 / bandwidth
+    kernel = 3.0 / angle**2 * (np.sin(angle) / angle - np.cos(angle))
+    assert found[0, 0] == pytest.approx(5.0 + 2.0 * kernel * 2.0, rel=1e-9)
+
+
+def rows(count=963, seed=0):
+    """Accelerations and speeds of one size each, apart from what orders them, and a residual."""
+    rng = np.random.default_rng(seed)
+    sizes = 1.0 + 1e-9 * rng.permuted(np.tile(np.arange(count), (2, 1)), axis=1)
+    columns = np.sign(rng.normal(size=(count, 2))) * sizes.T
+    return columns, rng.normal(size=count)
+
+
+def jackknife(columns, residual, order, count):
+    """Reach by fits without each of `count` equal parts of the rows in an order."""
+    moved = []
+    for part in np.split(order, np.arange(1, count) * order.size // count):
+        kept = np.setdiff1d(order, part)
+        moved.append(np.linalg.lstsq(columns[kept], residual[kept], rcond=None)[0])
+    return STUDENT[count - 1] * np.sqrt((count - 1) / count * np.sum(np.square(moved), axis=0))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_left_out_is_what_fits_without_each_part_of_the_rows_say(seed):
+    columns, residual = rows(seed=seed)
+    residual = residual - columns @ np.linalg.lstsq(columns, residual, rcond=None)[0]
+    by_state = [jackknife(columns, residual, np.argsort(np.abs(columns[:, k])), 8) for k in (0, 1)]
+    by_time = jackknife(columns, residual, np.arange(residual.size), 4)
+    expected = np.max([*by_state, by_time], axis=0)
+    assert left_out(columns, residual) == pytest.approx(expected, rel=1e-4)
+
+
+def test_a_misfit_counts_from_1_12_floors_on_by_what_stands_above_them():
+    columns, residual = rows()
+    residual = residual / np.sqrt(np.mean(residual**2))
+    whole = left_out(columns, residual)
+    assert not misfit(columns, residual, 1.0 / 1.11).any()
+    assert misfit(columns, residual, 1.0 / 1.13) == pytest.approx(np.sqrt(1.0 - (1.12 / 1.13) ** 2) * whole)
+    assert misfit(columns, residual, 0.0) == pytest.approx(whole)
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.6])
+def test_intervals_of_means_cover(correlation):
+    """Of 1000 first-order sequences of 200 blocks 95 % of the intervals hold the mean; were they 20 % narrower, 88 %
+    would (2*Phi(0.8*1.96) - 1): nine standard deviations of chance less.
+    """
+    rng, count, held = np.random.default_rng(1), 200, []
+    noise = lfilter([1.0], [1.0, -correlation], rng.normal(size=(1000, count + 50)))[:, 50:]
+    for sequence in noise:
+        mean = sequence.mean()
+        covariance, reach = estimated((sequence - mean)[:, None], np.array([[1.0 / count]]), 0.0)
+        held.append(abs(mean) <= reach * np.sqrt(covariance[0, 0]))
+    print(f"\ncoverage of a mean at correlation {correlation}: {np.mean(held):.3f}")
+    assert abs(np.mean(held) - 0.95) < 3.0 * np.sqrt(0.95 * 0.05 / 1000)
+
+
+def test_students_table_is_scipys():
+    for degrees, value in STUDENT.items():
+        assert special.stdtrit(degrees, 0.975) == pytest.approx(value, rel=1e-5)

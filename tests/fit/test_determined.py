@@ -1,0 +1,63 @@
+"""From which share of its own on a quantity counts as determined, at and beside the borders."""
+
+import numpy as np
+import pytest
+
+from bench.axis_kind import COULOMB, INERTIA, OFFSET, ROTARY, VISCOUS
+from bench.errors import UndeterminedError
+from bench.fit.determined import independent_share, left_open, only_direction, require_inertia
+from bench.fit.normal_equations import NormalEquations
+
+#: J, K_w, K_0, misalignment, constant.
+PLACES = 5
+
+
+def equations(gram, rows=1000, noise=None):
+    """Normal equations of one block: `gram` (5, 5) a row."""
+    whole = np.asarray(gram, dtype=float)[None] * rows
+    none = np.zeros((PLACES, PLACES))
+    return NormalEquations(whole, np.zeros((1, PLACES)), np.ones(1), np.array([rows]), none if noise is None else noise)
+
+
+def alike(first, second, share):
+    """Columns of unit power, of which two share all but `share` of their power, and the direction is even."""
+    gram = np.eye(PLACES)
+    gram[first, second] = gram[second, first] = np.sqrt(1.0 - share)
+    return gram
+
+
+@pytest.mark.parametrize("share", [0.5, 0.02, 0.008])
+def test_the_share_is_what_the_others_do_not_explain(share):
+    assert independent_share(equations(alike(0, 1, share)), INERTIA, (VISCOUS,)) == pytest.approx(share)
+
+
+def test_noise_of_a_column_is_no_share_of_it():
+    noise = np.diag([0.75, 0.0, 0.0, 0.0, 0.0])
+    assert independent_share(equations(np.eye(PLACES), noise=noise), INERTIA, (VISCOUS,)) == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize(("share", "sure"), [(0.0105, True), (0.0095, False)])
+def test_a_quantity_needs_one_per_cent_of_its_own(share, sure):
+    found = equations(alike(0, 1, share))
+    assert left_open(found, ROTARY) == (frozenset() if sure else {INERTIA, VISCOUS, COULOMB, OFFSET})
+    friction = equations(alike(1, 2, share))
+    assert left_open(friction, ROTARY) == (frozenset() if sure else {VISCOUS, COULOMB})
+
+
+@pytest.mark.parametrize(("rows", "sure"), [(100, True), (99, False)])
+def test_it_takes_twenty_rows_a_column(rows, sure):
+    found = equations(np.eye(PLACES), rows=rows)
+    if sure:
+        require_inertia(found, ROTARY)
+    else:
+        with pytest.raises(UndeterminedError, match=r"only 99 filtered samples .* 100 are needed"):
+            require_inertia(found, ROTARY)
+
+
+@pytest.mark.parametrize(
+    ("weaker", "side"), [(0.021, None), (0.019, "forward"), (0.981, "backward"), (0.979, None), (0.5, None)]
+)
+def test_one_way_is_less_than_two_per_cent_the_other_way(weaker, side):
+    gram = np.eye(PLACES)
+    gram[2, 4] = gram[4, 2] = 1.0 - 2.0 * weaker
+    assert only_direction(equations(gram)) == side

@@ -1,0 +1,64 @@
+"""What the sensors' noise becomes in the torque balance, against closed forms."""
+
+import numpy as np
+import pytest
+
+from bench.effects.catalogue import catalogue
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.layout import lay_out
+from bench.fit.noise import noise_power
+from bench.fit.rows import Rows
+from tests.fit.motions import RIG, recording
+
+OMEGA = np.array([0.0, 100.0, 400.0])
+NONE = np.zeros(3)
+
+
+def theta_of(layout, **values):
+    """Coefficients (p,) of a layout: J, K_w, K_0, misalignment, and the one strength of a term."""
+    theta = np.zeros(layout.owners.size)
+    for place, name in enumerate(("inertia", "viscous", "coulomb", "misalignment")):
+        theta[place] = values.get(name, 0.0)
+    theta[layout.owners == 0] = values.get("strength", 0.0)
+    return theta
+
+
+def power(rows, hypothesis, source, **values):
+    layout = lay_out(rows, hypothesis)
+    return noise_power(rows, hypothesis, layout, theta_of(layout, **values))(OMEGA, source)
+
+
+def test_noise_of_the_effort_passes_its_misalignment_and_that_of_the_speed_inertia_and_friction():
+    rows = Rows.of(recording(np.random.default_rng(0)), RIG)
+    effort = rows.conditioning.effort_noise**2
+    late = 1.0 + (1e-3 * OMEGA) ** 2
+    np.testing.assert_allclose(power(rows, Hypothesis(), NONE, misalignment=1e-3), effort * late)
+    moved = power(rows, Hypothesis(), np.full(3, 4.0), inertia=2e-3, viscous=0.3) - effort
+    np.testing.assert_allclose(moved, 4.0 * ((2e-3 * OMEGA) ** 2 + 0.3**2))
+
+
+@pytest.mark.parametrize("rate", [0.05, -0.1])
+def test_an_effect_that_copies_torque_takes_its_share_of_the_torques_noise(rate):
+    """What is left is 1 - dM_model/dM = 1 + r*t of it, in power its mean square over the recording."""
+    rows = Rows.of(recording(np.random.default_rng(1)), RIG)
+    drift = Hypothesis((Term(catalogue()["torque_constant_drift"]),))
+    time = rows.stretches[0].signals.time
+    left = np.mean((1.0 + rate * time) ** 2)
+    assert abs(left - 1.0) > 0.2
+    found = power(rows, drift, NONE, strength=rate) / power(rows, Hypothesis(), NONE)
+    np.testing.assert_allclose(found, left, rtol=1e-6)
+
+
+def test_the_floor_of_a_plain_axis_is_the_filtered_noise_of_both_sensors():
+    """s_M**2*G_0**2 + (J*s_w*G_1)**2 + (K_w*s_w*G_0)**2, G_k the filter's gains for white noise."""
+    fitted = fit(Rows.of(recording(np.random.default_rng(2), torque_noise=0.02, velocity_noise=0.3), RIG), Hypothesis())
+    conditioning, base = fitted.rows.conditioning, fitted.base
+    gains = [conditioning.filter.noise_gain(order) for order in (0, 1)]
+    parts = (
+        conditioning.effort_noise * gains[0],
+        base.inertia * conditioning.source_noise * gains[1],
+        base.viscous * conditioning.source_noise * gains[0],
+    )
+    assert fitted.noise.white == pytest.approx(np.sqrt(np.sum(np.square(parts))), rel=2e-3)
+    assert parts[1] > 0.3 * parts[0]
