@@ -19,6 +19,7 @@ LAYERS = (
     {"errors", "names", "bounds", "files", "structured", "assets", "allocation"},
     {"jobs"},
     {"units", "axis_kind", "arrays", "statistics"},
+    {"comparison"},
     {"trace"},
     {"rig"},
     {"gate"},

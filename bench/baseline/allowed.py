@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bench.axis_kind import COULOMB, INERTIA, ROTARY, VISCOUS, AxisKind
-from bench.baseline.measured import Measured
 from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, State
+from bench.comparison.difference import Measured
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError
 from bench.names import nearest

@@ -26,9 +26,9 @@ from typing import Any
 
 import tomli_w
 
-from bench.baseline.measured import Measured
 from bench.baseline.response import INSTANTS, Response
 from bench.baseline.state import Gap, NamedHere, Shows, State
+from bench.comparison.difference import Measured
 from bench.effects.present import named
 from bench.errors import InputError
 from bench.files import write_text

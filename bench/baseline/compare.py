@@ -11,14 +11,12 @@ import numpy as np
 from bench.baseline.allowed import FLOOR, MARGINS, OTHER_MOTION, Allowed
 from bench.baseline.comparison import CHANGED, RESULTS, SAME, UNDECIDED, Comparison
 from bench.baseline.conditions import unlike
-from bench.baseline.difference import Difference
-from bench.baseline.measured import Measured
 from bench.baseline.names import matched, of_both, of_names
 from bench.baseline.observe import Observed, Under
 from bench.baseline.same_rig import differing
 from bench.baseline.state import GAPS, TORQUE_GAP, VELOCITY_GAP, NamedHere, State
+from bench.comparison.difference import Difference, Measured, holm
 from bench.effects.catalogue import catalogue
-from bench.statistics import holm
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from bench.baseline.difference import Difference
+from bench.comparison.difference import Difference
 
 SAME, CHANGED, UNDECIDED = "same", "changed", "undecided"
 #: From worst to best.

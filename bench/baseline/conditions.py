@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.arrays import rms
-from bench.baseline.measured import Measured
+from bench.comparison.difference import Measured
 from bench.plant.track import measured_velocity
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace

@@ -16,11 +16,10 @@ from bench.arrays import rms
 from bench.baseline.allowed import Allowed
 from bench.baseline.compare import Checked
 from bench.baseline.comparison import CHANGED, RESULTS, SAME, Comparison
-from bench.baseline.difference import Difference
-from bench.baseline.measured import Measured
 from bench.baseline.names import matched
 from bench.baseline.response import RESPONSE_TORQUE, response
 from bench.baseline.state import NamedHere, State
+from bench.comparison.difference import Difference, Measured
 from bench.plant.model import parameter_quantities
 from bench.plant.model_file import SCHEMA, StoredModel, load_model, read_table
 from bench.units import Quantity

@@ -13,9 +13,8 @@ from dataclasses import dataclass
 
 from bench.baseline.allowed import OF_EFFECTS, Allowed
 from bench.baseline.comparison import Comparison
-from bench.baseline.difference import Difference
-from bench.baseline.measured import Measured
 from bench.baseline.state import NamedHere, State
+from bench.comparison.difference import Difference, Measured
 
 
 @dataclass(frozen=True)

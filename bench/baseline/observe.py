@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bench.baseline.conditions import conditions
-from bench.baseline.measured import Measured
 from bench.baseline.same_rig import rig_values
 from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, Gap, NamedHere, Shows, State
+from bench.comparison.difference import Measured
 from bench.diagnosis.diagnosis import POLICY, Diagnosis, diagnose
 from bench.diagnosis.found import NamedEffect
 from bench.diagnosis.recordings import Recordings

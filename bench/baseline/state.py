@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from bench.axis_kind import AxisKind, axis_kind
-from bench.baseline.measured import Measured
 from bench.baseline.response import Response
+from bench.comparison.difference import Measured
 from bench.effects.effect import Effect
 
 #: Quantities that are not parameters: gaps over their noise floors.

@@ -6,9 +6,9 @@ import math
 
 from bench.baseline.compare import Checked
 from bench.baseline.comparison import CHANGED, SAME, Comparison
-from bench.baseline.measured import Measured
 from bench.baseline.response import RESPONSE_TORQUE
 from bench.baseline.state import GAPS, NamedHere
+from bench.comparison.difference import Measured
 from bench.names import words
 
 #: Units shown in another one, with the factor.

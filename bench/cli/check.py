@@ -178,7 +178,7 @@ def _require_consistent(asked: Asked, update: bool, quick: bool, written: list[P
 def _update(asked: Asked, names: bool) -> None:
     """Accept the present state, and say what a check against it will not be able to tell."""
     from bench.baseline.baseline import write_baseline
-    from bench.baseline.difference import ENOUGH
+    from bench.comparison.difference import ENOUGH
 
     state = asked.of_model(asked.simulated) if asked.simulated is not None else asked.observed(names).state
     write_baseline(asked.baseline, state)

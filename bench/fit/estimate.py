@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from bench.comparison.spread import Between
 from bench.errors import UndeterminedError
 from bench.fit.parameter import Parameter
 from bench.gate.check import Check
@@ -26,19 +27,6 @@ class Residual:
     noise_floor: float
     relative: float
     unit: str
-
-
-@dataclass(frozen=True)
-class Between:
-    """How recordings of one axis differ in a quantity.
-
-    Attributes:
-        std_dev: standard deviation of the estimates by each recording alone - the quantity's unit.
-        predictive95: prediction interval for one more recording, at 95 % - the quantity's unit.
-    """
-
-    std_dev: float
-    predictive95: tuple[float, float]
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,10 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
+from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.errors import InputError, UndeterminedError
-from bench.fit.between import ALARM, Excess, between, excess, spread_warning
 from bench.fit.determined import left_open, only_direction, require_determined, require_sound
-from bench.fit.estimate import Between, Estimate, RefusedEstimateError, Residual
+from bench.fit.estimate import Estimate, RefusedEstimateError, Residual
 from bench.fit.load_inertia import load_inertia
 from bench.fit.member import Member
 from bench.fit.normal_equations import NormalEquations, join, solved

@@ -10,11 +10,11 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
-from bench.fleet.change import Change, change
+from bench.comparison.difference import holm
+from bench.comparison.step import Step, largest_step
 from bench.fleet.manifest import Manifest
 from bench.fleet.plan import Planned
 from bench.fleet.recording import Plain
-from bench.statistics import holm
 
 #: Chance of being told that any axis changed of a fleet in which none did.
 ALARM = 0.01
@@ -62,7 +62,7 @@ class Changed:
     axis: str
     quantity: str
     unit: str
-    step: Change
+    step: Step
     since: str
     file: str
     counts: tuple[int, int]
@@ -81,7 +81,7 @@ def changes(
         order: of its rows by time (n,).
     """
     series = _series(manifest, planned, results, order)
-    steps = [(one, found) for one in series if (found := change(one.values, one.errors)) is not None]
+    steps = [(one, found) for one in series if (found := largest_step(one.values, one.errors)) is not None]
     files, times = manifest.text("file"), manifest.text("time")
     chances = holm(np.array([step.chance for _, step in steps]))
     alarms = []

@@ -11,9 +11,9 @@ from rich.table import Table
 
 from bench.baseline.compare import Checked
 from bench.baseline.comparison import SAME, Comparison
-from bench.baseline.measured import Measured
 from bench.baseline.state import Gap, NamedHere, State
 from bench.baseline.wording import DISPLAYED, described, formatted, headline
+from bench.comparison.difference import Measured
 from bench.structured import json_text
 
 SCHEMA = "bench.check/1"

@@ -12,7 +12,8 @@ from rich import box
 from rich.table import Table
 
 from bench.axis_kind import AxisKind
-from bench.fit.estimate import Alone, Between, Estimate
+from bench.comparison.spread import Between
+from bench.fit.estimate import Alone, Estimate
 from bench.fit.parameter import Parameter
 from bench.names import words
 from bench.report.gate import checks_json

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from bench.baseline.measured import Measured
 from bench.baseline.observe import Observed, Under
 from bench.baseline.state import TORQUE_GAP, Gap, NamedHere, Shows, State
+from bench.comparison.difference import Measured
 from bench.effects.catalogue import catalogue
 
 VALUES = {

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bench.baseline.baseline import read_baseline, write_baseline
-from bench.baseline.measured import Measured
 from bench.baseline.response import INSTANTS, Response
+from bench.comparison.difference import Measured
 from bench.errors import InputError
 from tests.baseline.states import named, state
 

@@ -8,8 +8,8 @@ from scipy.stats import norm
 
 from bench.baseline.allowed import Allowed
 from bench.baseline.compare import compare
-from bench.baseline.measured import Measured
 from bench.baseline.wording import headline
+from bench.comparison.difference import Measured
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError
 from bench.rig.rig import Rig

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.baseline.conditions import conditions, unlike
-from bench.baseline.measured import Measured
+from bench.comparison.difference import Measured
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

@@ -7,10 +7,10 @@ import pytest
 
 from bench.axis_kind import ROTARY
 from bench.baseline.allowed import Allowed
-from bench.baseline.measured import Measured
 from bench.baseline.modelled import compare_models
 from bench.baseline.response import DURATION, INSTANTS, Response, response
 from bench.baseline.state import State
+from bench.comparison.difference import Measured
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import AxisParameters
 from tests.baseline.states import named

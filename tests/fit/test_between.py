@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 
-from bench.fit.between import Excess, between, excess, widened
+from bench.comparison.spread import Excess, between, excess
+from bench.diagnosis.show.apart import widened
 from bench.fit.parameter import Parameter
 from bench.statistics import NORMAL95
 
@@ -43,3 +45,21 @@ def test_a_joint_value_counts_what_averaging_leaves_of_the_spread():
     assert found.half_width == pytest.approx(np.hypot(joint.half_width, 12.7062 * 0.1), rel=1e-5)
     assert found.value == joint.value
     assert widened(joint, Excess(0.0, 1, 1.0), own) is joint
+
+
+def test_a_joint_value_has_the_spread_that_averaging_leaves():
+    """tau**2*sum(w**2)/sum(w)**2 with w = 1/(s_k**2 + tau**2): of n alike tau**2/n."""
+    apart = Excess(4.0, 3, 0.0)
+    assert apart.of_joint(numbers([1.0, 2.0, 3.0, 4.0], 0.5)) == pytest.approx(2.0 / 2.0)
+    own = [*numbers([1.0], 1.0), *numbers([2.0], 4.0)]
+    weights = np.array([1.0 / 5.0, 1.0 / 20.0])
+    assert apart.of_joint(own) == pytest.approx(2.0 * np.sqrt(weights @ weights) / weights.sum())
+    assert Excess(0.0, 3, 1.0).of_joint(own) == 0.0
+
+
+def test_the_chance_of_a_spread_is_that_of_cochrans_q():
+    values, error = [1.0, 2.0, 4.0], 0.8
+    statistic = np.sum((np.array(values) - np.mean(values)) ** 2) / error**2
+    assert excess([numbers(values, error)]).chance == pytest.approx(stats.chi2.sf(statistic, 2))
+    assert Excess(1.0, 4, 0.1).reach == pytest.approx(stats.t.ppf(0.975, 4))
+    assert Excess(1.0, 0, 1.0).reach == 0.0

@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from bench.fleet.change import expected
+from bench.comparison.step import expected
 from bench.fleet.fleet import Fleet
 from bench.fleet.manifest import Manifest
 from bench.fleet.plan import Planned

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from bench.arrays import rms
+from bench.comparison.difference import Difference
 from bench.fit.fit import Fit, fit
 from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
@@ -29,7 +28,7 @@ VAGUE = 0.1
 
 
 @dataclass(frozen=True)
-class Difference:
+class Disagreement:
     """A quantity that differs between recording and holdout by more than errors and daily variation.
 
     Attributes:
@@ -54,7 +53,7 @@ class SameAxis:
     """
 
     same: bool | None
-    differs: tuple[Difference, ...] = ()
+    differs: tuple[Disagreement, ...] = ()
     warnings: tuple[str, ...] = ()
 
 
@@ -77,13 +76,12 @@ def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> Same
     for k, (name, label) in enumerate(zip(units, ("inertia", "viscous friction", "Coulomb friction"), strict=True)):
         if not own[name].value > 0.0:
             continue
-        ratio = others[name].value / own[name].value
-        error = float(np.hypot(own[name].std_error * ratio, others[name].std_error)) / own[name].value
-        vague = vague and not (k == 0 and error < VAGUE)
-        if not _within(REPORTED[k], ratio, error):
-            differs.append(Difference(name, own[name], others[name]))
-        if not _within(FOREIGN[k], ratio, error):
-            apart.append(f"{ratio:.3g} times the {label} (± {NORMAL95 * error:.2g})")
+        found = Difference.relative(own[name], others[name])
+        vague = vague and not (k == 0 and found.std_error < VAGUE)
+        if _beyond(REPORTED[k], found):
+            differs.append(Disagreement(name, own[name], others[name]))
+        if _beyond(FOREIGN[k], found):
+            apart.append(f"{1.0 + found.value:.3g} times the {label} (± {NORMAL95 * found.std_error:.2g})")
     left, least = _left(there), _left(here)
     if left > max(LEFT, MORE * least):
         apart.append(f"{left:.0%} of its torque unexplained by the effects found, {least:.1%} of the recording's")
@@ -93,8 +91,8 @@ def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> Same
     return SameAxis(None if vague or differs else True, tuple(differs))
 
 
-def _within(factor: float, ratio: float, error: float) -> bool:
-    return 1.0 / factor - SURE * error < ratio < factor + SURE * error
+def _beyond(factor: float, found: Difference) -> bool:
+    return found.outside(1.0 / factor - 1.0, factor - 1.0, SURE)
 
 
 def _left(fitted: Fit) -> float:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.diagnosis.recordings import Recordings
 from bench.errors import UndeterminedError
-from bench.fit.between import ALARM, between, excess, spread_warning, widened
 from bench.fit.determined import left_open, require_determined
-from bench.fit.estimate import Alone, Between
+from bench.fit.estimate import Alone
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.load_inertia import load_inertia
@@ -61,6 +62,22 @@ def apart(recordings: Recordings, whole: Fit, parameters: Mapping[str, Parameter
             warnings.append(spread_warning(name, own))
     found |= load_inertia(found, recordings.rig)
     return Apart(found, alone, spread, tuple(warnings))
+
+
+def widened(found: Parameter, differ: Excess, own: Sequence[Parameter]) -> Parameter:
+    """A joint value whose interval includes the spread between recordings, as far as averaging leaves it.
+
+    Args:
+        found: with its interval from the recordings' own errors.
+        differ: spread of the recordings beyond these.
+        own: estimate by each recording alone.
+    """
+    more = differ.of_joint(own)
+    if not more:
+        return found
+    reach = math.hypot(found.half_width, differ.reach * more)
+    interval = (found.value - reach, found.value + reach)
+    return replace(found, std_error=math.hypot(found.std_error, more), ci95=interval)
 
 
 def _each(recordings: Recordings, whole: Fit) -> tuple[Alone, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from bench.comparison.spread import Between
 from bench.diagnosis.add.add import Added
 from bench.diagnosis.add.same_axis import SameAxis
 from bench.diagnosis.found import Considered, Course, Gap, NamedEffect, Profile, Rejected, Shrunk
@@ -18,7 +19,7 @@ from bench.diagnosis.show.next_experiment import NextExperiment, propose
 from bench.diagnosis.show.suspicions import suspicions
 from bench.diagnosis.show.verdict import Shown, verdict
 from bench.diagnosis.where.where import Where, where
-from bench.fit.estimate import Alone, Between
+from bench.fit.estimate import Alone
 from bench.fit.fit import Fit
 from bench.fit.parameter import Parameter
 from bench.fit.stored import Balance

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from bench.arrays import Array
-from bench.fleet.change import expected
+from bench.comparison.step import expected
 from bench.fleet.changed import ALARM, Changed
 from bench.fleet.fleet import TABLE, Fleet
 from bench.fleet.summary import STATUSES, Summary

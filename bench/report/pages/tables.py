@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from bench import __version__
-from bench.fit.estimate import Alone, Between
+from bench.comparison.spread import Between
+from bench.fit.estimate import Alone
 from bench.fit.parameter import Parameter
 from bench.gate.check import Check
 from bench.names import words

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.statistics import holm
+from bench.comparison.difference import holm
 
 
 @pytest.mark.parametrize(

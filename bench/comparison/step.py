@@ -1,4 +1,4 @@
-"""Whether what the recordings of one axis tell of a quantity steps at some time, and when.
+"""Whether the values of one quantity step at some time, and when.
 
     v_k = theta + step*(k >= c) + u_k + e_k
 
@@ -6,9 +6,9 @@ v_k - value of recording k, in the order of time; e_k - its own error, of standa
 differ anyway, of one variance. For every place c the step is the difference of the means on both sides, its variance
 p/c + p/(n - c) with p the variance pooled about the two means, but on neither side below that of the recordings' own
 errors, and Student's t at n - 2 degrees of freedom judges it: with one recording behind c this is the prediction
-interval of the next recording (`bench.fit.between`). The chance of the largest of n - 1 steps is at most n - 1
-times its own (Bonferroni). Means are not weighted: weights by estimated variances alarm on up to three times the share
-they claim where errors differ much.
+interval of the next recording (`bench.comparison.spread.next_interval`). The chance of the largest of n - 1 steps is at
+most n - 1 times its own (Bonferroni). Means are not weighted: weights by estimated variances alarm on up to three times
+the share they claim where errors differ much.
 """
 
 from __future__ import annotations
@@ -19,13 +19,14 @@ import numpy as np
 from scipy import special
 
 from bench.arrays import Array
+from bench.comparison.spread import next_interval
 
 #: Recordings below which nothing can be told: two means, and one number for the scatter about them.
 FEWEST = 3
 
 
 @dataclass(frozen=True)
-class Change:
+class Step:
     """The step that stands out most from a series of values.
 
     Attributes:
@@ -44,7 +45,7 @@ class Change:
     chance: float
 
 
-def change(values: Array, errors: Array) -> Change | None:
+def largest_step(values: Array, errors: Array) -> Step | None:
     """The step that stands out most; None of fewer than three values.
 
     Args:
@@ -65,7 +66,7 @@ def change(values: Array, errors: Array) -> Change | None:
     steps = means[1] - means[0]
     sizes = np.abs(steps) / np.maximum(error, 1e-150)
     best = int(np.argmax(sizes))
-    return Change(
+    return Step(
         place=best + 1,
         before=float(centre + means[0, best]),
         after=float(centre + means[1, best]),
@@ -78,7 +79,7 @@ def change(values: Array, errors: Array) -> Change | None:
 def expected(values: Array, errors: Array, place: int) -> tuple[tuple[float, float], tuple[float, float]]:
     """Intervals of 95 % of the next recording, as those before a step and those after it have it - the quantity's unit.
 
-    Mean -+ t sqrt(p (1 + 1/c)), with p the variance pooled about both means, or of the recordings' own errors.
+    Their scatter is the variance pooled about both means, or that of the recordings' own errors.
 
     Args:
         values: in the order of time (n,), n >= 3.
@@ -90,9 +91,8 @@ def expected(values: Array, errors: Array, place: int) -> tuple[tuple[float, flo
     student = float(special.stdtrit(values.size - 2, 0.975))
 
     def interval(side: Array, own: Array) -> tuple[float, float]:
-        variance = max(pooled, float(np.mean(own**2)))
-        reach = student * float(np.sqrt(variance * (1.0 + 1.0 / side.size)))
-        return float(side.mean()) - reach, float(side.mean()) + reach
+        reach = student * max(pooled, float(np.mean(own**2))) ** 0.5
+        return next_interval(float(side.mean()), reach, side.size)
 
     before, after = zip(sides, np.split(errors, [place]), strict=True)
     return interval(*before), interval(*after)

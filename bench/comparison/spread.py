@@ -1,4 +1,4 @@
-"""Spread of a quantity between recordings of one axis, beyond the standard error of each.
+"""Spread of a quantity between recordings of one axis, beyond the standard error of each, and where the next one lies.
 
 Recordings differ by more than noise: temperature, lubricant, mounting of the load. The value from recording k is
 modelled as theta + u_k + e_k; e_k has the recording's own standard error s_k, u_k the common variance tau**2.
@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import special
 
-from bench.fit.estimate import Between
-from bench.fit.parameter import Parameter
+from bench.comparison.difference import Estimated
 from bench.statistics import NORMAL95
 
 #: Probability of a false warning that recordings differ, over all quantities together.
@@ -40,8 +39,19 @@ class Excess:
         """Half width of an interval of 95 % in standard deviations, by Student's t; 0 without a degree of freedom."""
         return float(special.stdtrit(self.degrees, 0.975)) if self.degrees else 0.0
 
+    def of_joint(self, own: Sequence[Estimated]) -> float:
+        """Standard error that the spread adds to a joint value, as far as averaging leaves it - the quantity's unit.
 
-def excess(groups: Sequence[Sequence[Parameter]]) -> Excess:
+        Args:
+            own: estimate by each recording alone; the joint value weights them by 1/(s_k**2 + tau**2).
+        """
+        if not self.variance:
+            return 0.0
+        weights = 1.0 / (np.array([each.half_width / NORMAL95 for each in own]) ** 2 + self.variance)
+        return math.sqrt(self.variance * float(weights @ weights)) / float(weights.sum())
+
+
+def excess(groups: Sequence[Sequence[Estimated]]) -> Excess:
     """Variance between recordings by the method of moments, from Cochran's Q over groups of comparable values.
 
     tau**2 = max(0, (Q - degrees)/sum over groups of (sum w - sum w**2/sum w)), w = 1/s_k**2 (R. DerSimonian, N. Laird,
@@ -65,38 +75,48 @@ def excess(groups: Sequence[Sequence[Parameter]]) -> Excess:
     return Excess(max(0.0, (apart - degrees) / expected), degrees, float(special.chdtrc(degrees, apart)))
 
 
-def between(found: Sequence[Parameter]) -> Between:
+@dataclass(frozen=True)
+class Between:
+    """How recordings of one axis differ in a quantity.
+
+    Attributes:
+        std_dev: standard deviation of the estimates by each recording alone - the quantity's unit.
+        predictive95: prediction interval for one more recording, at 95 % - the quantity's unit.
+    """
+
+    std_dev: float
+    predictive95: tuple[float, float]
+
+
+def between(found: Sequence[Estimated]) -> Between:
     """Spread of the estimates by at least two recordings alone, and the prediction interval of the next one.
 
-    mean +- t*s*sqrt(1 + 1/n), s the standard deviation of n values and t Student's at n - 1 degrees of freedom: exact
-    for normal values of one variance, whatever share of it is their own error (G. J. Hahn, W. Q. Meeker, Statistical
-    Intervals, 1991, section 4.7). The interval is never narrower than by the recordings' own errors.
+    The interval is never narrower than by the recordings' own errors.
     """
     values = np.array([each.value for each in found])
     spread, mean = float(np.std(values, ddof=1)), float(np.mean(values))
     own = float(np.sqrt(np.mean([each.half_width**2 for each in found])))
-    reach = max(float(special.stdtrit(values.size - 1, 0.975)) * spread, own) * math.sqrt(1.0 + 1.0 / values.size)
-    return Between(spread, (mean - reach, mean + reach))
+    reach = max(float(special.stdtrit(values.size - 1, 0.975)) * spread, own)
+    return Between(spread, next_interval(mean, reach, values.size))
 
 
-def widened(found: Parameter, apart: Excess, own: Sequence[Parameter]) -> Parameter:
-    """A joint value whose interval includes the spread between recordings, as far as averaging leaves it.
+def next_interval(mean: float, reach: float, count: int) -> tuple[float, float]:
+    """Prediction interval of the next value, mean -+ reach*sqrt(1 + 1/count) - the quantity's unit.
+
+    With reach = t*s, s the standard deviation of the values and t Student's at its degrees of freedom, this is exact
+    for normal values of one variance, whatever share of it is their own error (G. J. Hahn, W. Q. Meeker, Statistical
+    Intervals, 1991, section 4.7).
 
     Args:
-        found: with its interval from the recordings' own errors.
-        apart: spread of the recordings beyond these.
-        own: estimate by each recording alone.
+        mean: of the values so far - the quantity's unit.
+        reach: half width of the interval around a mean that is known - the quantity's unit.
+        count: of the values so far.
     """
-    if not apart.variance:
-        return found
-    weights = 1.0 / (np.array([each.half_width / NORMAL95 for each in own]) ** 2 + apart.variance)
-    more = math.sqrt(apart.variance * float(weights @ weights)) / float(weights.sum())
-    reach = math.hypot(found.half_width, apart.reach * more)
-    interval = (found.value - reach, found.value + reach)
-    return replace(found, std_error=math.hypot(found.std_error, more), ci95=interval)
+    wide = reach * math.sqrt(1.0 + 1.0 / count)
+    return mean - wide, mean + wide
 
 
-def spread_warning(name: str, own: Sequence[Parameter]) -> str:
+def spread_warning(name: str, own: Sequence[Estimated]) -> str:
     """A warning that recordings differ in a quantity by more than their own errors."""
     low, high = min(each.value for each in own), max(each.value for each in own)
     return (

@@ -8,8 +8,7 @@ import pytest
 from scipy.stats import binomtest, norm
 from scipy.stats import t as student
 
-from bench.baseline.difference import ENOUGH, NOT_EQUIVALENT, Difference
-from bench.baseline.measured import Measured
+from bench.comparison.difference import ENOUGH, NOT_EQUIVALENT, Difference, Measured
 from bench.fit.parameter import Parameter
 
 
@@ -143,3 +142,20 @@ def test_several_recordings_have_the_mean_of_their_squared_errors_and_the_least_
     assert several.degrees == pytest.approx(4.0, rel=1e-3)
     one = Measured.of(found(1.7, 0.2, 1.959964), alone[1:])
     assert (one.std_error, one.recordings, one.spread) == (0.2, 1, None)
+
+
+def test_a_ratio_passes_on_the_errors_of_both():
+    """now/baseline - 1 = 0.2 with sqrt((1.2*0.3)**2 + 0.4**2)/10."""
+    baseline, now = Parameter(10.0, "", 0.3, (9.0, 11.0)), Parameter(12.0, "", 0.4, (11.0, 13.0))
+    found = Difference.relative(baseline, now)
+    assert (found.value, found.std_error) == (pytest.approx(0.2), pytest.approx(math.hypot(0.36, 0.4) / 10.0))
+
+
+@pytest.mark.parametrize(("value", "outside"), [(0.79, False), (0.81, True), (-0.59, False), (-0.61, True)])
+def test_what_lies_outside_of_a_range_does_so_by_more_than_its_errors(value, outside):
+    """Range -0.3 to 0.5, three standard errors of 0.1."""
+    assert Difference(value, 0.1).outside(-0.3, 0.5, errors=3.0) is outside
+
+
+def test_a_difference_that_is_not_known_is_outside_of_every_range():
+    assert Difference(math.nan, 0.1).outside(-1.0, 1.0, errors=3.0)

@@ -1,0 +1,189 @@
+"""The difference of two states in one quantity, and the tests on it.
+
+    D = now - baseline ~ t(degrees) with variance  s_n**2/k_n + s_b**2/k_b + tau**2*(1/k_n + 1/k_b)
+
+s - standard error of one recording; tau - additional standard deviation between recordings; k - number of recordings;
+n, b - now and baseline. This is the prediction interval of the next recording (G. J. Hahn, W. Q. Meeker, Statistical
+Intervals, 1991, section 4.7): with one recording now it is 1 + 1/k_b times the variance of one. The degrees of freedom
+of the sum are Satterthwaite's (Biometrics Bulletin 2, 1946, 110-114).
+
+Against a margin m there are three answers:
+
+- same: the interval of 90 % lies within (-m, m). Two one-sided tests at 5 % (D. J. Schuirmann, J. Pharmacokinetics and
+  Biopharmaceutics 15, 1987, 657-680); that all quantities are the same is shown at 5 % without a correction, as
+  each one has to be (R. L. Berger, Technometrics 24, 1982, 295-300).
+- changed: |D| exceeds m; its probability if the true |D| <= m is at most `Difference.chance(m)`, which `holm` corrects
+  for the number of comparisons.
+- undecided: neither.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from scipy import special
+
+from bench.arrays import Array
+
+#: Number of recordings in a baseline from which on the spread is theirs alone, by Student's t. With fewer it is the
+#: larger of theirs and the stated one: at 2 degrees of freedom and 30 comparisons at 1 % an interval is 55 standard
+#: deviations wide on each side, at 4 it is 10.
+ENOUGH = 5
+#: Probability that a quantity that differs by more than its margin is called the same.
+NOT_EQUIVALENT = 0.05
+
+
+class Estimated(Protocol):
+    """What is asked of an identified quantity (`bench.fit.parameter.Parameter`)."""
+
+    @property
+    def value(self) -> float:
+        """In `unit`."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """SI."""
+        ...
+
+    @property
+    def std_error(self) -> float:
+        """Standard error - unit; nan where none is known."""
+        ...
+
+    @property
+    def half_width(self) -> float:
+        """Half width of the interval of 95 % - unit."""
+        ...
+
+    @property
+    def degrees(self) -> float:
+        """Degrees of freedom of the Student's t that gives this half width; inf for a normal distribution."""
+        ...
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A quantity in one state of an axis.
+
+    Attributes:
+        value: in `unit`.
+        unit: SI.
+        std_error: standard error of one such recording from its own noise; 0 if exact - unit.
+        degrees: of freedom of this error; inf if it is known.
+        recordings: number of recordings that determine the quantity alone.
+        spread: standard deviation of their estimates, own errors included; None for fewer than two - unit.
+    """
+
+    value: float
+    unit: str
+    std_error: float
+    degrees: float = math.inf
+    recordings: int = 1
+    spread: float | None = None
+
+    @classmethod
+    def of(cls, found: Estimated, alone: Sequence[Estimated] = ()) -> Measured:
+        """From a quantity with its interval, and from its estimates by each of several recordings alone.
+
+        Of several recordings the error is the root mean square of theirs.
+        """
+        known = [one for one in alone if math.isfinite(one.std_error)]
+        if len(known) < 2:
+            return cls(found.value, found.unit, found.std_error, found.degrees)
+        error = float(np.sqrt(np.mean([one.std_error**2 for one in known])))
+        spread = float(np.std([one.value for one in known], ddof=1))
+        return cls(found.value, found.unit, error, min(one.degrees for one in known), len(known), spread)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Now less baseline, in the quantity's unit or as a share of the baseline.
+
+    Attributes:
+        value, std_error: of the difference; both in the same unit, or both dimensionless.
+        degrees: of freedom.
+    """
+
+    value: float
+    std_error: float
+    degrees: float = math.inf
+
+    @classmethod
+    def of(cls, baseline: Measured, now: Measured, between: float, beside: float = 0.0) -> Difference:
+        """Difference with the variance above.
+
+        Args:
+            baseline, now: the quantity in both states.
+            between: stated standard deviation between recordings - unit.
+            beside: the same for a known difference of the states, such as their motion - unit.
+        """
+        parts = [(now.std_error**2 / now.recordings, now.degrees)]
+        shares = 1.0 / now.recordings + 1.0 / baseline.recordings
+        if baseline.spread is not None and baseline.recordings >= ENOUGH:
+            total = baseline.spread**2  # own errors included
+            more = max(0.0, now.std_error**2 - baseline.std_error**2) / now.recordings
+            parts = [(total * shares, baseline.recordings - 1.0), (more, now.degrees)]
+        else:
+            shown = math.sqrt(max(0.0, (baseline.spread or 0.0) ** 2 - baseline.std_error**2))
+            parts += [(baseline.std_error**2 / baseline.recordings, baseline.degrees)]
+            parts += [(max(between, shown) ** 2 * shares, math.inf)]
+        parts += [(2.0 * beside**2, math.inf)]
+        variance = sum(part for part, _ in parts)
+        shakiness = sum(part**2 / degrees for part, degrees in parts)
+        degrees = variance**2 / shakiness if shakiness > 0.0 else math.inf
+        return cls(now.value - baseline.value, math.sqrt(variance), degrees)
+
+    @classmethod
+    def relative(cls, baseline: Estimated, now: Estimated) -> Difference:
+        """now/baseline - 1 with the error that both pass on to it; what recordings differ by is left to the range.
+
+        Args:
+            baseline: above zero.
+            now: the same quantity.
+        """
+        ratio = now.value / baseline.value
+        error = float(np.hypot(baseline.std_error * ratio, now.std_error)) / baseline.value
+        return cls(ratio - 1.0, error)
+
+    def interval(self, level: float) -> tuple[float, float]:
+        """Interval that contains the true difference with probability `level` - unit."""
+        reach = float(special.stdtrit(self.degrees, 0.5 * (1.0 + level))) * self.std_error
+        return self.value - reach, self.value + reach
+
+    def within(self, margin: float) -> bool:
+        """Whether the difference is shown to be smaller than a margin."""
+        low, high = self.interval(1.0 - 2.0 * NOT_EQUIVALENT)
+        return -margin < low and high < margin
+
+    def outside(self, low: float, high: float, errors: float) -> bool:
+        """Whether it lies outside of a range, however so many standard errors turn out."""
+        reach = errors * self.std_error
+        return not low - reach < self.value < high + reach
+
+    def chance(self, margin: float) -> float:
+        """Probability of a difference this large, in either direction, if the true one is within a margin."""
+        if self.std_error == 0.0:
+            return float(abs(self.value) <= margin)
+        sides = ((abs(self.value) + side * margin) / self.std_error for side in (-1.0, 1.0))
+        return min(1.0, sum(float(special.stdtr(self.degrees, -side)) for side in sides))
+
+
+def holm(chances: Array, silent: int = 0) -> Array:
+    """Chances (n,) of several tests so raised that each one below a rate alarms falsely at that rate for all together.
+
+    S. Holm, Scandinavian Journal of Statistics 6(2), 1979, 65-70; whatever hangs together.
+
+    Args:
+        chances: of each test, were nothing there (n,).
+        silent: tests that were made too and cannot alarm.
+    """
+    order = np.argsort(chances, kind="stable")
+    raised = (chances.size + silent - np.arange(chances.size)) * chances[order]
+    found = np.empty_like(chances)
+    found[order] = np.minimum(np.maximum.accumulate(raised), 1.0)
+    return found
