@@ -1,4 +1,4 @@
-"""Mutants of the bench: each rule off, each column turned or dropped, each property of an effect unset.
+"""Mutants of the bench, drawn at random: one operator, number or condition changed, and the tests asked to notice.
 
-`python -m tests.studies.mutation --help`; what it last found: docs/mutation.md.
+`python -m tests.studies.mutation --help`
 """

@@ -1,93 +1,195 @@
-"""Command line of the mutation run."""
+"""Command line: draw mutants, show each to the tests that run what was changed, tell which were noticed."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from fnmatch import fnmatch
+import ast
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
+from queue import SimpleQueue
+from tempfile import TemporaryDirectory
 from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import track
 
-from tests.studies.mutation.mutants import Mutant, mutants
-from tests.studies.mutation.run import Result, tried
+from tests.studies.mutation.mutants import DECIDING, ROOT, Mutant, drawn
+from tests.studies.mutation.reach import REACH
 
-SURVIVED, UNFINISHED = "SURVIVED", "TIME RAN OUT"
-
-
-def results(chosen: Sequence[Mutant], jobs: int, deadline: float) -> list[Result]:
-    """What became of each, in the order given."""
-    found: dict[str, Result] = {}
-    with ThreadPoolExecutor(jobs) as pool, Progress(console=Console(stderr=True)) as progress:
-        bar = progress.add_task("mutants", total=len(chosen))
-        tasks = [pool.submit(tried, mutant, mutant.stages, deadline) for mutant in chosen]
-        for task in as_completed(tasks):
-            result = task.result()
-            found[result.name] = result
-            progress.advance(bar)
-            if not result.killed_by:
-                progress.console.print(f"{fate(result)}: {result.name}")
-    return [found[mutant.name] for mutant in chosen]
+#: What a copy of the project needs for its tests; `shared` lies beside it.
+COPIED = ("bench", "tests", "data", "mjcf", "docs", "pyproject.toml", "README.md", "CONTRIBUTING.md", "CHANGELOG.md")
+ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", "--tb=no", "--no-header"]
 
 
-def markdown(found: Sequence[Result], command: str) -> str:
+@dataclass(frozen=True)
+class Fate:
+    """What became of a mutant: the first test that failed with it, or none of so many files; after so many seconds."""
+
+    mutant: Mutant
+    killed_by: str
+    files: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Reach:
+    """A file of tests, what it runs of the bench (`path:line` of functions), and how long it takes - s."""
+
+    path: str
+    seconds: float
+    ran: frozenset[str]
+
+    def sees(self, mutant: Mutant) -> bool:
+        """Whether it runs the function that was changed, or any of its folder where a constant was."""
+        if mutant.function is not None:
+            return f"{mutant.path}:{mutant.function[1]}" in self.ran
+        return any(place.startswith(mutant.path.rpartition("/")[0]) for place in self.ran)
+
+
+def reaches(folder: Path, anew: bool) -> list[Reach]:
+    """Of all files of tests, quick ones first; measured where the folder does not hold them."""
+    if anew or not any(folder.glob("*.json")):
+        folder.mkdir(parents=True, exist_ok=True)
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "tests.studies.mutation.reach", "--no-header", "--tb=no"]
+        subprocess.run(command, cwd=ROOT, env={**os.environ, **ENVIRONMENT, REACH: str(folder)}, check=True)
+    parts = [json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.json")]
+    found = [Reach(part["path"], part["seconds"], frozenset(part["ran"])) for part in parts]
+    return sorted(found, key=lambda reach: reach.seconds)
+
+
+def fate(mutant: Mutant, tests: Sequence[Reach], copy: Path, most: float) -> Fate:
+    """Shows a mutant to the tests that see it: those of its own folder first, then the quick ones.
+
+    Args:
+        mutant: to make.
+        tests: all of them.
+        copy: of the project, to make it in.
+        most: seconds of tests that it is shown to, as they take without it.
+    """
+    folder = "/".join(("tests", *mutant.path.split("/")[1:2]))
+    seeing = sorted((t for t in tests if t.sees(mutant)), key=lambda t: (not t.path.startswith(folder), t.seconds))
+    path, began, shown, spent = copy / mutant.path, time.monotonic(), 0, 0.0
+    text = path.read_text(encoding="utf-8")
+    changed = mutant.applied(text)
+    ast.parse(changed)
+    path.write_text(changed, encoding="utf-8")
+    killed_by = ""
+    try:
+        for files in _batches(seeing):
+            done = subprocess.run(
+                [*PYTEST, *(test.path for test in files)],
+                cwd=copy,
+                env={**os.environ, **ENVIRONMENT, "PYTHONPATH": str(copy)},
+                capture_output=True,
+                check=False,
+                text=True,
+                timeout=60.0 + 20.0 * sum(test.seconds for test in files),
+            )
+            shown += len(files)
+            if done.returncode not in (0, 5):  # 5: nothing to run
+                failed = [line.split()[1] for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+                killed_by = failed[0] if failed else "the tests do not start"
+                break
+            spent += sum(test.seconds for test in files)
+            if spent > most:
+                break
+    except subprocess.TimeoutExpired:
+        killed_by = "it does not end"
+    finally:
+        path.write_text(text, encoding="utf-8")
+    return Fate(mutant, killed_by, shown, time.monotonic() - began)
+
+
+def _batches(tests: Iterable[Reach], seconds: float = 10.0) -> Iterable[list[Reach]]:
+    """Files that one process runs, so that starting it is not all it does."""
+    batch: list[Reach] = []
+    for test in tests:
+        batch.append(test)
+        if sum(each.seconds for each in batch) > seconds:
+            yield batch
+            batch = []
+    if batch:
+        yield batch
+
+
+def markdown(fates: Sequence[Fate], command: str, equivalent: Mapping[str, str]) -> str:
     """The table."""
-    killed = sum(bool(result.killed_by) for result in found)
-    late = sum(result.unfinished for result in found)
-    lines = [
-        "# Mutation run",
-        "",
-        "Each rule, doubt and judge switched off; each column of each effect turned in sign, or dropped; each property",
-        "of an effect set to the neutral one, each method replaced by it. A mutant is killed by the first test that",
-        f"fails with it. `{command}`",
-        "",
-        f"{len(found)} mutants: {killed} killed, {len(found) - killed - late} survived, {late} ran out of time.",
-        "",
-        "| mutant | killed by | s |",
-        "|---|---|---|",
-    ]
-    lines += [f"| {result.name} | {fate(result)} | {result.seconds:.0f} |" for result in found]
-    return "\n".join(lines) + "\n"
-
-
-def fate(result: Result) -> str:
-    """The test that killed it, or that none did."""
-    return f"`{result.killed_by}`" if result.killed_by else f"**{UNFINISHED if result.unfinished else SURVIVED}**"
+    survived = [each for each in fates if not each.killed_by]
+    told = [each for each in survived if str(each.mutant) in equivalent]
+    killed, counted = len(fates) - len(survived), len(fates) - len(told)
+    lines = ["# Mutants", "", f"`{command}`", ""]
+    lines += [f"{len(fates)} mutants, {len(told)} of them equivalent; {killed} of {counted} killed.", ""]
+    lines += ["| survived | files of tests that ran it | equivalent, as |", "|---|---|---|"]
+    lines += [f"| `{each.mutant}` | {each.files} | {equivalent.get(str(each.mutant), '')} |" for each in survived]
+    lines += ["", "| killed | by |", "|---|---|"]
+    lines += [f"| `{each.mutant}` | `{each.killed_by}` |" for each in fates if each.killed_by]
+    return "\n".join(line.replace("||", "\\|\\|") for line in lines) + "\n"
 
 
 def main(
-    only: Annotated[str, typer.Option(help="Mutants whose name matches, as 'cogging_torque*' or 'rule*'.")] = "*",
+    count: Annotated[int, typer.Option(min=1, help="Mutants to draw.")] = 200,
+    seed: Annotated[int, typer.Option(min=0)] = 1,
+    folders: Annotated[list[str] | None, typer.Option("--in", help="Folders of bench. Repeatable.")] = None,
     jobs: Annotated[int, typer.Option(min=1)] = 2,
-    deadline: Annotated[
-        float, typer.Option(min=1.0, help="Per mutant - s; one that takes longer counts as alive.")
-    ] = 300.0,
-    baseline: Annotated[bool, typer.Option(help="First see that the tests pass without a mutant.")] = True,
+    most: Annotated[float, typer.Option(help="Seconds of tests that a mutant is shown to.")] = 1e9,
+    reach: Annotated[Path, typer.Option(help="Folder of what each file of tests runs.")] = Path(".reach"),
+    anew: Annotated[bool, typer.Option("--anew", help="Measure that anew.")] = False,
     listed: Annotated[bool, typer.Option("--list", help="List the mutants and stop.")] = False,
-    out: Annotated[Path | None, typer.Option(help="Folder for mutation.md.")] = None,
+    equivalent: Annotated[Path | None, typer.Option(help="JSON: mutants that change nothing, and why.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for mutants.md.")] = None,
 ) -> None:
     """Change the bench in one place at a time and see that a test fails."""
-    chosen = [mutant for name, mutant in mutants().items() if fnmatch(name, only)]
-    if not chosen:
-        raise typer.BadParameter(f"no mutant matches {only}")
+    chosen = drawn(count, seed, tuple(folders) if folders else DECIDING)
     if listed:
-        typer.echo("\n".join(mutant.name for mutant in chosen))
+        typer.echo("\n".join(map(str, chosen)))
         return
-    if baseline:
-        files = dict.fromkeys(path for mutant in chosen for stage in mutant.stages for path in stage)
-        stage = tuple(path for path in files if path.startswith("/"))
-        broken = tried(None, (stage,), 60.0 * deadline).killed_by
-        if broken:
-            raise typer.BadParameter(f"{broken} fails without a mutant")
-    found = results(chosen, jobs, deadline)
-    told = markdown(found, "python -m tests.studies.mutation" + (f" --only '{only}'" if only != "*" else ""))
+    tests = reaches(reach, anew)
+    same = json.loads(equivalent.read_text(encoding="utf-8")) if equivalent is not None else {}
+    with TemporaryDirectory() as made, ThreadPoolExecutor(jobs) as pool:
+        copies: SimpleQueue[Path] = SimpleQueue()
+        for k in range(jobs):
+            copies.put(_copy(Path(made) / str(k)))
+
+        def shown(mutant: Mutant) -> Fate:
+            copy = copies.get()
+            try:
+                return fate(mutant, tests, copy, most)
+            finally:
+                copies.put(copy)
+
+        console, fates = Console(stderr=True), []
+        for found in track(pool.map(shown, chosen), "mutants", total=len(chosen), console=console):
+            fates.append(found)
+            console.print(f"{found.killed_by or 'SURVIVED'}: {found.mutant} ({found.seconds:.0f} s)", markup=False)
+    where = "".join(f" --in {name}" for name in folders or ())
+    told = markdown(fates, f"python -m tests.studies.mutation --count {count} --seed {seed}{where}", same)
     typer.echo(told)
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
-        (out / "mutation.md").write_text(told, encoding="utf-8")
-    raise typer.Exit(any(not result.killed_by for result in found))
+        (out / "mutants.md").write_text(told, encoding="utf-8")
+
+
+def _copy(folder: Path) -> Path:
+    """A copy of the project with the shared recordings beside it."""
+    project = folder / "project"
+    project.mkdir(parents=True)
+    ignored = shutil.ignore_patterns("__pycache__", "_build")
+    for name in COPIED:
+        source = ROOT / name
+        shutil.copytree(source, project / name, ignore=ignored) if source.is_dir() else shutil.copy(source, project)
+    shared = ROOT.parent / "shared"
+    if shared.exists():
+        (folder / "shared").symlink_to(shared)
+    return project
 
 
 if __name__ == "__main__":

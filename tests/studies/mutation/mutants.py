@@ -1,177 +1,135 @@
-"""The list of mutants, generated from the objects themselves: rules, doubts and judges, then every effect."""
+"""Places where a source file decides, and what may be changed there."""
 
 from __future__ import annotations
 
-import importlib
-import inspect
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from functools import partial
+import ast
+import random
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from bench.diagnosis.show.verdict import OBJECTIONS
-from bench.effects.catalogue import catalogue
-from bench.effects.effect import Effect
-from bench.effects.kinds import Electronics, Friction, Mechanism, Sensing
-from bench.effects.signals import Signals
-from bench.fit.stored import Balance
-from tests.diagnosis.off import OFF
-
-#: Environment variable that names the mutant to be made.
-MUTANT = "SERVOBENCH_MUTANT"
-TESTS = Path(__file__).resolve().parents[2]
-#: What an effect is when it overrides nothing.
-NEUTRAL = (Effect, Mechanism, Friction, Electronics, Sensing)
-#: Without a neutral value: what an effect is called, and what it has.
-GIVEN = ("name", "summary", "quantities")
-#: Tests of rules, doubts and judges.
-DECISIONS = ("diagnose/test_policy.py", "diagnose/test_doubts.py", "diagnose/test_judges.py")
-#: Tests that run over all effects, fast ones first; those of one are picked by its name.
-OF_EVERY_EFFECT = (
-    "effects/test_contract.py",
-    "effects/test_properties.py",
-    "effects/test_sensing.py",
-    "effects/test_track_effects.py",
-    "effects/test_agreement.py",
-    "effects/test_diagnosed.py",
+ROOT = Path(__file__).resolve().parents[3]
+#: Folders of `bench` whose files decide; the others write down what was decided.
+DECIDING = (
+    *("trace", "units", "rig", "gate", "effects", "plant", "fit", "comparison", "friction_map", "diagnosis"),
+    *("baseline", "fleet", "export", "course"),
 )
-#: Tests that ask for nothing of an effect by name, and may still notice.
-BEYOND = (
-    "effects/test_properties.py",
-    "effects/test_sensing.py",
-    "diagnose/test_columns.py",
-    "balance",
-    *DECISIONS,
-    "effects/test_linear_axis.py",
-    "effects/test_model_file.py",
-    "effects/test_follow.py",
-    "diagnose/test_soft_coupling.py",
-    "diagnose/test_hidden_effects.py",
-)
+#: The factor on a number: an interval 20 % narrower is the smallest change that matters.
+FACTOR = 0.8
+#: An operator, and the one that takes its place.
+ARITHMETIC = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult}
+COMPARISONS = {
+    ast.Lt: ast.GtE,
+    ast.LtE: ast.Gt,
+    ast.Gt: ast.LtE,
+    ast.GtE: ast.Lt,
+    ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq,
+    ast.In: ast.NotIn,
+    ast.NotIn: ast.In,
+    ast.Is: ast.IsNot,
+    ast.IsNot: ast.Is,
+}
+CALLS = {"max": "min", "min": "max", "any": "all", "all": "any", "maximum": "minimum", "minimum": "maximum"}
+CALLS |= {"fmin": "fmax", "fmax": "fmin", "argmin": "argmax", "argmax": "argmin", "floor": "ceil", "ceil": "floor"}
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """One change that some test has to notice.
+    """One change of one file.
 
     Attributes:
-        name: `rule Significant`, `cogging_torque: column 1 turned`.
-        apply: makes the change, for as long as the process lives.
-        stages: arguments of pytest, the run likeliest to notice first.
+        path: of the file, from the root.
+        line, column, end_line, end_column: of what is changed, as `ast` counts: columns in bytes of UTF-8.
+        before, after: the text there, and what takes its place.
+        function: name of the outermost function or method that it is in, with its first line; empty at the top level.
     """
 
-    name: str
-    apply: Callable[[], None]
-    stages: tuple[tuple[str, ...], ...]
+    path: str
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+    before: str
+    after: str
+    function: tuple[str, int] | None
+
+    def __str__(self) -> str:
+        return f"{self.path}:{self.line}: {' '.join(self.before.split())} -> {' '.join(self.after.split())}"
+
+    def applied(self, text: str) -> str:
+        """The file's text with the change."""
+        lines = text.encode().splitlines(keepends=True)
+        head = b"".join(lines[: self.line - 1]) + lines[self.line - 1][: self.column]
+        tail = lines[self.end_line - 1][self.end_column :] + b"".join(lines[self.end_line :])
+        return (head + self.after.encode() + tail).decode()
 
 
-def mutants() -> dict[str, Mutant]:
-    """All of them by name."""
-    return {mutant.name: mutant for mutant in (*_decisions(), *_effects())}
+def drawn(count: int, seed: int, folders: tuple[str, ...] = DECIDING) -> list[Mutant]:
+    """Mutants drawn with equal chance from all places of the folders, no two of one line."""
+    paths = [path for name in folders for path in sorted((ROOT / "bench" / name).rglob("*.py"))]
+    every = [mutant for path in paths for mutant in mutants_of(path)]
+    random.Random(seed).shuffle(every)
+    of_lines: dict[tuple[str, int], Mutant] = {}
+    for mutant in every:
+        of_lines.setdefault((mutant.path, mutant.line), mutant)
+    return list(of_lines.values())[:count]
 
 
-def paths(*names: str) -> tuple[str, ...]:
-    """Those of the files and folders of tests that there are."""
-    return tuple(str(TESTS / name) for name in names if (TESTS / name).exists())
+def mutants_of(path: Path) -> list[Mutant]:
+    """All mutants of a file."""
+    text = path.read_text(encoding="utf-8")
+    name = str(path.relative_to(ROOT))
+    found = []
+    for node, function in _deciding(ast.parse(text), None):
+        before = ast.get_source_segment(text, node) or ""
+        for after in _changed(node):
+            place = (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
+            found.append(Mutant(name, *place, before, f"({after})", function))
+    return found
 
 
-def _decisions() -> Iterator[Mutant]:
-    stages = (paths(*DECISIONS),)
-    for kind, (method, off) in OFF.items():
-        what = "doubt" if kind.__module__.endswith("doubts") else "rule"
-        yield Mutant(f"{what} {kind.__name__} off", partial(setattr, kind, method, off), stages)
-    yield Mutant("rule most off", _without_limit, stages)
-    for kind in map(type, OBJECTIONS):
-        quiet = partial(setattr, kind, "against", lambda self, shown: "")
-        yield Mutant(f"objection {kind.__name__} off", quiet, (paths("diagnose/test_verdict.py", *DECISIONS),))
-    late = (paths(*reversed(DECISIONS)),)
-    yield Mutant("judge torque gap off", _without_torque_gap, late)
-    yield Mutant("judge velocity gap off", partial(_replace, ADD, "_comes_closer", lambda *_: True), late)
-    yield Mutant("judge unlimited off", partial(_replace, ADD, "unlimited", lambda *_: None), late)
+def _deciding(node: ast.AST, function: tuple[str, int] | None) -> Iterator[tuple[ast.expr, tuple[str, int] | None]]:
+    """Expressions that decide, without annotations, messages and what only type checkers read."""
+    if isinstance(node, ast.FunctionDef) and function is None:
+        function = (node.name, min([node.lineno, *(each.lineno for each in node.decorator_list)]))
+    if isinstance(node, ast.expr):
+        yield node, function
+    for field, value in ast.iter_fields(node):
+        if field in ("annotation", "returns", "decorator_list", "slice") or isinstance(node, ast.Raise | ast.JoinedStr):
+            continue
+        if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
+            continue
+        for child in value if isinstance(value, list) else [value]:
+            if isinstance(child, ast.AST):
+                yield from _deciding(child, function)
 
 
-ADD, SEARCH = "bench.diagnosis.add.add", "bench.diagnosis.name.search"
+def _changed(node: ast.expr) -> Iterator[str]:
+    """Texts that may take the place of an expression."""
+    if isinstance(node, ast.BinOp) and type(node.op) in ARITHMETIC and not _textual(node):
+        yield ast.unparse(ast.BinOp(node.left, ARITHMETIC[type(node.op)](), node.right))
+    elif isinstance(node, ast.Compare) and len(node.ops) == 1:
+        yield ast.unparse(ast.Compare(node.left, [COMPARISONS[type(node.ops[0])]()], node.comparators))
+    elif isinstance(node, ast.BoolOp):
+        yield ast.unparse(ast.BoolOp(ast.Or() if isinstance(node.op, ast.And) else ast.And(), node.values))
+        yield ast.unparse(ast.BoolOp(node.op, node.values[:-1]) if len(node.values) > 2 else node.values[0])
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.Not):
+        yield ast.unparse(node.operand)
+    elif isinstance(node, ast.IfExp):
+        yield ast.unparse(ast.IfExp(node.test, node.orelse, node.body))
+    elif isinstance(node, ast.Constant) and isinstance(node.value, float) and node.value:
+        yield repr(FACTOR * node.value)
+    elif isinstance(node, ast.Constant) and isinstance(node.value, int) and not isinstance(node.value, bool):
+        yield repr(node.value + 1)
+    elif isinstance(node, ast.Call):
+        called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+        if called in CALLS:
+            whole = ast.unparse(node.func)
+            yield f"{whole.removesuffix(called)}{CALLS[called]}{ast.unparse(node).removeprefix(whole)}"
 
 
-def _replace(module: str, name: str, value: Any) -> None:
-    setattr(importlib.import_module(module), name, value)
-
-
-def _without_limit() -> None:
-    selection = importlib.import_module(SEARCH).forward_selection
-
-    def unlimited(found: Any, effects: Any, rules: Any) -> Any:
-        return selection(found, effects, replace(rules, most=99))
-
-    _replace(SEARCH, "forward_selection", unlimited)
-
-
-def _without_torque_gap() -> None:
-    """Within the judgement the torque gap is the same with and without an effect."""
-    rejection, gap = importlib.import_module(ADD).rejection, Balance.gap
-
-    def judged(trial: Any) -> Any:
-        Balance.gap = lambda self, rows: 0.0
-        found = rejection(trial)
-        Balance.gap = gap
-        return found
-
-    _replace(ADD, "rejection", judged)
-
-
-def _effects() -> Iterator[Mutant]:
-    for name, effect in catalogue().items():
-        stages = ((*paths(f"effects/test_{name}.py", *OF_EVERY_EFFECT), "-k", name), paths(*BEYOND))
-        for what, apply in _changes(type(effect)):
-            yield Mutant(f"{name}: {what}", apply, stages)
-
-
-def _changes(kind: type[Effect]) -> Iterator[tuple[str, Callable[[], None]]]:
-    own = [base for base in kind.__mro__ if issubclass(base, Effect) and base not in NEUTRAL]
-    for column in range(_width(kind)):
-        yield f"column {column} turned", partial(_change_columns, kind, column, True)
-        yield f"column {column} dropped", partial(_change_columns, kind, column, False)
-    for key in inspect.get_annotations(Effect):
-        if key not in GIVEN and getattr(kind, key) != getattr(Effect, key):
-            yield f"{key} unset", partial(setattr, kind, key, getattr(Effect, key))
-    for base in own:
-        for key, value in vars(base).items():
-            if inspect.isfunction(value) and any(key in vars(neutral) for neutral in NEUTRAL):
-                yield f"{key} neutral", partial(_neutral, base, key)
-
-
-def _neutral(kind: type[Effect], key: str) -> None:
-    """Take an override away; an effect that is absent nowhere has no null values."""
-    if key == "null":
-        kind.null = lambda self, axis: {}
-    else:
-        delattr(kind, key)
-
-
-def _width(kind: type[Effect]) -> int:
-    """Columns of an effect, of a short swing."""
-    if not kind.overrides("columns"):
-        return 0
-    time = 1e-3 * np.arange(200)
-    angle, speed = np.sin(20.0 * time), 20.0 * np.cos(20.0 * time)
-    sign = np.sign(speed)
-    signals = Signals(time, angle, speed, sign, sign, sign, sign, 1.0, 1e-3)
-    effect = catalogue()[kind.name]
-    return len(effect.columns(signals, [shape.grid[0] if shape.grid else 0.01 for shape in effect.shapes]))
-
-
-def _change_columns(kind: type[Effect], column: int, turned: bool) -> None:
-    """Turn the sign of a column, or drop it."""
-    width, columns, columns_of = _width(kind), kind.columns, kind.columns_of
-
-    def changed(found: list) -> list:
-        if turned:
-            return [[(-v, order) for v, order in each] if k % width == column else each for k, each in enumerate(found)]
-        return [each for k, each in enumerate(found) if k % width != column]
-
-    kind.columns = lambda self, *given: changed(columns(self, *given))
-    if kind.overrides("columns_of"):
-        kind.columns_of = lambda self, *given: changed(columns_of(self, *given))
+def _textual(node: ast.BinOp) -> bool:
+    """Whether it joins texts."""
+    sides = (node.left, node.right)
+    return any(isinstance(side, ast.JoinedStr) or isinstance(getattr(side, "value", None), str) for side in sides)
