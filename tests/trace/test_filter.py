@@ -62,3 +62,35 @@ def test_a_cutoff_beyond_the_sampling_is_bounded():
     smooth = GaussianFilter.from_cutoff(1e6, PERIOD)
     assert smooth.width == pytest.approx(1.5 * PERIOD)
     assert smooth.stride == 1
+
+
+def test_a_first_order_lag_is_undone():
+    """A ramp and a sine behind 1/(1 + T*s) come out as they were before it; the lagged ramp runs T behind."""
+    lag, omega, smooth = 8e-3, 20.0, GaussianFilter(4e-3, PERIOD)
+    time = np.arange(4000) * PERIOD
+    gain, late = 1.0 / math.hypot(1.0, omega * lag), math.atan(omega * lag)
+    behind = 2.0 + 5.0 * (time - lag) + gain * np.sin(omega * time - late)
+    level, slope = smooth(behind, 0, 1, lag=lag)
+    kept = time[smooth.margin : time.size - smooth.margin]
+    held = math.exp(-0.5 * (omega * smooth.width) ** 2)
+    assert level == pytest.approx(2.0 + 5.0 * kept + held * np.sin(omega * kept), abs=2e-4)
+    assert slope == pytest.approx(5.0 + held * omega * np.cos(omega * kept), abs=0.02)
+
+
+def test_columns_are_sums_of_their_terms():
+    """q''*sin(q) = (q'*sin(q))' - q'**2*cos(q), with q = 3*t a ramp: (3*sin(3t))' - 9*cos(3t) = 0."""
+    smooth, time = GaussianFilter(4e-3, PERIOD), np.arange(4000) * PERIOD
+    angle, speed = 3.0 * time, np.full(time.size, 3.0)
+    (found,) = smooth.columns([[(speed * np.sin(angle), 1), (-(speed**2) * np.cos(angle), 0)]])
+    assert np.abs(found).max() < 2e-4
+
+
+def test_what_lies_six_widths_away_is_not_seen():
+    smooth = GaussianFilter(10e-3, PERIOD, stride=2)
+    assert smooth.margin == 60
+    pulse = np.zeros(1001)
+    pulse[500] = 1.0
+    (found,) = smooth(pulse, 0)
+    at = np.arange(smooth.margin, 1001 - smooth.margin, 2)
+    assert np.abs(found[np.abs(at - 500) > 60]).max() < 1e-6 * found.max()
+    assert found.max() == pytest.approx(PERIOD / (smooth.width * math.sqrt(2.0 * math.pi)), rel=1e-6)

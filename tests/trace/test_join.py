@@ -84,3 +84,25 @@ def test_a_signal_that_one_recording_lacks_is_left_out_and_reported():
 def test_what_does_not_go_together_is_refused(traces, words):
     with pytest.raises(InputError, match=words):
         join(traces)
+
+
+def test_recordings_stand_ten_periods_apart_whatever_their_own_times():
+    def run(start, samples, origin):
+        time = start + 0.5 * np.arange(samples)
+        return Trace(time, {"velocity": time}, {"velocity": "rad/s"}, origin)
+
+    joined = join([run(100.0, 4, "a"), run(0.0, 3, "b")])
+    assert joined.time.tolist() == [100.0, 100.5, 101.0, 101.5, 106.5, 107.0, 107.5]
+    assert joined.joined == ((100.0, "a"), (106.5, "b"))
+    assert joined["velocity"].tolist() == [100.0, 100.5, 101.0, 101.5, 0.0, 0.5, 1.0]
+
+
+@pytest.mark.parametrize(("other", "resampled"), [(0.5 * (1 - 0.9e-5), False), (0.5 * (1 - 1.1e-5), True)])
+def test_sample_periods_within_a_hundred_thousandth_are_one(other, resampled):
+    runs = [
+        Trace(period * np.arange(200), {"velocity": sign * np.arange(200.0)}, {"velocity": "rad/s"}, str(period))
+        for period, sign in ((0.5, 1.0), (other, -1.0))
+    ]
+    joined = join(runs)
+    assert joined.time_base is not None and joined.time_base.resampled == resampled
+    assert np.array_equal(joined["velocity"][200:], -np.arange(200.0)) != resampled

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from bench.trace.noise import white_noise
+from bench.trace.noise import resolution, white_noise
 
 
 def test_white_noise_is_found_under_a_servo_motion():
@@ -27,3 +27,33 @@ def test_quantisation_counts_as_white_noise():
 
 def test_a_signal_shorter_than_a_window_has_no_known_noise():
     assert white_noise(np.zeros(100)) == 0.0
+
+
+def test_shorter_windows_are_taken_where_stretches_are_short():
+    """Stretches of 40 samples hold a window of 32 and none of 64; two more samples go into the second differences."""
+    rng = np.random.default_rng(4)
+    assert white_noise(*rng.normal(scale=0.2, size=(400, 40))) == pytest.approx(0.2, rel=0.05)
+    assert white_noise(rng.normal(size=33)) == 0.0 < white_noise(rng.normal(size=34))
+
+
+def test_noise_of_a_ramp_is_that_of_its_samples_and_scales_with_them():
+    noise = np.random.default_rng(5).normal(size=20_000)
+    alone = white_noise(noise)
+    assert alone == pytest.approx(1.0, rel=0.03)
+    assert white_noise(3.0 * noise + 1e3 * np.arange(20_000)) == pytest.approx(3.0 * alone, rel=1e-9)
+
+
+def test_windows_that_stand_still_hide_their_noise():
+    values = np.random.default_rng(6).normal(size=20_000)
+    values[:15_000] = 0.0
+    assert white_noise(values) == pytest.approx(1.0, rel=0.05)
+
+
+@pytest.mark.parametrize(("levels", "step"), [(25, 0.5), (26, 0.0)])
+def test_a_step_is_told_where_each_value_occurs_four_times_on_average(levels, step):
+    values = 0.5 * (np.arange(100) % levels)
+    assert resolution(values) == step
+
+
+def test_a_missing_level_does_not_double_the_step():
+    assert resolution(np.repeat([0.0, 0.5, 1.0, 2.5, 3.0], 4)) == 0.5

@@ -1,0 +1,165 @@
+"""Numbers by hand at the borders on which reading a recording decides: wraps, empty cells, counted samples."""
+
+import numpy as np
+import pytest
+
+from bench.errors import InputError
+from bench.trace.assemble import assemble
+from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.reading_options import GivenOptions
+
+
+def recording(**columns):
+    """A table of columns; a column's unit stands after two underscores, with `_` for `/`."""
+    labels = {key: key.replace("__", " [").replace("_", "/") + "]" * ("__" in key) for key in columns}
+    channels = (Channel(*split_label(labels[key]), np.asarray(v, dtype=float), "file") for key, v in columns.items())
+    return Recording(tuple(channels), "table", "file")
+
+
+COUNT = np.arange(40.0)
+WRAPS = GivenOptions(position_period=10.0)
+
+
+@pytest.mark.parametrize("step", [1.0, 4.4, -4.4])
+def test_a_position_that_moves_by_less_than_045_periods_a_sample_needs_no_speed(step):
+    trace = assemble(recording(time__s=COUNT, position__rad=np.mod(step * COUNT, 10.0)), WRAPS)
+    np.testing.assert_allclose(np.diff(trace["position"]), step, atol=1e-12)
+
+
+def test_beyond_045_periods_a_sample_it_needs_one():
+    position = np.mod(4.6 * COUNT, 10.0)
+    with pytest.raises(InputError, match=r"sample 1, .*moves by half of its period 10 from one sample to the next"):
+        assemble(recording(time__s=COUNT, position__rad=position), WRAPS)
+    trace = assemble(recording(time__s=COUNT, position__rad=position, velocity__rad_s=0 * COUNT + 4.6), WRAPS)
+    np.testing.assert_allclose(np.diff(trace["position"]), 4.6, atol=1e-12)
+
+
+@pytest.mark.parametrize(("even", "odd"), [(-1.0, 11.4), (1.0, -11.4), (14.6, 14.6), (20.0, 9.2)])
+def test_the_mean_of_the_speeds_at_both_ends_tells_how_far_it_moved(even, odd):
+    """0.5*(-1 + 11.4) rad/s over 1 s is 5.2 rad of a period of 10: one end alone would say -1 or 11.4 rad."""
+    step = 0.5 * (even + odd)
+    speed = np.where(COUNT % 2 == 0, even, odd)
+    trace = assemble(recording(time__s=COUNT, position__rad=np.mod(step * COUNT, 10.0), velocity__rad_s=speed), WRAPS)
+    np.testing.assert_allclose(np.diff(trace["position"]), step, atol=1e-12)
+    assert trace.wraps is not None and trace.wraps.period == 10.0
+    assert trace.wraps.count == pytest.approx(abs(39 * step / 10.0), abs=1.0)
+
+
+@pytest.mark.parametrize(("off", "is_turn"), [(2.9e-3, True), (-2.9e-3, True), (3.1e-3, False), (-3.1e-3, False)])
+def test_a_period_within_3_permille_of_a_turn_is_one_where_counts_are_coarse(off, is_turn):
+    """One count of the file is worth 0.1 rad, so that the jumps' own doubt would allow for more."""
+    count, period = np.arange(200.0), 2.0 * np.pi * (1.0 + off)
+    position = Channel("position", "0.1 rad", 10.0 * np.mod(0.1 * count, period), "file")
+    trace = assemble(Recording((Channel("time", "s", count, "file"), position), "table", "file"))
+    assert trace.wraps is not None
+    assert trace.wraps.period == pytest.approx(2.0 * np.pi if is_turn else period, rel=1e-9)
+
+
+@pytest.mark.parametrize(("longest", "wraps"), [(3.5, False), (3.2, True)])
+def test_a_jump_less_than_three_times_the_longest_other_step_is_no_wrap(longest, wraps):
+    """From 0 to 10 and again from 0, a jump of 10, with one step of another length on the way."""
+    way = np.concatenate([np.arange(0.0, 5.0), np.arange(4.0 + longest, 10.0), [10.0]])
+    position = np.concatenate([way, way])
+    trace = assemble(recording(time__s=np.arange(position.size), position__rad=position))
+    assert (trace.wraps is not None) == wraps
+
+
+def test_an_empty_cell_takes_its_own_sample_and_no_other():
+    """1.2 ms printed in whole ms: the line through them misses the printed times by up to 0.4 ms, a third of a period.
+
+    The sample whose cell is empty goes although it stands that far off; its neighbours, two thirds off, stay.
+    """
+    count = np.arange(400.0)
+    values, empty = count.copy(), [7, 103, 202]
+    values[empty] = np.nan
+    trace = assemble(recording(time__ms=np.rint(1.2 * count), velocity__rad_s=count, current__A=values))
+    assert trace["velocity"].tolist() == np.delete(count, empty).tolist()
+    assert trace.time_base is not None
+    assert [duration for _, duration in trace.time_base.holes] == pytest.approx([2.4e-3] * 3, rel=1e-3)
+
+
+def test_where_samples_are_interpolated_an_empty_cell_takes_all_within_a_period_of_it():
+    """Of a sample 0.2 late, the places 0.2 before and 0.8 behind; of one 0.2 early, those 0.8 before and 0.2 behind."""
+    time = np.arange(500.0)
+    time[[253, 403]] += [0.2, -0.2]
+    values = np.cos(time / 40.0)
+    values[[253, 403]] = np.nan
+    trace = assemble(recording(time__s=time, velocity__rad_s=np.sin(time / 40.0), current__A=values))
+    assert trace.time_base is not None and trace.time_base.resampled
+    assert trace.time.tolist() == np.delete(np.arange(500.0), [253, 254, 402, 403]).tolist()
+
+
+def test_a_sample_index_counts_by_its_usual_step_whatever_is_lost():
+    """Every second sample was kept and 20 in a row lost: the step is 2, whatever the mean says."""
+    index = np.delete(2.0 * np.arange(100.0), np.arange(40, 60))
+    trace = assemble(recording(sample=index, velocity__rad_s=index), GivenOptions(sample_period=1e-3))
+    np.testing.assert_allclose(trace.time, 0.5e-3 * index, rtol=1e-12)
+    assert trace.time_base is not None
+    assert trace.time_base.holes == (pytest.approx((0.039, 0.021)),)
+
+
+@pytest.mark.parametrize(("lost", "refused"), [(2, False), (3, True)])
+def test_times_may_be_empty_in_one_of_twenty_rows(lost, refused):
+    time = np.arange(40.0)
+    time[5 : 5 + lost] = np.nan
+    columns = recording(time__s=time, velocity__rad_s=COUNT)
+    if refused:
+        with pytest.raises(InputError, match="found 3 of 40 times empty; allowed: 5% of them"):
+            assemble(columns)
+    else:
+        np.testing.assert_allclose(assemble(columns).time, COUNT, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("lost", "holes"), [(2, True), (3, False)])
+def test_a_signal_in_fewer_than_19_of_20_rows_is_sampled_there(lost, holes):
+    values = COUNT.copy()
+    values[10 : 10 + lost] = np.nan
+    trace = assemble(recording(time__s=COUNT, velocity__rad_s=COUNT, current__A=values))
+    assert any("a hole each" in note for note in trace.notes) == holes
+    assert any("stands in 37 of 40 rows" in note for note in trace.notes) != holes
+
+
+@pytest.mark.parametrize(("step", "refused"), [(1.019e-3, False), (1.022e-3, True), (0.978e-3, True)])
+def test_the_rigs_sample_period_and_the_files_times_agree_within_2_percent(step, refused):
+    columns = recording(time__s=step * COUNT, velocity__rad_s=COUNT)
+    if refused:
+        with pytest.raises(InputError, match=r"rig's .trace. says sample_period = 0\.001 s"):
+            assemble(columns, GivenOptions(sample_period=1e-3))
+    else:
+        assert assemble(columns, GivenOptions(sample_period=1e-3)).sample_period == pytest.approx(step)
+
+
+@pytest.mark.parametrize(("others", "refused"), [(1, False), (2, True)])
+def test_one_sample_in_a_hundred_may_repeat_a_time_with_another_value(others, refused):
+    time = np.arange(100.0)
+    time[50 : 50 + others] = time[50 - others : 50]
+    time = np.sort(time)
+    columns = recording(time__s=time, velocity__rad_s=np.arange(100.0))
+    if refused:
+        with pytest.raises(InputError, match="2 of 100 samples stand at a time already taken"):
+            assemble(columns)
+    else:
+        assert assemble(columns).time_base.duplicates == 1  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(("lost", "hole"), [(1, False), (2, True)])
+def test_one_lost_sample_is_filled_and_two_are_a_hole(lost, hole):
+    kept = np.delete(np.arange(200.0), np.arange(90, 90 + lost))
+    trace = assemble(recording(time__ms=10.0 * kept, velocity__rad_s=kept))
+    assert trace.time_base is not None
+    assert (len(trace.time_base.holes), trace.time_base.interpolated) == ((1, 0) if hole else (0, 1))
+    assert len(trace.segments) == 1 + hole
+
+
+def test_a_foreign_clock_is_known_within_its_own_ends_and_holes():
+    """The current is sampled every 2 s from 10 s to 80 s, with nothing from 30 s to 50 s; half a sample is allowed."""
+    own = np.concatenate([np.arange(10.0, 31.0, 2.0), np.arange(50.0, 81.0, 2.0)])
+    clock, foreign = Channel("t", "s", np.arange(100.0), "file"), Channel("t", "s", own, "file")
+    channels = (
+        Channel("velocity", "rad/s", np.arange(100.0), "file", time=clock),
+        Channel("current", "A", 2.0 * own, "file", time=foreign),
+    )
+    trace = assemble(Recording(channels, "container", "file"))
+    known = [*np.arange(10.0, 31.0), *np.arange(50.0, 81.0)]
+    assert trace.time.tolist() == known
+    np.testing.assert_allclose(trace["current"], 2.0 * trace.time, atol=1e-9)
