@@ -23,7 +23,7 @@ from bench.rig.circuit import COLD, Circuit
 from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig
 from bench.structured import json_text
-from bench.trace.write_machine_expert import machine_expert_trace
+from bench.trace.readers.codesys import machine_expert_trace
 from bench.units import convert
 
 MAINS = 230.0

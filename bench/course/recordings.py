@@ -21,14 +21,14 @@ from bench.trace.assemble import assemble
 from bench.trace.channel import Recording
 from bench.trace.choose import choose
 from bench.trace.read import read_recording
-from bench.trace.readers import READERS
+from bench.trace.readers.catalogue import readers
 from bench.trace.reading_options import reading_options
 
 WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"
 #: Signals that the tasks need.
 NEEDED = ("velocity", "current")
 #: Endings of recordings; a truth is JSON too, and none of the course's.
-ENDINGS = {ending for reader in READERS for ending in reader.ENDINGS} - {".json"}
+ENDINGS = {ending for reader in readers() for ending in reader.endings} - {".json"}
 
 
 @dataclass(frozen=True)

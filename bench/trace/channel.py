@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -102,27 +102,3 @@ def split_label(label: str) -> tuple[str, str | None]:
     if start < 0 or not label.endswith("]") or "]" in label[start:-1] or _ELEMENT.fullmatch(label[start - 1 :]):
         return label, None
     return label[:start].strip(), label[start + 1 : -1].strip() or None
-
-
-def float_values(texts: Iterable[str], place: Callable[[int], str]) -> Array:
-    """Numbers from their texts (TRUE and FALSE as 1 and 0) - (n,).
-
-    Raises:
-        InputError: a text that is no number; `place` names where a sample stands.
-    """
-    texts = list(texts)
-    try:
-        return np.array(texts, dtype=np.float64)
-    except ValueError:
-        return np.array([_number(text, place, sample) for sample, text in enumerate(texts)], dtype=np.float64)
-
-
-def _number(text: str, place: Callable[[int], str], sample: int) -> float:
-    word = text.strip().lower()
-    if word in ("true", "false"):
-        return float(word == "true")
-    try:
-        return float(word)
-    except ValueError as error:
-        found = f"found {short(text.strip())!r}" if word else "found an empty cell"
-        raise InputError(place(sample), found, "allowed: a number") from error

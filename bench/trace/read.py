@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bench.trace.assemble import assemble
 from bench.trace.channel import Recording
-from bench.trace.readers import reader_of
+from bench.trace.readers.catalogue import reader_of
 from bench.trace.reading_options import ReadingOptions
 from bench.trace.source import open_source
 from bench.trace.trace import Trace

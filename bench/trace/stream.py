@@ -18,7 +18,9 @@ from bench.trace.channel import Recording
 from bench.trace.choose import choose
 from bench.trace.in_si import InSI, in_si
 from bench.trace.read import read
-from bench.trace.readers.parquet import DAMAGE, FORMAT, MAGIC, WIDTH, channel_of, damaged, is_moment
+from bench.trace.readers.columns import channel_of, is_moment
+from bench.trace.readers.containers import reading
+from bench.trace.readers.parquet import DAMAGE, MAGIC, WIDTH, Parquet
 from bench.trace.reading_options import ReadingOptions, reading_options
 from bench.trace.time_base import regular
 from bench.trace.trace import Trace
@@ -104,28 +106,25 @@ def cut(trace: Trace, chunk: int = CHUNK) -> Iterator[Trace]:
 
 def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
     keep_freed_memory()
-    try:
-        with pq.ParquetFile(path, memory_map=True) as file:
-            fields = list(file.schema_arrow)
-            empty = Recording(
-                tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), FORMAT, readable(path)
-            )
-            chosen, notes = choose(empty, how)
-            field_of = {name: fields[empty.channels.index(choice.channel)] for name, choice in chosen.items()}
-            require_ratio(path, file.metadata.num_rows * len(field_of) * WIDTH, Path(path).stat().st_size)
-            start, last = 0, None
-            wrapping: dict[str, Unwrapping] = {}
-            for batch in _batches(file, [field.name for field in field_of.values()], chunk):
-                pieces = {
-                    name: replace(choice, channel=channel_of(field_of[name], batch[field_of[name].name], path, start))
-                    for name, choice in chosen.items()
-                }
-                found = in_si(pieces, empty, how, wrapping)
-                last = _trace(found, empty, (*notes, *found.notes), last)
-                yield last
-                start += batch.num_rows
-    except DAMAGE as error:
-        raise damaged(path, error) from error
+    with reading(path, Parquet.format, DAMAGE), pq.ParquetFile(path, memory_map=True) as file:
+        fields = list(file.schema_arrow)
+        empty = Recording(
+            tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), Parquet.format, readable(path)
+        )
+        chosen, notes = choose(empty, how)
+        field_of = {name: fields[empty.channels.index(choice.channel)] for name, choice in chosen.items()}
+        require_ratio(path, file.metadata.num_rows * len(field_of) * WIDTH, Path(path).stat().st_size)
+        start, last = 0, None
+        wrapping: dict[str, Unwrapping] = {}
+        for batch in _batches(file, [field.name for field in field_of.values()], chunk):
+            pieces = {
+                name: replace(choice, channel=channel_of(field_of[name], batch[field_of[name].name], path, start))
+                for name, choice in chosen.items()
+            }
+            found = in_si(pieces, empty, how, wrapping)
+            last = _trace(found, empty, (*notes, *found.notes), last)
+            yield last
+            start += batch.num_rows
 
 
 def _trace(found: InSI, recording: Recording, notes: tuple[str, ...], last: Trace | None) -> Trace:
@@ -135,7 +134,7 @@ def _trace(found: InSI, recording: Recording, notes: tuple[str, ...], last: Trac
         signals=base.signals,
         units=found.units,
         origin=recording.origin,
-        metadata={"format": FORMAT},
+        metadata={"format": Parquet.format},
         time_base=base.time_base,
         notes=(*notes, *base.notes),
         continues=_continues(last, base.time, base.time_base.sample_period, recording.origin),

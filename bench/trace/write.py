@@ -13,10 +13,9 @@ from pyarrow import csv
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.files import whole
-from bench.trace.readers.lab_units import LAB_UNITS
+from bench.trace.readers.codesys import LAB_UNITS, machine_expert_trace
 from bench.trace.signal_names import scale_in
 from bench.trace.trace import Trace
-from bench.trace.write_machine_expert import machine_expert_trace
 from bench.units import same_dimension
 
 

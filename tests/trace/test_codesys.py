@@ -139,5 +139,5 @@ def test_text_export(tmp_path, head):
     assert trace.sample_period == pytest.approx(2e-3)
     np.testing.assert_allclose(trace["velocity"], np.deg2rad([1.5, 2.5, 3.5]))
     path.write_text(f"Trace\nproject\n{head} PLC_PRG.Velocity\n0 1.5\n2 x\n")
-    with pytest.raises(InputError, match=r"line 5: found 'x'"):
+    with pytest.raises(InputError, match=r"line 5, column 'PLC_PRG.Velocity': found 'x'"):
         read(path)

@@ -17,7 +17,7 @@ from nptdms import ChannelObject, TdmsWriter
 from bench.bounds import bounded
 from bench.errors import InputError
 from bench.trace.read import read, read_recording
-from bench.trace.readers.packed import unpack
+from bench.trace.readers.containers import unpack
 from tests.hostile import run
 
 TIME = np.arange(400) * 2e-3

@@ -1,25 +1,64 @@
-"""Columns of text into Arrow at its speed."""
+"""Columns of Arrow, out of a file or a data frame, as channels: numbers, or moments as times from the first of them."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pyarrow as pa
-from pyarrow import csv
+
+from bench.arrays import Array
+from bench.errors import InputError
+from bench.trace.channel import Channel, split_label
+from bench.trace.readers.moments import seconds
 
 
-def parse_columns(
-    body: bytes | memoryview, kinds: list[pa.DataType], separator: str, decimal: str, nulls: tuple[str, ...] = ()
-) -> pa.Table:
-    """Lines of cells as columns named 0, 1, ... of the types given.
+def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, start: int = 0) -> Channel:
+    """Channel of a column, or of a piece of it from sample `start` on; a defect where it holds anything but numbers."""
+    name, unit = split_label(field.name)
+    if unit is None and field.metadata and b"unit" in field.metadata:
+        unit = field.metadata[b"unit"].decode("utf-8", errors="replace")
+    kind = column.type
+    if is_moment(kind):
+        unit = kind.unit
+    channel = Channel(name, unit, np.empty(0), path, start=start)
+    if (pa.types.is_string(kind) or pa.types.is_large_string(kind)) and len(column):
+        texts = pa.chunked_array([column]) if isinstance(column, pa.Array) else column
+        moments = seconds(texts.cast(pa.string()).fill_null(""))
+        if moments is not None:
+            return replace(channel, unit="s", values=moments, moments=True)
+    values = _numbers(column)
+    if values is None:
+        return replace(channel, defect=InputError(channel.place(), f"found {kind}", "allowed: numbers"))
+    return replace(channel, values=values, moments=pa.types.is_timestamp(kind))
 
-    Raises:
-        pa.ArrowInvalid: a line with another count of cells, or a cell that is not of that type.
-    """
-    types = {str(number): kind for number, kind in enumerate(kinds)}
-    return csv.read_csv(
-        pa.py_buffer(body),
-        read_options=csv.ReadOptions(column_names=list(types)),
-        parse_options=csv.ParseOptions(delimiter=separator, quote_char='"'),
-        convert_options=csv.ConvertOptions(
-            column_types=types, null_values=list(nulls), strings_can_be_null=False, decimal_point=decimal
-        ),
-    )
+
+def is_numeric(kind: pa.DataType) -> bool:
+    """Whether a column holds numbers or moments; of others, texts and lists, nothing is read."""
+    number = pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_decimal(kind)
+    return number or pa.types.is_boolean(kind) or is_moment(kind)
+
+
+def is_moment(kind: pa.DataType) -> bool:
+    """Whether a column holds moments, read as times from the first of them."""
+    return pa.types.is_timestamp(kind) or pa.types.is_duration(kind)
+
+
+def _numbers(column: pa.ChunkedArray | pa.Array) -> Array | None:
+    """Values as float64, nan for none, without a copy where they are float64 in one piece; None where no numbers."""
+    kind = column.type
+    if is_moment(kind):
+        ticks = column.cast(pa.int64())
+        known = ticks.drop_null()
+        first = known[0].as_py() if len(known) else 0
+        passed = (ticks.fill_null(first).to_numpy() - first).astype(np.float64)  # an epoch would cost the last digits
+        return (
+            np.where(column.is_null().to_numpy(zero_copy_only=False), np.nan, passed) if column.null_count else passed
+        )
+    if pa.types.is_boolean(kind) or pa.types.is_decimal(kind):
+        column = column.cast(pa.float64())
+    elif not (pa.types.is_integer(kind) or pa.types.is_floating(kind)):
+        return None
+    array = column if isinstance(column, pa.Array) else column.combine_chunks()
+    array = array.chunk(0) if isinstance(array, pa.ChunkedArray) else array
+    return array.to_numpy(zero_copy_only=False).astype(np.float64, copy=False)

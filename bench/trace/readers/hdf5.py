@@ -16,45 +16,43 @@ import numpy as np
 from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording
-from bench.trace.readers.arrays import channels_of, is_samples
-from bench.trace.readers.extras import damaged, library
+from bench.trace.readers.containers import channels_of, is_samples, library, reading
 from bench.trace.source import Source
-
-FORMAT = "HDF5"
-ENDINGS = (".h5", ".hdf5")
 
 _MAGIC = b"\x89HDF\r\n\x1a\n"
 _UNITS = ("unit", "units", "Unit", "Units", "UNIT")
 
 
-def recognises(source: Source) -> bool:
-    """Whether the file is HDF5, perhaps behind the header of a MAT file."""
-    return source.content.startswith(_MAGIC) or source.content[512:520] == _MAGIC
+class Hdf5:
+    """HDF5, see the module."""
 
+    format = "HDF5"
+    endings = (".h5", ".hdf5")
 
-def read(source: Source) -> Recording:
-    """Recording of an HDF5 file; scalars and texts become metadata.
+    def recognises(self, source: Source) -> bool:
+        """Whether the file is HDF5, perhaps behind the header of a MAT file."""
+        return source.content.startswith(_MAGIC) or source.content[512:520] == _MAGIC
 
-    Raises:
-        InputError: h5py is not installed; damaged, or without a numeric dataset.
-    """
-    h5py = library("h5py", "h5py", "hdf5", source.path, FORMAT)
-    channels: list[Channel] = []
-    metadata: dict[str, str] = {}
-    try:
-        with h5py.File(BytesIO(source.content), "r") as file:
+    def read(self, source: Source) -> Recording:
+        """Recording of an HDF5 file; scalars and texts become metadata.
+
+        Raises:
+            InputError: h5py is not installed; damaged, or without a numeric dataset.
+        """
+        h5py = library("h5py", "h5py", "hdf5", source.path, self.format)
+        channels: list[Channel] = []
+        metadata: dict[str, str] = {}
+        with reading(source.path, self.format), h5py.File(BytesIO(source.content), "r") as file:
             found = list(_datasets(file, h5py, "", set()))
             size = sum(dataset.nbytes for _, dataset in found if dataset.shape is not None)
             require_expansion(source.path, size, len(source.content))
             for name, dataset in found:
                 channels.extend(_channels(name, dataset, metadata, source.path))
-    except InputError:
-        raise
-    except Exception as error:  # h5py raises many kinds on a damaged file
-        raise damaged(source.path, FORMAT, error) from error
-    if not channels:
-        raise InputError(source.path, "holds no numeric dataset", "allowed: datasets of samples, one of them the time")
-    return Recording(tuple(channels), FORMAT, source.path, metadata)
+        if not channels:
+            raise InputError(
+                source.path, "holds no numeric dataset", "allowed: datasets of samples, one of them the time"
+            )
+        return Recording(tuple(channels), self.format, source.path, metadata)
 
 
 def _datasets(group: Any, h5py: Any, prefix: str, seen: set[int]) -> Iterator[tuple[str, Any]]:  # noqa: ANN401

@@ -20,12 +20,8 @@ import numpy as np
 from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
-from bench.trace.readers.extras import damaged, library
-from bench.trace.readers.packed import unpack
+from bench.trace.readers.containers import library, reading, unpack
 from bench.trace.source import Source
-
-FORMAT = "MCAP"
-ENDINGS = (".mcap",)
 
 _MAGIC = b"\x89MCAP0\r\n"
 _JOINT_STATE = ("sensor_msgs/msg/JointState", "sensor_msgs/JointState")
@@ -47,72 +43,73 @@ class _Column:
     values: array[float] = field(default_factory=lambda: array("d"))
 
 
-def recognises(source: Source) -> bool:
-    """Whether the file begins as MCAP does."""
-    return source.content.startswith(_MAGIC)
+class Mcap:
+    """MCAP, see the module."""
+
+    format = "MCAP"
+    endings = (".mcap",)
+
+    def recognises(self, source: Source) -> bool:
+        """Whether the file begins as MCAP does."""
+        return source.content.startswith(_MAGIC)
+
+    def read(self, source: Source) -> Recording:
+        """Recording of an MCAP file.
+
+        Raises:
+            InputError: the libraries are not installed; damaged, or without a message of numbers.
+        """
+        columns: dict[tuple[str, str], _Column] = {}
+        unread: dict[str, str] = {}
+        numbers = 0
+        with reading(source.path, self.format):
+            for topic, schema, logged, message in _messages(source, self.format, unread):
+                numbers += _gather(columns, topic, schema, logged, message)
+                require_expansion(source.path, numbers * _WIDTH, len(source.content))
+        notes = tuple(f"{topic} left out: messages in {encoding}" for topic, encoding in unread.items())
+        first = min((column.times[np.argmin(column.logged)] for column in columns.values()), default=0)
+        several = len({topic for topic, _ in columns if columns[topic, _].axis is not None}) > 1
+        channels = [
+            _channel(topic, name, column, first, several, source.path)
+            for (topic, name), column in columns.items()
+            if len(column.values) > 1
+        ]
+        if not channels:
+            raise InputError(
+                source.path,
+                f"holds no message of numbers ({'; '.join(notes) or 'no messages'})",
+                "allowed: joint states or numbers, in ROS 2's encoding (cdr) or JSON",
+            )
+        return Recording(with_shared_times(channels), self.format, source.path, notes=notes)
 
 
-def read(source: Source) -> Recording:
-    """Recording of an MCAP file.
-
-    Raises:
-        InputError: the libraries are not installed; damaged, or without a message of numbers.
-    """
-    columns: dict[tuple[str, str], _Column] = {}
-    unread: dict[str, str] = {}
-    numbers = 0
-    for topic, schema, logged, message in _messages(source, unread):
-        numbers += _gather(columns, topic, schema, logged, message)
-        require_expansion(source.path, numbers * _WIDTH, len(source.content))
-    notes = tuple(f"{topic} left out: messages in {encoding}" for topic, encoding in unread.items())
-    first = min((column.times[np.argmin(column.logged)] for column in columns.values()), default=0)
-    several = len({topic for topic, _ in columns if columns[topic, _].axis is not None}) > 1
-    channels = [
-        _channel(topic, name, column, first, several, source.path)
-        for (topic, name), column in columns.items()
-        if len(column.values) > 1
-    ]
-    if not channels:
-        raise InputError(
-            source.path,
-            f"holds no message of numbers ({'; '.join(notes) or 'no messages'})",
-            "allowed: joint states or numbers, in ROS 2's encoding (cdr) or JSON",
-        )
-    return Recording(with_shared_times(channels), FORMAT, source.path, notes=notes)
-
-
-def _messages(source: Source, unread: dict[str, str]) -> Iterator[tuple[str, str, int, Any]]:
+def _messages(source: Source, container: str, unread: dict[str, str]) -> Iterator[tuple[str, str, int, Any]]:
     """Topic, schema's name, time - ns - and content of each message that can be decoded."""
-    ros2 = library("mcap_ros2.decoder", "mcap-ros2-support", "mcap", source.path, FORMAT).DecoderFactory()
-    records = library("mcap.records", "mcap", "mcap", source.path, FORMAT)
+    ros2 = library("mcap_ros2.decoder", "mcap-ros2-support", "mcap", source.path, container).DecoderFactory()
+    records = library("mcap.records", "mcap", "mcap", source.path, container)
     schemas: dict[int, Any] = {}
     channels: dict[int, Any] = {}
     decoders: dict[int, Callable[[bytes], Any] | None] = {}
-    try:
-        for record in _records(source):
-            if isinstance(record, records.Schema):
-                schemas[record.id] = record
-            elif isinstance(record, records.Channel):
-                channels.setdefault(record.id, record)
-            elif isinstance(record, records.Message):
-                channel = channels[record.channel_id]
-                schema = schemas[channel.schema_id] if channel.schema_id else None  # 0: none
-                if channel.id not in decoders:
-                    decoders[channel.id] = _decoder(ros2, schema, channel)
-                    if decoders[channel.id] is None:
-                        unread[channel.topic] = channel.message_encoding or "an unknown encoding"
-                decode = decoders[channel.id]
-                if decode is not None:
-                    yield channel.topic, schema.name if schema is not None else "", record.log_time, decode(record.data)
-    except InputError:
-        raise
-    except Exception as error:  # mcap and its decoders raise many kinds on a damaged file
-        raise damaged(source.path, FORMAT, error) from error
+    for record in _records(source, container):
+        if isinstance(record, records.Schema):
+            schemas[record.id] = record
+        elif isinstance(record, records.Channel):
+            channels.setdefault(record.id, record)
+        elif isinstance(record, records.Message):
+            channel = channels[record.channel_id]
+            schema = schemas[channel.schema_id] if channel.schema_id else None  # 0: none
+            if channel.id not in decoders:
+                decoders[channel.id] = _decoder(ros2, schema, channel)
+                if decoders[channel.id] is None:
+                    unread[channel.topic] = channel.message_encoding or "an unknown encoding"
+            decode = decoders[channel.id]
+            if decode is not None:
+                yield channel.topic, schema.name if schema is not None else "", record.log_time, decode(record.data)
 
 
-def _records(source: Source) -> Iterator[Any]:
+def _records(source: Source, container: str) -> Iterator[Any]:
     """Records in the file's order, those of chunks too, which are unpacked one at a time within the bounds."""
-    reader = library("mcap.stream_reader", "mcap", "mcap", source.path, FORMAT)
+    reader = library("mcap.stream_reader", "mcap", "mcap", source.path, container)
     size = 0
     for record in reader.StreamReader(BytesIO(source.content), emit_chunks=True).records:
         if not isinstance(record, reader.Chunk):

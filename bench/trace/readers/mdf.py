@@ -17,12 +17,8 @@ import numpy as np
 from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
-from bench.trace.readers.extras import damaged, library, warnings_of
-from bench.trace.readers.packed import unpack
+from bench.trace.readers.containers import library, reading, unpack, warnings_of
 from bench.trace.source import Source
-
-FORMAT = "MDF4"
-ENDINGS = (".mf4", ".mdf")
 
 _MAGIC = b"MDF     "
 #: Conversions that are arithmetic with the file's numbers: none, linear, rational, tables; MDF 4 (the standard's
@@ -33,49 +29,52 @@ _FORMULA = {4: 3, 3: 10}
 _WIDTH = 8
 
 
-def recognises(source: Source) -> bool:
-    """Whether the file begins as MDF does."""
-    return source.content.startswith((_MAGIC, b"UnFinMF "))
+class Mdf:
+    """MDF4, see the module."""
 
+    format = "MDF4"
+    endings = (".mf4", ".mdf")
 
-def read(source: Source) -> Recording:
-    """Recording of an MDF file; where groups hold channels of the same names, each group is an axis.
+    def recognises(self, source: Source) -> bool:
+        """Whether the file begins as MDF does."""
+        return source.content.startswith((_MAGIC, b"UnFinMF "))
 
-    Raises:
-        InputError: asammdf is not installed; damaged, beyond the bounds, or without a channel of numbers.
-    """
-    asammdf = library("asammdf", "asammdf", "mdf", source.path, FORMAT)
-    formulas: list[str] = []
-    try:
-        with warnings_of("asammdf"), asammdf.MDF(BytesIO(source.content), process_bus_logging=False) as file:
+    def read(self, source: Source) -> Recording:
+        """Recording of an MDF file; where groups hold channels of the same names, each group is an axis.
+
+        Raises:
+            InputError: asammdf is not installed; damaged, beyond the bounds, or without a channel of numbers.
+        """
+        asammdf = library("asammdf", "asammdf", "mdf", source.path, self.format)
+        formulas: list[str] = []
+        content = BytesIO(source.content)
+        with (
+            reading(source.path, self.format),
+            warnings_of("asammdf"),
+            asammdf.MDF(content, process_bus_logging=False) as file,
+        ):
             chosen = list(_chosen(file, formulas))
             _require_bounds(file, chosen, source)
             signals = [signal for channels in chosen for signal in file.select(channels, copy_master=False)]
-    except InputError:
-        raise
-    except Exception as error:  # asammdf raises many kinds on a damaged file
-        raise damaged(source.path, FORMAT, error) from error
-    numeric = [
-        one for one in signals if one.samples.ndim == 1 and one.samples.dtype.kind in "fiub" and one.samples.size > 1
-    ]
-    names = Counter(signal.name for signal in numeric)
-    channels = []
-    for signal in numeric:
-        axis = (_group(signal) or None) if names[signal.name] > 1 else None
-        time = Channel(
-            f"{signal.name} time", "s", np.asarray(signal.timestamps, dtype=np.float64), source.path, axis=axis
-        )
-        values = np.asarray(signal.samples, dtype=np.float64)
-        channels.append(Channel(signal.name, signal.unit or None, values, source.path, time=time, axis=axis))
-    notes = tuple(f"{name} left out: its conversion is a formula, which is not evaluated" for name in formulas)
-    if not channels:
-        found = "; ".join(("holds no channel of numbers", *notes))
-        raise InputError(source.path, found, "allowed: channels of samples")
-    return Recording(with_shared_times(channels), FORMAT, source.path, notes=notes)
-
-
-def _group(signal: object) -> str:
-    return f"group {getattr(signal, 'group_index', '')}".strip()
+        numeric = [
+            one
+            for one in signals
+            if one.samples.ndim == 1 and one.samples.dtype.kind in "fiub" and one.samples.size > 1
+        ]
+        names = Counter(signal.name for signal in numeric)
+        channels = []
+        for signal in numeric:
+            axis = f"group {getattr(signal, 'group_index', '')}".strip() if names[signal.name] > 1 else None
+            time = Channel(
+                f"{signal.name} time", "s", np.asarray(signal.timestamps, dtype=np.float64), source.path, axis=axis
+            )
+            values = np.asarray(signal.samples, dtype=np.float64)
+            channels.append(Channel(signal.name, signal.unit or None, values, source.path, time=time, axis=axis))
+        notes = tuple(f"{name} left out: its conversion is a formula, which is not evaluated" for name in formulas)
+        if not channels:
+            found = "; ".join(("holds no channel of numbers", *notes))
+            raise InputError(source.path, found, "allowed: channels of samples")
+        return Recording(with_shared_times(channels), self.format, source.path, notes=notes)
 
 
 def _chosen(file: Any, formulas: list[str]) -> Iterator[list[tuple[None, int, int]]]:  # noqa: ANN401

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from bench.arrays import Array
 from bench.bounds import require_expansion
 from bench.errors import InputError
-from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.readers.moments import seconds
+from bench.trace.channel import Recording
+from bench.trace.readers.columns import channel_of, is_numeric
+from bench.trace.readers.containers import reading
 from bench.trace.source import Source
-
-FORMAT = "Parquet"
-ENDINGS = (".parquet", ".pq")
 
 MAGIC = b"PAR1"
 #: What Arrow raises on a damaged file.
@@ -25,88 +19,33 @@ DAMAGE = (pa.ArrowException, OSError, UnicodeDecodeError)
 WIDTH = 8
 
 
-def recognises(source: Source) -> bool:
-    """Whether the file begins as Parquet does."""
-    return source.content.startswith(MAGIC)
+class Parquet:
+    """Parquet, see the module."""
 
+    format = "Parquet"
+    endings = (".parquet", ".pq")
 
-def read(source: Source) -> Recording:
-    """Recording of a Parquet file.
+    def recognises(self, source: Source) -> bool:
+        """Whether the file begins as Parquet does."""
+        return source.content.startswith(MAGIC)
 
-    Raises:
-        InputError: truncated, damaged, or without rows.
-    """
-    try:
-        with pq.ParquetFile(pa.BufferReader(source.content)) as file:
+    def read(self, source: Source) -> Recording:
+        """Recording of a Parquet file.
+
+        Raises:
+            InputError: truncated, damaged, or without rows.
+        """
+        with reading(source.path, self.format, DAMAGE), pq.ParquetFile(pa.BufferReader(source.content)) as file:
             fields = list(file.schema_arrow)
             wanted = [number for number, field in enumerate(fields) if is_numeric(field.type)]
             rows = file.metadata.num_rows
             require_expansion(source.path, rows * len(wanted) * WIDTH, len(source.content))
             table = file.read(None if len(wanted) == len(fields) else [fields[number].name for number in wanted])
-    except DAMAGE as error:
-        raise damaged(source.path, error) from error
-    if not rows:
-        raise InputError(source.path, "found columns and no rows", "allowed: at least two samples")
-    columns = iter(table.columns)
-    channels = tuple(
-        channel_of(field, next(columns) if is_numeric(field.type) else pa.nulls(0, field.type), source.path)
-        for field in fields
-    )
-    return Recording(channels, FORMAT, source.path)
-
-
-def damaged(path: str, error: Exception) -> InputError:
-    """What to say about a file that Arrow cannot read."""
-    reason = next(iter(str(error).splitlines()), type(error).__name__)
-    return InputError(path, f"the Parquet file is truncated or damaged ({reason})", "allowed: a complete Parquet file")
-
-
-def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, start: int = 0) -> Channel:
-    """Channel of a column, or of a piece of it from sample `start` on; a defect where it holds anything but numbers."""
-    name, unit = split_label(field.name)
-    if unit is None and field.metadata and b"unit" in field.metadata:
-        unit = field.metadata[b"unit"].decode("utf-8", errors="replace")
-    kind = column.type
-    if is_moment(kind):
-        unit = kind.unit
-    channel = Channel(name, unit, np.empty(0), path, start=start)
-    if (pa.types.is_string(kind) or pa.types.is_large_string(kind)) and len(column):
-        texts = pa.chunked_array([column]) if isinstance(column, pa.Array) else column
-        moments = seconds(texts.cast(pa.string()).fill_null(""))
-        if moments is not None:
-            return replace(channel, unit="s", values=moments, moments=True)
-    values = _numbers(column)
-    if values is None:
-        return replace(channel, defect=InputError(channel.place(), f"found {kind}", "allowed: numbers"))
-    return replace(channel, values=values, moments=pa.types.is_timestamp(kind))
-
-
-def is_numeric(kind: pa.DataType) -> bool:
-    """Whether a column holds numbers or moments; of others, texts and lists, nothing is read."""
-    number = pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_decimal(kind)
-    return number or pa.types.is_boolean(kind) or is_moment(kind)
-
-
-def is_moment(kind: pa.DataType) -> bool:
-    """Whether a column holds moments, read as times from the first of them."""
-    return pa.types.is_timestamp(kind) or pa.types.is_duration(kind)
-
-
-def _numbers(column: pa.ChunkedArray | pa.Array) -> Array | None:
-    """Values as float64, nan for none, without a copy where they are float64 in one piece; None where no numbers."""
-    kind = column.type
-    if is_moment(kind):
-        ticks = column.cast(pa.int64())
-        known = ticks.drop_null()
-        first = known[0].as_py() if len(known) else 0
-        passed = (ticks.fill_null(first).to_numpy() - first).astype(np.float64)  # an epoch would cost the last digits
-        return (
-            np.where(column.is_null().to_numpy(zero_copy_only=False), np.nan, passed) if column.null_count else passed
+        if not rows:
+            raise InputError(source.path, "found columns and no rows", "allowed: at least two samples")
+        columns = iter(table.columns)
+        channels = tuple(
+            channel_of(field, next(columns) if is_numeric(field.type) else pa.nulls(0, field.type), source.path)
+            for field in fields
         )
-    if pa.types.is_boolean(kind) or pa.types.is_decimal(kind):
-        column = column.cast(pa.float64())
-    elif not (pa.types.is_integer(kind) or pa.types.is_floating(kind)):
-        return None
-    array = column if isinstance(column, pa.Array) else column.combine_chunks()
-    array = array.chunk(0) if isinstance(array, pa.ChunkedArray) else array
-    return array.to_numpy(zero_copy_only=False).astype(np.float64, copy=False)
+        return Recording(channels, self.format, source.path)

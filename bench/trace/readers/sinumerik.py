@@ -8,23 +8,25 @@ from bench.errors import InputError
 from bench.trace.readers.xml import root_name
 from bench.trace.source import Source
 
-FORMAT = "Sinumerik frequency response (refused)"
-ENDINGS = ()
 
+class Sinumerik:
+    """Frequency responses, which are refused."""
 
-def recognises(source: Source) -> bool:
-    """Whether the root element is that of a frequency-response measurement."""
-    return root_name(source).startswith("ResponseTest")
+    format = "Sinumerik frequency response (refused)"
+    endings = ()
 
+    def recognises(self, source: Source) -> bool:
+        """Whether the root element is that of a frequency-response measurement."""
+        return root_name(source).startswith("ResponseTest")
 
-def read(source: Source) -> NoReturn:
-    """Refuse.
+    def read(self, source: Source) -> NoReturn:
+        """Refuse.
 
-    Raises:
-        InputError: always.
-    """
-    raise InputError(
-        source.path,
-        "found a Sinumerik frequency-response measurement, which holds no motion over time",
-        "allowed: a recording of velocity or position and of current or torque over time",
-    )
+        Raises:
+            InputError: always.
+        """
+        raise InputError(
+            source.path,
+            "found a Sinumerik frequency-response measurement, which holds no motion over time",
+            "allowed: a recording of velocity or position and of current or torque over time",
+        )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -11,20 +11,15 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute
+from pyarrow import csv
 
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.readers.columns import parse_columns
+from bench.trace.readers.layout import BLANKS, EMPTY, HEAD, TableLayout, cells_of, find_layout, is_number
 from bench.trace.readers.moments import seconds
-from bench.trace.readers.table_layout import BLANKS, EMPTY, HEAD, Layout, cells_of, find_layout, is_number
-from bench.trace.signal_names import signal_of, unit_of
 from bench.trace.source import Source, decode, utf8
-from bench.units.text import UnitError, scale_of
-
-FORMAT = "CSV table"
-ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", ".lvm")
 
 #: Columns of a table; a recorder has some hundred channels at most.
 MOST_COLUMNS = 10_000
@@ -32,13 +27,12 @@ _COMMENT = re.compile(rb"^[ \t]*(?:#|//)")
 #: Its functions are made when it is loaded, so that checkers of types know none.
 pc: Any = pyarrow.compute
 
-#: Epochs in ns with more digits than a float holds, and seconds to the ns.
-_EXACT = pa.decimal128(30, 9)
-_GROUPS = re.compile(r"[+-]?\d{1,3}(?:[.,' ’\u00a0\u202f]\d{3})+")
+#: Of the kinds of columns; `exact` are epochs in ns with more digits than a float holds, and seconds to the ns.
+TYPES = {"number": pa.float64(), "exact": pa.decimal128(30, 9), "text": pa.string()}
 
 
 @dataclass(frozen=True)
-class Body:
+class SampleLines:
     """Lines of samples in a text.
 
     Attributes:
@@ -58,50 +52,93 @@ class Body:
         """The lines alone."""
         return self.text[self.start :]
 
-    def parsed(self, kinds: list[pa.DataType], layout: Layout, nulls: tuple[str, ...] = ()) -> pa.Table:
-        """Columns, as `parse_columns` has them."""
-        return parse_columns(memoryview(self.text)[self.start :], kinds, _separator(layout), layout.decimal, nulls)
+    def parsed(self, kinds: Sequence[pa.DataType], layout: TableLayout, nulls: tuple[str, ...] = ()) -> pa.Table:
+        """Columns of these types, named 0, 1, ...; ArrowInvalid where a line has another count of cells, or a cell is
+        not of its type."""
+        types = {str(number): kind for number, kind in enumerate(kinds)}
+        return csv.read_csv(
+            pa.py_buffer(memoryview(self.text)[self.start :]),
+            read_options=csv.ReadOptions(column_names=list(types)),
+            parse_options=csv.ParseOptions(delimiter=layout.delimiter, quote_char='"'),
+            convert_options=csv.ConvertOptions(
+                column_types=types, null_values=list(nulls), strings_can_be_null=False, decimal_point=layout.decimal
+            ),
+        )
 
 
-def recognises(source: Source) -> bool:
-    """Whether lines of numbers follow one another in a text."""
-    if "\0" in source.head or source.head.lstrip().startswith(("{", "[{", "<")):
-        return False
-    return _layout(source) is not None
+class Table:
+    """Tables in text, see the module."""
+
+    format = "CSV table"
+    endings = (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", ".lvm")
+
+    def recognises(self, source: Source) -> bool:
+        """Whether lines of numbers follow one another in a text."""
+        if "\0" in source.head or source.head.lstrip().startswith(("{", "[{", "<")):
+            return False
+        return _layout(source) is not None
+
+    def read(self, source: Source) -> Recording:
+        """Recording of a table.
+
+        Raises:
+            InputError: no samples, or a line with too few or too many cells.
+        """
+        layout = _layout(source)
+        if layout is None:
+            raise _no_table(source)
+        content = utf8(source.content)
+        lines = SampleLines(content, layout.start + 1, start=_offset(content, layout.start))
+        channels, notes = read_lines(lines, layout, source.path)
+        return Recording(channels, self.format, source.path, notes=notes)
 
 
-def read(source: Source) -> Recording:
-    """Recording of a table.
+def read_lines(lines: SampleLines, layout: TableLayout, path: str) -> tuple[tuple[Channel, ...], tuple[str, ...]]:
+    """Channels of lines of samples, of whatever preamble they stand under, and what the user should know.
 
     Raises:
-        InputError: no samples, or a line with too few or too many cells.
+        InputError: too many columns, or a line with too few or too many cells; names `path` and the line.
     """
-    layout = _layout(source)
-    if layout is None:
-        raise _no_table(source)
     if len(layout.labels) > MOST_COLUMNS:
-        raise InputError(source.path, f"found {len(layout.labels)} columns", f"allowed: {MOST_COLUMNS}")
-    content = utf8(source.content)
-    body = Body(content, layout.start + 1, start=_offset(content, layout.start))
+        raise InputError(path, f"found {len(layout.labels)} columns", f"allowed: {MOST_COLUMNS}")
     if layout.separator == BLANKS:
-        body = Body(_between_tabs(body.content), body.line)
-    table, body = _columns(body, layout, source.path)
+        lines = SampleLines(_between_tabs(lines.content), lines.line)
+    table, lines = parsed(lines, layout, path)
     rows = _filled_rows(table)
-    gaps = _has_blank_lines(body, table.num_rows) or (rows is not None and not rows[: int(rows.sum())].all())
-    line = None if gaps else body.line
+    gaps = _has_blank_lines(lines, table.num_rows) or (rows is not None and not rows[: int(rows.sum())].all())
+    line = None if gaps else lines.line
     table = table if rows is None else table.filter(pa.array(rows))
-    channels = tuple(_channels(table, layout, line, source.path))
-    return Recording(channels, FORMAT, source.path, notes=body.notes)
+    return tuple(_channels(table, layout, line, path)), lines.notes
 
 
-def _has_blank_lines(body: Body, rows: int) -> bool:
+def read_timed(lines: Sequence[str], line: int, layout: TableLayout, path: str) -> tuple[Channel, ...]:
+    """Channels of lines whose column called `time` is the time of the others; a decimal comma is a point.
+
+    Args:
+        lines: of samples, without what stands above them.
+        line: number of the first of them in the file.
+        layout: of them.
+        path: of the file.
+
+    Raises:
+        InputError: as `read_lines`, or a text among the times.
+    """
+    text = "\n".join(lines).replace(",", ".").encode()
+    channels, _ = read_lines(SampleLines(text, line), layout, path)
+    time = next(channel for channel in channels if channel.name == "time")
+    if time.defect is not None:
+        raise time.defect
+    return tuple(replace(channel, time=time) for channel in channels if channel is not time)
+
+
+def _has_blank_lines(lines: SampleLines, rows: int) -> bool:
     """Whether a line between samples is blank; where every line is a row none is, and to count lines takes no time."""
-    if body.text.count(b"\n", body.start) + (not body.text.endswith(b"\n")) == rows:
+    if lines.text.count(b"\n", lines.start) + (not lines.text.endswith(b"\n")) == rows:
         return False
-    return re.search(rb"\n[ \t\r]*\n", body.content.rstrip()) is not None
+    return re.search(rb"\n[ \t\r]*\n", lines.content.rstrip()) is not None
 
 
-def _layout(source: Source) -> Layout | None:
+def _layout(source: Source) -> TableLayout | None:
     head = utf8(source.content[:HEAD]).decode("utf-8", errors="replace")
     lines = head.split("\n")
     return find_layout([line.rstrip("\r") for line in (lines if len(source.content) <= HEAD else lines[:-1])])
@@ -128,39 +165,33 @@ def _between_tabs(body: bytes) -> bytes:
     return re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+\r?$", b"", body))
 
 
-def _separator(layout: Layout) -> str:
-    return "\t" if layout.separator == BLANKS else layout.separator
+def parsed(lines: SampleLines, layout: TableLayout, path: str) -> tuple[pa.Table, SampleLines]:
+    """Columns as their kinds say, all as text where a cell is not as its kind; and the lines that they are of.
 
-
-def _columns(body: Body, layout: Layout, path: str) -> tuple[pa.Table, Body]:
-    """Columns as their kinds say; all as text where a cell is not as its kind."""
-    types = {"number": pa.float64(), "exact": _EXACT, "text": pa.string()}
-    separator, count = _separator(layout), len(layout.labels)
+    Raises:
+        InputError: a line with too few or too many cells, or a quote that is not closed.
+    """
     try:
-        kinds = [
-            types["number" if kind == "exact" and not _may_be_time(label) else kind]
-            for kind, label in zip(layout.kinds, layout.labels, strict=True)
-        ]
-        return body.parsed(kinds, layout, EMPTY), body
+        return lines.parsed([TYPES[kind] for kind in layout.kinds], layout, EMPTY), lines
     except pa.ArrowInvalid:
-        body = _cleaned(body, separator, count, path)
+        lines = _cleaned(lines, layout, path)
     try:
-        return body.parsed([pa.string()] * count, layout), body
+        return lines.parsed([pa.string()] * len(layout.labels), layout), lines
     except pa.ArrowInvalid as error:
-        first = body.line or 1
-        lines = enumerate(body.content.splitlines(), first)
-        quoted = next((number for number, line in lines if line.count(b'"') % 2), first)
+        first = lines.line or 1
+        numbered = enumerate(lines.content.splitlines(), first)
+        quoted = next((number for number, line in numbered if line.count(b'"') % 2), first)
         raise InputError(f"{path}: line {quoted}", "found a quote that is not closed", "allowed: numbers") from error
 
 
-def _cleaned(body: Body, separator: str, width: int, path: str) -> Body:
+def _cleaned(lines: SampleLines, layout: TableLayout, path: str) -> SampleLines:
     """Lines of samples without comments and blank lines among them, and without what a recorder writes below.
 
     Raises:
         InputError: a line with too few or too many cells.
     """
-    first = body.line or 1
-    numbered = [(number, line) for number, line in enumerate(body.content.splitlines(), first)]
+    separator, width = layout.delimiter, len(layout.labels)
+    numbered = list(enumerate(lines.content.splitlines(), lines.line or 1))
     kept = [(number, line) for number, line in numbered if line.strip(b' \t\r"') and not _COMMENT.match(line)]
     comments = sum(1 for _, line in numbered if _COMMENT.match(line))
     while kept and not _holds_number(kept[-1][1], separator):
@@ -183,7 +214,8 @@ def _cleaned(body: Body, separator: str, width: int, path: str) -> Body:
         f"{count} {what}{'s' * (count > 1 and what == 'comment')} left out" for what, count in left_out.items() if count
     )
     whole = not kept or kept[-1][0] - kept[0][0] == len(kept) - 1
-    return Body(b"\n".join(line for _, line in kept) + b"\n", kept[0][0] if whole and kept else None, notes)
+    text = b"\n".join(line for _, line in kept) + b"\n"
+    return SampleLines(text, kept[0][0] if whole and kept else None, notes)
 
 
 def _holds_number(line: bytes, separator: str) -> bool:
@@ -206,32 +238,24 @@ def _filled_rows(table: pa.Table) -> np.ndarray | None:
     return filled
 
 
-def _channels(table: pa.Table, layout: Layout, line: int | None, path: str) -> Iterator[Channel]:
-    for number, (label, column) in enumerate(zip(layout.labels, table.columns, strict=True), 1):
-        name, unit = split_label(label)
-        channel = Channel(name or f"column {number}", unit, np.empty(0), path, line=line)
-        if pa.types.is_string(column.type):
-            channel = _of_text(channel, column, layout.decimal)
-        elif pa.types.is_decimal(column.type):
-            channel = replace(channel, values=_from_first(column))
-        else:
-            channel = replace(
-                channel, values=column.fill_null(np.nan).to_numpy() if column.null_count else column.to_numpy()
-            )
-        unnamed = label == f"column {number}" and channel.defect is None and not np.isfinite(channel.values).any()
-        if not unnamed or layout.labels == tuple(f"column {n}" for n in range(1, len(layout.labels) + 1)):
+def _channels(table: pa.Table, layout: TableLayout, line: int | None, path: str) -> Iterator[Channel]:
+    unnamed = [label == f"column {number}" for number, label in enumerate(layout.labels, 1)]
+    for label, column, plain in zip(layout.labels, table.columns, unnamed, strict=True):
+        channel = channel_of_cells(label, column, layout.decimal, path, line)
+        holds = channel.defect is not None or np.isfinite(channel.values).any()
+        if holds or not plain or all(unnamed):
             yield channel
 
 
-def _may_be_time(label: str) -> bool:
-    """Whether a column may hold instants, of which only the distances count: not one of a signal or another unit."""
+def channel_of_cells(label: str, column: pa.ChunkedArray, decimal: str, path: str, line: int | None) -> Channel:
+    """Channel of a column as `parsed` returns it; a defect where it holds a cell that is no number."""
     name, unit = split_label(label)
-    if signal_of(name) not in (None, "time"):
-        return False
-    try:
-        return unit_of(unit) is None or scale_of(str(unit), ("s",)) is not None
-    except UnitError:
-        return False
+    channel = Channel(name, unit, np.empty(0), path, line=line)
+    if pa.types.is_string(column.type):
+        return _of_text(channel, column, decimal)
+    if pa.types.is_decimal(column.type):
+        return replace(channel, values=_from_first(column))
+    return replace(channel, values=column.fill_null(np.nan).to_numpy() if column.null_count else column.to_numpy())
 
 
 def _from_first(column: pa.ChunkedArray) -> Array:

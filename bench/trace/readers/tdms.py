@@ -15,56 +15,57 @@ import numpy as np
 from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
-from bench.trace.readers.arrays import channels_of
-from bench.trace.readers.extras import damaged, library, warnings_of
+from bench.trace.readers.containers import channels_of, library, reading, warnings_of
 from bench.trace.source import Source
-
-FORMAT = "TDMS"
-ENDINGS = (".tdms",)
 
 _MAGIC = b"TDSm"
 #: Kinds of NumPy's types that are numbers or moments, and bytes of a value.
 _NUMERIC, _WIDTH = "fiubM", 8
 
 
-def recognises(source: Source) -> bool:
-    """Whether the file begins as a segment of TDMS does."""
-    return source.content.startswith(_MAGIC)
+class Tdms:
+    """TDMS, see the module."""
 
+    format = "TDMS"
+    endings = (".tdms",)
 
-def read(source: Source) -> Recording:
-    """Recording of a TDMS file; where groups hold channels of the same names, each group is an axis.
+    def recognises(self, source: Source) -> bool:
+        """Whether the file begins as a segment of TDMS does."""
+        return source.content.startswith(_MAGIC)
 
-    Raises:
-        InputError: npTDMS is not installed; damaged, beyond the bounds, or without a channel of numbers.
-    """
-    nptdms = library("nptdms", "npTDMS", "tdms", source.path, FORMAT)
-    try:
-        with warnings_of("nptdms") as warnings, nptdms.TdmsFile.open(BytesIO(source.content)) as file:
+    def read(self, source: Source) -> Recording:
+        """Recording of a TDMS file; where groups hold channels of the same names, each group is an axis.
+
+        Raises:
+            InputError: npTDMS is not installed; damaged, beyond the bounds, or without a channel of numbers.
+        """
+        nptdms = library("nptdms", "npTDMS", "tdms", source.path, self.format)
+        content = BytesIO(source.content)
+        with (
+            reading(source.path, self.format),
+            warnings_of("nptdms") as warnings,
+            nptdms.TdmsFile.open(content) as file,
+        ):
             numeric = {group.name: [one for one in group.channels() if _numeric(one)] for group in file.groups()}
             size = sum(len(channel) for channels in numeric.values() for channel in channels) * _WIDTH
             require_expansion(source.path, size, len(source.content))
             groups = {name: [(channel, channel[:]) for channel in channels] for name, channels in numeric.items()}
             metadata = {str(name): str(value) for name, value in file.properties.items()}
-    except InputError:
-        raise
-    except Exception as error:  # npTDMS raises many kinds on a damaged file
-        raise damaged(source.path, FORMAT, error) from error
-    names = Counter(channel.name for channels in groups.values() for channel, _ in channels)
-    alike = any(count > 1 for count in names.values())
-    starts = [channel.properties.get("wf_start_time") for channels in groups.values() for channel, _ in channels]
-    first = min((start for start in starts if start is not None), default=None)
-    found = [
-        _channel(channel, values, group if alike else None, first, source.path)
-        for group, channels in groups.items()
-        for channel, values in channels
-        if isinstance(values, np.ndarray) and values.dtype.kind in _NUMERIC and values.ndim == 1 and values.size > 1
-    ]
-    if not found:
-        raise InputError(source.path, "holds no channel of numbers", "allowed: channels of samples")
-    timed = iter(with_shared_times([channel for channel in found if channel.time is not None]))
-    channels = tuple(next(timed) if channel.time is not None else channel for channel in found)
-    return Recording(channels, FORMAT, source.path, metadata, notes=tuple(warnings))
+        names = Counter(channel.name for channels in groups.values() for channel, _ in channels)
+        alike = any(count > 1 for count in names.values())
+        starts = [channel.properties.get("wf_start_time") for channels in groups.values() for channel, _ in channels]
+        first = min((start for start in starts if start is not None), default=None)
+        found = [
+            _channel(channel, values, group if alike else None, first, source.path)
+            for group, channels in groups.items()
+            for channel, values in channels
+            if isinstance(values, np.ndarray) and values.dtype.kind in _NUMERIC and values.ndim == 1 and values.size > 1
+        ]
+        if not found:
+            raise InputError(source.path, "holds no channel of numbers", "allowed: channels of samples")
+        timed = iter(with_shared_times([channel for channel in found if channel.time is not None]))
+        channels = tuple(next(timed) if channel.time is not None else channel for channel in found)
+        return Recording(channels, self.format, source.path, metadata, notes=tuple(warnings))
 
 
 def _numeric(channel: Any) -> bool:  # noqa: ANN401

@@ -18,49 +18,53 @@ import pyarrow as pa
 
 from bench.arrays import Array
 from bench.errors import InputError
-from bench.names import short
 from bench.trace.channel import Channel, Recording, with_shared_times
-from bench.trace.readers.columns import parse_columns
+from bench.trace.readers.layout import TableLayout
+from bench.trace.readers.table import SampleLines, channel_of_cells, parsed
 from bench.trace.source import Source, decode
-
-FORMAT = "TwinCAT Scope CSV"
-ENDINGS = ()
 
 _HEAD = re.compile(r"\AName[\t;,].*^(Starttime of export|Data-Type|SymbolName)[\t;,]", re.DOTALL | re.MULTILINE)
 _NUMBER = re.compile(r"\s*[+-]?\d")
 _TICKS = re.compile(r"[0-9]{1,19}")
 _FILETIME = re.compile(rb"\s*\d{17,19}\D")
 _LAST_MOMENT = 2.6e17  # us; a date of Python ends with the year 9999
-_EMPTY = ("", " ")
 _NO_SCALING = {"Offset": "0", "ScaleFactor": "1", "Unit Offset": "0", "Unit ScaleFactor": "1"}
 
 
-def recognises(source: Source) -> bool:
-    """Whether the head is that of an export."""
-    return _HEAD.match(source.head) is not None
+class TwinCat:
+    """TwinCAT Scope CSV, see the module."""
 
+    format = "TwinCAT Scope CSV"
+    endings = ()
 
-def read(source: Source) -> Recording:
-    """Recording of an export.
+    def recognises(self, source: Source) -> bool:
+        """Whether the head is that of an export."""
+        return _HEAD.match(source.head) is not None
 
-    Raises:
-        InputError: no channels, no samples, a line with too many cells, text in a number.
-    """
-    separator = source.head[len("Name")]
-    header, body, line = _split(source, separator)
-    names = _names(header, source)
-    table = _table(body, names, separator, line, source)
-    start = min((_first(column) for column in table.columns if column.type == pa.int64()), default=0)
-    time = np.empty(0)
-    channels: list[Channel] = []
-    for number, name in enumerate(names):
-        column = table.column(number)
-        if name == "Name":
-            time = _times(column, start)
-        elif number > 0:
-            channel = replace(_described(name, number, header, source), line=line)
-            channels.append(_sampled(channel, time, column.to_numpy()))
-    return Recording(with_shared_times(channels), FORMAT, source.path, _metadata(header))
+    def read(self, source: Source) -> Recording:
+        """Recording of an export.
+
+        Raises:
+            InputError: no channels, no samples, a line with too many cells, text in a number.
+        """
+        separator = source.head[len("Name")]
+        header, body, line = _split(source, separator)
+        names = _names(header, source)
+        table, lines, layout = _table(body, names, separator, line, source)
+        start = min((_first(column) for column in table.columns if pa.types.is_decimal(column.type)), default=0)
+        time = np.empty(0)
+        channels: list[Channel] = []
+        for number, (name, column) in enumerate(zip(names, table.columns, strict=True)):
+            cells = channel_of_cells(name, column, layout.decimal, source.path, lines.line)
+            if cells.defect is not None:
+                raise cells.defect
+            if name == "Name":
+                moments = pa.types.is_decimal(column.type)  # FILETIME, in steps of 100 ns, from the first of all
+                time = (cells.values + (_first(column) - start)) / 1e4 if moments else cells.values
+            elif number > 0:
+                channel = _described(name, number, header, source)
+                channels.append(_sampled(replace(channel, line=lines.line), time, cells.values))
+        return Recording(with_shared_times(channels), self.format, source.path, _metadata(header))
 
 
 def _split(source: Source, separator: str) -> tuple[list[list[str]], bytes, int]:
@@ -92,46 +96,24 @@ def _names(header: list[list[str]], source: Source) -> list[str]:
     return names
 
 
-def _table(body: bytes, names: list[str], separator: str, line: int, source: Source) -> pa.Table:
-    decimal = "," if separator != "," and re.search(rb"\d,\d", body) else "."
+def _table(
+    body: bytes, names: list[str], separator: str, line: int, source: Source
+) -> tuple[pa.Table, SampleLines, TableLayout]:
+    """Columns of the samples: rows end with the last channel that still has some, and are filled up."""
     mark, width = separator.encode(), len(names)
     rows = [row.rstrip(b"\r") for row in body.split(b"\n")]
-    # rows end with the last channel that still has samples: fill them up
     full = [row + mark * (width - 1 - row.count(mark)) for row in rows if row.strip() and row.strip() != b"EOF"]
-    moments = _FILETIME.match(rows[0]) is not None
-    kinds = [pa.int64() if moments and name == "Name" else pa.float64() for name in names]
-    try:
-        return parse_columns(b"\n".join(full), kinds, separator, decimal, nulls=_EMPTY)
-    except pa.ArrowInvalid as error:
-        raise _first_fault(rows, width, separator, decimal, line, source) from error
-
-
-def _first_fault(rows: list[bytes], width: int, separator: str, decimal: str, line: int, source: Source) -> InputError:
-    for number, row in enumerate(rows, line):
-        cells = decode(row).split(separator)
-        if len(cells) > width:
-            return InputError(f"{source.path}: line {number}", f"found {len(cells)} cells", f"allowed: at most {width}")
-        for column, cell in enumerate(cells, 1):
-            try:
-                float(cell.strip().replace(decimal, ".") or 0.0)
-            except ValueError:
-                if row.strip() != b"EOF":
-                    place = f"{source.path}: line {number}, cell {column}"
-                    return InputError(place, f"found {short(cell.strip())!r}", "allowed: a number")
-    return InputError(source.path, "found cells that are no numbers", "allowed: numbers")
+    decimal = "," if separator != "," and re.search(rb"\d,\d", body) else "."
+    moments = "exact" if _FILETIME.match(rows[0]) is not None else "number"
+    kinds = tuple(moments if name == "Name" else "number" for name in names)
+    layout = TableLayout(tuple(names), separator, decimal, 0, kinds)
+    return *parsed(SampleLines(b"\n".join(full), line), layout, source.path), layout
 
 
 def _first(column: pa.ChunkedArray) -> int:
+    """The first number of a column; 0 where it has none."""
     present = column.drop_null()
-    return present[0].as_py() if len(present) else 0
-
-
-def _times(column: pa.ChunkedArray, start: int) -> Array:
-    """Times in ms, nan where the cell is empty; FILETIME, in steps of 100 ns, counts from `start`."""
-    if column.type != pa.int64():
-        return column.to_numpy()
-    ticks = column.fill_null(start).to_numpy() - start
-    return np.where(column.is_null().to_numpy(), np.nan, ticks / 1e4)
+    return int(present[0].as_py()) if len(present) else 0
 
 
 def _described(name: str, number: int, header: list[list[str]], source: Source) -> Channel:

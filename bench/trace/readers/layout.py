@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 from bench.trace.channel import split_label
 from bench.trace.readers.moments import is_moment
-from bench.trace.signal_names import unit_of
-from bench.units.text import is_unit
+from bench.trace.signal_names import signal_of, unit_of
+from bench.units.text import UnitError, is_unit, scale_of
 
 BLANKS = " "
 SEPARATORS = ("\t", ";", ",", BLANKS)
@@ -56,14 +56,14 @@ _EXACT = re.compile(r"[+-]?\d{16,}|[+-]?\d{9,}[.,]\d{4,9}")
 
 
 @dataclass(frozen=True)
-class Layout:
+class TableLayout:
     """How a table is written.
 
     Attributes:
         labels: of the columns, with their units.
         separator, decimal: characters between columns and in numbers; BLANKS: any run of them.
         start: line of the first samples, counted from 0.
-        kinds: of each column: `number`, `exact` (more digits than a float holds), `text`.
+        kinds: of each column: `number`, `exact` (instants of more digits than a float holds), `text`.
     """
 
     labels: tuple[str, ...]
@@ -71,6 +71,16 @@ class Layout:
     decimal: str
     start: int
     kinds: tuple[str, ...]
+
+    @property
+    def delimiter(self) -> str:
+        """The one character between columns, once runs of blanks are tabs."""
+        return "\t" if self.separator == BLANKS else self.separator
+
+
+def layout_of(labels: tuple[str, ...], separator: str, decimal: str = ".") -> TableLayout:
+    """Layout of lines of numbers under a header that tells all of it."""
+    return TableLayout(labels, separator, decimal, 0, ("number",) * len(labels))
 
 
 def cells_of(line: str, separator: str) -> list[str]:
@@ -92,7 +102,7 @@ def _is_value(cell: str) -> bool:
     return cell in EMPTY or is_number(cell) or is_moment(cell)
 
 
-def find_layout(lines: list[str]) -> Layout | None:
+def find_layout(lines: list[str]) -> TableLayout | None:
     """The layout of a table that begins with these lines; None where they show none."""
     shown = [line for line in lines if line.strip()][-SHOWN:]
     separator, width = _separator(shown)
@@ -105,7 +115,21 @@ def find_layout(lines: list[str]) -> Layout | None:
     if start is None or ("number" not in kinds and "exact" not in kinds):
         return None
     decimal = "," if any(_DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row) else "."
-    return Layout(_labels(lines[:start], separator, width), separator, decimal, start, kinds)
+    labels = _labels(lines[:start], separator, width)
+    exact = (kind != "exact" or _may_be_time(label) for kind, label in zip(kinds, labels, strict=True))
+    kinds = tuple(kind if kept else "number" for kind, kept in zip(kinds, exact, strict=True))
+    return TableLayout(labels, separator, decimal, start, kinds)
+
+
+def _may_be_time(label: str) -> bool:
+    """Whether a column may hold instants, of which only the distances count: not one of a signal or another unit."""
+    name, unit = split_label(label)
+    if signal_of(name) not in (None, "time"):
+        return False
+    try:
+        return unit_of(unit) is None or scale_of(str(unit), ("s",)) is not None
+    except UnitError:
+        return False
 
 
 def _separator(shown: list[str]) -> tuple[str, int]:
@@ -162,7 +186,9 @@ def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:
     if len(rows) == 2 and _is_unit_row(rows[0]) and not _is_unit_row(rows[1]):
         units = [cell.strip("[](){} ") for cell in rows[0]]
         names = [_with_unit(name, unit) for name, unit in zip(rows[1], units, strict=True)]
-    return tuple(name or f"column {number}" for number, name in enumerate(names, 1))
+    return tuple(
+        name if split_label(name)[0] else f"column {number} {name}".strip() for number, name in enumerate(names, 1)
+    )
 
 
 def _with_unit(name: str, unit: str) -> str:
