@@ -5,15 +5,23 @@ import re
 import subprocess
 import sys
 import tomllib
+from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
 
+from bench.errors import InputError
+from bench.trace.readers.catalogue import GROUP, readers
+
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 #: Blocks of code whose first line is a comment with the name of their file.
-BLOCKS = dict(re.findall(r"^```\w+\n# (\S+\.(?:py|toml))\n(.*?)^```$", PAGE, flags=re.MULTILINE | re.DOTALL))
+BLOCKS = dict(re.findall(r"^```\w+\n# (\S+\.py)\n(.*?)^```$", PAGE, flags=re.MULTILINE | re.DOTALL))
 TESTS = [name for name in BLOCKS if name.startswith("tests/test_")]
+#: Entry points by group, of all the page's blocks for `pyproject.toml`.
+TOML = "\n".join(re.findall(r"^```toml\n# pyproject\.toml.*?\n(.*?)^```$", PAGE, flags=re.MULTILINE | re.DOTALL))
+GROUPS = tomllib.loads(TOML)["project"]["entry-points"]
+EFFECTS, READERS = (sorted(GROUPS[f"servobench.{kind}"]) for kind in ("effects", "readers"))
 METADATA = "Metadata-Version: 2.1\nName: servobench-extras\nVersion: 1.0\n"
 
 
@@ -28,8 +36,7 @@ def extras(tmp_path_factory):
     for name, text in BLOCKS.items():
         (home / name).write_text(text, encoding="utf-8")
     (installed / "METADATA").write_text(METADATA, encoding="utf-8")
-    groups = tomllib.loads(BLOCKS["pyproject.toml"])["project"]["entry-points"]
-    lines = [f"[{group}]\n" + "".join(f"{k} = {v}\n" for k, v in those.items()) for group, those in groups.items()]
+    lines = [f"[{group}]\n" + "".join(f"{k} = {v}\n" for k, v in those.items()) for group, those in GROUPS.items()]
     (installed / "entry_points.txt").write_text("\n".join(lines), encoding="utf-8")
     return home
 
@@ -43,28 +50,41 @@ def run(home, *arguments):
 
 
 def test_each_example_is_one_file_and_one_test():
-    effects = sorted(Path(name).stem for name in BLOCKS if name.startswith("servobench_extras/"))
-    assert effects == sorted(Path(name).stem.removeprefix("test_") for name in TESTS)
-    assert len(effects) == 3
+    examples = sorted(Path(name).stem for name in BLOCKS if name.startswith("servobench_extras/"))
+    assert examples == sorted(Path(name).stem.removeprefix("test_") for name in TESTS) == sorted([*EFFECTS, *READERS])
+    assert (len(EFFECTS), len(READERS)) == (3, 1)
 
 
 def test_the_examples_pass_their_tests(extras):
     done = run(extras, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-W", "error", "tests")
-    assert f"{len(TESTS)} passed" in done.stdout, done.stdout + done.stderr
+    assert f"{sum(BLOCKS[name].count('def test_') for name in TESTS)} passed" in done.stdout, done.stdout + done.stderr
 
 
 def test_the_examples_are_what_they_declare(extras):
-    names = [Path(name).stem.removeprefix("test_") for name in TESTS]
     laws = [str(ROOT / "tests" / "effects" / f"test_{name}.py") for name in ("properties", "sensing", "reporting")]
-    done = run(extras, "-m", "pytest", "-q", "-n", "0", "-p", "no:cacheprovider", *laws, "-k", " or ".join(names))
+    done = run(extras, "-m", "pytest", "-q", "-n", "0", "-p", "no:cacheprovider", *laws, "-k", " or ".join(EFFECTS))
     assert done.returncode == 0, done.stdout + done.stderr
     assert " passed" in done.stdout
 
 
 def test_the_examples_are_listed_beside_the_catalogue(extras):
     done = run(extras, "-m", "bench", "effects")
-    for name in TESTS:
-        assert Path(name).stem.removeprefix("test_") in done.stdout
+    for name in EFFECTS:
+        assert name in done.stdout
+
+
+def test_a_reader_is_among_the_formats_that_a_refusal_lists(extras):
+    (extras / "what.bin").write_bytes(bytes(range(256)))
+    done = run(extras, "-m", "bench", "inspect", "what.bin")
+    assert done.returncode == 2
+    assert "drive's memory, CSV table" in done.stderr
+
+
+def test_what_is_no_reader_is_refused(monkeypatch):
+    entry = EntryPoint("sum", "builtins:sum", GROUP)
+    monkeypatch.setattr("bench.trace.readers.catalogue.entry_points", lambda group: [entry])
+    with pytest.raises(InputError, match=r"servobench.readers: builtins:sum: found .*; allowed: a reader of the bench"):
+        readers.__wrapped__()
 
 
 def test_the_page_keeps_to_what_is_there():
