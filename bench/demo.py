@@ -2,41 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
 
 from bench.assets import asset
 from bench.files import held
-from bench.fit.estimate import Estimate
 from bench.fit.regression import identify
 from bench.plant.simulate import simulate
 from bench.plant.truth import write_truth
-from bench.report.identification import write_identification
+from bench.report.document import Document
+from bench.report.identification import identification, moved
+from bench.report.publish import write_document
 from bench.rig.rig import load_rig
 from bench.trace.read import read
 from bench.trace.write import write
 
 
-@dataclass(frozen=True)
-class Demo:
-    """What the demo found.
-
-    Attributes:
-        title: of the run.
-        estimate: identified from the trace as it stands on disk.
-        truth: the simulation's values by the parameters' names - SI.
-        files: that were written.
-    """
-
-    title: str
-    estimate: Estimate
-    truth: Mapping[str, float]
-    files: list[Path]
-
-
-def demo(out: Path, progress: Callable[[float], None]) -> Demo:
+def demo(out: Path, progress: Callable[[float], None]) -> tuple[Document, list[Path]]:
     """Run the chain into a folder; the identification reads the trace file, like anybody's.
+
+    Returns:
+        The identification beside the truth, and the files that were written.
 
     Raises:
         InputError: the folder cannot be written to.
@@ -45,7 +31,7 @@ def demo(out: Path, progress: Callable[[float], None]) -> Demo:
         return _demo(out, progress)
 
 
-def _demo(out: Path, progress: Callable[[float], None]) -> Demo:
+def _demo(out: Path, progress: Callable[[float], None]) -> tuple[Document, list[Path]]:
     rig = load_rig(asset("data", "rigs", "sh30701p.toml"))
     simulated = simulate(rig, progress=lambda share: progress(0.6 * share))
     trace = out / "trace.csv.gz"
@@ -53,8 +39,6 @@ def _demo(out: Path, progress: Callable[[float], None]) -> Demo:
     truth = write_truth(trace, simulated.truth)
     progress(0.8)
     estimate = identify(read(trace), rig)
-    figures = write_identification(out, [trace], rig, estimate)
-    progress(1.0)
     axis = simulated.truth.parameters
     known = {
         "moment_of_inertia": axis.inertia,
@@ -62,4 +46,8 @@ def _demo(out: Path, progress: Callable[[float], None]) -> Demo:
         "coulomb_friction_torque": axis.coulomb_friction,
         "load_moment_of_inertia": axis.inertia - axis.motor_inertia,
     }
-    return Demo(f"{rig.name}, simulated in MuJoCo", estimate, known, [trace, truth, *figures])
+    title, motions = f"{rig.name}, simulated in MuJoCo", moved([trace], rig, estimate)
+    found = identification(title, rig.axis_kind, estimate, motions=motions, truth=known)
+    files = write_document(out, found)
+    progress(1.0)
+    return found, [trace, truth, *files]

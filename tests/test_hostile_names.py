@@ -8,16 +8,15 @@ from pathlib import Path
 import pytest
 
 from bench.assets import asset
-from bench.console import console
 from bench.files import write_text
 from bench.fit.regression import identify
-from bench.names import cell
+from bench.names import cell, readable
 from bench.plant.model_file import StoredModel, load_model, model_toml
 from bench.plant.plant import Plant
-from bench.report.estimate import estimate_table
-from bench.report.figures import save
-from bench.report.identification_figure import identification_figure
+from bench.report.figures import drawn, save
+from bench.report.identification import Moved, identification
 from bench.report.lab import lab_html
+from bench.report.terminal import show
 from bench.rig.rig import Rig, load_rig
 from bench.trace.conditioning import condition
 from bench.trace.motion import motion
@@ -56,13 +55,15 @@ def identified():
 @pytest.mark.parametrize("name", NAMES, ids=ascii)
 def test_names_are_text_in_terminal_and_figures(identified, tmp_path, capsys, name):
     rig, estimate, moved = identified
-    console().print(estimate_table(estimate, name))
+    along = Moved(readable(name), rig.axis_kind, moved, estimate)
+    document = identification(readable(name), rig.axis_kind, estimate, motions=[along])
+    show(document)
     shown = capsys.readouterr().out
     for character in "\x1b\x07\x01\r\u202e":
         assert character not in shown
     for word in re.findall(r"[\[\]$:<>=/a-z]+", name.split("\x1b")[0]):
         assert word in shown
-    figure = identification_figure(moved, estimate, rig.axis_kind, name)
+    figure = drawn(document.pictures[0])
     for ending in ("png", "svg", "pdf"):
         save(figure, tmp_path / f"x.{ending}")
 

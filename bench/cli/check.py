@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.console import (
+from bench.cli.common import (
     AxisOption,
     JsonOption,
     ReportOption,
-    console,
-    print_files,
-    print_warnings,
+    list_files,
+    printed,
     refusal_as_json,
+    warn,
     write_json,
 )
 from bench.errors import InputError
@@ -117,8 +117,8 @@ class Asked:
     def observed(self, names: bool) -> Observed:
         """What recordings tell now, with where it comes from."""
         from bench.baseline.check import observe
-        from bench.report.progress import progress
         from bench.report.provenance import provenance
+        from bench.report.terminal import progress
         from bench.trace.read import read
 
         axis = self.axis
@@ -182,14 +182,12 @@ def _update(asked: Asked, names: bool) -> None:
 
     state = asked.of_model(asked.simulated) if asked.simulated is not None else asked.observed(names).state
     write_baseline(asked.baseline, state)
-    print_files([asked.baseline])
+    list_files([asked.baseline])
     count = len(asked.traces)
     if 0 < count < ENOUGH:
         told = "1 recording tells" if count == 1 else f"{count} recordings tell"
         advice = f"make the baseline of {ENOUGH} or more, or state it in [check.between] of the rig"
-        print_warnings(
-            [f"{told} little of how recordings of this axis differ, so defaults count (docs/check.md): {advice}"]
-        )
+        warn([f"{told} little of how recordings of this axis differ, so defaults count (docs/check.md): {advice}"])
 
 
 def _write(
@@ -205,16 +203,16 @@ def _write(
     if json is not None:
         write_json(json, check_json(checked, checked.now.provenance))
     if report is not None:
-        from bench.report.page.folder import write_html
         from bench.report.pages.check import check_page
+        from bench.report.publish import write_html
 
         write_html(report, check_page(checked, asked.title))
     if form is Format.GITLAB:
         typer.echo(gitlab_report(checked, asked.baseline))
     elif json != Path("-"):
         with _no_commands(form):
-            console().print(check_table(checked, asked.title))
-            print_files([path for path in (junit, json, report) if path is not None])
+            printed(check_table(checked, asked.title))
+            list_files([path for path in (junit, json, report) if path is not None])
     if form is Format.GITHUB:
         for line in github_lines(checked, asked.baseline):
             typer.echo(line)

@@ -1,28 +1,62 @@
-"""What every command does around its work: inputs are kept, files are bounded; and options that all take."""
+"""What every command does around its work: inputs are kept, files are bounded, results go where they are asked for.
+
+And the options that several of them take.
+"""
 
 from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, get_type_hints
+from typing import TYPE_CHECKING, Annotated, get_type_hints
 
 import typer
 
 from bench.bounds import bounded
 from bench.errors import InputError
-from bench.files import keeping, require_writable
+from bench.files import keeping, require_writable, write_text
+from bench.names import plain
+
+if TYPE_CHECKING:
+    from bench.report.document import Document
 
 #: Parameters of commands that name what is written, files or folders; every other path is read.
 WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "video"})
 #: Parameters of commands whose file is read, and replaced where that is asked for.
 REPLACED = frozenset({"baseline"})
 
+TracesArgument = Annotated[
+    list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
+]
+RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
+AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
+
+
+class Figures(StrEnum):
+    """Formats of figures."""
+
+    PNG = "png"
+    PDF = "pdf"
+    SVG = "svg"
+
+    @property
+    def ending(self) -> str:
+        """Of a file."""
+        return f".{self.value}"
+
+
+FiguresOption = Annotated[Figures, typer.Option("--figures", help="Format of the figures that --out writes.")]
+ReportOption = Annotated[Path | None, typer.Option("--report", help="Page to write: .html, all in one file.")]
+JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 DebugOption = Annotated[bool, typer.Option("--debug", help="Print the whole traceback of a failure.")]
 SizeOption = Annotated[
     str | None, typer.Option("--max-size", help="Bytes a file may have or expand to, e.g. 8GB (preset: 2 GB).")
 ]
+#: Standard output, as `--json` names it.
+STDOUT = Path("-")
 
 
 def guarded(verb: Callable[..., None]) -> Callable[..., None]:
@@ -58,8 +92,76 @@ def _paths(given: Mapping[str, object], read: bool) -> Iterator[Path]:
 
 def _require_places(given: Mapping[str, object]) -> None:
     for path in _paths(given, read=False):
-        if path != Path("-") and not path.is_dir():
+        if path != STDOUT and not path.is_dir():
             require_writable(path)
     json, out = given.get("json"), given.get("out")
-    if isinstance(json, Path) and json != Path("-") and not json.parent.is_dir() and json.parent != out:
+    if isinstance(json, Path) and json != STDOUT and not json.parent.is_dir() and json.parent != out:
         raise InputError(json, f"found no folder '{json.parent}'", "allowed: a file in a folder that is there")
+
+
+def write_json(path: Path, text: str) -> None:
+    """Write JSON to a file in an existing folder, or to standard output.
+
+    Raises:
+        InputError: a place that cannot be written to.
+    """
+    if path == STDOUT:
+        typer.echo(text)
+    else:
+        write_text(path, text + "\n", make_folder=False)
+
+
+@contextmanager
+def refusal_as_json(path: Path | None, schema: str) -> Iterator[None]:
+    """Write the checks of a recording that the gate refuses as JSON; the error is passed on."""
+    from bench.gate.gate import UnanswerableError
+
+    try:
+        yield
+    except UnanswerableError as error:
+        if path is not None:
+            from bench.report.serial import serialised
+
+            write_json(path, serialised({"schema": schema, "refused": str(error), "checks": error.checks}))
+        raise
+
+
+def tell(document: Document, files: Iterable[Path | None] = (), json: Path | None = None) -> None:
+    """Show a result and list what was written of it, unless standard output is JSON; then warn.
+
+    Args:
+        document: of the result.
+        files: that were written; None is skipped.
+        json: where the result went as JSON.
+    """
+    if json != STDOUT:
+        from bench.report.terminal import show
+
+        show(document)
+        list_files(files)
+    warn(document.warnings)
+
+
+def printed(part: object) -> None:
+    """Print a part of a document."""
+    from bench.report.terminal import console, rendered
+
+    console().print(rendered(part))
+
+
+def say(text: str) -> None:
+    """A line on standard output."""
+    typer.echo(plain(text))
+
+
+def list_files(files: Iterable[Path | None]) -> None:
+    """A line for each file written."""
+    for path in files:
+        if path is not None:
+            say(f"wrote {path}")
+
+
+def warn(warnings: Iterable[str]) -> None:
+    """A line on standard error for each warning."""
+    for warning in warnings:
+        typer.echo(plain(f"warning: {warning}"), err=True)

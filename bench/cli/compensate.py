@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.console import RigOption, console, print_files
+from bench.cli.common import RigOption, list_files, printed, say
 from bench.errors import InputError
 from bench.files import held, write_text
-from bench.names import plain
 from bench.plant.profile_names import DEFAULT, NAMES
 
 if TYPE_CHECKING:
@@ -36,7 +35,7 @@ def compensate(
     from bench.plant.limits import MotionLimits
     from bench.plant.model_file import load_model
     from bench.plant.profiles import plan
-    from bench.report.progress import progress
+    from bench.report.terminal import progress
     from bench.rig.rig import load_rig
 
     axis, stored = load_rig(rig), load_model(model).model
@@ -55,10 +54,10 @@ def compensate(
     with held(out):
         for name, text in files.items():
             write_text(out / name, text)
-    console().print(_table(f"{axis.name}: {profile}", before, after, kind))
+    printed(_table(f"{axis.name}: {profile}", before, after, kind))
     if found.left:
-        typer.echo(plain(f"left to the drive's feedback: {', '.join(found.left)}"))
-    print_files(out / name for name in files)
+        say(f"left to the drive's feedback: {', '.join(found.left)}")
+    list_files(out / name for name in files)
 
 
 def _table(title: str, before: Tracking, after: Tracking, kind: AxisKind) -> Table:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import console, print_files, print_warnings
+from bench.cli.common import tell
 
 
 def demo(
@@ -15,11 +15,8 @@ def demo(
 ) -> None:
     """Simulate the embedded rig, identify it, and set truth beside estimate."""
     from bench.demo import demo as run_demo
-    from bench.report.estimate import estimate_table
-    from bench.report.progress import progress
+    from bench.report.terminal import progress
 
     with progress("demo") as done:
-        result = run_demo(out, done)
-    console().print(estimate_table(result.estimate, result.title, result.truth))
-    print_warnings(result.estimate.warnings)
-    print_files(result.files)
+        found, files = run_demo(out, done)
+    tell(found, files)

@@ -8,19 +8,19 @@ from typing import Annotated
 
 import typer
 
-from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
-from bench.console import (
+from bench.cli.common import (
     AxisOption,
     Figures,
     FiguresOption,
     JsonOption,
     TracesArgument,
-    console,
-    print_files,
-    print_warnings,
+    list_files,
+    printed,
     refusal_as_json,
+    warn,
     write_json,
 )
+from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
 from bench.names import in_a_row
 
 
@@ -45,8 +45,8 @@ def diagnose(
     from bench.files import held
     from bench.gate.gate import warnings_of
     from bench.report.diagnosis import SCHEMA, diagnosis_json, diagnosis_table, write_diagnosis
-    from bench.report.progress import progress
     from bench.report.provenance import provenance
+    from bench.report.terminal import progress
 
     of = subject(rig, axis_name, mjcf, joint, at)
     axis, read = of.rig, of.read
@@ -65,6 +65,6 @@ def diagnose(
         if json is not None:
             write_json(json, diagnosis_json(found, basis))
     if json != Path("-"):
-        console().print(diagnosis_table(found, title))
-        print_files(files)
-    print_warnings([*found.warnings, *warnings_of(found.checks)])
+        printed(diagnosis_table(found, title))
+        list_files(files)
+    warn([*found.warnings, *warnings_of(found.checks)])

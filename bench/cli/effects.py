@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import console
+from bench.cli.common import printed
 
 
 def effects(
@@ -18,6 +18,6 @@ def effects(
     from bench.report.effects import effect_page, effects_table
 
     if name is None:
-        console().print(effects_table())
+        printed(effects_table())
     else:
         typer.echo(effect_page(name))

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.console import print_files
+from bench.cli.common import list_files, say
 from bench.errors import InputError
 from bench.files import write_text
-from bench.names import plain
 
 if TYPE_CHECKING:
     from bench.export.joint import Carried
@@ -47,8 +46,8 @@ def export(
         text, carried = _text(stored, out, mjcf, joint, armature)
         write_text(out, text)
         for line in carried.lines:
-            typer.echo(plain(line))
-    print_files([out])
+            say(line)
+    list_files([out])
 
 
 def _text(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench import __version__
-from bench.console import JsonOption, console, print_files, write_json
+from bench.cli.common import JsonOption, list_files, printed, write_json
 from bench.errors import UndeterminedError
 
 if TYPE_CHECKING:
@@ -34,27 +34,27 @@ def fleet(
     from bench.fleet.fleet import fleet as run_fleet
     from bench.jobs.limits import Limits
     from bench.report.fleet import fleet_json, fleet_tables
-    from bench.report.page.folder import write_html
     from bench.report.pages.fleet import fleet_page
-    from bench.report.progress import progress
+    from bench.report.publish import write_html
+    from bench.report.terminal import progress
 
     limits = Limits(deadline, memory * 1024**3)
     basis = {"version": __version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
     page = out / "fleet.html"
 
-    def write_page(found: Fleet) -> None:
+    def write_document(found: Fleet) -> None:
         with keeping(found.manifest.inputs):
             write_text(out / SUMMARY, fleet_json(found, basis) + "\n")
             write_html(page, fleet_page(found, SUMMARY, basis))
 
     with progress(f"evaluating {manifest.name}") as done:
-        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, write_page)
+        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, write_document)
     if json is not None:
         write_json(json, fleet_json(found, basis))
     if json != Path("-"):
         for part in fleet_tables(found):
-            console().print(part)
-        print_files([out / TABLE, out / SUMMARY, page])
+            printed(part)
+        list_files([out / TABLE, out / SUMMARY, page])
     if not found.summary.counts["done"]:
         reason = f"none of {len(found.manifest)} recordings gave a result"
         raise UndeterminedError("the fleet", reason, f"what the column `reason` of {out / TABLE} asks for")

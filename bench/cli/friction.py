@@ -7,15 +7,15 @@ from typing import Annotated
 
 import typer
 
-from bench.console import (
+from bench.cli.common import (
     AxisOption,
     JsonOption,
     ReportOption,
     RigOption,
-    console,
-    print_files,
-    print_warnings,
+    list_files,
+    printed,
     refusal_as_json,
+    warn,
     write_json,
 )
 
@@ -41,13 +41,13 @@ def friction(
     if out is not None:
         draw_friction(found, axis.name, out)
     if report is not None:
-        from bench.report.page.folder import write_html
         from bench.report.pages.friction import friction_page
+        from bench.report.publish import write_html
 
         write_html(report, friction_page(found, axis.name))
     if json is not None:
         write_json(json, friction_json(found))
     if json != Path("-"):
-        console().print(friction_table(found, axis.name))
-        print_files([path for path in (out, report) if path is not None])
-    print_warnings(warnings_of(found.checks))
+        printed(friction_table(found, axis.name))
+        list_files([path for path in (out, report) if path is not None])
+    warn(warnings_of(found.checks))

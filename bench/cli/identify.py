@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import replace
 from enum import StrEnum
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
-from bench.console import (
+from bench.cli.common import (
     AxisOption,
     Figures,
     FiguresOption,
     JsonOption,
     TracesArgument,
-    console,
-    print_files,
-    print_warnings,
     refusal_as_json,
+    tell,
+    warn,
     write_json,
 )
+from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
 from bench.errors import InputError
 from bench.names import in_a_row
 
@@ -32,8 +29,6 @@ if TYPE_CHECKING:
     from bench.cli.robot import Subject
     from bench.fit.estimate import Estimate
     from bench.fit.refine import Refinement
-    from bench.rig.rig import Rig
-    from bench.trace.trace import Trace
 
 
 class Estimator(StrEnum):
@@ -63,8 +58,7 @@ def identify(
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.files import held
     from bench.fit.estimate import RefusedEstimateError
-    from bench.gate.gate import warnings_of
-    from bench.report.estimate import SCHEMA, estimate_json
+    from bench.report.identification import SCHEMA, identification, identification_json, moved
     from bench.report.provenance import provenance
 
     of = subject(rig, axis_name, mjcf, joint, at)
@@ -72,52 +66,27 @@ def identify(
     _require_consistent(traces, estimator, refine, bool(offset or cutoff))
     options = {"estimator": estimator.value, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
     options |= {"joint": joint, "at": at or []} if of.robot else {}
-    basis = partial(provenance, rig, traces, options, None, mjcf)
     try:
         with refusal_as_json(json, SCHEMA):
             estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, cutoff)
-    except RefusedEstimateError as refusal:
+    except RefusedEstimateError as error:
+        basis = provenance(rig, traces, options, None, mjcf)
         if json is not None:
-            write_json(json, estimate_json(refusal.estimate, None, str(refusal), basis()))
-        print_warnings(refusal.estimate.warnings)
+            write_json(json, identification_json(error.estimate, None, str(error), basis))
+        warn(error.estimate.warnings)
         raise
+    basis = provenance(rig, traces, options, None, mjcf)
     with nullcontext() if out is None else held(out):
-        files = _write(out, traces, axis, estimate, refinement, basis(), of.whole, figures.ending)
+        motions = [] if out is None else moved(traces, axis, estimate, of.whole)
+        found = identification(f"{axis.name}: {in_a_row(traces)}", axis.axis_kind, estimate, refinement, motions, basis)
+        files = []
+        if out is not None:
+            from bench.report.publish import write_document  # jinja2 and matplotlib: 0.5 s
+
+            files = write_document(out, found, figures.ending)
         if json is not None:
-            write_json(json, estimate_json(estimate, refinement, None, basis()))
-    if json != Path("-"):
-        _print(estimate, refinement, axis, in_a_row(traces))
-        print_files(files)
-    print_warnings([*estimate.warnings, *warnings_of(estimate.checks)])
-
-
-def _write(
-    out: Path | None,
-    traces: list[Path],
-    axis: Rig,
-    estimate: Estimate,
-    refinement: Refinement | None,
-    basis: dict[str, Any],
-    read: Callable[[Path], Trace] | None,
-    ending: str,
-) -> list[Path]:
-    """Figures, page and JSON into a folder, if one is asked for."""
-    if out is None:
-        return []
-    from bench.report.identification import write_identification  # matplotlib: 0.35 s
-
-    return write_identification(out, traces, axis, estimate, refinement, basis, read, ending)
-
-
-def _print(estimate: Estimate, refinement: Refinement | None, axis: Rig, names: str) -> None:
-    """Tables for a person."""
-    from bench.report.estimate import estimate_table, recordings_table, refinement_line
-
-    console().print(estimate_table(estimate, f"{axis.name}: {names}"))
-    if estimate.recordings:
-        console().print(recordings_table(estimate))
-    if refinement is not None:
-        typer.echo(refinement_line(refinement, axis.axis_kind))
+            write_json(json, identification_json(estimate, refinement, None, basis))
+    tell(found, files, json)
 
 
 def _require_consistent(traces: list[Path], estimator: Estimator, refine: bool, tuned: bool) -> None:
@@ -143,7 +112,7 @@ def _estimate(
         gated = passed(of.read(trace), rig)
         return replace(identify_as_in_the_lab(gated.trace, rig), checks=gated.checks), None
     from bench.fit.regression import identify as regress
-    from bench.report.progress import progress
+    from bench.report.terminal import progress
     from bench.trace.stream import stream
 
     with progress(f"identifying {', '.join(each.name for each in traces)}") as done:

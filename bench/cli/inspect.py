@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import AxisOption, JsonOption, ReportOption, console, print_files, write_json
+from bench.cli.common import AxisOption, JsonOption, ReportOption, list_files, printed, write_json
 
 
 def inspect(
@@ -47,14 +47,14 @@ def inspect(
 
         draw_signals(recording, how, out)
     if report is not None:
-        from bench.report.page.folder import write_html
         from bench.report.pages.inspection import inspection_page
+        from bench.report.publish import write_html
 
         write_html(report, inspection_page(found, checks, trace))
     if json is not None:
         write_json(json, to_json(found, {"checks": checks_json(checks)}))
     if json != Path("-"):
-        console().print(table(found))
+        printed(table(found))
         if checks:
-            console().print(checks_table(checks))
-        print_files(files)
+            printed(checks_table(checks))
+        list_files(files)

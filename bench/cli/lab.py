@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import console, print_files
+from bench.cli.common import list_files, printed
 from bench.names import plain
 
 
@@ -37,7 +37,7 @@ def lab(
     elif notebooks is not None:
         from bench.course.notebooks import write_notebooks
 
-        print_files(write_notebooks(notebooks))
+        list_files(write_notebooks(notebooks))
     elif students is not None or truth is not None:
         raise typer.BadParameter("--students goes with --record, --truth with --grade")
     else:
@@ -47,10 +47,10 @@ def lab(
 def _record(folder: Path, students: int | None, seed: int) -> None:
     from bench.course.record import record
     from bench.course.students import record_class
-    from bench.report.progress import progress
+    from bench.report.terminal import progress
 
     with progress("recording") as done:
-        print_files(record(folder, seed, done) if students is None else record_class(folder, students, seed, done))
+        list_files(record(folder, seed, done) if students is None else record_class(folder, students, seed, done))
 
 
 def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
@@ -59,21 +59,21 @@ def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
     if truth is None:
         raise typer.BadParameter("--grade needs --truth FILE, which --record --students wrote")
     graded, bad, files = grade_class(submissions, truth, out)
-    console().print(grades_table(graded))
+    printed(grades_table(graded))
     for error in bad:
         typer.echo(plain(f"not graded: {error}"), err=True)
-    print_files(files[:2])
+    list_files(files[:2])
     if bad:
         raise typer.Exit(1)
 
 
 def _report(data: Path | None, out: Path) -> None:
     from bench.report.course import course_table, report_course
-    from bench.report.progress import progress
+    from bench.report.terminal import progress
 
     with progress("lab course") as done:
         report = report_course(data, out, done)
-    console().print(course_table(report.results))
-    print_files(report.files)
+    printed(course_table(report.results))
+    list_files(report.files)
     if not report.usable:
         raise typer.Exit(1)

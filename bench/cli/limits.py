@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import AxisOption, RigOption, print_files
-from bench.names import plain
+from bench.cli.common import AxisOption, RigOption, list_files, say
 
 
 def limits(
@@ -25,5 +24,5 @@ def limits(
     axis = load_rig(rig).on_axis(axis_name)
     found = operating_range(read(trace, axis.trace), axis)
     draw_operating_range(found, out)
-    typer.echo(plain("\n".join(found.findings)))
-    print_files([out])
+    say("\n".join(found.findings))
+    list_files([out])

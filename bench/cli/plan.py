@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.console import RigOption, console, print_files
+from bench.cli.common import RigOption, list_files, printed, say
 from bench.files import write_text
-from bench.names import plain, words
+from bench.names import words
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -29,7 +29,7 @@ def plan(
     from bench.effects.present import parse_effect
     from bench.export.drive_units import DriveUnits
     from bench.export.plan import motions
-    from bench.report.progress import progress
+    from bench.report.terminal import progress
     from bench.rig.rig import load_rig
     from bench.rig.suffices import require
 
@@ -42,9 +42,9 @@ def plan(
     best = found[0]
     counted = ((unit.text, unit.factor) for unit in (units.position, units.velocity))
     write_text(out, best.motion.csv(period * 1e-3, *counted))
-    console().print(_table(best))
-    typer.echo(plain(_others(found)))
-    print_files([out])
+    printed(_table(best))
+    say(_others(found))
+    list_files([out])
 
 
 def _table(best: Planned) -> Table:

@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
+from bench.cli.common import AxisOption, ReportOption, list_files, say, warn
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
-from bench.console import AxisOption, ReportOption, print_files, print_warnings
 from bench.files import read_text, write_text
-from bench.names import plain, readable
+from bench.names import readable
 
 
 def replay(
@@ -31,14 +31,14 @@ def replay(
     replayed = run_replay(model, of.read(trace), of.rig)
     write_text(out, replayed.csv())
     if report is not None:
-        from bench.report.page.blocks import File
-        from bench.report.page.folder import write_html
-        from bench.report.pages.replay import replay_page
+        from bench.report.document import File
+        from bench.report.publish import write_html
+        from bench.report.replay import replay as document
 
         file = File(
             name=readable(model.name), about="the model", media="application/toml", content=read_text(model, "a model")
         )
-        write_html(report, replay_page(replayed, f"{readable(model.name)} along {readable(trace.name)}", [file]))
-    typer.echo(plain(replayed.summary))
-    print_files([path for path in (out, report) if path is not None])
-    print_warnings(replayed.warnings)
+        write_html(report, document(replayed, f"{readable(model.name)} along {readable(trace.name)}", [file]))
+    say(replayed.summary)
+    list_files([path for path in (out, report) if path is not None])
+    warn(replayed.warnings)

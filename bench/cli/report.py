@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import print_files
+from bench.cli.common import list_files
 
 
 def report(
@@ -17,6 +17,6 @@ def report(
     ] = None,
 ) -> None:
     """Make report.html of folders anew, from the report.json that lies in each."""
-    from bench.report.page.folder import rebuild
+    from bench.report.publish import rebuild
 
-    print_files(rebuild(folders, script))
+    list_files(rebuild(folders, script))

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import print_files
+from bench.cli.common import list_files
 from bench.errors import InputError
 
 
@@ -38,7 +38,7 @@ def rigs(
         if out.exists() and out.resolve() == path.resolve():
             raise InputError(out, "found the rig itself", "allowed: another file")
         write_text(out, path.read_text(encoding="utf-8"))
-        print_files([out])
+        list_files([out])
     rig = load_rig(path)
     typer.echo(f"{rig.name}, {rig.kind}")
     for command, keys in lacking(rig).items():

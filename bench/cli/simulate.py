@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.console import ReportOption, print_files
+from bench.cli.common import ReportOption, list_files
 from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
@@ -27,7 +27,7 @@ def simulate(
     from bench.files import held
     from bench.plant.simulate import simulate as run_simulation
     from bench.plant.truth import write_truth
-    from bench.report.progress import progress
+    from bench.report.terminal import progress
     from bench.rig.rig import load_rig
     from bench.rig.suffices import require
     from bench.trace.write import write
@@ -41,8 +41,8 @@ def simulate(
         write(simulated.trace, out)
         truth = write_truth(out, simulated.truth)
     if report is not None:
-        from bench.report.page.folder import write_html
-        from bench.report.pages.simulation import simulation_page
+        from bench.report.publish import write_html
+        from bench.report.simulation import simulation
 
-        write_html(report, simulation_page(simulated, readable(out.name)))
-    print_files([path for path in (out, truth, report) if path is not None])
+        write_html(report, simulation(simulated, readable(out.name)))
+    list_files([path for path in (out, truth, report) if path is not None])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from bench.console import JsonOption, console, print_files, write_json
+from bench.cli.common import JsonOption, list_files, printed, write_json
 from bench.errors import InputError
 from bench.plant.profile_names import DEFAULT, NAMES
 
@@ -37,8 +37,8 @@ def validate(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for page, tables, figures and JSON.")] = None,
 ) -> None:
     """Monte Carlo on synthetic recordings: how far off numbers are, and how often intervals and names hold."""
-    from bench.report.progress import progress
     from bench.report.provenance import without_files
+    from bench.report.terminal import progress
     from bench.report.validation import determined, sheets, validation_json
     from bench.validation.case import AnyAxis
     from bench.validation.hiding import Hiding
@@ -61,21 +61,21 @@ def validate(
         write_json(json, validation_json(found, basis))
     if json != Path("-"):
         if rig is not None:
-            console().print(determined(found.runs).table())
+            printed(determined(found.runs).table())
         for sheet in sheets(found):
-            console().print(sheet.table())
-        print_files(written)
+            printed(sheet.table())
+        list_files(written)
 
 
 def _write(out: Path, found: Validation, basis: dict[str, Any], command: str, own: bool) -> list[Path]:
     """Page, tables, figures and JSON in a folder; `own`: whether the axis is of a rig file."""
     from bench.files import held
-    from bench.report.page.folder import write_page
     from bench.report.pages.validation import validation_page
+    from bench.report.publish import write_document
     from bench.report.validation import write_validation
 
     with held(out):
-        page = write_page(out, validation_page(found, basis, command, own))
+        page = write_document(out, validation_page(found, basis, command, own))
         return [*page, *write_validation(out, found, basis, command)]
 
 

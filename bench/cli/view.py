@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from bench.cli.common import AxisOption, list_files, warn
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
-from bench.console import AxisOption, print_files, print_warnings
 from bench.errors import InputError
 from bench.files import read_text
 from bench.names import readable
@@ -51,15 +51,15 @@ def view(
     shown, warnings = _shown(model, trace, of, profile)
     shown = shown.between(start, stop)
     if video is not None:
-        from bench.report.progress import progress
+        from bench.report.terminal import progress
         from bench.view.scene import Scene
         from bench.view.video import write_video
 
         with progress(f"rendering {video.name}") as done:
             write_video(video, shown, Scene.of(shown, of.rig.load), slowed, done)
     _write_page(out, shown, model, readable(profile if trace is None else trace.name), warnings)
-    print_files([path for path in (out, video) if path is not None])
-    print_warnings(warnings)
+    list_files([path for path in (out, video) if path is not None])
+    warn(warnings)
 
 
 def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, list[str]]:
@@ -77,10 +77,10 @@ def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[
 
 
 def _write_page(out: Path, shown: SideBySide, model: Path, along: str, warnings: list[str]) -> None:
-    from bench.report.page.blocks import File
-    from bench.report.page.folder import write_html
-    from bench.report.pages.view import view_page
+    from bench.report.document import File
+    from bench.report.publish import write_html
+    from bench.report.view import view as document
 
     name = readable(model.name)
     file = File(name=name, about="the model", media="application/toml", content=read_text(model, "a model"))
-    write_html(out, view_page(shown, f"{name} along {along}", warnings, [file]))
+    write_html(out, document(shown, f"{name} along {along}", warnings, [file]))

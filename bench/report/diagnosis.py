@@ -19,12 +19,13 @@ from bench.files import held, write_text
 from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report.diagnosis_figures import gaps_figure, where_figure
-from bench.report.estimate import between_json, parameters_json, recordings_json
+from bench.report.document import File
 from bench.report.figures import save
 from bench.report.gate import checks_json
-from bench.report.page.blocks import File
-from bench.report.page.folder import write_page
+from bench.report.identification import recordings_json
 from bench.report.pages.diagnosis import diagnosis_page
+from bench.report.publish import write_document
+from bench.report.serial import as_json
 from bench.structured import json_text
 
 SCHEMA = "bench.diagnose/1"
@@ -47,7 +48,7 @@ def diagnosis_json(diagnosis: Diagnosis, provenance: Mapping[str, Any] | None = 
             {
                 "name": effect.name,
                 "kind": effect.effect.kind,
-                "parameters": parameters_json(effect.parameters),
+                "parameters": as_json(effect.parameters),
                 "ambiguous_with": list(effect.ambiguous_with),
                 "evidence": dict(effect.evidence),
             }
@@ -58,9 +59,8 @@ def diagnosis_json(diagnosis: Diagnosis, provenance: Mapping[str, Any] | None = 
             "share": diagnosis.unexplained_share,
             "where": [_where(account) for account in diagnosis.unexplained_where],
         },
-        "parameters": parameters_json(diagnosis.parameters),
-        "recordings": recordings_json(diagnosis.recordings, provenance),
-        "between": between_json(diagnosis.between) if diagnosis.recordings else None,
+        "parameters": as_json(diagnosis.parameters),
+        **as_json(recordings_json(diagnosis.recordings, diagnosis.between, provenance)),
         "gap": {"torque": _gap(diagnosis.torque), "velocity": _velocity_gap(diagnosis)},
         "steps": [_step(step) for step in diagnosis.steps[1:]],
         "rejected": [{"name": found.name, "reason": found.reason} for found in diagnosis.rejected],
@@ -245,7 +245,7 @@ def write_diagnosis(
             units = (kind.length_unit, 1.0), (kind.speed_unit, 1.0)
             written.append(out / "next_experiment.csv")
             write_text(written[-1], diagnosis.next_experiment.motion.csv(PERIOD, *units))
-        return [*write_page(out, diagnosis_page(diagnosis, title, files, provenance)), *written]
+        return [*write_document(out, diagnosis_page(diagnosis, title, files, provenance)), *written]
 
 
 def _model_toml(diagnosis: Diagnosis) -> str:

@@ -14,8 +14,7 @@ from bench.diagnosis.show.show import Diagnosis
 from bench.diagnosis.where.where import Where
 from bench.names import words
 from bench.report.figures import MEASURED, MODELLED, NOISE, REST, in_style, legend_above, title_figure
-from bench.report.page.numbers import number, share, unit_text
-from bench.report.pages.tables import coordinate_word
+from bench.report.numbers import coordinate_word, number, share, unit_text
 
 #: Empty space beside the outermost dots of a gap - factor on a logarithmic axis.
 BESIDE = 1.5

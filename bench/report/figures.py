@@ -1,9 +1,9 @@
-"""The one style of all figures, and how they are written; drawn without a display, for a screen or for paper."""
+"""Pictures of a document, in the one style of all figures; drawn without a display, for a screen or for paper."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
@@ -13,11 +13,15 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.files import whole
 from bench.names import plain
+from bench.report.document import Chart, HeatMap, Intervals, Panel, Picture, Series, Table, TimeGraph, TimePanel
+from bench.report.over_time import unpacked
 
 P = ParamSpec("P")
 
@@ -25,6 +29,9 @@ P = ParamSpec("P")
 POINTS = 8000
 #: What is measured, what a model makes, what is left, and noise: the same everywhere, and told apart in grey too.
 MEASURED, MODELLED, REST, NOISE = "#4c5c6e", "#c0480a", "#25704e", "#d6e0e8"
+#: Colours of a document on paper.
+COLOURS = {"ink": MEASURED, "model": MODELLED, "left": REST, "floor": NOISE, "first": "#7d8894"}
+COLOURS |= {"violet": "#7a4a8c", "ochre": "#a07a1e", "blue": "#2f7fb5", "red": "#9c2626"}
 #: How every figure is set: text stays text in SVG and PDF, no box around the axes, a grid that recedes.
 STYLE: dict[Any, Any] = {
     "font.size": 9.0,
@@ -53,6 +60,31 @@ STYLE: dict[Any, Any] = {
 }
 #: Endings of a figure's file.
 FORMATS = (".png", ".pdf", ".svg")
+#: Width of a picture, and height of its title - inch.
+WIDTH, TITLE = 11.0, 0.35
+#: Panels of a chart beside each other, and height of a row of them - inch.
+ACROSS, ROW = 4, 2.4
+#: Height of a panel over time, of one of a stack, of a row of intervals and of one of a table - inch.
+TIME_PANEL, STACKED, SPAN, LINE = 1.5, 1.6, 0.3, 0.2
+#: Entries in a row of a legend, and dots that are few enough to be larger.
+LEGEND, FEW = 4, 200
+#: How a series is drawn.
+DRAWN: dict[str, dict[str, Any]] = {
+    "dots": {"marker": "o", "ls": "", "ms": 3.2},
+    "large dots": {"marker": "o", "ls": "", "ms": 7.0},
+    "rings": {"marker": "o", "ls": "", "ms": 3.2, "mfc": "white", "mew": 0.9},
+    "line": {"lw": 1.2},
+    "dashes": {"ls": "--", "lw": 1.1},
+    "dotted": {"ls": ":", "lw": 1.3},
+    "wide": {"lw": 4.0, "alpha": 0.4},
+}
+#: The same of curves over time, by their role.
+ROLES: dict[str, dict[str, Any]] = {
+    "measured": {"color": MEASURED, "alpha": 0.55, "lw": 2.4},
+    "model": {"color": MODELLED},
+    "left": {"color": REST},
+    "alone": {"color": MEASURED},
+}
 
 
 def in_style(draw: Callable[P, Figure]) -> Callable[P, Figure]:
@@ -66,10 +98,216 @@ def in_style(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     return drawn
 
 
+@in_style
+def drawn(picture: Picture) -> Figure:
+    """The figure of a picture: its rows from top to bottom, the parts of a row beside each other."""
+    heights = [max(map(height, row)) for row in picture.rows]
+    figure = Figure(figsize=(WIDTH, TITLE + sum(heights)), layout="constrained")
+    title_figure(figure, picture.title)
+    rows = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
+    for place, row in zip(rows, picture.rows, strict=True):
+        widths = [0.4 if isinstance(part, Table) else 1.0 for part in row]
+        for beside, part in zip(place.subfigures(1, len(row), width_ratios=widths, squeeze=False)[0], row, strict=True):
+            draw(beside, part)
+    return figure
+
+
+def height(part: Table | Chart | Intervals | HeatMap | TimeGraph) -> float:
+    """Height that a part takes - inch."""
+    match part:
+        case Table():
+            return 0.4 + 2.0 * LINE * len(part.rows)
+        case TimeGraph():
+            return 0.5 + TIME_PANEL * len(part.panels)
+        case Intervals():
+            return 1.0 + SPAN * len(part.spans)
+        case HeatMap():
+            return 2.6 + 0.34 * len(part.rows)
+        case Chart() if part.stacked:
+            legends = sum(-(-sum(bool(one.name) for one in panel.series) // LEGEND) for panel in part.panels)
+            return max(3.0, 0.8 + STACKED * len(part.panels)) + LINE * legends
+        case Chart():
+            return 0.4 + ROW * (-(-len(part.panels) // ACROSS) if len(part.panels) > 1 else 1.6)
+
+
+def draw(figure: Figure | SubFigure, part: Table | Chart | Intervals | HeatMap | TimeGraph) -> None:
+    """Draw a part into a figure, in the style that is set."""
+    match part:
+        case Table():
+            _write(figure, part)
+        case TimeGraph():
+            _over_time(figure, part)
+        case Intervals():
+            _intervals(figure, part)
+        case HeatMap():
+            _heat(figure, part)
+        case Chart() if part.stacked:
+            _stacked(figure, part)
+        case Chart():
+            _beside(figure, part)
+
+
+def _write(figure: Figure | SubFigure, table: Table) -> None:
+    """A table as text: what a row is of, and what it says below."""
+    axes = figure.subplots()
+    axes.set_axis_off()
+    lines = [f"{row[0]}\n    {' '.join(filter(None, row[1:]))}" for row in table.rows]
+    axes.text(0.0, 1.0, plain("\n".join(lines)), va="top", linespacing=1.45, transform=axes.transAxes, parse_math=False)
+
+
+def _over_time(figure: Figure | SubFigure, graph: TimeGraph) -> None:
+    """All panels, with the model chosen last, and the one chosen first beside it where it stays in sight."""
+    last = len(graph.choices) - 1
+    every = figure.subplots(len(graph.panels), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, panel in zip(every, graph.panels, strict=True):
+        kept = {None, last, 0 if panel.first or not graph.choices else last}
+        for curve in panel.curves:
+            if curve.choice in kept:
+                low, high = unpacked(curve.samples)
+                time = graph.start + graph.step * np.arange(low.size)
+                style = ROLES["alone" if len(panel.curves) == 1 and curve.role == "measured" else curve.role]
+                faded = {"color": COLOURS["first"]} if curve.choice == 0 < last else {}
+                axes.plot(*_extent(time, low, high), label=plain(curve.name), **style | faded)
+        axes.set_ylabel(_panel_label(panel), parse_math=False)
+        if len(panel.curves) > 1:
+            legend_above(axes)
+    every[-1].set_xlabel("time / s")
+    figure.align_ylabels(every)
+
+
+def _panel_label(panel: TimePanel) -> str:
+    return plain(panel.label.replace(", ", ",\n") + (f"\n{panel.unit}" if panel.unit else ""))
+
+
+def _extent(time: Array, low: Array, high: Array) -> list[Array]:
+    """A line that goes through lowest and highest value of each interval (n,), thinned."""
+    if not np.array_equal(low, high, equal_nan=True):
+        time, low = np.repeat(time, 2), np.column_stack([low, high]).ravel()
+    return thinned(time, low)
+
+
+def _beside(figure: Figure | SubFigure, chart: Chart) -> None:
+    """Panels beside each other on one y scale, under one legend."""
+    across = min(len(chart.panels), ACROSS)
+    rows = -(-len(chart.panels) // across)
+    every = figure.subplots(rows, across, sharey=True, squeeze=False).ravel()
+    for place, axes in enumerate(every):
+        if place >= len(chart.panels):
+            axes.set_axis_off()
+            continue
+        _panel(axes, chart.panels[place])
+        if place % across == 0:
+            axes.set_ylabel(plain(_labelled(chart.y_label, chart.y_unit)), parse_math=False)
+    handles, labels = every[0].get_legend_handles_labels()
+    if handles:
+        legend = figure.legend(handles, labels, loc="outside upper right", ncols=LEGEND)
+        _as_text(legend.get_texts())
+
+
+def _stacked(figure: Figure | SubFigure, chart: Chart) -> None:
+    """Panels one above the other; those with the first one's x label on its x axis."""
+    title_figure(figure, chart.title, x=0.02, size="medium")
+    size = ("medium", "small", "x-small")[min(len(chart.panels), 3) - 1]
+    every: list[Axes] = []
+    for place, panel in enumerate(chart.panels):
+        shared = every[0] if every and panel.x_label == chart.panels[0].x_label else None
+        every.append(figure.add_subplot(len(chart.panels), 1, place + 1, sharex=shared))
+        _panel(every[-1], panel)
+        every[-1].set_ylabel(plain(panel.y_label), size=size, parse_math=False)
+        below = chart.panels[place + 1].x_label if place + 1 < len(chart.panels) else None
+        if below == panel.x_label:
+            every[-1].tick_params(labelbottom=False)
+            every[-1].set_xlabel("")
+        if any(one.name for one in panel.series):
+            legend_above(every[-1])
+    figure.align_ylabels(every)
+
+
+def _panel(axes: Axes, panel: Panel) -> None:
+    for one in panel.series:
+        _series(axes, one)
+    if panel.log:
+        axes.set(xscale="log", yscale="log")
+    axes.set_title(plain(panel.note), loc="right", parse_math=False)
+    axes.set_xlabel(plain(_labelled(panel.x_label, panel.x_unit)), parse_math=False)
+
+
+def _series(axes: Axes, one: Series) -> None:
+    colour, label = COLOURS[one.colour], plain(one.name) or None
+    if one.style == "band":
+        axes.fill_between(one.x, one.low, one.high, color=colour, lw=0.0, zorder=0.5, label=label)
+        return
+    if one.low:
+        axes.vlines(one.x, one.low, one.high, color=colour, lw=1.2)
+    style = dict(DRAWN[one.style])
+    if one.style == "dots" and len(one.x) < FEW:
+        style["ms"] = 4.5
+    axes.plot(one.x, one.y, color=colour, label=label, **style)
+
+
+def _intervals(figure: Figure | SubFigure, block: Intervals) -> None:
+    """Rows with their values beside the axis, where nothing crosses them."""
+    axes, places = figure.subplots(), np.arange(len(block.spans))
+    low, high = block.right
+    if low < high:
+        axes.axvspan(low, high, color=NOISE, lw=0.0, zorder=0.5)
+    else:
+        axes.axvline(low, color="#8a94a0", lw=1.2, zorder=0.8)
+    for place, span in zip(places, block.spans, strict=True):
+        axes.plot((span.low, span.high), (place, place), color=COLOURS[span.colour], lw=1.4)
+        axes.plot(span.value, place, "o", ms=5.0, color=COLOURS[span.colour])
+        beside = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center", "fontsize": 8}
+        axes.annotate(f"{span.value:.3g}".replace("-", "−"), (1.0, float(place)), (6.0, 0.0), **beside)
+    if block.log:
+        axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
+        axes.xaxis.set_minor_locator(NullLocator())
+    axes.set(xlim=block.limits, ylim=(len(places) - 0.5, -0.5))
+    _as_text(axes.set_yticks(places, [plain(span.name) for span in block.spans]) and axes.get_yticklabels())
+    axes.set_xlabel(plain(_labelled(block.label, block.unit)), parse_math=False)
+    axes.set_title(plain(block.title), loc="left", parse_math=False)
+    axes.grid(visible=False, axis="y")
+
+
+def _heat(figure: Figure | SubFigure, block: HeatMap) -> None:
+    """Counts, coloured by their share of the row; the right answers, on the diagonal, are framed."""
+    axes, counts = figure.subplots(), np.array(block.counts).reshape(len(block.rows), len(block.columns))
+    shares = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
+    axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
+    for row, column in zip(*np.nonzero(counts), strict=True):
+        colour = "white" if shares[row, column] > 0.6 else "black"
+        axes.text(column, row, str(counts[row, column]), ha="center", va="center", color=colour, fontsize=8)
+    for place in range(len(block.rows)):
+        axes.add_patch(Rectangle((place - 0.5, place - 0.5), 1.0, 1.0, fill=False, edgecolor="#1c232b", lw=1.2))
+    axes.set_xticks(range(len(block.columns)), list(map(plain, block.columns)), rotation=55, ha="left")
+    axes.set_yticks(range(len(block.rows)), list(map(plain, block.rows)))
+    _as_text([*axes.get_xticklabels(), *axes.get_yticklabels()])
+    axes.xaxis.tick_top()
+    axes.set_ylabel(f"{block.corner}; the right answer is framed")
+    axes.tick_params(length=0)
+    axes.grid(visible=False)
+
+
+def _labelled(name: str, unit: str) -> str:
+    return f"{name} / {f'({unit})' if '/' in unit else unit}" if unit else name
+
+
 def save(figure: Figure, path: str | Path) -> None:
     """Write a figure whole or not at all; the ending decides the format."""
     with whole(path) as temporary, quiet_about_glyphs(), rc_context(STYLE):
         figure.savefig(temporary)
+
+
+def save_as_named(figure: Figure, path: Path) -> None:
+    """Write a figure to the file a person named.
+
+    Raises:
+        InputError: another ending than .png, .pdf or .svg, or a place that cannot be written to.
+    """
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(path, f"found the ending '{path.suffix}'", f"allowed: {', '.join(FORMATS)}")
+    save(figure, path)
 
 
 @contextmanager
@@ -88,20 +326,14 @@ def title_figure(figure: Figure | SubFigure, title: str, **style: Any) -> None: 
 
 def legend_above(axes: Axes) -> None:
     """A legend over the axes, where it covers no data; its names are text."""
-    legend = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1, ncols=4)
-    for text in legend.get_texts():
-        text.set_parse_math(False)
+    legend = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1, ncols=LEGEND)
+    _as_text(legend.get_texts())
 
 
-def save_as_named(figure: Figure, path: Path) -> None:
-    """Write a figure to the file a person named.
-
-    Raises:
-        InputError: another ending than .png, .pdf or .svg, or a place that cannot be written to.
-    """
-    if path.suffix.lower() not in FORMATS:
-        raise InputError(path, f"found the ending '{path.suffix}'", f"allowed: {', '.join(FORMATS)}")
-    save(figure, path)
+def _as_text(labels: Sequence[Any]) -> None:
+    """Labels in which nothing is a formula."""
+    for label in labels:
+        label.set_parse_math(False)
 
 
 def thinned(*columns: Array) -> list[Array]:

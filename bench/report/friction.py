@@ -16,8 +16,7 @@ from bench.friction_map.map import CHANCE, FrictionMap
 from bench.names import words
 from bench.report.figures import MEASURED, MODELLED, REST, in_style, legend_above, save_as_named, title_figure
 from bench.report.gate import checks_json
-from bench.report.page.numbers import unit_text
-from bench.report.pages.tables import effort_word
+from bench.report.numbers import effort_word, unit_text
 from bench.structured import json_text
 
 SCHEMA = "bench.friction/1"

@@ -1,23 +1,32 @@
-"""Everything an identification leaves in a folder: its figure and its JSON."""
+"""An identification: inertia and friction, how sure that is, and what the model leaves of the torque.
+
+As the contract's JSON (`bench.identify/1`) and as a document; its picture has the motion, torque measured and modelled,
+what is left, and the estimates.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench.axis_kind import MISALIGNMENT
-from bench.files import held, write_text
-from bench.fit.estimate import Estimate
-from bench.gate.gate import gate
-from bench.names import in_a_row, readable
-from bench.report.estimate import estimate_json
-from bench.report.figures import save
-from bench.report.identification_figure import identification_figure
-from bench.report.page.blocks import File
-from bench.report.page.folder import write_page
-from bench.report.pages.identification import identification_page
+import numpy as np
+
+from bench.arrays import Array
+from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS, AxisKind
+from bench.comparison.spread import Between
+from bench.fit.covariance import NOISE_ALONE
+from bench.fit.estimate import Alone, Estimate
+from bench.fit.modelled import modelled_effort
+from bench.gate.gate import gate, warnings_of
+from bench.names import readable, words
+from bench.report.document import Chart, Document, Downloads, File, Panel, Picture, Section, TimeGraph, series
+from bench.report.numbers import effort_word, interval, number, share, unit_text
+from bench.report.over_time import Plotted, time_graph
+from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
+from bench.report.serial import known, serialised
 from bench.rig.rig import Rig
 from bench.trace.conditioning import condition
 from bench.trace.motion import Motion, motion
@@ -27,52 +36,105 @@ from bench.trace.trace import Trace
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
     from bench.fit.refine import Refinement
 
+SCHEMA = "bench.identify/1"
+#: Recordings whose motion is drawn; of more, the first ones.
+DRAWN = 6
 
-def write_identification(
-    out: Path,
-    traces: Sequence[Path],
-    rig: Rig,
+
+def identification_json(
     estimate: Estimate,
     refinement: Refinement | None = None,
+    refused: str | None = None,
     provenance: Mapping[str, Any] | None = None,
-    read: Callable[[Path], Trace] | None = None,
-    ending: str = ".png",
-) -> list[Path]:
-    """Write the page, `identification.png` (`identification-2.png`, ... of further recordings) and `identify.json`.
+) -> str:
+    """The estimate as the contract's JSON.
 
     Args:
-        out: folder, made if it is not there.
-        traces: files the estimate came from; figure and page show the first part of one that is very long.
-        rig: of the axis.
         estimate: what was identified.
         refinement: what polishing did, where it was asked for.
-        provenance: of the estimate.
-        read: how its files are read, unless part by part as the rig says.
-        ending: of the figures' files, one of `bench.report.figures.FORMATS`.
-
-    Returns:
-        Paths written.
+        refused: why the recording cannot answer, where it cannot.
+        provenance: of the files it came from (`bench.report.provenance`); null where it came from none.
     """
-    figures, text, motions = [], out / "identify.json", []
-    json = estimate_json(estimate, refinement, None, provenance) + "\n"
-    names = in_a_row(traces)
-    with held(out):
-        for number, trace in enumerate(traces, 1):
-            moved, along = _motion(trace, rig, estimate, read), _along(estimate, number - 1, rig)
-            motions.append((readable(trace.name), moved, along))
-            figures.append(out / f"identification{'' if number == 1 else f'-{number}'}{ending}")
-            save(identification_figure(moved, along, rig.axis_kind, f"{rig.name}: {readable(trace.name)}"), figures[-1])
-        write_text(text, json)
-        file = File(name=text.name, about="all of it as numbers", media="application/json", content=json)
-        page = identification_page(f"{rig.name}: {names}", rig.axis_kind, estimate, motions, [file], provenance)
-        return [*write_page(out, page), *figures, text]
+    residual = estimate.residual
+    content = {
+        "schema": SCHEMA,
+        "estimator": estimate.estimator,
+        "parameters": estimate.parameters,
+        "explained": known(estimate.explained),
+        "refused": refused,
+        **recordings_json(estimate.recordings, estimate.between, provenance),
+        "provenance": provenance,
+        "residual": {
+            "rms": residual.rms,
+            "noise_floor": known(residual.noise_floor),
+            "unit": residual.unit,
+            "relative": residual.relative,
+        },
+        "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
+        "filter": {"cutoff": known(estimate.cutoff), "unit": "Hz", "source": estimate.source},
+        "checks": estimate.checks,
+        "warnings": estimate.warnings,
+    }
+    return serialised(content if refinement is None else {**content, "refinement": refinement})
 
 
-def _motion(trace: Path, rig: Rig, estimate: Estimate, read: Callable[[Path], Trace] | None) -> Motion:
-    """The first part of a recording through the filter that the estimate was made with."""
-    first = gate(read(trace) if read is not None else next(stream(trace, rig.trace)), rig).trace
-    (effort, _), (own, _) = rig.net_effort(first), rig.own_effort(first)
-    return motion(first, effort, condition(first, own, estimate.cutoff if estimate.cutoff > 0.0 else None))
+def recordings_json(
+    recordings: Sequence[Alone], between: Mapping[str, Between], provenance: Mapping[str, Any] | None
+) -> dict[str, Any]:
+    """Each of several recordings alone, and how they differ; `reason`: why one leaves some of the parameters open."""
+    digests = {each["file"]: each["sha256"] for each in provenance["traces"]} if provenance else {}
+    alone = [
+        {
+            "file": one.origin,
+            "sha256": digests.get(one.origin),
+            "parameters": one.parameters,
+            "reason": one.reason or None,
+        }
+        for one in recordings
+    ]
+    return {"recordings": alone, "between": between if alone else None}
+
+
+@dataclass(frozen=True)
+class Moved:
+    """The first part of a recording, as a page shows it.
+
+    Attributes:
+        name: of the recording.
+        kind: of the axis.
+        motion: through the filter that the estimate was made with.
+        along: the estimate, with the shift of torque against speed that this recording has of its own.
+    """
+
+    name: str
+    kind: AxisKind
+    motion: Motion
+    along: Estimate
+
+    @property
+    def left(self) -> Array:
+        """Measured less modelled effort - the residual's unit - (n,); nan where the direction is uncertain."""
+        return self.motion.effort - modelled_effort(self.motion, self.along, self.kind)
+
+
+def moved(
+    traces: Sequence[Path], rig: Rig, estimate: Estimate, read: Callable[[Path], Trace] | None = None
+) -> list[Moved]:
+    """Motions of the files that an estimate came from; of one that is very long, its first part.
+
+    Args:
+        traces: the files.
+        rig: of the axis.
+        estimate: what was identified.
+        read: how its files are read, unless part by part as the rig says.
+    """
+    found, cutoff = [], estimate.cutoff if estimate.cutoff > 0.0 else None
+    for index, trace in enumerate(traces):
+        first = gate(read(trace) if read is not None else next(stream(trace, rig.trace)), rig).trace
+        (effort, _), (own, _) = rig.net_effort(first), rig.own_effort(first)
+        filtered = motion(first, effort, condition(first, own, cutoff))
+        found.append(Moved(readable(trace.name), rig.axis_kind, filtered, _along(estimate, index, rig)))
+    return found
 
 
 def _along(estimate: Estimate, index: int, rig: Rig) -> Estimate:
@@ -82,3 +144,186 @@ def _along(estimate: Estimate, index: int, rig: Rig) -> Estimate:
         return estimate
     own = estimate.recordings[index].parameters[shift]
     return replace(estimate, parameters={**estimate.parameters, shift: own})
+
+
+def identification(
+    title: str,
+    kind: AxisKind,
+    estimate: Estimate,
+    refinement: Refinement | None = None,
+    motions: Sequence[Moved] = (),
+    provenance: Mapping[str, Any] | None = None,
+    truth: Mapping[str, float] | None = None,
+) -> Document:
+    """The document of an identification.
+
+    Args:
+        title: rig and recordings.
+        kind: of the axis.
+        estimate: what was identified.
+        refinement: what polishing did, where it was asked for.
+        motions: of its recordings, for a page and pictures; () without.
+        provenance: of the files it came from.
+        truth: true values by the parameters' names, in their units, where they are known.
+    """
+    tables = [parameters_table("The axis", estimate.parameters, truth)]
+    if estimate.recordings:
+        units = {name: found.unit for name, found in estimate.parameters.items()}
+        tables.append(recordings_table(estimate.recordings, estimate.between, units))
+    sections = [Section(key="parameters", heading="Parameters", blocks=tuple(tables))]
+    if motions:
+        graphs = tuple(_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])
+        sections += [
+            Section(key="motion", heading="Measured and modelled", blocks=graphs),
+            Section(key="where", heading="Where the rest sits", blocks=(_rest(estimate, motions),)),
+        ]
+    sections.append(checks_section(estimate.checks, estimate.warnings))
+    if motions:
+        text = identification_json(estimate, refinement, None, provenance) + "\n"
+        file = File(name="identify.json", about="all of it as numbers", media="application/json", content=text)
+        sections.append(Section(key="files", heading="The numbers", blocks=(Downloads(files=(file,)),)))
+    return Document(
+        title=title,
+        subject=f"Identification of {title}",
+        verdict=_verdict(estimate, kind),
+        tone="open" if _times_noise(estimate) > NOISE_ALONE else "sure",
+        answers=_answers(estimate, refinement, kind),
+        sections=tuple(sections),
+        origin=origin(provenance),
+        pictures=tuple(_picture(title, number, one) for number, one in enumerate(motions, 1)),
+        warnings=(*estimate.warnings, *warnings_of(estimate.checks)),
+    )
+
+
+def _times_noise(estimate: Estimate) -> float:
+    """What is left over the noise floor; nan where the estimator knows none."""
+    return estimate.residual.rms / estimate.residual.noise_floor
+
+
+def _verdict(estimate: Estimate, kind: AxisKind) -> str:
+    effort, chi = effort_word(estimate.residual.unit), _times_noise(estimate)
+    line = f"The {kind.in_words(INERTIA)} is {interval(estimate[kind.parameter(INERTIA)])}"
+    if math.isfinite(estimate.explained):
+        explained = math.floor(1e4 * estimate.explained) / 100.0
+        line += f"; inertia and friction explain {explained:g} % of the {effort}'s variance"
+    if not math.isfinite(chi):
+        return f"{line}."
+    if chi > NOISE_ALONE:
+        return f"{line}, but what is left is {number(chi, digits=2)} times the noise."
+    return f"{line}, and what is left is noise."
+
+
+def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) -> dict[str, str]:
+    inertia = kind.parameter(INERTIA)
+    friction = [
+        f"{words(name)} {interval(estimate[name])}"
+        for name in map(kind.parameter, (COULOMB, VISCOUS))
+        if name in estimate.parameters
+    ]
+    sure = "Half widths are those of 95 % intervals that count correlated residuals."
+    if estimate.between:
+        sure += " They count how the recordings differ, too."
+    answers = {
+        f"{words(inertia).capitalize()}?": f"{interval(estimate[inertia])} (95 %)",
+        "Friction?": "; ".join(friction) or "not determined",
+        "How sure?": sure,
+        "What is left?": _left(estimate),
+        "From what?": _basis(estimate),
+    }
+    if refinement is not None:
+        answers["Polished?"] = _polished(refinement, kind)
+    answers["What next?"] = (
+        "bench diagnose: something is in this axis beside inertia and friction, and it says what."
+        if _times_noise(estimate) > NOISE_ALONE
+        else "Nothing stands out of the noise; a recording of other motion would confirm it."
+    )
+    return answers
+
+
+def _left(estimate: Estimate) -> str:
+    residual = estimate.residual
+    of = f"{share(residual.relative)} of the {effort_word(residual.unit)}"
+    if math.isfinite(residual.noise_floor):
+        of += f"; noise alone would leave {number(residual.noise_floor, digits=3)}"
+    return f"{number(residual.rms, residual.unit, 3)} RMS, {of}."
+
+
+def _basis(estimate: Estimate) -> str:
+    """Samples, and the filter that they went through."""
+    samples = f"{estimate.samples_used} of {estimate.samples_read} samples"
+    if not math.isfinite(estimate.cutoff):
+        return f"{samples}."
+    return f"{samples}; cut-off {number(estimate.cutoff, 'Hz', 3)}, speed from {estimate.source}."
+
+
+def _polished(refinement: Refinement, kind: AxisKind) -> str:
+    """What polishing by simulation did."""
+    before, after = refinement.held_out
+    error = f"simulation error on held-out motion {number(before)} to {number(after, kind.speed_unit)}"
+    kept = "polish kept" if refinement.accepted else "polish not kept"
+    return f"{error} (held at {number(refinement.bandwidth, 'rad/s')}): {kept}."
+
+
+def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> TimeGraph:
+    """Speed, and torque beside the model's; one of so many graphs."""
+    moved, unit = one.motion, one.along.residual.unit
+    effort = effort_word(unit)
+    signals = [
+        Plotted("speed", one.kind.speed_unit, moved.time, moved.velocity),
+        *(
+            [Plotted("acceleration", one.kind.acceleration_unit, moved.time, moved.acceleration)]
+            if acceleration
+            else []
+        ),
+        Plotted(effort, unit, moved.time, moved.effort, [one.left], "modelled"),
+    ]
+    alternative = (
+        f"Speed of {one.name}, its {effort} as measured and as inertia and friction make it, and what is left of it."
+    )
+    return time_graph("Over time.", alternative, moved.time, signals, (), 1.0 / graphs)
+
+
+def _rest(estimate: Estimate, motions: Sequence[Moved]) -> Chart:
+    """What is left of the torque over speed, acceleration, torque and time."""
+    unit, kind = estimate.residual.unit, motions[0].kind
+    left = np.concatenate([one.left for one in motions])
+    over = {
+        ("speed", kind.speed_unit): [one.motion.velocity for one in motions],
+        ("acceleration", kind.acceleration_unit): [one.motion.acceleration for one in motions],
+        (effort_word(unit), unit): [one.motion.effort for one in motions],
+        ("time", "s"): [one.motion.time - one.motion.time[0] for one in motions],
+    }
+    panels = (
+        _over(name, of, np.concatenate(values), left, estimate.residual.noise_floor)
+        for (name, of), values in over.items()
+    )
+    return Chart(
+        title="What is left.",
+        alternative=f"Mean of measured less modelled {effort_word(unit)} in bins; what stands out of the noise floor "
+        "has a cause beside inertia and friction.",
+        y_label="left",
+        y_unit=unit_text(unit),
+        panels=tuple(panels),
+    )
+
+
+def _over(name: str, unit: str, values: Array, left: Array, floor: float) -> Panel:
+    from bench.diagnosis.where.where import LEAST, bins_of, means_in  # scipy.signal: 0.6 s, which numbers alone spare
+
+    known = np.isfinite(left)
+    index = bins_of(values[known])
+    kept = np.bincount(index) >= LEAST
+    dots = series("left", "dots", "left", means_in(index, values[known])[kept], means_in(index, left[known])[kept])
+    band = [noise_band(dots.x, floor)] if math.isfinite(floor) else []
+    return Panel(x_label=name, x_unit=unit_text(unit), series=(*band, dots))
+
+
+def _picture(title: str, number: int, one: Moved) -> Picture:
+    """Motion and torque of a recording, the estimates, and what is left."""
+    name = "identification" if number == 1 else f"identification-{number}"
+    estimates = parameters_table("", one.along.parameters)
+    return Picture(
+        name=name,
+        title=f"{title.partition(': ')[0]}: {one.name}",
+        rows=((_over_time(one, 1, acceleration=True), estimates), (_rest(one.along, [one]),)),
+    )

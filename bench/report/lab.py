@@ -16,7 +16,7 @@ from bench.files import held, whole, write_text
 from bench.report.charts import chart_figure
 from bench.report.figures import quiet_about_glyphs
 from bench.report.lab_json import lab_json
-from bench.report.pdf import write_pages
+from bench.report.pdf import write_documents
 from bench.report.section import section
 
 TITLE = "Industrial Drives, Part 2: Identification of Mechanical Parameters"
@@ -52,7 +52,7 @@ def write_lab_report(
         write_text(html, lab_html(results, about, cover))
         progress(0.5)
         with whole(pdf) as temporary:
-            write_pages(temporary, TITLE, cover, about, [(section(result), _charts(result)) for result in results])
+            write_documents(temporary, TITLE, cover, about, [(section(result), _charts(result)) for result in results])
     progress(1.0)
     return [data, html, pdf]
 

@@ -43,7 +43,7 @@ class Placed:
     height: float
 
 
-def write_pages(
+def write_documents(
     path: Path,
     title: str,
     cover: Cover,

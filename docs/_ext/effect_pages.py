@@ -19,7 +19,7 @@ from bench.names import words
 from bench.plant.plant import Plant
 from bench.plant.profile_names import NAMES
 from bench.report.effects import acting, bounds, unit_of
-from bench.report.page.numbers import number, share
+from bench.report.numbers import number, share
 from bench.units import Quantity
 from signature import Signature, rig
 

@@ -25,8 +25,7 @@ from bench.names import words
 from bench.plant.profile_names import DEFAULT, NAMES
 from bench.plant.simulate import simulate
 from bench.report.figures import MEASURED, MODELLED, NOISE, REST, in_style, save, thinned
-from bench.report.page.numbers import share, unit_text
-from bench.report.pages.tables import coordinate_word
+from bench.report.numbers import coordinate_word, share, unit_text
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from bench.validation.independent.effects import KINDS

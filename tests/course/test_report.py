@@ -8,7 +8,6 @@ import sys
 import pytest
 
 from bench.assets import asset
-from bench.console import console
 from bench.course.cover import Cover
 from bench.course.result import NotDone
 from bench.errors import InputError
@@ -17,6 +16,7 @@ from bench.report.charts import chart_figure
 from bench.report.course import course_table
 from bench.report.lab import lab_html, write_lab_report
 from bench.report.section import section
+from bench.report.terminal import console
 from tests import command
 
 #: Labels of axes that the course asks for.

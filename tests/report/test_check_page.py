@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from bench.report.page.blocks import Intervals, Paragraph, Points, Table
-from bench.report.page.render import html
+from bench.report.document import Intervals, Paragraph, Points, Table
+from bench.report.html import html
 from bench.report.pages.check import check_page
 from bench.trace.write import write
 from tests.baseline.states import named, state
@@ -68,7 +68,7 @@ def test_what_differs_beside_the_axis_is_reported():
     assert any("are those of the baseline" in one.text for one in blocks(same, Paragraph))
     assert any("duration" in item for one in blocks(other, Points) for item in one.items)
     assert any("torque_constant" in item for one in blocks(rig, Points) for item in one.items)
-    assert rig.answers[-1].answer.startswith("Make the baseline anew")
+    assert list(rig.answers.values())[-1].startswith("Make the baseline anew")
 
 
 def test_text_of_a_baseline_is_text():
@@ -98,4 +98,4 @@ def test_models_are_reported_without_recordings():
     page = check_page(replace(found, baseline=model, now=model, false_alarm_rate=0.0), "x")
     assert [section.key for section in page.sections] == ["comparisons", "conditions"]
     assert any("neither rests on a recording" in one.text for one in blocks(page, Paragraph))
-    assert "without noise" in page.answers[2].answer
+    assert "without noise" in list(page.answers.values())[2]

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bench.report.page.blocks import Chart
-from bench.report.page.folder import read_page
-from bench.report.page.scripted import TimeGraph
+from bench.report.document import Chart, TimeGraph
+from bench.report.publish import read_document
 from bench.trace.write import write
 from tests.diagnosis.test_commands import run_of
 
@@ -24,7 +23,7 @@ def test_identify_leaves_a_page(bench, tmp_path):
     status, out, _ = bench("identify", "run1.csv", "run2.csv", "--rig", "rig.toml", "--out", "result")
     assert status == 0
     assert "wrote result/report.html" in out
-    page = read_page(tmp_path / "result" / "report.json")
+    page = read_document(tmp_path / "result" / "report.json")
     assert page.verdict.startswith("The moment of inertia is")
     graphs = [block for section in page.sections for block in section.blocks if isinstance(block, TimeGraph)]
     assert len(graphs) == 2
@@ -87,7 +86,7 @@ def test_friction_writes_a_page_where_asked(bench, tmp_path):
 def test_a_chart_of_identify_has_one_scale_and_a_floor(bench, tmp_path):
     write(run_of(), "run.csv")
     bench("identify", "run.csv", "--rig", "rig.toml", "--out", "result")
-    page = read_page(tmp_path / "result" / "report.json")
+    page = read_document(tmp_path / "result" / "report.json")
     (chart,) = [block for section in page.sections for block in section.blocks if isinstance(block, Chart)]
     assert {one.style for panel in chart.panels for one in panel.series} == {"band", "dots"}
     assert len({panel.series[0].high for panel in chart.panels}) == 1

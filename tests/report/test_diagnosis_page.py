@@ -9,12 +9,11 @@ import pytest
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.found import NamedEffect
 from bench.effects.catalogue import catalogue
-from bench.report.page.blocks import Chart, Table
-from bench.report.page.folder import read_page
-from bench.report.page.samples import unpacked
-from bench.report.page.scripted import TimeGraph
+from bench.report.document import Chart, Table, TimeGraph
+from bench.report.over_time import unpacked
 from bench.report.pages.diagnosis import diagnosis_page
 from bench.report.pages.verdict import verdict_sentence
+from bench.report.publish import read_document
 from bench.rig.rig import Rig
 from tests.diagnosis.test_commands import run_of, with_unbalance
 
@@ -28,7 +27,7 @@ def diagnosed():
 
 @pytest.fixture(scope="module")
 def page(found):
-    return read_page(found / "report.json")
+    return read_document(found / "report.json")
 
 
 def blocks(page, kind):
@@ -102,7 +101,7 @@ def test_the_verdict_fits_what_was_found(diagnosed):
     assert "times the noise is left" in verdict_sentence(unsure)
     page = diagnosis_page(unsure, "t", [])
     assert page.tone == "open"
-    assert "something is left" in page.answers[2].answer
+    assert "something is left" in list(page.answers.values())[2]
     nothing = replace(diagnosed, effects=[], verdict="nothing_missing")
     assert verdict_sentence(nothing).startswith("Nothing is missing")
     assert "no effect of the catalogue explains" in verdict_sentence(replace(nothing, verdict="unexplained_remainder"))
@@ -121,7 +120,7 @@ def test_a_page_says_where_no_model_could_be_had(diagnosed):
         courses=tuple(replace(course, velocity_left=(None, None)) for course in diagnosed.courses),
     )
     page = diagnosis_page(unknown, "t", [])
-    assert page.answers[3].answer.startswith("Not known")
+    assert list(page.answers.values())[3].startswith("Not known")
     (graph,) = blocks(page, TimeGraph)
     assert [panel.label for panel in graph.panels] == ["speed", "torque", "torque, measured less modelled"]
 

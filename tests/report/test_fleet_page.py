@@ -11,8 +11,8 @@ from bench.fleet.fleet import Fleet
 from bench.fleet.manifest import Manifest
 from bench.fleet.plan import Planned
 from bench.fleet.summary import summarise
-from bench.report.page.blocks import Chart, Table
-from bench.report.page.render import html
+from bench.report.document import Chart, Table
+from bench.report.html import html
 from bench.report.pages.fleet import CHARTS, DOTS, ROWS, fleet_page
 from tests.fleet.test_summary import TASK, found
 from tests.report.test_page import HOSTILE
@@ -65,7 +65,7 @@ def test_who_needs_a_person_first_comes_first_with_the_reason():
     assert people.marked == (0,)
     assert "since 2026-03-07" in people.rows[0][1]
     assert people.rows[1][1] == "refused (1 of 10 recordings): too short"
-    assert page.answers[0].answer.startswith("axis 4: ")
+    assert next(iter(page.answers.values())).startswith("axis 4: ")
 
 
 @pytest.mark.parametrize(

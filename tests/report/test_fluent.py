@@ -4,8 +4,8 @@ import statistics
 
 import pytest
 
-from bench.report.page.render import html
-from bench.report.pages.over_time import time_graph
+from bench.report.html import html
+from bench.report.over_time import time_graph
 from tests.report.test_samples import page_of, recording
 
 #: One key a frame: in, on, back and out again.

@@ -5,7 +5,7 @@ import shlex
 from pathlib import Path
 
 from bench.assets import asset
-from bench.report.page.folder import read_page
+from bench.report.publish import read_document
 
 MANUAL = (Path(__file__).resolve().parents[2] / "docs" / "report.md").read_text(encoding="utf-8")
 
@@ -16,7 +16,7 @@ def test_the_commands_of_the_manual_run(bench, tmp_path):
     for line in block.splitlines():
         status, _, err = bench(*shlex.split(line)[1:])
         assert status == 0, err
-    page = read_page(tmp_path / "found" / "report.json")
+    page = read_document(tmp_path / "found" / "report.json")
     assert "Cogging torque (amplitude 0.05" in page.verdict.replace("\N{NO-BREAK SPACE}", " ")
     assert page.tone == "sure"
     for written in (

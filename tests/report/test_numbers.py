@@ -3,8 +3,8 @@
 import pytest
 
 from bench.fit.parameter import Parameter
-from bench.report.page.chart import ticks
-from bench.report.page.numbers import interval, number, share, unit_text
+from bench.report.drawing import ticks
+from bench.report.numbers import interval, number, share, unit_text
 
 
 def told(text):

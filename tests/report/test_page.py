@@ -8,26 +8,29 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.report.page.blocks import (
-    Answer,
-    Axes,
+from bench.report.document import (
     Chart,
-    Column,
+    Document,
     Downloads,
     File,
+    Heading,
     HeatMap,
     Intervals,
-    Page,
+    Moving,
+    Panel,
     Paragraph,
     Points,
+    Samples,
     Section,
     Series,
     Span,
     Table,
+    TimeCurve,
+    TimeGraph,
+    TimePanel,
 )
-from bench.report.page.folder import DATA, HTML, read_page, write_page
-from bench.report.page.render import html
-from bench.report.page.scripted import Curve, Motion, Panel, Samples, TimeGraph
+from bench.report.html import html
+from bench.report.publish import DATA, HTML, read_document, write_document
 
 HOSTILE = "<script>alert(1)</script>\"'&{{ 7*7 }}</style>-->"
 
@@ -43,26 +46,26 @@ def page_full_of(text):
     grid = {"start": 0.0, "step": 1.0, "count": 2}
     samples = Samples(offset=0.0, scale=1.0, low="AAABAA==", high=None)
     curves = (
-        full_of(text, Curve, role="measured", choice=None, samples=samples),
-        full_of(text, Curve, role="model", choice=0, samples=samples),
+        full_of(text, TimeCurve, role="measured", choice=None, samples=samples),
+        full_of(text, TimeCurve, role="model", choice=0, samples=samples),
     )
     moved = {"low": 0.0, "high": 1.0, "position": "AAAAAAAAgD8=", "apart": "AAAAAAAAAAA="}
     series = full_of(text, Series, style="line", colour="ink", x=(0.0, 1.0), y=(0.0, 1.0))
     span = full_of(text, Span, colour="ink", value=3.0, low=-1.0, high=4.0)
-    columns = full_of(text, Column), full_of(text, Column, number=True)
+    columns = full_of(text, Heading), full_of(text, Heading, number=True)
     blocks = (
         full_of(text, Paragraph),
         Points(items=(text,)),
         full_of(text, Table, columns=columns, rows=((text, text),)),
-        full_of(text, TimeGraph, **grid, choices=(text, text), panels=(full_of(text, Panel, curves=curves),)),
-        *(full_of(text, Motion, turns=turns, ghost=text, **grid, **moved) for turns in (True, False)),
-        full_of(text, Chart, panels=(full_of(text, Axes, series=(series,)),)),
+        full_of(text, TimeGraph, **grid, choices=(text, text), panels=(full_of(text, TimePanel, curves=curves),)),
+        *(full_of(text, Moving, turns=turns, ghost=text, **grid, **moved) for turns in (True, False)),
+        full_of(text, Chart, panels=(full_of(text, Panel, series=(series,)),)),
         full_of(text, HeatMap, rows=(text, text), columns=(text,), counts=((1,), (0,))),
         full_of(text, Intervals, right=(-1.0, 1.0), limits=(-2.0, 2.0), spans=(span,)),
         Downloads(files=(full_of(text, File, media="text/plain"),)),
     )
     section = full_of(text, Section, key="all", blocks=blocks)
-    return full_of(text, Page, tone="open", answers=(full_of(text, Answer),), sections=(section,), origin=(text,))
+    return full_of(text, Document, tone="open", answers={text: text}, sections=(section,), origin=(text,))
 
 
 def test_text_is_text_wherever_it_stands():
@@ -97,16 +100,16 @@ def test_a_file_inside_comes_out_as_it_was():
 @given(text=st.text(max_size=40))
 def test_a_page_comes_back_from_its_json(text):
     page = page_full_of(text)
-    assert Page.model_validate_json(page.model_dump_json()) == page
+    assert Document.model_validate_json(page.model_dump_json()) == page
 
 
 def test_a_page_made_anew_is_the_same(bench, tmp_path):
-    write_page(tmp_path / "out", page_full_of(HOSTILE))
+    write_document(tmp_path / "out", page_full_of(HOSTILE))
     before = (tmp_path / "out" / HTML).read_bytes()
     (tmp_path / "out" / HTML).unlink()
     assert bench("report", "out") == (0, "wrote out/report.html\n", "")
     assert (tmp_path / "out" / HTML).read_bytes() == before
-    assert read_page(tmp_path / "out" / DATA) == page_full_of(HOSTILE)
+    assert read_document(tmp_path / "out" / DATA) == page_full_of(HOSTILE)
 
 
 @pytest.mark.parametrize(
@@ -119,7 +122,7 @@ def test_a_page_made_anew_is_the_same(bench, tmp_path):
     ],
 )
 def test_damage_is_reported_in_one_line(bench, tmp_path, change, words):
-    write_page(tmp_path / "out", page_full_of("x"))
+    write_document(tmp_path / "out", page_full_of("x"))
     content = json.loads((tmp_path / "out" / DATA).read_text(encoding="utf-8"))
     (tmp_path / "out" / DATA).write_text(json.dumps(change(content)), encoding="utf-8")
     status, out, err = bench("report", "out")
@@ -138,7 +141,7 @@ def test_a_folder_without_a_page_is_reported(bench, tmp_path):
 
 
 def test_a_damaged_graph_is_no_page(bench, tmp_path):
-    write_page(tmp_path / "out", page_full_of("x"))
+    write_document(tmp_path / "out", page_full_of("x"))
     text = (tmp_path / "out" / DATA).read_text(encoding="utf-8").replace('"step":1.0', '"step":0.0')
     (tmp_path / "out" / DATA).write_text(text, encoding="utf-8")
     status, _, err = bench("report", "out")

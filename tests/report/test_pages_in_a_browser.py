@@ -2,8 +2,8 @@
 
 import pytest
 
-from bench.report.page.folder import write_html
 from bench.report.pages.check import check_page
+from bench.report.publish import write_html
 from tests.baseline.states import state
 from tests.baseline.test_compare import checked
 from tests.report import test_fleet_page, test_validation_page

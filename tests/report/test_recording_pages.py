@@ -6,11 +6,11 @@ import pytest
 from bench.assets import asset
 from bench.effects.present import Present
 from bench.plant.simulate import simulate
-from bench.report.page.folder import write_html
-from bench.report.page.samples import unpacked
-from bench.report.page.scripted import TimeGraph
+from bench.report.document import TimeGraph
+from bench.report.over_time import unpacked
 from bench.report.pages.inspection import inspection_page
-from bench.report.pages.simulation import simulation_page
+from bench.report.publish import write_html
+from bench.report.simulation import simulation
 from bench.rig.rig import load_rig
 from bench.trace.assemble import assemble
 from bench.trace.inspect import inspect_recording
@@ -62,7 +62,7 @@ def test_an_inspection_shows_every_signal_as_it_is_read(inspected):
 
 
 def test_a_simulation_shows_the_truth_beside_what_was_recorded(simulated):
-    page = simulation_page(simulated, NAME)
+    page = simulation(simulated, NAME)
     speed, noise = graph_of(page).panels[:2]
     names = [curve.name for curve in speed.curves]
     assert names == ["recorded", "true"]
@@ -70,7 +70,7 @@ def test_a_simulation_shows_the_truth_beside_what_was_recorded(simulated):
     sensors = simulated.truth.sensors
     assert np.std(recorded - true) == pytest.approx(sensors.velocity_noise, rel=0.1)
     assert np.std(values(noise.curves[0])) == pytest.approx(sensors.velocity_noise, rel=0.1)
-    assert "cogging torque (amplitude 0.05" in page.answers[1].answer.replace("\N{NO-BREAK SPACE}", " ")
+    assert "cogging torque (amplitude 0.05" in list(page.answers.values())[1].replace("\N{NO-BREAK SPACE}", " ")
     assert simulated.truth.as_json() in page.sections[-1].blocks[0].files[0].content
 
 
@@ -105,7 +105,7 @@ def test_simulate_writes_its_page_beside_the_trace(bench, tmp_path):
 @pytest.mark.parametrize("name", ["inspection", "simulation"])
 def test_a_page_opens(opened, inspected, simulated, tmp_path, name, width, scheme):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs axe-playwright-python")
-    write_html(tmp_path / "page.html", inspected[0] if name == "inspection" else simulation_page(simulated, NAME))
+    write_html(tmp_path / "page.html", inspected[0] if name == "inspection" else simulation(simulated, NAME))
     page = opened(tmp_path / "page.html", width, color_scheme=scheme, bypass_csp=True)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert page.locator("script:not([type])").count() == 1

@@ -7,17 +7,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.report.page.blocks import Page, Section
-from bench.report.page.render import html
-from bench.report.page.samples import STEPS, Grid, unpacked
-from bench.report.pages.over_time import Measured, time_graph
+from bench.report.document import Document, Section
+from bench.report.html import html
+from bench.report.over_time import STEPS, Grid, Plotted, time_graph, unpacked
 
 MEGABYTE = 1_000_000
 
 
 def page_of(*graphs):
     section = Section(key="motion", heading="motion", blocks=graphs)
-    return Page(title="t", subject="s", verdict="v", tone="sure", answers=(), sections=(section,))
+    return Document(title="t", subject="s", verdict="v", tone="sure", answers={}, sections=(section,))
 
 
 def recording(samples, models=2):
@@ -25,7 +24,7 @@ def recording(samples, models=2):
     time, rng = 1e-3 * np.arange(samples), np.random.default_rng(0)
     speed = 100.0 * np.sin(2.0 * np.pi * time)
     left = [rng.normal(size=samples).astype(np.float32) for _ in range(models)]
-    signals = [Measured("speed", "rad/s", time, speed, left), Measured("torque", "N*m", time, 0.02 * speed, left)]
+    signals = [Plotted("speed", "rad/s", time, speed, left), Plotted("torque", "N*m", time, 0.02 * speed, left)]
     return time, signals
 
 
@@ -91,7 +90,7 @@ def test_a_page_stays_small(samples, most):
 def signals_of(signals, count):
     """The first samples of signals."""
     return [
-        Measured(one.label, one.unit, one.time[:count], one.values[:count], [left[:count] for left in one.left])
+        Plotted(one.label, one.unit, one.time[:count], one.values[:count], [left[:count] for left in one.left])
         for one in signals
     ]
 

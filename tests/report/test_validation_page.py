@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bench.report.confusion import Confusion
-from bench.report.page.blocks import HeatMap, Intervals, Table
-from bench.report.page.render import html
+from bench.report.document import HeatMap, Intervals, Table
+from bench.report.html import html
 from bench.report.pages.validation import validation_page
 from bench.report.provenance import without_files
 from bench.validation.coverage import LEVELS, Coverage, Share

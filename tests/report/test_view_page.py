@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from bench.axis_kind import LINEAR, ROTARY
-from bench.report.page.blocks import File
-from bench.report.page.folder import write_html
-from bench.report.pages.view import MOST, motion_of, view_page
+from bench.report.document import File
+from bench.report.publish import write_html
+from bench.report.view import MOST, motion_of, view
 from tests.report.test_page import HOSTILE
 from tests.view.motions import AHEAD, SPEED, shown
 
@@ -58,7 +58,7 @@ def player(opened, tmp_path):
     """Opens the page of a motion."""
 
     def play(*arguments, width=1280, scheme="light", title="model along run", **options):
-        write_html(tmp_path / "view.html", view_page(shown(*arguments, **options), title, [], [MODEL]))
+        write_html(tmp_path / "view.html", view(shown(*arguments, **options), title, [], [MODEL]))
         return opened(tmp_path / "view.html", width, color_scheme=scheme, bypass_csp=True)
 
     return play

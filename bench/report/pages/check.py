@@ -10,23 +10,20 @@ from bench.baseline.comparison import CHANGED, SAME, UNDECIDED, Comparison
 from bench.baseline.wording import described, headline
 from bench.names import short, words
 from bench.report.check import cells
-from bench.report.page.blocks import (
-    Answer,
-    AnyBlock,
+from bench.report.document import (
+    AnyPart,
     Colour,
-    Column,
+    Document,
+    Heading,
     Intervals,
-    Page,
     Paragraph,
     Points,
     Section,
     Span,
     Table,
     Tone,
-    answered,
 )
-from bench.report.page.numbers import number, sentence, share, unit_text
-from bench.report.pages.tables import effort_word
+from bench.report.numbers import effort_word, number, sentence, share, unit_text
 
 COLOURS: dict[str, Colour] = {CHANGED: "model", UNDECIDED: "ink", SAME: "left"}
 TONES: dict[str, Tone] = {SAME: "sure", UNDECIDED: "open", CHANGED: "refused"}
@@ -36,7 +33,7 @@ LEAST, MOST = 2.0, 8.0
 LONG = 600
 
 
-def check_page(checked: Checked, title: str) -> Page:
+def check_page(checked: Checked, title: str) -> Document:
     """The page of a check.
 
     Args:
@@ -49,7 +46,7 @@ def check_page(checked: Checked, title: str) -> Page:
     ]
     if checked.baseline.gaps or checked.now.gaps:
         sections.append(Section(key="gaps", heading="What the models leave", blocks=(_gaps(checked),)))
-    return Page(
+    return Document(
         title=f"{short(title)}: check",
         subject=short(title, LONG),
         verdict=_verdict(checked),
@@ -65,16 +62,15 @@ def _verdict(checked: Checked) -> str:
     return f"Changed: {line[:1].lower()}{line[1:]}." if checked.result == CHANGED else f"{line}."
 
 
-def _answers(checked: Checked) -> tuple[Answer, ...]:
+def _answers(checked: Checked) -> dict[str, str]:
     results = [one.result for one in checked.comparisons]
     count = ", ".join(f"{results.count(result)} {result}" for result in TONES if result in results)
-    answers = {
+    return {
         "What came or went?": _names(checked),
         "How many differ?": f"{count} of {len(results)} comparisons." if results else "Nothing could be compared.",
         "How sure?": _sure(checked),
         "What next?": _next(checked),
     }
-    return answered(answers)
 
 
 def _names(checked: Checked) -> str:
@@ -108,7 +104,7 @@ def _next(checked: Checked) -> str:
     return "Record again, several times: a difference near its margin needs more than one recording to decide."
 
 
-def _compared(checked: Checked) -> Iterator[AnyBlock]:
+def _compared(checked: Checked) -> Iterator[AnyPart]:
     """The chart, and the table behind it, worst first."""
     spans = tuple(_spans(checked))
     if spans:
@@ -143,11 +139,11 @@ def _table(checked: Checked) -> Table:
     held_back = any(one.held_back for one in comparisons)
     numbers = ("baseline", "now", "difference (95 %)", "margin")
     columns = [
-        Column(heading="quantity"),
-        *(Column(heading=heading, number=True) for heading in numbers),
-        Column(heading="unit"),
-        Column(heading="result"),
-        *([Column(heading="because", prose=True)] if held_back else []),
+        Heading(heading="quantity"),
+        *(Heading(heading=heading, number=True) for heading in numbers),
+        Heading(heading="unit"),
+        Heading(heading="result"),
+        *([Heading(heading="because", prose=True)] if held_back else []),
     ]
     rows = []
     for one in comparisons:
@@ -158,7 +154,7 @@ def _table(checked: Checked) -> Table:
     return Table(caption="Worst first", columns=tuple(columns), rows=tuple(rows), marked=marked)
 
 
-def _conditions(checked: Checked) -> AnyBlock:
+def _conditions(checked: Checked) -> AnyPart:
     lines = [f"rig: {line}" for line in checked.rig] + [
         f"not as in the baseline: {line}" for line in checked.conditions
     ]
@@ -183,10 +179,10 @@ def _gaps(checked: Checked) -> Table:
             both = ("–" if gap is None else number(getattr(gap, value), digits=3) for gap in gaps)
             rows.append((f"{what}, {of} (RMS)", *both, unit_text(unit)))
     columns = (
-        Column(heading="of"),
-        Column(heading="baseline", number=True),
-        Column(heading="now", number=True),
-        Column(heading="unit"),
+        Heading(heading="of"),
+        Heading(heading="baseline", number=True),
+        Heading(heading="now", number=True),
+        Heading(heading="unit"),
     )
     return Table(
         caption="Verdicts, and what inertia, friction and effects do not explain", columns=columns, rows=tuple(rows)

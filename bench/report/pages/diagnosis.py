@@ -13,32 +13,24 @@ from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.found import Course, Profile
 from bench.diagnosis.where.where import Where
 from bench.names import words
-from bench.report.page.blocks import (
-    Axes,
+from bench.report.document import (
     Chart,
-    Column,
+    Document,
     Downloads,
     File,
-    Page,
+    Heading,
+    Panel,
     Paragraph,
     Points,
     Section,
     Series,
     Table,
+    TimeGraph,
 )
-from bench.report.page.numbers import number, sentence, share, unit_text
-from bench.report.page.scripted import TimeGraph
-from bench.report.pages.over_time import Measured, time_graph
-from bench.report.pages.tables import (
-    checks_section,
-    coordinate_word,
-    effort_word,
-    noise_band,
-    origin,
-    parameters_table,
-    recordings_table,
-)
+from bench.report.numbers import coordinate_word, effort_word, number, sentence, share, unit_text
+from bench.report.over_time import Plotted, time_graph
 from bench.report.pages.verdict import answers, following, verdict_sentence
+from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
 
 #: Coordinates of the gap that are drawn; the table has all.
 DRAWN = ("position", "velocity", "current", "time")
@@ -48,7 +40,7 @@ STEPS = 6
 
 def diagnosis_page(
     diagnosis: Diagnosis, title: str, files: Sequence[File], provenance: Mapping[str, Any] | None = None
-) -> Page:
+) -> Document:
     """The page of a diagnosis.
 
     Args:
@@ -67,7 +59,7 @@ def diagnosis_page(
         checks_section(diagnosis.checks, diagnosis.warnings),
         Section(key="model", heading="The model", blocks=(Downloads(files=tuple(files)),)),
     ]
-    return Page(
+    return Document(
         title=title,
         subject=f"Diagnosis of {title}",
         verdict=verdict_sentence(diagnosis),
@@ -85,7 +77,7 @@ def _motion(diagnosis: Diagnosis) -> Section:
         text=f"The models run in MuJoCo on the recorded torque, held softly to the recorded motion at "
         f"{number(diagnosis.bandwidth, 'rad/s', 3)}."
     )
-    return Section(key="motion", heading="Measured and simulated", blocks=(_steps(diagnosis), *graphs, loop))
+    return Section(key="motion", heading="Plotted and simulated", blocks=(_steps(diagnosis), *graphs, loop))
 
 
 def _labels(diagnosis: Diagnosis) -> list[str]:
@@ -94,11 +86,11 @@ def _labels(diagnosis: Diagnosis) -> list[str]:
 
 
 def _steps(diagnosis: Diagnosis) -> Table:
-    columns = [Column(heading="model")]
+    columns = [Heading(heading="model")]
     names = [course.name for course in diagnosis.courses]
     gaps = (effort_word(diagnosis.torque.unit), diagnosis.torque), ("speed", diagnosis.velocity)
     for what, gap in gaps:
-        columns += [Column(heading=f"{what} gap, {name} / {unit_text(gap.unit)}", number=True) for name in names]
+        columns += [Heading(heading=f"{what} gap, {name} / {unit_text(gap.unit)}", number=True) for name in names]
     rows = [
         (label, *(number(gap, digits=3) for gap in (*step.torque, *step.velocity)))
         for label, step in zip(_labels(diagnosis), diagnosis.steps, strict=True)
@@ -113,10 +105,10 @@ def _over_time(diagnosis: Diagnosis, course: Course) -> TimeGraph:
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
     place = [one.name for one in diagnosis.courses].index(course.name)
     effort = effort_word(diagnosis.torque.unit)
-    speed = Measured(
+    speed = Plotted(
         "speed", diagnosis.velocity.unit, course.time, course.velocity, [course.velocity_left[k] for k in shown]
     )
-    torque = Measured(
+    torque = Plotted(
         effort_word(diagnosis.torque.unit),
         diagnosis.torque.unit,
         course.time[course.rows],
@@ -154,10 +146,10 @@ def _where(diagnosis: Diagnosis) -> Section:
         panels=tuple(_over(found[name], diagnosis, names) for name in DRAWN if name in found),
     )
     columns = (
-        Column(heading="coordinate"),
-        Column(heading="share of the gap", number=True),
-        Column(heading="most of it between", number=True),
-        Column(heading="unit"),
+        Heading(heading="coordinate"),
+        Heading(heading="share of the gap", number=True),
+        Heading(heading="most of it between", number=True),
+        Heading(heading="unit"),
     )
     rows = tuple(
         (
@@ -172,7 +164,7 @@ def _where(diagnosis: Diagnosis) -> Section:
     return Section(key="where", heading="Where the gap sits", blocks=(graph, table))
 
 
-def _over(profile: Profile, diagnosis: Diagnosis, names: str) -> Axes:
+def _over(profile: Profile, diagnosis: Diagnosis, names: str) -> Panel:
     x, before, after = (tuple(values.tolist()) for values in _in_order(profile))
     series = [
         noise_band(x, diagnosis.torque.noise_floor),
@@ -183,7 +175,7 @@ def _over(profile: Profile, diagnosis: Diagnosis, names: str) -> Axes:
         series.append(Series(name=f"what {names} makes of it", style="line", colour="model", x=x, y=explained))
         series.append(Series(name="left after", style="rings", colour="left", x=x, y=after))
     note = f"{share(profile.share)} of the gap"
-    return Axes(
+    return Panel(
         x_label=coordinate_word(profile.coordinate, profile.unit),
         x_unit=unit_text(profile.unit),
         note=note,
@@ -210,11 +202,11 @@ def _suspects(diagnosis: Diagnosis) -> Section:
         return "–" if value is None else share(value)
 
     columns = (
-        Column(heading="effect"),
-        Column(heading="taken"),
-        Column(heading="of the gap, alone", number=True),
-        Column(heading="of what is left, beside the others", number=True),
-        Column(heading="why", prose=True),
+        Heading(heading="effect"),
+        Heading(heading="taken"),
+        Heading(heading="of the gap, alone", number=True),
+        Heading(heading="of what is left, beside the others", number=True),
+        Heading(heading="why", prose=True),
     )
     rows = tuple(
         (

@@ -11,23 +11,21 @@ from bench.fleet.changed import ALARM, Changed
 from bench.fleet.fleet import TABLE, Fleet
 from bench.fleet.summary import STATUSES, Summary
 from bench.names import short, words
-from bench.report.page.blocks import (
-    Answer,
-    AnyBlock,
-    Axes,
+from bench.report.document import (
+    AnyPart,
     Chart,
-    Column,
+    Document,
+    Heading,
     Neighbour,
     Neighbours,
-    Page,
+    Panel,
     Paragraph,
     Section,
     Series,
     Table,
     Tone,
-    answered,
 )
-from bench.report.page.numbers import SPACE, number, sentence, share, unit_text
+from bench.report.numbers import SPACE, number, sentence, share, unit_text
 from bench.statistics import NORMAL95
 
 #: Rows of a table, charts, and recordings in one of them: a page of a large fleet stays small, the table has all.
@@ -46,7 +44,7 @@ MEANT = {
 }
 
 
-def fleet_page(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any]) -> Page:
+def fleet_page(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any]) -> Document:
     """The page of a fleet; the same for the same results, however many were evaluated now.
 
     Args:
@@ -63,7 +61,7 @@ def fleet_page(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any]) -
     if summary.named:
         sections.insert(2, Section(key="effects", heading="Effects that axes show", blocks=(_effects(summary),)))
     options = ", ".join(key for key, value in provenance["options"].items() if value) or "none"
-    return Page(
+    return Document(
         title=f"{name}: fleet",
         subject=f"Fleet {name}: {len(fleet.manifest)} recordings of {summary.axes} axes",
         verdict=_verdict(summary),
@@ -97,7 +95,7 @@ def _tone(summary: Summary) -> Tone:
     return "open" if summary.concerns or not summary.compared else "sure"
 
 
-def _answers(fleet: Fleet) -> tuple[Answer, ...]:
+def _answers(fleet: Fleet) -> dict[str, str]:
     summary = fleet.summary
     counts = ", ".join(f"{summary.counts[status]} {words(status)}" for status in STATUSES if summary.counts[status])
     if summary.compared:
@@ -108,12 +106,11 @@ def _answers(fleet: Fleet) -> tuple[Answer, ...]:
     else:
         sure = "Not known: that needs three recordings of an axis with a time, by one rig."
     first = next(iter(_reasons(summary).items()), None)
-    answers = {
+    return {
         "Who first?": "Nobody." if first is None else f"{short(first[0], NAME)}: {first[1][0]}.",
         "How sure?": sure,
         "Recordings?": f"{counts}.",
     }
-    return answered(answers)
 
 
 def _reasons(summary: Summary) -> dict[str, list[str]]:
@@ -137,17 +134,17 @@ def _share(one: Changed) -> str:
     return text.replace("-", "−")
 
 
-def _people(summary: Summary) -> AnyBlock:
+def _people(summary: Summary) -> AnyPart:
     reasons = _reasons(summary)
     if not reasons:
         return Paragraph(text="Nobody: no axis changed, and every recording gave a result that explains it.")
     rows = [(short(axis, NAME), "; ".join(why)) for axis, why in reasons.items()]
-    columns = Column(heading="axis"), Column(heading="why", prose=True)
+    columns = Heading(heading="axis"), Heading(heading="why", prose=True)
     marked = tuple(range(min(ROWS, len({one.axis for one in summary.changed}))))
     return _table("Changed first, then by how grave it is", columns, rows, marked)
 
 
-def _changes(fleet: Fleet) -> Iterator[AnyBlock]:
+def _changes(fleet: Fleet) -> Iterator[AnyPart]:
     """The table of changes, and the first of them over time."""
     changed = fleet.summary.changed
     if not changed:
@@ -155,11 +152,11 @@ def _changes(fleet: Fleet) -> Iterator[AnyBlock]:
         return
     headings = ("before", "after", "change (95 %)")
     columns = (
-        Column(heading="axis"),
-        Column(heading="quantity"),
-        *(Column(heading=heading, number=True) for heading in headings),
-        Column(heading="since"),
-        Column(heading="recordings before, after", number=True),
+        Heading(heading="axis"),
+        Heading(heading="quantity"),
+        *(Heading(heading=heading, number=True) for heading in headings),
+        Heading(heading="since"),
+        Heading(heading="recordings before, after", number=True),
     )
     rows = [
         (
@@ -212,7 +209,7 @@ def _over_time(one: Changed, fleet: Fleet) -> Chart:
         f"({short(one.file, NAME)}).{nearest}",
         y_label=words(one.quantity),
         y_unit=unit_text(one.unit),
-        panels=(Axes(x_label=label, x_unit=unit, series=drawn),),
+        panels=(Panel(x_label=label, x_unit=unit, series=drawn),),
     )
 
 
@@ -233,17 +230,21 @@ def _band(name: str, x: tuple[float, float], around: tuple[float, float]) -> Ser
 
 def _effects(summary: Summary) -> Table:
     columns = (
-        Column(heading="axis"),
-        Column(heading="effect"),
-        Column(heading="recordings", number=True),
-        Column(heading="first"),
+        Heading(heading="axis"),
+        Heading(heading="effect"),
+        Heading(heading="recordings", number=True),
+        Heading(heading="first"),
     )
     rows = [(short(one.axis, NAME), words(one.effect), f"{one.count} of {one.of}", one.since) for one in summary.named]
     return _table("Those that most recordings of their axis show come first", columns, rows)
 
 
 def _statuses(summary: Summary) -> Table:
-    columns = Column(heading="status"), Column(heading="recordings", number=True), Column(heading="which", prose=True)
+    columns = (
+        Heading(heading="status"),
+        Heading(heading="recordings", number=True),
+        Heading(heading="which", prose=True),
+    )
     rows = tuple((words(status), str(summary.counts[status]), MEANT[status]) for status in STATUSES)
     marked = tuple(k for k, status in enumerate(STATUSES) if status != "done" and summary.counts[status])
     return Table(caption="By status", columns=columns, rows=rows, marked=marked)
@@ -259,7 +260,7 @@ def _beside(summary_file: str) -> Neighbours:
 
 
 def _table(
-    caption: str, columns: tuple[Column, ...], rows: Sequence[tuple[str, ...]], marked: tuple[int, ...] = ()
+    caption: str, columns: tuple[Heading, ...], rows: Sequence[tuple[str, ...]], marked: tuple[int, ...] = ()
 ) -> Table:
     """A table of the first rows, which says how many there are."""
     more = f"; the first {ROWS} of {len(rows)}" if len(rows) > ROWS else ""

@@ -12,10 +12,10 @@ from bench.axis_kind import COULOMB, VISCOUS
 from bench.friction_map.curve import Curve
 from bench.friction_map.map import CHANCE, FrictionMap
 from bench.names import words
+from bench.report.document import Chart, Document, Heading, Panel, Section, Series, Table
 from bench.report.friction import base_values, effect_values
-from bench.report.page.blocks import Answer, Axes, Chart, Column, Page, Section, Series, Table, answered
-from bench.report.page.numbers import number, sentence, share, unit_text
-from bench.report.pages.tables import checks_section, effort_word, origin
+from bench.report.numbers import effort_word, number, sentence, share, unit_text
+from bench.report.parts import checks_section, origin
 
 #: Speeds at which a curve is drawn, in each direction.
 DRAWN = 200
@@ -23,12 +23,12 @@ DRAWN = 200
 Values = Mapping[str, tuple[float, str]]
 
 
-def friction_page(found: FrictionMap, title: str) -> Page:
+def friction_page(found: FrictionMap, title: str) -> Document:
     """The page of a friction map."""
     tables = [_table("The axis", base_values(found))]
     if found.name is not None:
         tables.append(_table(sentence(words(found.name)), effect_values(found)))
-    return Page(
+    return Document(
         title=f"{title}: friction",
         subject=f"Friction of {title} over {found.velocity.size} steady speeds",
         verdict=_verdict(found),
@@ -52,7 +52,7 @@ def _verdict(found: FrictionMap) -> str:
     return f"{bent}: {share(before)} was unexplained without, {share(after)} with it."
 
 
-def _answers(found: FrictionMap) -> tuple[Answer, ...]:
+def _answers(found: FrictionMap) -> dict[str, str]:
     base = base_values(found)
     friction = "; ".join(
         f"{words(name)} {number(*base[name])}" for name in map(found.kind.parameter, (COULOMB, VISCOUS)) if name in base
@@ -61,12 +61,11 @@ def _answers(found: FrictionMap) -> tuple[Answer, ...]:
     left = "Nothing that steady speeds would tell."
     if found.offset is None:
         left = "A constant offset is counted in the effect: such recordings do not tell them apart."
-    answers = {"Friction?": friction, "How sure?": sure, "What is open?": left}
-    return answered(answers)
+    return {"Friction?": friction, "How sure?": sure, "What is open?": left}
 
 
 def _table(caption: str, values: Values) -> Table:
-    columns = Column(heading="quantity"), Column(heading="value", number=True), Column(heading="unit")
+    columns = Heading(heading="quantity"), Heading(heading="value", number=True), Heading(heading="unit")
     rows = tuple((words(name), number(value), unit_text(unit)) for name, (value, unit) in values.items())
     return Table(caption=caption, columns=columns, rows=rows)
 
@@ -87,7 +86,7 @@ def _over_speed(found: FrictionMap) -> Chart:
                 name = "" if any(one.name == label for one in series) else label
                 series.append(_series(name, "line", "model" if bent else "left", x, curve.effort(x)))
     series.append(_series("recordings", "dots", "ink", found.velocity, found.effort))
-    axes = Axes(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=tuple(series))
+    axes = Panel(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=tuple(series))
     alternative = f"{sentence(effort)} of each recording at its steady speed, and the curves fitted to them."
     return Chart(
         title="Friction.", alternative=alternative, y_label=effort, y_unit=unit_text(found.effort_unit), panels=(axes,)
@@ -105,7 +104,7 @@ def _left(found: FrictionMap) -> Chart:
         )
         for curve, label, bent in _curves(found)
     )
-    axes = Axes(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=series)
+    axes = Panel(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=series)
     alternative, unit = "What each curve leaves of the recordings.", unit_text(found.effort_unit)
     return Chart(title="What is left.", alternative=alternative, y_label="left", y_unit=unit, panels=(axes,))
 

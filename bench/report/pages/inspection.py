@@ -9,11 +9,22 @@ from typing import Literal
 
 from bench.gate.check import Check
 from bench.names import words
-from bench.report.page.blocks import Answer, AnyBlock, Column, Page, Paragraph, Points, Section, Table, Tone, answered
-from bench.report.page.numbers import number, unit_text
-from bench.report.page.samples import Grid
-from bench.report.page.scripted import Curve, Panel, TimeGraph
-from bench.report.pages.tables import checks_section, origin
+from bench.report.document import (
+    AnyPart,
+    Document,
+    Heading,
+    Paragraph,
+    Points,
+    Section,
+    Table,
+    TimeCurve,
+    TimeGraph,
+    TimePanel,
+    Tone,
+)
+from bench.report.numbers import number, unit_text
+from bench.report.over_time import Grid
+from bench.report.parts import checks_section, origin
 from bench.trace.inspect import ColumnSummary, Inspection
 from bench.trace.trace import Trace
 
@@ -23,7 +34,7 @@ ROLES: tuple[Literal["measured", "model", "left"], ...] = ("measured", "model", 
 MOST_HOLES = 20
 
 
-def inspection_page(found: Inspection, checks: Sequence[Check], trace: Trace | None) -> Page:
+def inspection_page(found: Inspection, checks: Sequence[Check], trace: Trace | None) -> Document:
     """The page of an inspection.
 
     Args:
@@ -42,7 +53,7 @@ def inspection_page(found: Inspection, checks: Sequence[Check], trace: Trace | N
         sections.append(Section(key="columns", heading="Columns that are not read", blocks=(_columns(rest),)))
     if checks or found.notes:
         sections.append(checks_section(checks, found.notes))
-    return Page(
+    return Document(
         title=name,
         subject=f"Inspection of {name} ({found.format})",
         verdict=verdict[0],
@@ -61,7 +72,7 @@ def signals_graph(trace: Trace) -> TimeGraph:
     for unit, named in groupby(signals, key=lambda name: trace.units[name]):
         names = list(named)
         curves = tuple(
-            Curve(
+            TimeCurve(
                 name=words(name),
                 role=ROLES[k % len(ROLES)],
                 choice=None,
@@ -69,7 +80,7 @@ def signals_graph(trace: Trace) -> TimeGraph:
             )
             for k, name in enumerate(names)
         )
-        panels.append(Panel(label=words(names[0]), unit=unit_text(unit), curves=curves))
+        panels.append(TimePanel(label=words(names[0]), unit=unit_text(unit), curves=curves))
     alternative = f"{', '.join(map(words, signals))} of the recording."
     return TimeGraph(
         title="Over time.",
@@ -96,7 +107,7 @@ def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, Tone]:
     return f"{held}, and every check passed.", "sure"
 
 
-def _answers(found: Inspection) -> tuple[Answer, ...]:
+def _answers(found: Inspection) -> dict[str, str]:
     answers = {"What is it?": f"{found.format}, {len(found.columns)} columns"}
     if len(found.axes) > 1:
         answers["Which axes?"] = ", ".join(found.axes)
@@ -104,7 +115,7 @@ def _answers(found: Inspection) -> tuple[Answer, ...]:
         times = f"{number(found.start)} to {number(found.start + found.duration, 's')}"
         answers["How long?"] = f"{found.samples} samples, {times}"
         answers["Is anything lost?"] = _lost(found)
-    return answered(answers)
+    return answers
 
 
 def _lost(found: Inspection) -> str:
@@ -117,8 +128,8 @@ def _lost(found: Inspection) -> str:
 
 
 def _signals(found: Inspection) -> Table:
-    columns = tuple(Column(heading=heading) for heading in ("signal", "column", "unit"))
-    columns += tuple(Column(heading=heading, number=True) for heading in ("least", "most", "RMS", "resolution"))
+    columns = tuple(Heading(heading=heading) for heading in ("signal", "column", "unit"))
+    columns += tuple(Heading(heading=heading, number=True) for heading in ("least", "most", "RMS", "resolution"))
     rows = tuple(
         (
             words(signal.name),
@@ -133,8 +144,8 @@ def _signals(found: Inspection) -> Table:
 
 
 def _columns(columns: Sequence[ColumnSummary]) -> Table:
-    headings = (Column(heading="column"), Column(heading="unit"))
-    headings += tuple(Column(heading=heading, number=True) for heading in ("least", "most", "resolution"))
+    headings = (Heading(heading="column"), Heading(heading="unit"))
+    headings += tuple(Heading(heading=heading, number=True) for heading in ("least", "most", "resolution"))
     rows = tuple(
         (
             column.name if column.axis is None else f"{column.name} ({column.axis})",
@@ -147,10 +158,10 @@ def _columns(columns: Sequence[ColumnSummary]) -> Table:
         )
         for column in columns
     )
-    return Table(caption="In the file's units", columns=(*headings, Column(heading="likely", prose=True)), rows=rows)
+    return Table(caption="In the file's units", columns=(*headings, Heading(heading="likely", prose=True)), rows=rows)
 
 
-def _what_to_write(found: Inspection) -> tuple[AnyBlock, ...]:
+def _what_to_write(found: Inspection) -> tuple[AnyPart, ...]:
     """What keeps the file from being read, and the lines of a rig that would help."""
     lines = (Points(items=("[trace.columns]", *found.suggestions)),) if found.suggestions else ()
     heading = (Paragraph(text="Likely, for the rig file:"),) if lines else ()

@@ -8,23 +8,21 @@ from typing import Any
 
 from bench.names import words
 from bench.report.confusion import Confusion
-from bench.report.page.blocks import (
-    Answer,
-    AnyBlock,
-    Column,
+from bench.report.document import (
+    AnyPart,
+    Document,
+    Heading,
     HeatMap,
     Intervals,
     Neighbour,
     Neighbours,
-    Page,
     Paragraph,
     Section,
     Span,
     Table,
-    answered,
 )
-from bench.report.page.numbers import number, sentence, share, unit_text
-from bench.report.pages.tables import origin
+from bench.report.numbers import number, sentence, share, unit_text
+from bench.report.parts import origin
 from bench.report.sheet import Sheet
 from bench.report.validation import SYMBOLS, TITLES, bounded, by_name, covered, determined, names, outcomes
 from bench.validation.coverage import LEVELS, Coverage
@@ -44,7 +42,7 @@ FILES = {
 }
 
 
-def validation_page(found: Validation, provenance: Mapping[str, Any], command: str, own: bool) -> Page:
+def validation_page(found: Validation, provenance: Mapping[str, Any], command: str, own: bool) -> Document:
     """The page of a validation.
 
     Args:
@@ -65,7 +63,7 @@ def validation_page(found: Validation, provenance: Mapping[str, Any], command: s
     sections.append(Section(key="runs", heading="All runs", blocks=(*_table(outcomes(found.runs)), beside)))
     low = any(one.inside[-1].bounds[1] < LEVEL for one in first)
     false = found.naming is not None and found.naming.false.count > 0
-    return Page(
+    return Document(
         title="Validation",
         subject=command,
         verdict=_verdict(first, found.naming),
@@ -108,7 +106,7 @@ def _has(count: int) -> str:
     return "has" if count == 1 else "have"
 
 
-def _answers(found: Validation, first: list[Coverage]) -> tuple[Answer, ...]:
+def _answers(found: Validation, first: list[Coverage]) -> dict[str, str]:
     status = Counter(run.status for run in found.runs)
     counts = ", ".join(f"{count} {words(name)}" for name, count in status.most_common())
     far = ", ".join(f"{TERM_WORDS[one.quantity]} {share(one.typical)}" for one in first) or "not known"
@@ -120,10 +118,10 @@ def _answers(found: Validation, first: list[Coverage]) -> tuple[Answer, ...]:
     if found.naming is not None:
         answers["Named exactly?"] = f"{bounded(found.naming.exact)} of {found.naming.exact.of} runs."
     answers["Runs?"] = f"{len(found.runs)}: {counts}."
-    return answered(answers)
+    return answers
 
 
-def _charts(found: Validation) -> Iterator[AnyBlock]:
+def _charts(found: Validation) -> Iterator[AnyPart]:
     """Share of intervals that hold the truth with its bounds, by quantity and group of runs."""
     shown = [one for one in found.coverage if one.quantity in SYMBOLS and one.told]
     if not shown:
@@ -151,20 +149,20 @@ def _span(one: Coverage) -> Span:
     return Span(name=f"{one.by}: {one.group}", colour=colour, value=value, low=low, high=high)
 
 
-def _numbers(found: Validation) -> Iterator[AnyBlock]:
+def _numbers(found: Validation) -> Iterator[AnyPart]:
     for by, title in TITLES.items():
         some = [one for one in found.coverage if one.by == by]
         if some:
             yield from _table(covered(some, title))
 
 
-def _naming(found: Naming) -> Iterator[AnyBlock]:
+def _naming(found: Naming) -> Iterator[AnyPart]:
     yield from _table(names(found))
     if found.named:
         yield from _table(by_name(found))
     if found.confusion:
         yield _matrix(Confusion.of(found.confusion))
-    columns = Column(heading="hidden"), Column(heading="said, and how often", prose=True)
+    columns = Heading(heading="hidden"), Heading(heading="said, and how often", prose=True)
     rows = tuple((words(hidden), _counts(counts)) for hidden, counts in found.confusion.items())
     yield Table(caption="What is said where one effect is hidden, or nothing", columns=columns, rows=rows)
 
@@ -185,9 +183,9 @@ def _counts(counts: Mapping[str, int]) -> str:
     return ", ".join(f"{words(name)} {number(count)}" for name, count in ordered)
 
 
-def _table(sheet: Sheet) -> tuple[AnyBlock, ...]:
+def _table(sheet: Sheet) -> tuple[AnyPart, ...]:
     """A sheet, with its note below."""
-    columns = tuple(Column(heading=one, number=place >= sheet.words) for place, one in enumerate(sheet.headings))
+    columns = tuple(Heading(heading=one, number=place >= sheet.words) for place, one in enumerate(sheet.headings))
     rows = tuple(tuple("–" if cell == "-" else unit_text(cell) for cell in row) for row in sheet.rows)
     notes = (Paragraph(text=sheet.note),) if sheet.note else ()
     return Table(caption=sheet.title, columns=columns, rows=rows), *notes

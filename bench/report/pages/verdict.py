@@ -9,9 +9,7 @@ from bench.diagnosis.add.refine import NULL
 from bench.diagnosis.found import Gap, NamedEffect
 from bench.diagnosis.show.show import Diagnosis
 from bench.names import words
-from bench.report.page.blocks import Answer, answered
-from bench.report.page.numbers import interval, number, sentence, share, unit_text
-from bench.report.pages.tables import coordinate_word, effort_word
+from bench.report.numbers import coordinate_word, effort_word, interval, number, sentence, share, unit_text
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
@@ -45,19 +43,18 @@ def _named(effect: NamedEffect) -> str:
     return f"{words(effect.name)} ({', '.join(values)})" if values else words(effect.name)
 
 
-def answers(diagnosis: Diagnosis) -> tuple[Answer, ...]:
+def answers(diagnosis: Diagnosis) -> dict[str, str]:
     """What a reader comes with, answered."""
     kind = next(kind for kind in KINDS if kind.speed_unit == diagnosis.velocity.unit)
     inertia = diagnosis.parameters[kind.parameter(INERTIA)]
     names = "; ".join(f"{_named(effect)}: {effect.effect.summary}" for effect in diagnosis.effects)
-    rows = {
+    return {
         f"{sentence(kind.in_words(INERTIA))}?": f"{interval(inertia)} (95 %)",
         "What was missing?": names or "No effect of the catalogue.",
         "How sure?": _sure(diagnosis),
         "Does it move like the axis now?": _moves(diagnosis.velocity, bool(diagnosis.effects)),
         "What next?": following(diagnosis) or "Nothing is left open that another motion would tell.",
     }
-    return answered(rows)
 
 
 def _sure(diagnosis: Diagnosis) -> str:

@@ -1,6 +1,6 @@
 "use strict";
 (() => {
-  const SLOWED = [1, 2, 5, 10, 20, 50, 100], LEFT = 80, RIGHT = 680, LEAP = 0.1; // px of the rail, as rail.py has them; s
+  const SLOWED = [1, 2, 5, 10, 20, 50, 100], LEFT = 80, RIGHT = 680, LEAP = 0.1; // px of the rail, as drawing.py has them; s
   const floats = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
   const figures = (value, unit) => (Number.isNaN(value) ? "not known" : value.toPrecision(4).replace(/-/g, "−") + " " + unit);
 

@@ -68,3 +68,14 @@ def share(value: float) -> str:
 def sentence(text: str) -> str:
     """A text with a capital at its beginning."""
     return text[:1].upper() + text[1:]
+
+
+def effort_word(unit: str) -> str:
+    """What an effort in a unit is: torque, force, current or voltage."""
+    return {"N*m": "torque", "N": "force", "A": "current", "V": "voltage"}.get(unit, "effort")
+
+
+def coordinate_word(coordinate: str, unit: str) -> str:
+    """What a coordinate of the gap is called on an axis; the current is the torque where no current was recorded."""
+    labels = {"current": effort_word(unit), "reversal": "time since reversal"}
+    return labels.get(coordinate, coordinate)

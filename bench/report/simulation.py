@@ -1,4 +1,4 @@
-"""The page of a simulated recording: what was simulated, and what the sensors made of it."""
+"""A simulated recording: what was simulated, and what the sensors made of it."""
 
 from __future__ import annotations
 
@@ -8,30 +8,26 @@ from bench.names import words
 from bench.plant.model import parameter_quantities
 from bench.plant.simulate import Simulated
 from bench.plant.truth import Truth
-from bench.report.page.blocks import Answer, Column, Downloads, File, Page, Paragraph, Section, Table
-from bench.report.page.numbers import number, unit_text
-from bench.report.page.scripted import TimeGraph
-from bench.report.pages.over_time import Measured, time_graph
-from bench.report.pages.tables import origin
+from bench.report.document import Document, Downloads, File, Paragraph, Section, Table, TimeGraph, table
+from bench.report.numbers import number, unit_text
+from bench.report.over_time import Plotted, time_graph
+from bench.report.parts import origin
 
 
-def simulation_page(simulated: Simulated, name: str) -> Page:
-    """The page of a simulated recording of a name."""
+def simulation(simulated: Simulated, name: str) -> Document:
+    """The document of a simulated recording of a name."""
     truth, trace = simulated.truth, simulated.trace
     effects = [_effect(present, truth) for present in truth.effects]
     seconds = number(float(trace.time[-1] - trace.time[0]), "s", 3)
     hidden = f", with {', '.join(words(present.name) for present in truth.effects)} in it" if effects else ""
     kind = truth.parameters.kind
-    answers = (
-        Answer(
-            question=f"{kind.in_words(INERTIA).capitalize()}?",
-            answer=number(truth.parameters.inertia, kind.inertia_unit, 5),
-        ),
-        Answer(question="What is hidden?", answer="; ".join(effects) or "Nothing beyond inertia and friction."),
-        Answer(question="Where is the friction?", answer=f"In the {truth.friction}."),
-    )
+    answers = {
+        f"{kind.in_words(INERTIA).capitalize()}?": number(truth.parameters.inertia, kind.inertia_unit, 5),
+        "What is hidden?": "; ".join(effects) or "Nothing beyond inertia and friction.",
+        "Where is the friction?": f"In the {truth.friction}.",
+    }
     file = File(name="truth.json", about="the truth", media="application/json", content=truth.as_json())
-    return Page(
+    return Document(
         title=name,
         subject=f"Simulation of {truth.rig}: {name}",
         verdict=f"{seconds} of the profile {words(truth.profile)} were simulated{hidden}.",
@@ -63,12 +59,12 @@ def _over_time(simulated: Simulated) -> TimeGraph:
     ticks = ((trace.time - states.time[0]) / period).round().astype(int)
     was = {"velocity": ("speed", states.velocity[ticks, 0]), "position": ("position", states.position[ticks, 0])}
     signals = [
-        Measured(label, trace.units[name], trace.time, trace[name], [trace[name] - true], "true", name="recorded")
+        Plotted(label, trace.units[name], trace.time, trace[name], [trace[name] - true], "true", name="recorded")
         for name, (label, true) in was.items()
         if name in trace
     ]
     efforts = [name for name in ("current", "torque", "force") if name in trace]
-    signals += [Measured(name, trace.units[name], trace.time, trace[name], name="recorded") for name in efforts]
+    signals += [Plotted(name, trace.units[name], trace.time, trace[name], name="recorded") for name in efforts]
     alternative = (
         f"Speed, position and {', '.join(efforts)} as the sensors recorded them, and speed and position as they were."
     )
@@ -77,26 +73,19 @@ def _over_time(simulated: Simulated) -> TimeGraph:
 
 def _parameters(truth: Truth) -> Table:
     quantities = parameter_quantities(truth.parameters.kind)
-    rows = tuple(
+    rows = (
         (words(quantity.name), number(getattr(truth.parameters, field), digits=5), unit_text(quantity.unit))
         for field, quantity in quantities.items()
     )
-    columns = (Column(heading="quantity"), Column(heading="value", number=True), Column(heading="unit"))
-    return Table(caption="The axis, on the motor's side", columns=columns, rows=rows)
+    return table("The axis, on the motor's side", ("quantity", "value>", "unit"), rows)
 
 
 def _effects(truth: Truth) -> tuple[Table | Paragraph, ...]:
     if not truth.effects:
         return (Paragraph(text="No effect was added."),)
-    rows = tuple(
+    rows = (
         (words(present.name), name, number(value, digits=5), unit_text(unit))
         for present in truth.effects
         for name, value, unit in _values(present, truth)
     )
-    columns = (
-        Column(heading="effect"),
-        Column(heading="quantity"),
-        Column(heading="value", number=True),
-        Column(heading="unit"),
-    )
-    return (Table(caption="Effects", columns=columns, rows=rows),)
+    return (table("Effects", ("effect", "quantity", "value>", "unit"), rows),)

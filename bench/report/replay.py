@@ -1,4 +1,4 @@
-"""The page of a replay: a model run along a recording, measured and simulated on one time axis."""
+"""A replay: a model run along a recording, measured and simulated on one time axis."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.diagnosis.add.refine import NULL
 from bench.diagnosis.replay import LEFT, Replay
-from bench.report.page.blocks import Answer, Downloads, File, Page, Points, Section
-from bench.report.page.numbers import number, share
-from bench.report.pages.over_time import Measured, time_graph
-from bench.report.pages.tables import effort_word, origin
+from bench.report.document import Document, Downloads, File, Points, Section
+from bench.report.numbers import effort_word, number, share
+from bench.report.over_time import Plotted, time_graph
+from bench.report.parts import origin
 from bench.trace.noise import white_noise
 
 
-def replay_page(replayed: Replay, title: str, files: Sequence[File]) -> Page:
-    """The page of a replay.
+def replay(replayed: Replay, title: str, files: Sequence[File]) -> Document:
+    """The document of a replay.
 
     Args:
         replayed: signals measured and simulated.
@@ -34,34 +34,34 @@ def replay_page(replayed: Replay, title: str, files: Sequence[File]) -> Page:
     if simulated:
         line += f" and is off by {number(speed[1], replayed.speed_unit, 3)} in simulated speed"
     noise = white_noise(replayed.velocity)
-    answers = [
-        Answer(question=f"How much {effort} is left?", answer=f"{number(torque[1], replayed.effort_unit, 3)} RMS"),
-        Answer(question="Does it move like the axis?", answer=_moves(speed[1], noise, replayed.speed_unit)),
-        Answer(question="Is it this axis?", answer=" ".join(replayed.warnings) or "Nothing speaks against it."),
-    ]
+    answers = {
+        f"How much {effort} is left?": f"{number(torque[1], replayed.effort_unit, 3)} RMS",
+        "Does it move like the axis?": _moves(speed[1], noise, replayed.speed_unit),
+        "Is it this axis?": " ".join(replayed.warnings) or "Nothing speaks against it.",
+    }
     signals = [
         _signal("speed", replayed.speed_unit, replayed.time, replayed.velocity, replayed.velocity_simulated),
         _signal(effort, replayed.effort_unit, replayed.time, replayed.torque, replayed.torque_simulated),
     ]
     shown = f"Speed and {effort} of the recording as measured and as the model has them, and what is left of each."
     graph = time_graph("Over time.", shown, replayed.time, signals)
-    sections = [Section(key="motion", heading="Measured and simulated", blocks=(graph,))]
+    sections = [Section(key="motion", heading="Plotted and simulated", blocks=(graph,))]
     if replayed.warnings:
         sections.append(Section(key="warnings", heading="Warnings", blocks=(Points(items=replayed.warnings),)))
     sections.append(Section(key="model", heading="The model", blocks=(Downloads(files=tuple(files)),)))
-    return Page(
+    return Document(
         title=title,
         subject=f"Replay: {title}",
         verdict=f"{line}.",
         tone="sure" if alike and not replayed.warnings else "open",
-        answers=tuple(answers),
+        answers=answers,
         sections=tuple(sections),
         origin=origin(None),
     )
 
 
-def _signal(label: str, unit: str, time: Array, measured: Array, simulated: Array) -> Measured:
-    return Measured(label, unit, time, measured, [measured - simulated])
+def _signal(label: str, unit: str, time: Array, measured: Array, simulated: Array) -> Plotted:
+    return Plotted(label, unit, time, measured, [measured - simulated])
 
 
 def _left(measured: Array, simulated: Array) -> tuple[float, float]:

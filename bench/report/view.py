@@ -1,4 +1,4 @@
-"""The page with a model in motion: the simulated axis, the measured one as a ghost, and both over time."""
+"""A model in motion: the simulated axis, the measured one as a ghost, and both over time."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ from typing import get_args
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.report.page.blocks import Answer, Downloads, File, Page, Points, Section
-from bench.report.page.numbers import number, unit_text
-from bench.report.page.scripted import Motion, Slowed, TimeGraph
-from bench.report.pages.over_time import Measured, time_graph
-from bench.report.pages.tables import origin
+from bench.report.document import Document, Downloads, File, Moving, Points, Section, Slowed, TimeGraph
+from bench.report.numbers import number, unit_text
+from bench.report.over_time import Plotted, time_graph
+from bench.report.parts import origin
 from bench.view.side_by_side import SideBySide
 
 #: Instants that a page holds of a motion, 8 bytes each and a third more as text: 0.4 MB.
@@ -24,8 +23,8 @@ PART = 0.8
 SLOWED: tuple[Slowed, ...] = get_args(Slowed)
 
 
-def view_page(shown: SideBySide, title: str, warnings: Sequence[str], files: Sequence[File]) -> Page:
-    """The page of a motion.
+def view(shown: SideBySide, title: str, warnings: Sequence[str], files: Sequence[File]) -> Document:
+    """The document of a motion.
 
     Args:
         shown: model and ghost.
@@ -36,10 +35,10 @@ def view_page(shown: SideBySide, title: str, warnings: Sequence[str], files: Seq
     kind, apart = shown.kind, shown.apart[np.isfinite(shown.apart)]
     furthest = number(float(np.abs(apart).max()), kind.length_unit, 3)
     seconds = number(float(shown.time[-1] - shown.time[0]), "s", 3)
-    answers = (
-        Answer(question="What moves?", answer=shown.simulated_is),
-        Answer(question="How far apart?", answer=f"{number(rms(apart), kind.length_unit, 3)} RMS, {furthest} at most"),
-    )
+    answers = {
+        "What moves?": shown.simulated_is,
+        "How far apart?": f"{number(rms(apart), kind.length_unit, 3)} RMS, {furthest} at most",
+    }
     sections = [
         Section(key="moving", heading="Moving", blocks=(motion_of(shown),)),
         Section(key="motion", heading="Over time", blocks=(_graph(shown),)),
@@ -47,7 +46,7 @@ def view_page(shown: SideBySide, title: str, warnings: Sequence[str], files: Seq
     if warnings:
         sections.append(Section(key="warnings", heading="Warnings", blocks=(Points(items=tuple(warnings)),)))
     sections.append(Section(key="model", heading="The model", blocks=(Downloads(files=tuple(files)),)))
-    return Page(
+    return Document(
         title=title,
         subject=f"View: {title}",
         verdict=f"The simulated axis stays within {furthest} of the motion {shown.ghost_is}, over {seconds}.",
@@ -58,7 +57,7 @@ def view_page(shown: SideBySide, title: str, warnings: Sequence[str], files: Seq
     )
 
 
-def motion_of(shown: SideBySide) -> Motion:
+def motion_of(shown: SideBySide) -> Moving:
     """The motion at instants of equal distance, each as of the sample next to it; nan in holes."""
     time = shown.time
     period = float(np.median(np.diff(time)))
@@ -69,7 +68,7 @@ def motion_of(shown: SideBySide) -> Motion:
     known = np.abs(time[nearest] - instants) <= 0.75 * max(float(step), period)
     ghost, apart = (np.where(known, values[nearest], np.nan) for values in (shown.ghost, shown.apart))
     low, high = _range(np.concatenate([shown.ghost, shown.position]))
-    return Motion(
+    return Moving(
         title="The axis.",
         alternative=f"{shown.simulated_is} The ghost is the motion {shown.ghost_is}.",
         turns=shown.kind.turns,
@@ -105,7 +104,7 @@ def _packed(values: Array) -> str:
 def _graph(shown: SideBySide) -> TimeGraph:
     kind = shown.kind
     signals = [
-        Measured(label, unit, shown.time, ghost, [ghost - model], name=shown.ghost_is)
+        Plotted(label, unit, shown.time, ghost, [ghost - model], name=shown.ghost_is)
         for label, unit, ghost, model in (
             ("speed", kind.speed_unit, shown.ghost_velocity, shown.velocity),
             ("position", kind.length_unit, shown.ghost, shown.position),

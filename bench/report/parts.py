@@ -1,4 +1,4 @@
-"""Tables that several pages have: parameters, checks, recordings; and what a page rests on."""
+"""Parts that documents share: parameters, recordings, checks, and what a result rests on."""
 
 from __future__ import annotations
 
@@ -12,38 +12,40 @@ from bench.fit.estimate import Alone
 from bench.fit.parameter import Parameter
 from bench.gate.check import Check
 from bench.names import words
-from bench.report.page.blocks import Column, Points, Section, Series, Table
-from bench.report.page.numbers import interval, number, unit_text
+from bench.report.document import Points, Section, Series, Table, table
+from bench.report.numbers import interval, number, unit_text
 
 
-def effort_word(unit: str) -> str:
-    """What an effort in a unit is: torque, force, current or voltage."""
-    return {"N*m": "torque", "N": "force", "A": "current", "V": "voltage"}.get(unit, "effort")
+def parameters_table(
+    caption: str, parameters: Mapping[str, Parameter], truth: Mapping[str, float] | None = None
+) -> Table:
+    """Parameters with their intervals of 95 %; beside the truth and the error where it is known.
 
-
-def coordinate_word(coordinate: str, unit: str) -> str:
-    """What a coordinate of the gap is called on an axis; the current is the torque where no current was recorded."""
-    labels = {"current": effort_word(unit), "reversal": "time since reversal"}
-    return labels.get(coordinate, coordinate)
-
-
-def parameters_table(caption: str, parameters: Mapping[str, Parameter]) -> Table:
-    """Parameters with their intervals of 95 %."""
-    columns = (
-        Column(heading="quantity"),
-        Column(heading="value ± half interval (95 %)", number=True),
-        Column(heading="unit"),
-    )
-    rows = tuple(
-        (words(name), interval(found, unit=False), unit_text(found.unit)) for name, found in parameters.items()
-    )
-    return Table(caption=caption, columns=columns, rows=rows)
+    Args:
+        caption: what they are.
+        parameters: by name.
+        truth: true values by the parameters' names, in their units.
+    """
+    rows = []
+    for name, found in parameters.items():
+        known = truth.get(name) if truth else None
+        compared = (
+            (number(known, digits=5), f"{found.value / known - 1.0:+.3%}".replace("-", "−")) if known else ("", "")
+        )
+        beside = compared if truth else ()
+        rows.append((words(name), interval(found, unit=False), *beside, unit_text(found.unit)))
+    beside = ("truth>", "error>") if truth else ()
+    return table(caption, ("quantity", "value ± half interval (95 %)>", *beside, "unit"), rows)
 
 
 def recordings_table(recordings: Sequence[Alone], between: Mapping[str, Between], units: Mapping[str, str]) -> Table:
-    """What each of several recordings tells alone, and where the next one is to be expected."""
-    columns = [Column(heading="recording")]
-    columns += [Column(heading=f"{words(name)} / {unit_text(units[name])}", number=True) for name in between]
+    """What each of several recordings tells alone, and where the next one is to be expected.
+
+    Args:
+        recordings: with what each determines alone.
+        between: how they differ, by name of a quantity.
+        units: of these quantities.
+    """
     rows = [
         (
             Path(alone.origin).name,
@@ -53,7 +55,8 @@ def recordings_table(recordings: Sequence[Alone], between: Mapping[str, Between]
     ]
     following = [spread.predictive95 for spread in between.values()]
     rows.append(("the next one (95 %)", *(f"{number(low)} to {number(high)}" for low, high in following)))
-    return Table(caption="Each recording alone", columns=tuple(columns), rows=tuple(rows))
+    headings = (f"{words(name)} / {unit_text(units[name])}>" for name in between)
+    return table("Each recording alone", ("recording", *headings), rows)
 
 
 def noise_band(x: Sequence[float], floor: float) -> Series:
@@ -66,18 +69,17 @@ def checks_section(checks: Sequence[Check], warnings: Sequence[str]) -> Section:
     """What was checked before anything was fitted, and what a user should know."""
     applicable = [check for check in checks if check.status != "not_applicable"]
     advised = any(check.advice and check.status in ("warn", "fail") for check in applicable)
-    rows = tuple(
+    rows = (
         (words(check.name), words(check.status), check.found, *([check.advice or ""] if advised else []))
         for check in applicable
     )
-    marked = tuple(k for k, check in enumerate(applicable) if check.status in ("warn", "fail"))
-    texts = [Column(heading=heading, prose=True) for heading in ("found", *(["advice"] if advised else []))]
-    columns = (Column(heading="check"), Column(heading="status"), *texts)
+    marked = (k for k, check in enumerate(applicable) if check.status in ("warn", "fail"))
     passed = sum(check.status == "pass" for check in applicable)
     caption = f"{passed} of {len(applicable)} checks of the recording passed before anything was fitted"
-    table = Table(caption=caption, columns=columns, rows=rows, marked=marked)
+    headings = ("check", "status", "found~", *(["advice~"] if advised else []))
     notes = (Points(items=tuple(warnings)),) if warnings else ()
-    return Section(key="checks", heading="Checks and warnings", blocks=(*notes, table))
+    blocks = (*notes, table(caption, headings, rows, marked))
+    return Section(key="checks", heading="Checks and warnings", blocks=blocks, detail=True)
 
 
 def origin(provenance: Mapping[str, Any] | None) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Curves over time as a page holds them: lowest and highest value of each interval, in 16 bits.
+"""Signals over time as a document holds them: lowest and highest value of each interval, in 16 bits.
 
 A page draws at most a few intervals per pixel, so what lies between lowest and highest of an interval would not show.
 Signals of unlike rows (every sample, rows of a torque balance) come on one grid: one time axis for all.
@@ -8,13 +8,17 @@ from __future__ import annotations
 
 import base64
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.report.page.scripted import Samples
+from bench.report.document import Samples, TimeCurve, TimeGraph, TimePanel
+from bench.report.numbers import unit_text
+
+Values = NDArray[np.floating]
 
 #: Numbers that a page holds of its graphs: FEW where samples are few, then MORE for each of them, at most MOST. A
 #: number takes 2.7 bytes: that is 0.7 MB for 10 s at 1 kHz, and 3.7 MB for ten million samples.
@@ -62,7 +66,7 @@ class Grid:
         found = np.rint((time - self.start) / self.step).astype(np.int64)
         return np.clip(found, 0, self.count - 1)
 
-    def samples(self, places: NDArray[np.int64], values: NDArray[np.floating]) -> Samples:
+    def samples(self, places: NDArray[np.int64], values: Values) -> Samples:
         """A curve on the grid: values (n,) at ascending places (n,); nan is a hole."""
         known = np.isfinite(values)
         places, values = (places, values) if known.all() else (places[known], values[known])
@@ -94,3 +98,79 @@ def unpacked(samples: Samples) -> tuple[Array, Array]:
         steps = np.frombuffer(base64.b64decode(text), dtype="<i2").astype(np.float64)
         found.append(np.where(steps == NOTHING, math.nan, samples.offset + samples.scale * steps))
     return found[0], found[1]
+
+
+@dataclass(frozen=True)
+class Plotted:
+    """A signal and what each of several models leaves of it.
+
+    Attributes:
+        label, unit: of it.
+        time: s - (n,).
+        values: as measured (n,).
+        left: measured less modelled, for each model (n,); None where it says nothing.
+        modelled: what a model's signal is called.
+        apart: whether what is left has a panel of its own, on its own scale.
+        name: what the values are called.
+    """
+
+    label: str
+    unit: str
+    time: Array
+    values: Values
+    left: Sequence[Values | None] = ()
+    modelled: str = "simulated"
+    apart: bool = True
+    name: str = "measured"
+
+    @property
+    def shown(self) -> list[tuple[int, Values]]:
+        """Models that say something."""
+        return [(k, left) for k, left in enumerate(self.left) if left is not None and np.isfinite(left).any()]
+
+    @property
+    def curves(self) -> int:
+        """How many curves it takes."""
+        return 1 + (2 if self.apart else 1) * len(self.shown)
+
+
+def time_graph(
+    title: str,
+    alternative: str,
+    time: Array,
+    signals: Sequence[Plotted],
+    choices: Sequence[str] = (),
+    part: float = 1.0,
+) -> TimeGraph:
+    """Signals over one time axis.
+
+    Args:
+        title, alternative: of the graph.
+        time: of the recording - s - (n,).
+        signals: from top to bottom.
+        choices: names of the models.
+        part: of what a page may hold that this graph may take.
+    """
+    grid = Grid.of(time, sum(signal.curves for signal in signals), part)
+    panels: list[TimePanel] = []
+    for signal in signals:
+        panels += _panels(signal, grid, choices)
+    found = {"start": grid.start, "step": grid.step, "count": grid.count}
+    return TimeGraph(title=title, alternative=alternative, choices=tuple(choices), panels=tuple(panels), **found)
+
+
+def _panels(signal: Plotted, grid: Grid, choices: Sequence[str]) -> list[TimePanel]:
+    places, unit = grid.places(signal.time), unit_text(signal.unit)
+    curves = [TimeCurve(name=signal.name, role="measured", choice=None, samples=grid.samples(places, signal.values))]
+    rest = []
+    for k, left in signal.shown:
+        samples = grid.samples(places, signal.values - left)
+        curves.append(TimeCurve(name=signal.modelled, role="model", choice=k, samples=samples))
+        if signal.apart:
+            name = choices[k] if k < len(choices) else "left"
+            rest.append(TimeCurve(name=name, role="left", choice=k, samples=grid.samples(places, left)))
+    found = [TimePanel(label=signal.label, unit=unit, curves=tuple(curves))]
+    if rest:
+        label = f"{signal.label}, {signal.name} less {signal.modelled}"
+        found.append(TimePanel(label=label, unit=unit, curves=tuple(rest), first=True))
+    return found

@@ -1,4 +1,4 @@
-"""A page as HTML: one file that opens without any other and without a network, or beside one script file for many."""
+"""A document as HTML: one file that opens without any other and without a network, or beside a script file for many."""
 
 from __future__ import annotations
 
@@ -13,31 +13,29 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from bench.names import plain
-from bench.report.page.blocks import File, Page
-from bench.report.page.chart import drawn
-from bench.report.page.intervals import laid
-from bench.report.page.rail import ruler
-from bench.report.page.scripted import Motion, TimeGraph
+from bench.report.document import Document, File, Moving, TimeGraph
+from bench.report.drawing import drawn, laid, rail
 
 
-def html(page: Page, script: str | None = None) -> str:
-    """The page.
+def html(document: Document, script: str | None = None) -> str:
+    """The page of a document.
 
     Args:
-        page: what it says.
+        document: what it says.
         script: address, as seen from the page, of the script file that it shares with others; inside of it without.
     """
-    blocks = [block for section in page.sections for block in section.blocks]
-    lively = any(isinstance(block, TimeGraph | Motion) for block in blocks)
+    blocks = [block for section in document.sections for block in section.blocks]
+    lively = any(isinstance(block, TimeGraph | Moving) for block in blocks)
+    inside = program() if lively and script is None else None
     return (
         _environment()
         .get_template("page.html.j2")
         .render(
-            page=page,
-            style=Markup(style()),
-            script=Markup(program()) if lively and script is None else None,
+            page=document,
+            style=Markup(f"{_asset('uplot', 'uPlot.min.css')}\n{_asset('assets', 'page.css')}"),
+            script=None if inside is None else Markup(inside),
             shared=script if lively else None,
-            policy=_policy(program() if lively and script is None else None),
+            policy=_policy(inside),
         )
     )
 
@@ -48,23 +46,18 @@ def program() -> str:
     return "\n".join((_asset("uplot", "uPlot.iife.min.js"), *own))
 
 
-def style() -> str:
-    """Style sheets of uPlot and of the page."""
-    return _asset("uplot", "uPlot.min.css") + "\n" + _asset("assets", "page.css")
-
-
 @cache
 def _asset(*parts: str) -> str:
-    return files("bench.report.page").joinpath(*parts).read_text(encoding="utf-8")
+    return files("bench.report").joinpath("page", *parts).read_text(encoding="utf-8")
 
 
 @cache
 def _environment() -> Environment:
     found = Environment(
-        loader=PackageLoader("bench.report.page"), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True, finalize=_shown,
+        loader=PackageLoader("bench.report", "page/templates"), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True, finalize=_shown,
     )  # fmt: skip
-    found.filters |= {"data": _data, "link": _link, "drawn": drawn, "laid": laid, "ruler": ruler}
+    found.filters |= {"data": _data, "link": _link, "drawn": drawn, "laid": laid, "rail": rail}
     return found
 
 
@@ -73,7 +66,7 @@ def _shown(value: Any) -> Any:  # noqa: ANN401 - whatever a template prints
     return plain(value) if type(value) is str else value
 
 
-def _data(graph: TimeGraph | Motion) -> Markup:
+def _data(graph: TimeGraph | Moving) -> Markup:
     """A graph or a motion as JSON inside of a script element, which no text in it can end."""
     text = json.dumps(graph.model_dump(), ensure_ascii=True, separators=(",", ":"))
     for character in "<>&":

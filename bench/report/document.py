@@ -1,0 +1,442 @@
+"""A result as a document: a headline, answers, and sections of text, tables, charts and files. It knows no renderer.
+
+Every command makes one document of its result, in one file of `bench/report`. `bench.report.html`, `terminal`,
+`markdown` and `figures` show it, and know no result. It is data, stored beside its page, which can be made anew of it
+(`bench report`). All text in it is text: a name from a file is shown, whatever it holds, and never obeyed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
+
+from bench.arrays import Array
+
+SCHEMA = "bench.page/1"
+
+#: How a headline is meant: all is well, something is left to do, or the answer is no.
+Tone = Literal["sure", "open", "refused"]
+#: What something drawn stands for: what was measured, a model, what is left, noise, or what comes first; and four more.
+Colour = Literal["ink", "model", "left", "floor", "first", "violet", "ochre", "blue", "red"]
+#: Of the curves of a chart that stand for nothing of these, in their order.
+COLOURS: tuple[Colour, ...] = ("ink", "model", "left", "violet", "ochre", "blue", "red", "first")
+#: How many times slower than it was a motion plays.
+Slowed = Literal[1, 2, 5, 10, 20, 50, 100]
+#: How columns of a table are set, by the last character of their headings in `table`.
+SET = {">": {"number": True}, "~": {"prose": True}}
+
+
+class Part(BaseModel):
+    """A part of a document: frozen, and an unknown key in it is an error."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Paragraph(Part):
+    """A paragraph of text."""
+
+    kind: Literal["paragraph"] = "paragraph"
+    text: str
+
+
+class Points(Part):
+    """A list of short texts."""
+
+    kind: Literal["points"] = "points"
+    items: tuple[str, ...]
+
+
+class Heading(Part):
+    """Of a column of a table.
+
+    Attributes:
+        heading: its text.
+        number: whether the column holds numbers, which are set to the right.
+        prose: whether it holds sentences, which need room.
+    """
+
+    heading: str
+    number: bool = False
+    prose: bool = False
+
+
+class Table(Part):
+    """A table.
+
+    Attributes:
+        caption: what it tells.
+        columns, rows: of it; the first cell of a row names it.
+        marked: rows to be noticed, by their numbers.
+    """
+
+    kind: Literal["table"] = "table"
+    caption: str
+    columns: tuple[Heading, ...]
+    rows: tuple[tuple[str, ...], ...]
+    marked: tuple[int, ...] = ()
+
+
+def table(caption: str, headings: Sequence[str], rows: Iterable[Iterable[str]], marked: Iterable[int] = ()) -> Table:
+    """A table.
+
+    Args:
+        caption: what it tells.
+        headings: of the columns; `>` behind one sets its cells to the right, as numbers are, `~` gives sentences room.
+        rows: their cells.
+        marked: numbers of the rows to be noticed.
+    """
+    columns = tuple(
+        Heading(heading=one[:-1], **SET[one[-1]]) if one[-1:] in SET else Heading(heading=one) for one in headings
+    )
+    return Table(caption=caption, columns=columns, rows=tuple(map(tuple, rows)), marked=tuple(marked))
+
+
+class Series(Part):
+    """What is drawn into a chart.
+
+    Attributes:
+        name: of it, for the legend.
+        style: dots, large ones or rings; a line, full, dashed, dotted or wide; or a band between `low` and `high`.
+        colour: by what it stands for.
+        x, y: points (b,); `y` is () of a band.
+        low, high: of a band, or of an interval around each dot (b,); () without.
+    """
+
+    name: str
+    style: Literal["dots", "large dots", "rings", "line", "dashes", "dotted", "wide", "band"]
+    colour: Colour
+    x: tuple[float, ...]
+    y: tuple[float, ...] = ()
+    low: tuple[float, ...] = ()
+    high: tuple[float, ...] = ()
+
+
+def series(
+    name: str,
+    style: Literal["dots", "large dots", "rings", "line", "dashes", "dotted", "wide", "band"],
+    colour: Colour,
+    x: Array,
+    y: Array | None = None,
+    bounds: tuple[Array, Array] | None = None,
+) -> Series:
+    """A series of arrays: points `x`, `y` (b,), and what lies below and above of each (b,)."""
+    found = {key: tuple(map(float, values)) for key, values in (("x", x), ("y", y)) if values is not None}
+    low, high = ((), ()) if bounds is None else (tuple(map(float, bound)) for bound in bounds)
+    return Series(name=name, style=style, colour=colour, low=low, high=high, **found)
+
+
+class Panel(Part):
+    """One pair of axes of a chart.
+
+    Attributes:
+        x_label, x_unit: of the horizontal one.
+        note: that stands in its corner.
+        series: that are drawn into it.
+        y_label: of the vertical one with its unit, where it is no other panel's.
+        log: whether both are logarithmic.
+    """
+
+    x_label: str
+    x_unit: str = ""
+    note: str = ""
+    series: tuple[Series, ...]
+    y_label: str = ""
+    log: bool = False
+
+
+class Chart(Part):
+    """Panels of points and lines over anything; drawn without a script.
+
+    Panels stand beside each other and share one y scale; those that have y labels stand one above the other, with
+    a scale each.
+
+    Attributes:
+        title: of the chart.
+        alternative: what it shows, in words.
+        y_label, y_unit: of all panels.
+        panels: of it.
+    """
+
+    kind: Literal["chart"] = "chart"
+    title: str
+    alternative: str
+    y_label: str = ""
+    y_unit: str = ""
+    panels: tuple[Panel, ...]
+
+    @property
+    def stacked(self) -> bool:
+        """Whether its panels stand one above the other."""
+        return any(panel.y_label for panel in self.panels)
+
+
+class Span(Part):
+    """A row of intervals: a value and its bounds.
+
+    Attributes:
+        name: of it.
+        colour: by what it stands for, as of a series.
+        value, low, high: of it, low <= value <= high.
+    """
+
+    name: str
+    colour: Colour
+    value: float
+    low: float
+    high: float
+
+
+class Intervals(Part):
+    """Intervals below each other on one scale, a row each (a forest plot); drawn without a script.
+
+    Attributes:
+        title: of the chart.
+        alternative: what it shows, in words.
+        label, unit: of the scale.
+        right: values between which all is as it should be: a band behind all rows, or a line.
+        limits: of the scale; what lies beyond is drawn at its end, as a ring.
+        spans: from top to bottom.
+        log: whether the scale is logarithmic.
+    """
+
+    kind: Literal["intervals"] = "intervals"
+    title: str
+    alternative: str
+    label: str
+    unit: str = ""
+    right: tuple[float, float]
+    limits: tuple[float, float]
+    spans: tuple[Span, ...]
+    log: bool = False
+
+
+class HeatMap(Part):
+    """Counts as a table whose cells are coloured by their share of the row; drawn without a script.
+
+    Attributes:
+        caption: what it tells.
+        corner: what rows are.
+        rows, columns: headings.
+        counts: a row each; zero is left blank. All should lie on the diagonal, which is framed.
+    """
+
+    kind: Literal["heat"] = "heat"
+    caption: str
+    corner: str
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    counts: tuple[tuple[int, ...], ...]
+
+
+class Samples(Part):
+    """A curve on the grid of its graph, in 16 bits; see `bench.report.over_time`.
+
+    Attributes:
+        offset, scale: a value is offset + scale*number.
+        low, high: numbers in base 64; `high` is None where one value stands for each interval.
+    """
+
+    offset: float
+    scale: float
+    low: str
+    high: str | None
+
+
+class TimeCurve(Part):
+    """A curve of a graph over time.
+
+    Attributes:
+        name: of it.
+        role: how it is drawn: what was measured, what a model makes, or what a model leaves.
+        choice: shown where this one of the graph's choices is made; None always.
+        samples: of it.
+    """
+
+    name: str
+    role: Literal["measured", "model", "left"]
+    choice: int | None
+    samples: Samples
+
+
+class TimePanel(Part):
+    """Curves over one y axis; `first`: whether those of the first choice stay in sight beside another one's."""
+
+    label: str
+    unit: str
+    curves: tuple[TimeCurve, ...]
+    first: bool = False
+
+
+class TimeGraph(Part):
+    """Panels over one time axis that zoom, pan and hover together.
+
+    Attributes:
+        title: of the graph.
+        alternative: what it shows, in words.
+        start, step, count: of the grid of its curves - s.
+        choices: models to choose from, the last one first in sight.
+        panels: from top to bottom.
+    """
+
+    kind: Literal["time"] = "time"
+    title: str
+    alternative: str
+    start: float
+    step: float = Field(gt=0.0)
+    count: int = Field(gt=0)
+    choices: tuple[str, ...] = ()
+    panels: tuple[TimePanel, ...]
+
+
+class Moving(Part):
+    """An axis in motion, with the one it is compared with as a ghost: a disk, or a slide on its rail.
+
+    Attributes:
+        title: of the drawing.
+        alternative: what it shows, in words.
+        turns: whether the axis does.
+        unit: of its position.
+        ghost: what the ghost is.
+        start, step, count: of the instants - s.
+        low, high: between which it is drawn, where it does not turn.
+        slowed: how many times slower than the motion it plays at first.
+        position, apart: of the ghost, and of the model less the ghost: 32-bit floats in base 64, nan where unknown.
+    """
+
+    kind: Literal["motion"] = "motion"
+    title: str
+    alternative: str
+    turns: bool
+    unit: str
+    ghost: str
+    start: float
+    step: float = Field(gt=0.0)
+    count: int = Field(gt=1)
+    low: float
+    high: float
+    slowed: Slowed = 1
+    position: str
+    apart: str
+
+
+class File(Part):
+    """A file to take along: inside of the page, and beside it in the folder of a command.
+
+    Attributes:
+        name: under which it is saved.
+        about: what it is.
+        media: its type.
+        content: its text.
+    """
+
+    name: str
+    about: str
+    media: str
+    content: str
+
+
+class Downloads(Part):
+    """Files to take along."""
+
+    kind: Literal["downloads"] = "downloads"
+    files: tuple[File, ...]
+
+
+class Neighbour(Part):
+    """A file in the folder of the page, by its name; `about`: what it is."""
+
+    name: str = Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$")
+    about: str
+
+
+class Neighbours(Part):
+    """Links to files beside the page."""
+
+    kind: Literal["neighbours"] = "neighbours"
+    files: tuple[Neighbour, ...]
+
+
+AnyPart = Annotated[
+    Paragraph | Points | Table | TimeGraph | Moving | Chart | Intervals | HeatMap | Downloads | Neighbours,
+    Field(discriminator="kind"),
+]
+
+
+class Section(Part):
+    """A section under a heading.
+
+    Attributes:
+        key: its anchor on the page.
+        heading: of it.
+        blocks: its parts.
+        detail: whether it is left to the page: a terminal does not show it.
+    """
+
+    key: str = Field(pattern=r"^[a-z][a-z0-9-]*$")
+    heading: str
+    blocks: tuple[AnyPart, ...]
+    detail: bool = Field(default=False, exclude=True)
+
+
+class Picture(Part):
+    """A figure for paper.
+
+    Attributes:
+        name: of its file, without ending.
+        title: above it.
+        rows: what is drawn from top to bottom, beside each other in a row.
+    """
+
+    name: str
+    title: str
+    rows: tuple[tuple[Table | Chart | Intervals | HeatMap | TimeGraph, ...], ...]
+
+
+def _from_list(given: Any) -> Any:  # noqa: ANN401 - whatever a file holds
+    """Questions with their answers, as a file lists them."""
+    listed = isinstance(given, list) and all(
+        isinstance(one, dict) and {*one} == {"question", "answer"} for one in given
+    )
+    return {one["question"]: one["answer"] for one in given} if listed else given
+
+
+Answers = Annotated[
+    Mapping[str, str],
+    BeforeValidator(_from_list),
+    PlainSerializer(lambda answers: [{"question": key, "answer": value} for key, value in answers.items()]),
+]
+
+
+class Document(Part):
+    """A result.
+
+    Attributes:
+        title: of the window.
+        subject: what it is about: rig and recordings.
+        verdict: the headline, a sentence.
+        tone: of it.
+        answers: what a reader wants to know first, by question.
+        sections: the rest.
+        origin: version and digests, so that anybody can tell what it rests on.
+        pictures: figures for paper, which are no part of the page.
+        warnings: what a user should know before relying on it, for standard error; the page has them in a section.
+    """
+
+    page: Literal["bench.page/1"] = SCHEMA
+    title: str
+    subject: str
+    verdict: str
+    tone: Tone
+    answers: Answers
+    sections: tuple[Section, ...]
+    origin: tuple[str, ...] = ()
+    pictures: tuple[Picture, ...] = Field(default=(), exclude=True)
+    warnings: tuple[str, ...] = Field(default=(), exclude=True)
+
+    @property
+    def files(self) -> tuple[File, ...]:
+        """Files to take along."""
+        blocks = [block for section in self.sections for block in section.blocks]
+        return tuple(file for block in blocks if isinstance(block, Downloads) for file in block.files)

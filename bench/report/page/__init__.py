@@ -1,1 +1,0 @@
-"""Pages: building blocks of a report, and the one file that shows them without any other."""

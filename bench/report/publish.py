@@ -1,0 +1,107 @@
+"""Where a document goes: a page by itself, or a folder with page, data, figures and the files to take along."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from urllib.parse import quote
+
+from pydantic import ValidationError
+
+from bench.errors import InputError
+from bench.files import held, read_text, write_text
+from bench.names import short
+from bench.report.document import Document
+from bench.report.html import html, program
+
+HTML, DATA = "report.html", "report.json"
+
+
+def write_document(
+    folder: Path, document: Document, ending: str = ".png", beside: Mapping[str, str] | None = None
+) -> list[Path]:
+    """Write all of a document into a folder, which is made if it is not there.
+
+    Args:
+        folder: to write to.
+        document: whose page, data, pictures and files to take along are written.
+        ending: of the pictures, one of `bench.report.figures.FORMATS`.
+        beside: more files by their names, which the page does not hold.
+
+    Returns:
+        Paths written.
+
+    Raises:
+        InputError: the folder cannot be written to.
+    """
+    texts = {file.name: file.content for file in document.files} | dict(beside or {})
+    with held(folder):
+        write_text(folder / DATA, document.model_dump_json() + "\n")
+        write_text(folder / HTML, html(document))
+        written = [folder / HTML, folder / DATA]
+        if document.pictures:
+            from bench.report.figures import drawn, save  # matplotlib: 0.35 s
+
+            for picture in document.pictures:
+                written.append(folder / f"{picture.name}{ending}")
+                save(drawn(picture), written[-1])
+        for name, text in texts.items():
+            written.append(folder / name)
+            write_text(written[-1], text)
+    return written
+
+
+def write_html(path: Path, document: Document) -> None:
+    """Write the page of a document alone into a file that a person named.
+
+    Raises:
+        InputError: another ending than .html, or a place that cannot be written to.
+    """
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise InputError(path, f"found the ending '{path.suffix}'", "allowed: .html")
+    write_text(path, html(document))
+
+
+def rebuild(folders: list[Path], script: Path | None = None) -> list[Path]:
+    """Regenerate the pages of folders from their data.
+
+    Args:
+        folders: with a `report.json` each.
+        script: file to write that all of them share; each holds its own without.
+
+    Returns:
+        Paths written.
+
+    Raises:
+        InputError: a folder without a page's data, or data of something else.
+    """
+    documents = {folder: read_document(folder / DATA) for folder in folders}
+    written = []
+    if script is not None:
+        write_text(script, program())
+        written.append(script)
+    for folder, document in documents.items():
+        shared = None if script is None else os.path.relpath(script.resolve(), folder.resolve())
+        with held(folder):
+            write_text(folder / HTML, html(document, None if shared is None else quote(Path(shared).as_posix())))
+        written.append(folder / HTML)
+    return written
+
+
+def read_document(path: Path) -> Document:
+    """The document of a `report.json`.
+
+    Raises:
+        InputError: no such file, or one that holds none.
+    """
+    if path.parent.is_dir() and not path.exists():
+        raise InputError(path.parent, f"found no {DATA}", "allowed: a folder that --out of a command wrote")
+    text = read_text(path, "the data of a page")
+    try:
+        return Document.model_validate_json(text)
+    except ValidationError as error:
+        detail = error.errors()[0]
+        key = ".".join(str(part) for part in detail["loc"]) or "page"
+        found = f"found {short(repr(detail['input']), 60)}"
+        raise InputError(f"{path}: {key}", found, f"allowed: {detail['msg'][0].lower()}{detail['msg'][1:]}") from error
