@@ -7,7 +7,7 @@ from xdist.scheduler import LoadScopeScheduling
 
 #: Files that share a fixture of the session, by its name; every other file goes its own way.
 TOGETHER = {
-    "truths": tuple(f"tests/effects/test_{name}.py" for name in ("agreement", "follow", "model_file", "track_effects")),
+    "truths": tuple(f"tests/effects/test_{name}.py" for name in ("agreement", "follow", "model_file", "soft_tracking")),
     "lab": ("tests/course/",),
 }
 

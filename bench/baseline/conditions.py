@@ -8,7 +8,7 @@ import numpy as np
 
 from bench.arrays import rms
 from bench.comparison.difference import Measured
-from bench.plant.track import measured_velocity
+from bench.plant.measured_motion import measured_velocity
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

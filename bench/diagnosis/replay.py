@@ -14,9 +14,9 @@ from bench.errors import InputError, UndeterminedError
 from bench.fit.layout import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
+from bench.plant.measured_motion import measured_position, measured_velocity
 from bench.plant.model_file import load_model, read_table
-from bench.plant.track import measured_position, measured_velocity
-from bench.plant.track_effects import Held, track_motion
+from bench.plant.soft_tracking import Held, track
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -98,7 +98,8 @@ def replay(path: str | Path, trace: Trace, rig: Rig) -> Replay:
         happening = balance.recording in (EVERY, trace.origin)
         model = stored.model if happening else without_events(stored.model)
         bandwidth = holding_bandwidth(model, float(np.abs(measured[1]).max()))
-        position, velocity = track_motion(Held(model, trace, effort, stored.misalignment), bandwidth)
+        tracked = track(Held(model, trace, effort, stored.misalignment), bandwidth)
+        position, velocity = tracked.position, tracked.velocity
     warnings = []
     if str(table.get("name", rig.name)) != rig.name:
         warnings.append(f"the model is of '{table['name']}', the rig file of '{rig.name}'")

@@ -7,7 +7,8 @@
 
 The joint is one that `bench export` has put the model onto, which carries what is native. Before each step effects set
 the joint's dry friction (`dof_frictionloss`), its added inertia (`dof_armature`) and a torque (`qfrc_applied`), from
-position, velocity, time and the torque of its actuators, as they do in the bench's own plant (`bench.plant.ticked`).
+position, velocity, time and the torque of its actuators, as they do in the bench's own plant
+(`bench.plant.stepped_effects`).
 """
 
 from __future__ import annotations
@@ -24,9 +25,9 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.errors import InputError
+from bench.plant.joints import BatchJoints, SimulationJoint
 from bench.plant.model_file import StoredModel, load_model
-from bench.plant.seat import BatchSeat, ModelSeat
-from bench.plant.ticked import TickedEffects
+from bench.plant.stepped_effects import SteppedEffects
 
 #: Integrators whose step is one evaluation; a Runge-Kutta step has four, between which effects would have to act.
 ONE_STAGE = (
@@ -92,7 +93,7 @@ class Effects:
         running = self._running
         if running is None or running.data is not data or running.model is not model or data.time < running.time:
             if running is not None:
-                running.seat.leave()
+                running.joint.restore()
             self._running = running = _Running(model, data, self.stored, self.joint)
         return running
 
@@ -123,13 +124,13 @@ class Copies:
         if len(ratios) > 1:
             raise InputError("models", f"found gear ratios of {sorted(ratios)}", "allowed: copies of one joint")
         self._batch, self._ratio = batch, ratios.pop()
-        seat, here = BatchSeat(batch, joint, self._ratio, _bristles(batch.model, joint)), batch.model.joint(joint)
+        joints, here = BatchJoints(batch, joint, self._ratio, _bristles(batch.model, joint)), batch.model.joint(joint)
         self._position = batch.bind("qpos")[:, here.qposadr[0]]
         self._velocity = batch.bind("qvel")[:, here.dofadr[0]]
         self._drive = Drive.of(batch.model, joint, self._ratio)
         self._control, self._force = batch.bind("ctrl"), batch.bind("actuator_force")
-        self._time, self._seat = batch.bind("time"), seat
-        self._ticked = TickedEffects(seat, [each.model for each in models], self._ratio * self._velocity)
+        self._time, self._joints = batch.bind("time"), joints
+        self._ticked = SteppedEffects(joints, [each.model for each in models], self._ratio * self._velocity)
 
     def step(self) -> None:
         """Advance all copies by one step with the effects."""
@@ -138,7 +139,7 @@ class Copies:
         demand = self._drive.torque(self._control, self._force)
         time = np.asarray(self._time).reshape(-1)
         _, torque = self._ticked.act(time, self._ratio * self._position, self._ratio * self._velocity, demand)
-        self._seat.add_torque(torque - demand)
+        self._joints.add_torque(torque - demand)
         self._batch.step()
 
 
@@ -200,9 +201,9 @@ class _Running:
         self._ratio, here = stored.mounting.gear_ratio, model.joint(joint)
         self._qpos, self._dof = int(here.qposadr[0]), int(here.dofadr[0])
         self.drive = Drive.of(model, joint, self._ratio)
-        self.seat = ModelSeat(model, data, joint, self._ratio, _bristles(model, joint))
+        self.joint = SimulationJoint(model, data, joint, self._ratio, _bristles(model, joint))
         velocity = self._ratio * float(data.qvel[self._dof])
-        self._ticked = TickedEffects(self.seat, [stored.model], velocity)
+        self._ticked = SteppedEffects(self.joint, [stored.model], velocity)
 
     def prepare(self) -> None:
         """Set the effects for the step that comes."""
@@ -210,7 +211,7 @@ class _Running:
         position, velocity = (self._ratio * float(each) for each in (data.qpos[self._qpos], data.qvel[self._dof]))
         demand = float(self.drive.torque(data.ctrl[None], data.actuator_force[None])[0])
         _, torque = self._ticked.act(data.time, position, velocity, demand)
-        self.seat.add_torque(torque - demand)
+        self.joint.add_torque(torque - demand)
 
 
 def _bristles(model: mujoco.MjModel, joint: str) -> str:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import mujoco
 import numpy as np
 import scipy.optimize
 
@@ -19,8 +18,10 @@ from bench.errors import InputError
 from bench.fit.estimate import Estimate
 from bench.fit.load_inertia import load_inertia
 from bench.fit.regression import identify
-from bench.plant.model import AxisParameters, build_spec
-from bench.plant.track import BANDWIDTH, holding_cascade, holding_model, measured_velocity, step_of, track
+from bench.plant.axis_model import AxisModel
+from bench.plant.measured_motion import measured_velocity
+from bench.plant.model import AxisParameters
+from bench.plant.soft_tracking import BANDWIDTH, Held, track
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -121,18 +122,12 @@ class _Tracking:
         return np.array([estimate[name].value for name in self.names])
 
     def _difference(self, theta: Array, start: Estimate) -> Array:
-        model = _model(theta, self.trace, self.rig, start)
-        return track(model, self.trace, self.effort, start["misalignment"].value) - self.velocity
-
-
-def _model(theta: Array, trace: Trace, rig: Rig, start: Estimate) -> mujoco.MjModel:
-    timestep, _ = step_of(trace)
-    axis = AxisParameters(
-        inertia=theta[0],
-        viscous_friction_coefficient=max(theta[1], 0.0),
-        coulomb_friction=max(theta[2], 0.0),
-        load_torque=theta[3] if theta.size > 3 else 0.0,
-        kind=rig.axis_kind,
-    )
-    inertia = start[rig.axis_kind.parameter(INERTIA)].value
-    return holding_model(build_spec(axis, timestep), holding_cascade(inertia, timestep))
+        axis = AxisParameters(
+            inertia=theta[0],
+            viscous_friction_coefficient=max(theta[1], 0.0),
+            coulomb_friction=max(theta[2], 0.0),
+            load_torque=theta[3] if theta.size > 3 else 0.0,
+            kind=self.rig.axis_kind,
+        )
+        held = Held(AxisModel(axis), self.trace, self.effort, start["misalignment"].value, self._theta(start)[0])
+        return track(held).velocity - self.velocity

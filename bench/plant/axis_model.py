@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TypeVar
 
 import mujoco
 
@@ -16,6 +17,8 @@ from bench.errors import InputError
 from bench.plant.model import AxisParameters, build_spec
 from bench.rig.load import Load
 from bench.rig.rig import Rig
+
+Kind = TypeVar("Kind", bound=Effect)
 
 #: Hooks of electronics and sensing between the effort that is asked for and the one that acts; and with what the drive
 #: sees of the motion, all that it has to do with.
@@ -72,6 +75,10 @@ class AxisModel:
     def of_kind(self, kind: type[Effect]) -> tuple[Present, ...]:
         """Effects that are mechanisms, electronics or sensing."""
         return tuple(present for present in self.effects if isinstance(present.effect, kind))
+
+    def acting(self, kind: type[Kind]) -> list[tuple[Kind, dict[str, float]]]:
+        """The same with the values of their quantities - SI."""
+        return [(p.effect, dict(p.values)) for p in self.effects if isinstance(p.effect, kind)]
 
     @cached_property
     def native(self) -> tuple[Present, ...]:

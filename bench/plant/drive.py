@@ -10,16 +10,21 @@ which does not hold, and serves wherever the limit is not reached.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import mujoco
 import numpy as np
 
 from bench.arrays import Array
+from bench.effects.kinds import Number
 from bench.effects.mjcf import DRIVE
 from bench.errors import InputError
-from bench.plant.references import References
-from bench.plant.rows import abreast
+from bench.plant.closed_loop import ClosedLoop, Controller
+from bench.plant.model import AxisParameters
+from bench.plant.references import References, side_by_side
+from bench.plant.sensing import EncodersSideBySide
+from bench.plant.stepped_effects import per_axis
 from bench.rig.rig import Rig
 
 Values = float | Array
@@ -79,6 +84,11 @@ class FrictionEmulation:
     coulomb_friction: Values
     inertia: Values
 
+    @classmethod
+    def of(cls, parameters: AxisParameters) -> FrictionEmulation:
+        """All the friction of an axis."""
+        return cls(parameters.viscous_friction_coefficient, parameters.coulomb_friction, parameters.inertia)
+
 
 def peak_torque(rig: Rig) -> float:
     """Torque at the motor's peak current - N*m (N on a linear axis); infinite where the rig states none."""
@@ -108,7 +118,7 @@ class CascadeDrive:
         self._speed_demand = _by_ticks(references.velocity + self._position_gain * references.position)
         self._feedforward = _by_ticks(references.feedforward(cascade.inertia_feedforward))
         self._integral: Values = 0.0
-        start = abreast(references.velocity[0])
+        start = per_axis(references.velocity[0])
         self._friction = None if emulation is None else _EmulatedFriction(emulation, period, start)
 
     def tick(self, k: int, position: Values, velocity: Values) -> tuple[Values, Values]:
@@ -130,6 +140,47 @@ class CascadeDrive:
             setpoint = setpoint + (motor - asked)
         self._integral = self._integral + self._integral_step * error * (setpoint == wanted)
         return setpoint, motor
+
+
+@dataclass(frozen=True, eq=False)
+class FollowReferences(Controller):
+    """The drive of one axis along its references; it has of the motion what the axis' encoder sees.
+
+    Attributes:
+        cascade: gains and limit, numbers.
+        references: signals of shape (ticks,).
+        emulation: friction made in software, or None.
+    """
+
+    cascade: Cascade
+    references: References
+    emulation: FrictionEmulation | None = None
+
+    @classmethod
+    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> _Following:
+        """See `Controller`."""
+        return _Following(loops, [each.controller for each in loops if isinstance(each.controller, cls)])
+
+
+class _Following:
+    """Drives of axes side by side."""
+
+    def __init__(self, loops: Sequence[ClosedLoop], drives: Sequence[FollowReferences]) -> None:
+        names = ("position_gain", "velocity_gain", "integral_gain", "inertia_feedforward", "torque_limit")
+        gains = {name: per_axis([float(getattr(drive.cascade, name)) for drive in drives]) for name in names}
+        cascade = Cascade(**gains, control_period=drives[0].cascade.control_period)
+        emulation = None
+        if any(drive.emulation is not None for drive in drives):  # null on axes that have friction in their mechanics
+            null = [FrictionEmulation.of(loop.axis.parameters.frictionless) for loop in loops]
+            made = [drive.emulation or none for drive, none in zip(drives, null, strict=True)]
+            names = tuple(field.name for field in fields(FrictionEmulation))
+            emulation = FrictionEmulation(*(per_axis([float(getattr(one, name)) for one in made]) for name in names))
+        self._drive = CascadeDrive(cascade, side_by_side([drive.references for drive in drives]), emulation)
+        self._encoders = EncodersSideBySide([loop.axis for loop in loops])
+
+    def tick(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
+        """See `Ticking`."""
+        return self._drive.tick(k, *self._encoders.seen(position, velocity))
 
 
 def _by_ticks(values: Array) -> Array:
@@ -178,7 +229,7 @@ def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
 
     With e_v integrated, K_i*integral(e_v) = K_i*(r - q) + K_i*K_p*integral(r - q), so MuJoCo's gains are
     kp = K_v*K_p + K_i, ki = K_i*K_p, kv = K_v. MuJoCo's position leads by half a step (see `bench.plant.model`), which
-    takes kp*T/2 off kv; `pid_controls` sends the position reference ahead alike.
+    takes kp*T/2 off kv; `pid_inputs` sends the position reference ahead alike.
     """
     actuator = spec.actuator(DRIVE)
     kp, kv = _pid_gains(cascade)
@@ -190,7 +241,7 @@ def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
         actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
 
 
-def pid_controls(cascade: Cascade, references: References) -> Array:
+def pid_inputs(cascade: Cascade, references: References) -> Array:
     """Inputs pos, vel, ff of the actuator that `add_pid` makes, for one axis: (ticks, 3)."""
     lead = cascade.control_period / 2.0 * references.velocity
     feedforward = references.feedforward(cascade.inertia_feedforward)

@@ -2,7 +2,7 @@
 
 The references of the recording are read between its samples: velocity by a cubic that is smooth in acceleration,
 position by the integral of that, held to the recorded one. What the drive makes of them is to be compared with what it
-made of them on the axis; see `bench.plant.track_effects` for a model that is held to the recording.
+made of them on the axis; see `bench.plant.soft_tracking` for a model that is held to the recording.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> Followed:
             f"found samples every {trace.sample_period:g} s",
             f"allowed: a multiple of the control period of {cascade.control_period:g} s",
         )
-    plant = Plant(model.parameters, cascade, cascade.control_period, effects=model.effects, winding=model.winding)
+    plant = Plant.of(model, cascade)
     states = reported_states(plant.model, run([plant], [references_of(trace, cascade.control_period, stride)]))
     rows = slice(None, None, stride)
     return Followed(states.position[rows, 0], states.velocity[rows, 0], states.torque[rows, 0])

@@ -7,13 +7,18 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import mujoco
+import numpy as np
 
+from bench.arrays import Array
 from bench.effects.kinds import Friction, Winding
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, winding_of
-from bench.plant.drive import Cascade
+from bench.plant.closed_loop import ClosedLoop, Controller, Listed
+from bench.plant.drive import Cascade, FollowReferences, FrictionEmulation, add_pid, pid_inputs
 from bench.plant.model import AxisParameters
+from bench.plant.native import sense_torque
+from bench.plant.references import References
 from bench.rig.rig import Rig
 
 
@@ -65,6 +70,11 @@ class Plant:
         emulated = rig.simulation.friction == "drive"
         return cls(parameters, cascade, timestep, emulated, tuple(effects), winding_of(rig))
 
+    @classmethod
+    def of(cls, model: AxisModel, cascade: Cascade) -> Plant:
+        """A model under a drive, in steps of the drive's control period."""
+        return cls(model.parameters, cascade, cascade.control_period, effects=model.effects, winding=model.winding)
+
     @cached_property
     def model(self) -> AxisModel:
         """The axis without its drive; friction as the mechanics have it."""
@@ -84,3 +94,31 @@ class Plant:
     def spec(self) -> mujoco.MjSpec:
         """Model of the mechanics."""
         return self.model.spec(self.timestep)
+
+    def native_loop(self, references: References) -> ClosedLoop:
+        """The axis with its drive as MuJoCo's `pid`, which does not hold its integrator while limited."""
+        inputs = Listed(pid_inputs(self.cascade, references))
+        return self._loop(
+            self._with_pid, inputs, self.timestep * np.arange(references.time.size, dtype=np.float64), references
+        )
+
+    def ticked_loop(self, references: References) -> ClosedLoop:
+        """The axis with its drive ticked in Python."""
+        emulation = FrictionEmulation.of(self.parameters) if self.emulated else None
+        drive = FollowReferences(self.cascade, references, emulation)
+        return self._loop(self._mechanics, drive, references.time, references)
+
+    def _loop(self, compiled: mujoco.MjModel, drive: Controller, time: Array, references: References) -> ClosedLoop:
+        start = float(references.position[0]), float(references.velocity[0])
+        return ClosedLoop(self.model, compiled, drive, time, *start, substeps=self.substeps)
+
+    @cached_property
+    def _mechanics(self) -> mujoco.MjModel:
+        return self.spec().compile()
+
+    @cached_property
+    def _with_pid(self) -> mujoco.MjModel:
+        spec = self.spec()
+        add_pid(spec, self.cascade)
+        sense_torque(spec)
+        return spec.compile()

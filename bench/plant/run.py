@@ -1,48 +1,67 @@
-"""Run axes under their drives: native ones as rollouts in C, the others tick by tick on a batch of axes."""
+"""Run axes: those that MuJoCo runs by itself natively, the others tick by tick."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from bench.errors import InputError
+from bench.errors import InputError, SimulationError
+from bench.plant.closed_loop import ClosedLoop
+from bench.plant.mujoco_warnings import silenced
 from bench.plant.native import run_native
 from bench.plant.plant import Plant
 from bench.plant.references import References
-from bench.plant.states import States, abreast
-from bench.plant.ticks import Progress, run_ticks
+from bench.plant.states import DIVERGED, States, side_by_side
+from bench.plant.ticked import Progress, run_ticked
 
 
 def run(plants: Sequence[Plant], references: Sequence[References], progress: Progress | None = None) -> States:
     """Axes under their drives along their references, one each, all over the same ticks.
 
-    Axes that MuJoCo runs natively do so in one rollout; if one reaches its torque limit, where the drive holds its
-    integrator and MuJoCo's does not, it runs again with the others, tick by tick.
+    Axes that MuJoCo runs natively do so; if one reaches its torque limit, where the drive holds its integrator and
+    MuJoCo's does not, it runs again with the others, tick by tick.
 
     Raises:
         InputError: references of another period than the drive's, or drives of different periods.
         SimulationError: a simulation diverged.
     """
     _check_ticks(plants, references)
-    states = [run_native(p, r) if p.native else None for p, r in zip(plants, references, strict=True)]
-    ticked = [i for i, s in enumerate(states) if s is None or _limited(s, plants[i])]
-    columns: list[States | None] = list(states)
-    for alike in _alike(plants, ticked):
-        together = run_ticks([plants[i] for i in alike], [references[i] for i in alike], progress)
-        for column, i in enumerate(alike):
-            columns[i] = together.axis(column)
+    same = {plant: plant for plant in plants}
+    pairs = [(same[plant], motion) for plant, motion in zip(plants, references, strict=True)]
+    native = [k for k, (plant, _) in enumerate(pairs) if plant.native]
+    found = dict(zip(native, run_loops([pairs[k][0].native_loop(pairs[k][1]) for k in native]), strict=True))
+    ticked = [k for k, (plant, _) in enumerate(pairs) if k not in found or _limited(found[k], plant)]
+    loops = [pairs[k][0].ticked_loop(pairs[k][1]) for k in ticked]
+    found |= zip(ticked, run_loops(loops, progress), strict=True)
+    if any(states.diverged for states in found.values()):
+        raise SimulationError(DIVERGED)
     if progress is not None:
         progress(1.0)
-    return abreast([column for column in columns if column is not None])
+    return side_by_side([found[k] for k in range(len(pairs))])
 
 
-def _alike(plants: Sequence[Plant], indices: Sequence[int]) -> list[list[int]]:
-    """Axes grouped by what is built into their models: only such can run side by side."""
-    groups: dict[tuple[str, ...], list[int]] = {}
-    for i in indices:
-        groups.setdefault(plants[i].model.structure, []).append(i)
-    return list(groups.values())
+def run_loops(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> list[States]:
+    """Motion of each loop at its own ticks, nan where it diverged.
+
+    Native ones run on all cores, the others side by side with those that are alike, which costs hardly more than one.
+    """
+    found: dict[int, States] = {}
+    alike: dict[tuple[object, ...], list[int]] = {}
+    for k, loop in enumerate(loops):
+        if not loop.native:
+            alike.setdefault(loop.alike, []).append(k)
+    native = [k for k, loop in enumerate(loops) if loop.native]
+    with silenced():
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            found |= zip(native, pool.map(run_native, (loops[k] for k in native)), strict=True)
+        for group in alike.values():
+            together = run_ticked([loops[k] for k in group], progress)
+            for column, k in enumerate(group):
+                found[k] = together.axis(column, -(-loops[k].ticks // loops[k].every))
+    return [found[k] for k in range(len(loops))]
 
 
 def _check_ticks(plants: Sequence[Plant], references: Sequence[References]) -> None:
@@ -55,4 +74,4 @@ def _check_ticks(plants: Sequence[Plant], references: Sequence[References]) -> N
 
 
 def _limited(states: States, plant: Plant) -> bool:
-    return bool((np.abs(states.torque) >= plant.cascade.torque_limit).any())
+    return not states.diverged and bool((np.abs(states.torque) >= plant.cascade.torque_limit).any())

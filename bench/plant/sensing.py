@@ -9,18 +9,25 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.effects.kinds import Number, Sensing
-from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
-from bench.plant.rows import Rows
 from bench.plant.states import States
+from bench.plant.stepped_effects import EffectOnAxes, on_axes
 
 
-def seen_by_drive(encoders: Sequence[Rows], position: Number, velocity: Number) -> tuple[Number, Number]:
-    """What the drives of axes side by side have of their true motion, (axes,) each."""
-    for rows in encoders:
-        turned, moving = rows.effect.seen(rows.values, rows.of(position), rows.of(velocity))
-        position, velocity = rows.put(position, turned), rows.put(velocity, moving)
-    return position, velocity
+class EncodersSideBySide:
+    """Encoders of axes side by side, as their drives have them."""
+
+    def __init__(self, models: Sequence[AxisModel]) -> None:
+        self._encoders: list[EffectOnAxes] = [
+            found for found in on_axes(models, Sensing) if found.effect.overrides("seen")
+        ]
+
+    def seen(self, position: Number, velocity: Number) -> tuple[Number, Number]:
+        """What the drives have of the axes' true motion - rad (m), rad/s (m/s) - (axes,) each."""
+        for some in self._encoders:
+            turned, moving = some.effect.seen(some.values, some.of(position), some.of(velocity))
+            position, velocity = some.with_these(position, turned), some.with_these(velocity, moving)
+        return position, velocity
 
 
 def reported(model: AxisModel, position: Array, velocity: Array, step: float) -> tuple[Array, Array]:
@@ -31,50 +38,49 @@ def reported(model: AxisModel, position: Array, velocity: Array, step: float) ->
 
 def seen(model: AxisModel, position: Array, velocity: Array) -> tuple[Array, Array]:
     """What the encoder of one axis sees of its true motion, (n,) each, instant by instant."""
-    for present, effect in _pairs(model.of_kind(Sensing)):
-        position, velocity = effect.seen(dict(present.values), position, velocity)
+    for effect, values in model.acting(Sensing):
+        position, velocity = effect.seen(values, position, velocity)
     return position, velocity
 
 
 def filters(model: AxisModel) -> bool:
     """Whether the velocity that is recorded depends on what came before."""
-    return any(effect.overrides("filtered") for _, effect in _pairs(model.of_kind(Sensing)))
+    return any(effect.overrides("filtered") for effect, _ in model.acting(Sensing))
 
 
 def filtered(model: AxisModel, velocity: Array, step: float) -> Array:
     """What is recorded of the velocity that the encoder sees, (n,) at a constant step - s."""
-    for present, effect in _pairs(model.of_kind(Sensing)):
-        velocity = effect.filtered(dict(present.values), velocity, step)
+    for effect, values in model.acting(Sensing):
+        velocity = effect.filtered(values, velocity, step)
     return velocity
 
 
 def true_velocity(model: AxisModel, velocity: Array, step: float) -> Array:
     """Velocity that the encoder saw, from the reported one, (n,): filters undone."""
-    for present, effect in reversed(_pairs(model.of_kind(Sensing))):
-        velocity = effect.unfiltered(dict(present.values), velocity, step)
+    for effect, values in reversed(model.acting(Sensing)):
+        velocity = effect.unfiltered(values, velocity, step)
     return velocity
 
 
 def true_motion(model: AxisModel, position: Array, velocity: Array) -> tuple[Array, Array]:
     """Motion from what the encoder saw of it, (n,) each."""
-    for present, effect in reversed(_pairs(model.of_kind(Sensing))):
-        position, velocity = effect.unseen(dict(present.values), position, velocity)
+    for effect, values in reversed(model.acting(Sensing)):
+        position, velocity = effect.unseen(values, position, velocity)
     return position, velocity
 
 
 def misreads_effort(model: AxisModel) -> bool:
     """Whether the effort that is recorded is not the one that acts."""
-    effects = [effect for _, effect in _pairs(model.of_kind(Sensing))]
-    return any(effect.overrides(hook) for effect in effects for hook in ("acted", "unrecorded"))
+    return any(effect.overrides(hook) for effect, _ in model.acting(Sensing) for hook in ("acted", "unrecorded"))
 
 
 def true_effort(model: AxisModel, effort: Array, since: float, step: float) -> Array:
     """Effort of one axis that acted, from the recorded one, (n,) at a constant step - s - from an instant on - s."""
-    pairs, time = _pairs(model.of_kind(Sensing)), since + step * np.arange(effort.size, dtype=np.float64)
-    for present, effect in reversed(pairs):
-        effort = effect.unrecorded(dict(present.values), effort, step)
-    for present, effect in pairs:
-        effort = effect.acted(dict(present.values), model.axis, effort, time)
+    sensing, time = model.acting(Sensing), since + step * np.arange(effort.size, dtype=np.float64)
+    for effect, values in reversed(sensing):
+        effort = effect.unrecorded(values, effort, step)
+    for effect, values in sensing:
+        effort = effect.acted(values, model.axis, effort, time)
     return effort
 
 
@@ -83,10 +89,6 @@ def reported_states(model: AxisModel, states: States) -> States:
     step = float(states.time[1] - states.time[0])
     position, velocity = reported(model, states.position[:, 0], states.velocity[:, 0], step)
     torque = states.torque[:, 0]
-    for present, effect in _pairs(model.of_kind(Sensing)):
-        torque = effect.recorded(dict(present.values), torque, step)
+    for effect, values in model.acting(Sensing):
+        torque = effect.recorded(values, torque, step)
     return replace(states, position=position[:, None], velocity=velocity[:, None], torque=torque[:, None])
-
-
-def _pairs(sensing: Sequence[Present]) -> list[tuple[Present, Sensing]]:
-    return [(present, present.effect) for present in sensing if isinstance(present.effect, Sensing)]

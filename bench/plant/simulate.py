@@ -19,7 +19,7 @@ from bench.plant.s_curve import MOST_TICKS
 from bench.plant.sensing import reported_states
 from bench.plant.sensors import Sensors
 from bench.plant.states import States
-from bench.plant.ticks import Progress
+from bench.plant.ticked import Progress
 from bench.plant.truth import Truth
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace

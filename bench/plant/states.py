@@ -8,14 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.arrays import Array
-from bench.errors import SimulationError
 
 DIVERGED = "the simulation diverged: lower the drive's gains or its control period"
 
 
 @dataclass(frozen=True)
 class States:
-    """True motion at the drive's ticks, without any sensor; position and velocity are simultaneous.
+    """True motion at a controller's ticks, without any sensor; position and velocity are simultaneous.
 
     Attributes:
         time: s - (ticks,).
@@ -23,9 +22,6 @@ class States:
         velocity: rad/s (m/s) - (ticks, axes).
         torque: set-point from each tick to the next - N*m (N) - (ticks, axes).
         motor_torque: what the motor makes; less the emulated friction - N*m (N) - (ticks, axes).
-
-    Raises:
-        SimulationError: a value is not finite.
     """
 
     time: Array
@@ -34,25 +30,27 @@ class States:
     torque: Array
     motor_torque: Array
 
-    def __post_init__(self) -> None:
-        if not all(np.isfinite(signal).all() for signal in self._signals):
-            raise SimulationError(DIVERGED)
-
     @classmethod
     def of_one(cls, time: Array, position: Array, velocity: Array, torque: Array) -> States:
         """Motion of one axis without emulated friction, from signals of shape (ticks,)."""
         return cls(time, position[:, None], velocity[:, None], torque[:, None], torque[:, None])
 
-    def axis(self, index: int) -> States:
-        """Motion of one axis; signals stay two-dimensional."""
-        return States(self.time, *(signal[:, index : index + 1] for signal in self._signals))
+    def axis(self, index: int, ticks: int | None = None) -> States:
+        """Motion of one axis, over its first ticks; signals stay two-dimensional."""
+        signals = (signal[:ticks, index : index + 1] for signal in self._signals)
+        return States(self.time[:ticks], *signals)
+
+    @property
+    def diverged(self) -> bool:
+        """Whether a value is not finite: runners leave nan where a simulation diverged."""
+        return not all(np.isfinite(signal).all() for signal in self._signals)
 
     @property
     def _signals(self) -> tuple[Array, ...]:
         return self.position, self.velocity, self.torque, self.motor_torque
 
 
-def abreast(states: Sequence[States]) -> States:
+def side_by_side(states: Sequence[States]) -> States:
     """Motions of several axes over one time, as one."""
     signals = (np.concatenate(signal, axis=1) for signal in zip(*(s._signals for s in states), strict=True))
     return States(states[0].time, *signals)

@@ -1,155 +1,122 @@
-"""Effects that MuJoCo does not make by itself: in every step they set friction, inertia and torque of a batch of axes.
-
-They act as at the middle of the step, which keeps the integration second order: MuJoCo's position is there already (see
-`bench.plant.model`), velocity is extrapolated from the last two steps. Friction levels combine as
-
-    forward, backward = (K_0 + sum of excesses +- sum of differences/2)*product of factors, neither below zero,
-
-of which MuJoCo's dry friction takes the mean, so that sticking stays exact, and a torque half of the difference.
-"""
+"""The ticked runner: axes side by side on a batch, their controllers and effects acting between MuJoCo's steps."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
+import mujoco
 import numpy as np
+from mujoco.batch import MODEL_FIELDS, Batch
+from numpy.typing import NDArray
 
-from bench.effects.kinds import Electronics, Friction, Mechanism, Moment, Number, Sensing
-from bench.plant.axis_model import AxisModel
-from bench.plant.rows import Rows, abreast, gather
-from bench.plant.seat import Seat
+from bench.effects.kinds import Number
+from bench.effects.mjcf import AXIS, DRIVE
+from bench.plant.closed_loop import ClosedLoop
+from bench.plant.joints import BatchJoints
+from bench.plant.states import States
+from bench.plant.stepped_effects import SteppedEffects, per_axis
+
+Progress = Callable[[float], None]
+
+#: Axes from which it pays to share a step between threads: calling them costs some 10 to 50 us, an axis 2 to 4.
+SHARED_FROM = 64
+#: Ticks between two reports of progress.
+REPORT_EVERY = 1000
 
 
-class TickedEffects:
-    """Ticked effects of axes side by side.
+def run_ticked(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> States:
+    """Motion of axes side by side, nan where one diverged; the same arithmetic for one axis and a thousand.
+
+    MuJoCo's warnings are the caller's to silence.
 
     Args:
-        seat: where MuJoCo has the axes.
-        models: one for each of them.
-        velocity: they start with - rad/s (m/s) - (axes,), or a number of a lone axis.
+        loops: alike, as `ClosedLoop.alike` has it; all run as long as the longest.
+        progress: called with the share done.
     """
+    axes, every = _SideBySide(loops), loops[0].every
+    time = max((loop.time for loop in loops), key=len)
+    recorded = States(time[::every], *np.zeros((4, -(-time.size // every), len(loops))))
+    for k in range(time.size):
+        position, velocity = axes.state()
+        setpoint, motor = axes.controller.tick(k, position, velocity)
+        reported, made = axes.advance(time[k], setpoint, motor)
+        if k % every == 0:
+            row = k // every
+            recorded.position[row], recorded.velocity[row] = position, velocity
+            recorded.torque[row], recorded.motor_torque[row] = reported, made
+        if progress is not None and k % REPORT_EVERY == 0:
+            progress(k / time.size)
+    recorded.velocity[:, axes.diverged] = np.nan
+    return recorded
 
-    def __init__(self, seat: Seat, models: Sequence[AxisModel], velocity: Number) -> None:
-        self._seat, self._step = seat, seat.step
-        self._none = abreast([0.0] * len(models))
-        self._mechanisms = gather(models, Mechanism, ticked=True)
-        electronics = gather(models, Electronics)
-        self._flowing = _through(electronics, "flowing")
-        self._acting = _through(electronics, "acting")
-        self._delivered = _through(electronics, "delivered")
-        self._acted = _through(gather(models, Sensing), "acted")
-        self._friction = _FrictionLevels(seat, models)
-        self._inertia = _through(self._mechanisms, "added_inertia")
-        self._resisting = _through(self._mechanisms, "resisting_torque")
-        self._factors = _through(self._mechanisms, "torque_factor")
-        self._before = velocity
 
-    def act(
-        self, time: Number, position: Number, velocity: Number, demand: Number, began: Number = 0.0
-    ) -> tuple[Number, Number]:
-        """Set up the next step; returns the effort that is reported and the motor's torque, (axes,) each.
+class _SideBySide:
+    """Axes on a batch."""
 
-        Of a lone axis everything may be numbers. The velocity is kept, and must not change afterwards.
+    def __init__(self, loops: Sequence[ClosedLoop]) -> None:
+        batch, first = batch_of([loop.compiled for loop in loops]), loops[0]
+        joint, actuator = batch.model.joint(AXIS), batch.model.actuator(DRIVE).id
+        self._batch, self._step, self._substeps = batch, batch.model.opt.timestep, first.substeps
+        self._position = batch.bind("qpos")[:, joint.qposadr[0]]
+        self._velocity = batch.bind("qvel")[:, joint.dofadr[0]]
+        self._velocity[:] = [loop.velocity for loop in loops]
+        self._position[:] = np.array([loop.position for loop in loops]) + self._step / 2.0 * self._velocity
+        at = batch.model.actuator_ctrladr[actuator]
+        inputs = batch.bind("ctrl")[:, at : at + batch.model.actuator_ctrlnum[actuator]]
+        self._effort = inputs[:, -1]
+        self.controller = type(first.controller).side_by_side(loops, inputs[:, :-1])
+        self._since, self._began = (per_axis([getattr(loop, name) for loop in loops]) for name in ("since", "began"))
+        self._effects = None
+        if not all(loop.axis.all_native for loop in loops):
+            axes = [loop.axis for loop in loops]
+            self._effects = SteppedEffects(BatchJoints(batch), axes, per_axis(self._velocity))
+
+    def state(self) -> tuple[Number, Number]:
+        """True position and velocity as they are now - rad (m), rad/s (m/s) - (axes,), or numbers of a lone axis."""
+        self._here, self._now = per_axis(self._position), per_axis(self._velocity)
+        return self._here - self._step / 2.0 * self._now, self._now
+
+    def advance(self, time: float, setpoint: Number, motor: Number) -> tuple[Number, Number]:
+        """Go on by a tick from the state that was read; returns reported effort and motor torque, means over its steps.
 
         Args:
-            time: at the start of the step, since the recording's start - s - one for all axes, or (axes,).
-            position: MuJoCo's, half a step on - rad (m) - (axes,).
-            velocity: at the start of the step - rad/s (m/s) - (axes,).
-            demand: effort that the drive asks for - N*m (N) - (axes,).
-            began: the recording, as `Moment` has it - s - one for all axes, or (axes,).
+            time: at its start - s.
+            setpoint, motor: effort that is reported, and asked of the motor - N*m (N).
         """
-        middle = 1.5 * velocity - 0.5 * self._before
-        self._before = velocity
-        reported, torque = self._driven(time + 0.5 * self._step, middle, demand)
-        at = Moment(time + 0.5 * self._step, position, middle, torque, began)
-        if self._factors:
-            for rows in self._factors:
-                factor = rows.effect.torque_factor(rows.values, rows.axis, rows.moment(at))
-                torque = rows.put(torque, rows.of(torque) * factor)
-            at = Moment(at.time, position, middle, torque, began)
-        applied = self._none - self._friction.offset(at)
-        for rows in self._resisting:
-            resisting = rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))
-            applied = rows.put(applied, rows.of(applied) - resisting)
-        self._seat.set_torque(applied)
-        if self._inertia:
-            added = self._none
-            for rows in self._inertia:
-                more = rows.effect.added_inertia(rows.values, rows.axis, rows.moment(at))
-                added = rows.put(added, rows.of(added) + more)
-            self._seat.set_added_inertia(added)
-        return reported, torque
+        if self._effects is None:
+            self._effort[:] = motor
+            self._batch.step(nstep=self._substeps)
+            return setpoint, motor
+        flowing, acting = self._step_on(time, motor)
+        if self._substeps > 1:
+            for substep in range(1, self._substeps):
+                self.state()
+                flows, acts = self._step_on(time + substep * self._step, motor)
+                flowing, acting = flowing + flows, acting + acts
+            flowing, acting = flowing / self._substeps, acting / self._substeps
+        return setpoint + (flowing - motor), acting
 
-    def _driven(self, time: Number, velocity: Number, demand: Number) -> tuple[Number, Number]:
-        """In the order of the signal: what flows of a demand, what that truly is, what acts, what torque it makes."""
-        reported = demand
-        for rows in self._flowing:
-            wanted, speed = rows.of(demand), rows.of(velocity)
-            flows, rows.memory = rows.effect.flowing(rows.values, rows.axis, speed, wanted, rows.memory, self._step)
-            reported = rows.put(reported, flows)
-        torque = reported
-        for rows in self._acted:
-            torque = rows.put(torque, rows.effect.acted(rows.values, rows.axis, rows.of(torque), rows.of(time)))
-        for rows in self._acting:
-            acts, rows.memory = rows.effect.acting(rows.values, rows.of(torque), rows.memory, self._step)
-            torque = rows.put(torque, acts)
-        for rows in self._delivered:
-            torque = rows.put(torque, rows.effect.delivered(rows.values, rows.axis, rows.of(torque)))
-        return reported, torque
+    def _step_on(self, time: float, motor: Number) -> tuple[Number, Number]:
+        """One step from the state that was read: effort that flows, and acts - N*m (N) - (axes,)."""
+        assert self._effects is not None
+        flowing, acts = self._effects.act(self._since + time, self._here, self._now, motor, self._began)
+        self._effort[:] = acts
+        self._batch.step()
+        return flowing, acts
+
+    @property
+    def diverged(self) -> NDArray[np.bool_]:
+        """Of which axes MuJoCo warned - (axes,)."""
+        return np.any(np.reshape(self._batch.warning, (self._batch.nsim, -1)), axis=1)
 
 
-class _FrictionLevels:
-    """The level of dry friction, where effects change it in every step."""
-
-    def __init__(self, seat: Seat, models: Sequence[AxisModel]) -> None:
-        mechanisms = gather(models, Friction, ticked=True)
-        self._coulomb = abreast([model.parameters.coulomb_friction for model in models])
-        self._none = abreast([0.0] * len(models))
-        self._excesses = _through(mechanisms, "friction_excess")
-        self._factors = _through(mechanisms, "friction_factor")
-        self._differences = _through(mechanisms, "friction_difference")
-        self._under_load = _through(mechanisms, "friction_under_load")
-        self._loads = _through(gather(models, Mechanism), "load_torque") if self._under_load else []
-        self._seat = seat
-        self._changes = bool(self._excesses or self._factors or self._differences or self._under_load)
-
-    def offset(self, at: Moment) -> Number:
-        """Set the level; returns half the difference of the two directions' levels - N*m (N) - (axes,)."""
-        if not self._changes:
-            return 0.0
-        level = self._coulomb
-        for rows in self._excesses:
-            excess = rows.effect.friction_excess(rows.values, rows.axis, rows.moment(at))
-            level = rows.put(level, rows.of(level) + excess)
-        if self._under_load:
-            level = self._with_load(level, at)
-        half = self._none
-        for rows in self._differences:
-            difference = rows.effect.friction_difference(rows.values, rows.axis)
-            half = rows.put(half, rows.of(half) + 0.5 * difference)
-        for rows in self._factors:
-            factor = rows.effect.friction_factor(rows.values, rows.axis, rows.moment(at))
-            level, half = (rows.put(each, rows.of(each) * factor) for each in (level, half))
-        if not self._differences:
-            self._seat.set_friction(np.maximum(level, 0.0))
-            return 0.0
-        forward, backward = np.maximum(level + half, 0.0), np.maximum(level - half, 0.0)
-        if self._seat.bristled:  # which bend to the level of their direction, and hold no torque beside
-            self._seat.set_friction(np.where(at.velocity > 0.0, forward, backward))
-            return 0.0
-        self._seat.set_friction(0.5 * (forward + backward))
-        return 0.5 * (forward - backward)
-
-    def _with_load(self, level: Number, at: Moment) -> Number:
-        """The level with what the transmitted torque adds to it - N*m (N) - (axes,)."""
-        load = self._none
-        for rows in self._loads:
-            load = rows.put(load, rows.of(load) + rows.effect.load_torque(rows.values, rows.moment(at)))
-        for rows in self._under_load:
-            pulled = rows.effect.friction_under_load(rows.values, rows.axis, rows.moment(at), rows.of(load))
-            level = rows.put(level, rows.of(level) + pulled)
-        return level
-
-
-def _through(rows: Sequence[Rows], hook: str) -> list[Rows]:
-    return [some for some in rows if some.effect.overrides(hook)]
+def batch_of(models: Sequence[mujoco.MjModel]) -> Batch:
+    """A batch with one simulation per model; fields in which the models differ become per-simulation ones."""
+    batch = Batch(models[0], len(models), nthread=1 if len(models) < SHARED_FROM else 0)
+    distinct = list({id(model): model for model in models}.values())
+    for name in sorted(MODEL_FIELDS):
+        if len(distinct) > 1 and not name.startswith("opt."):
+            values = {id(model): getattr(model, name) for model in distinct}
+            if any(not np.array_equal(value, values[id(models[0])]) for value in values.values()):
+                batch.expand(name)[:] = np.stack([values[id(model)] for model in models])
+    return batch

@@ -13,10 +13,10 @@ from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.present import Present
 from bench.effects.signals import Base, Signals
 from bench.plant.model import build_spec
-from bench.plant.native import run_controls, sense_torque
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from tests.effects.axes import AXIS, FREE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant, present, pushed
+from tests.plant.open_loop import open_loop
 
 EFFECTS = sorted(catalogue())
 SHORT = Reversals(0.4).references()
@@ -53,8 +53,7 @@ def test_null_values_do_nothing_where_they_act(name):
             spec = build_spec(PARAMETERS, PERIOD)
             if adds:
                 effect.add(spec, name, values, axis)
-            sense_torque(spec)
-            motions.append(run_controls(spec.compile(), 0.5 * np.sin(np.arange(4000) / 300.0)[:, None], 0.1, 3.0))
+            motions.append(open_loop(spec, 0.5 * np.sin(np.arange(4000) / 300.0), 0.1, 3.0))
         np.testing.assert_array_equal(motions[0].velocity, motions[1].velocity)
     at = Moment(0.1, np.array([0.3, -2.0]), np.array([5.0, -0.1]), np.array([1.0, -0.2]))
     if isinstance(effect, Mechanism):

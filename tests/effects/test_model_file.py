@@ -23,10 +23,10 @@ from bench.plant.model_file import (
     read_table,
     tables_toml,
 )
-from bench.plant.native import run_controls, sense_torque
-from bench.plant.track_effects import Held, track_motion
+from bench.plant.soft_tracking import Held, track
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, PERIOD, VALUES, model
+from tests.plant.open_loop import open_loop
 
 #: All but the second coupling of motor and load.
 EVERYTHING = [name for name in VALUES if name != "backlash"]
@@ -91,13 +91,10 @@ def test_xml_moves_as_the_model(names):
     """MuJoCo writes numbers with six digits or more."""
     native = model(*names, "torsion_spring", "unbalance", "torque_offset")
     xml = model_xml(StoredModel("axis", native))
-    torque = np.sin(np.arange(4000) / 200.0)[:, None]
+    torque = np.sin(np.arange(4000) / 200.0)
     mujoco.MjModel.from_xml_string(xml)
     specs = native.spec(TIMESTEP), mujoco.MjSpec.from_string(xml)
-    motions = []
-    for spec in specs:
-        sense_torque(spec)
-        motions.append(run_controls(spec.compile(), torque, 0.0, 0.0).velocity)
+    motions = [open_loop(spec, torque).velocity for spec in specs]
     np.testing.assert_allclose(motions[1], motions[0], atol=1e-3 * np.abs(motions[0]).max())
 
 
@@ -147,5 +144,5 @@ def test_a_stored_model_runs_along_a_recording(truths, tmp_path):
     toml = written(tmp_path, StoredModel("axis", model("cogging_torque"), -PERIOD / 2.0))
     stored = load_model(toml)
     effort = AXIS.torque_constant * trace["current"]
-    simulated = track_motion(Held(stored.model, trace, effort, stored.misalignment))[1]
+    simulated = track(Held(stored.model, trace, effort, stored.misalignment)).velocity
     assert np.sqrt(np.mean((trace["velocity"] - simulated) ** 2)) < 0.03

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bench.plant import ticks
+from bench.plant import ticked
 from bench.plant.run import run
-from bench.plant.track_effects import Held, track_motion
+from bench.plant.soft_tracking import Held, track
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, Reversals, model, plant
 
@@ -28,12 +28,12 @@ def steps(monkeypatch):
     """One entry for each call by which Python steps a batch."""
     calls = []
 
-    class Counted(ticks.Batch):
+    class Counted(ticked.Batch):
         def step(self, *args, **kwargs):
             calls.append(self)
             return super().step(*args, **kwargs)
 
-    monkeypatch.setattr(ticks, "Batch", Counted)
+    monkeypatch.setattr(ticked, "Batch", Counted)
     return calls
 
 
@@ -46,7 +46,7 @@ def recorded(duration):
 
 
 def tracked(names, trace):
-    return track_motion(Held(model(*names), trace, AXIS.torque_constant * trace["current"]))[1]
+    return track(Held(model(*names), trace, AXIS.torque_constant * trace["current"])).velocity
 
 
 @pytest.mark.parametrize(("names", "each"), [((), 0), (NATIVE, 0), (TICKED, STEPS), (MANY_TICKED, STEPS)], ids=str)

@@ -13,7 +13,7 @@ from bench.errors import InputError
 from bench.export.joint import Share, armature_of, link_inertia, onto
 from bench.export.mjcf import commented, joint_alone, read_mjcf, robot_with
 from bench.plant.model_file import model_xml
-from bench.plant.quiet import quiet
+from bench.plant.mujoco_warnings import silenced
 from tests.export.arms import ARM, PARAMETERS, stored
 from tests.export.two_links import C2, I2, M2, MJCF
 
@@ -165,7 +165,7 @@ def test_files_attach_to_a_moving_body(text):
     """The child's timestep is not the parent's, which MuJoCo says and keeps."""
     parent = mujoco.MjSpec.from_string(FLYING)
     child = mujoco.MjSpec.from_string(text(stored(COGGING, gear_ratio=3.0, load_mass=0.9)))
-    with quiet():
+    with silenced():
         parent.attach(child, prefix="servo ", frame=parent.body("boom").add_frame(pos=[0.0, 0.0, 0.1]))
     model = parent.compile()
     assert "servo axis" in [model.joint(k).name for k in range(model.njnt)]

@@ -7,7 +7,7 @@ import pytest
 
 from bench.axis_kind import LINEAR
 from bench.plant.model import AxisParameters, build_spec
-from bench.plant.native import run_controls, sense_torque
+from tests.plant.open_loop import open_loop
 
 AXES = {
     "the lab's axis": (AxisParameters(2.2e-3, 1.1e-3, 0.085, motor_inertia=2.5e-5), 144.0, 250e-6),
@@ -19,9 +19,7 @@ AXES = {
 
 
 def coast(parameters, torque, speed, position, steps, timestep):
-    spec = build_spec(parameters, timestep)
-    sense_torque(spec)
-    return run_controls(spec.compile(), np.full((steps, 1), torque), position, speed)
+    return open_loop(build_spec(parameters, timestep), np.full(steps, torque), position, speed)
 
 
 def closed_form(
@@ -97,9 +95,7 @@ def test_load_torque_is_held_by_friction_or_not(sign):
 def test_work_of_the_motor_is_kinetic_energy_and_friction_heat():
     parameters, _, timestep = AXES["the lab's axis"]
     time = np.arange(8000) * timestep
-    spec = build_spec(parameters, timestep)
-    sense_torque(spec)
-    states = run_controls(spec.compile(), 0.6 * np.sin(9.0 * time)[:, None], 0.0, 0.0)
+    states = open_loop(build_spec(parameters, timestep), 0.6 * np.sin(9.0 * time))
     torque, velocity = states.torque[:-1, 0], states.velocity[:, 0]
     mean = (velocity[1:] + velocity[:-1]) / 2.0
     friction = parameters.viscous_friction_coefficient * mean**2 + parameters.coulomb_friction * np.abs(mean)
@@ -116,8 +112,7 @@ def test_error_falls_with_the_square_of_the_step():
         time = np.arange(round(0.5 / timestep)) * timestep
         spec = build_spec(parameters, timestep)
         spec.joint("axis").stiffness = [4.0, 0.0, 0.0]
-        sense_torque(spec)
-        states = run_controls(spec.compile(), np.zeros((len(time), 1)), 1.0, 0.0)
+        states = open_loop(spec, np.zeros(len(time)), position=1.0)
         return np.abs(states.position[:, 0] - np.cos(np.sqrt(4.0 / parameters.inertia) * time)).max()
 
     coarse, fine = error(500e-6), error(250e-6)

@@ -11,7 +11,7 @@ from bench.plant.native import run_native
 from bench.plant.plant import Plant
 from bench.plant.references import References
 from bench.plant.run import run
-from bench.plant.ticks import run_ticks
+from bench.plant.ticked import run_ticked
 
 
 def reversals(period=250e-6, duration=2.0, speed=80.0, frequency=1.5):
@@ -71,7 +71,7 @@ def worst(a, b):
 
 def test_mujoco_actuator_is_the_ticked_cascade(plant):
     references = reversals()
-    off = worst(run_native(plant, references), run_ticks([plant], [references]))
+    off = worst(run_native(plant.native_loop(references)), run_ticked([plant.ticked_loop(references)]))
     print(f"pid against ticked cascade: {off['velocity']:.1e} rad/s, {off['torque']:.1e} N*m")
     assert off["velocity"] < 1e-4
     assert off["torque"] < 1e-4
@@ -102,7 +102,7 @@ def test_torque_never_exceeds_the_limit_and_integrator_holds(plant):
     step = References(t, 150.0 * t, np.full_like(t, 150.0), 0.0 * t)
     step = References(t, step.position, step.velocity * (t > 0.0), step.acceleration)
     plain = dataclasses.replace(plant, cascade=dataclasses.replace(plant.cascade, position_gain=0.0))
-    held, wound_up = run([plain], [step]), run_native(plain, step)
+    held, wound_up = run([plain], [step]), run_native(plain.native_loop(step))
     assert np.abs(held.torque).max() == plant.cascade.torque_limit
     assert held.velocity.max() - 150.0 < 0.5 * (wound_up.velocity.max() - 150.0)
 
@@ -111,7 +111,8 @@ def test_no_integral_gain_is_a_plain_pd(plant):
     cascade = dataclasses.replace(plant.cascade, integral_gain=0.0)
     axis = dataclasses.replace(plant, cascade=cascade)
     references = reversals()
-    assert worst(run_native(axis, references), run_ticks([axis], [references]))["velocity"] < 1e-9
+    off = worst(run_native(axis.native_loop(references)), run_ticked([axis.ticked_loop(references)]))
+    assert off["velocity"] < 1e-9
 
 
 def test_friction_by_the_drive_moves_as_friction_in_the_mechanics(plant):
@@ -177,15 +178,16 @@ def test_substeps_leave_the_motion_as_it_is(plant):
     assert off.std() < 0.1 * reversal_error(plant)
 
 
-def test_axes_that_differ_run_abreast_as_alone(plant):
+def test_axes_that_differ_run_side_by_side_as_alone(plant):
     heavy = Plant(
         AxisParameters(5e-3, 3e-3, 0.2, load_torque=0.1), dataclasses.replace(plant.cascade, velocity_gain=2.0), 250e-6
     )
     emulated = dataclasses.replace(plant, emulated=True)
     plants, references = [plant, heavy, emulated, heavy], [reversals(speed=s, duration=0.5) for s in (60, 40, 60, 30)]
-    together = run_ticks(plants, references)
-    for i, (one, motion) in enumerate(zip(plants, references, strict=True)):
-        alone = run_ticks([one], [motion])
+    loops = [one.ticked_loop(motion) for one, motion in zip(plants, references, strict=True)]
+    together = run_ticked(loops)
+    for i, loop in enumerate(loops):
+        alone = run_ticked([loop])
         np.testing.assert_array_equal(together.axis(i).velocity, alone.velocity)
         np.testing.assert_array_equal(together.axis(i).torque, alone.torque)
 

@@ -11,14 +11,14 @@ from bench.plant.drive import Cascade
 from bench.plant.native import run_native
 from bench.plant.plant import Plant
 from bench.plant.run import run
-from bench.plant.ticks import run_ticks
+from bench.plant.ticked import run_ticked
 from tests.plant.test_drive import reversals
 
 
 def test_a_thousand_axes_move_as_one(plant):
     references = reversals(duration=0.05)
-    together = run_ticks([plant] * 1000, [references] * 1000)
-    alone = run_ticks([plant], [references])
+    loop = plant.ticked_loop(references)
+    together, alone = run_ticked([loop] * 1000), run_ticked([loop])
     for name in ("position", "velocity", "torque"):
         np.testing.assert_array_equal(getattr(together, name), np.repeat(getattr(alone, name), 1000, axis=1))
 
@@ -27,9 +27,9 @@ def test_native_and_ticked_axes_run_in_one_call(plant):
     emulated = dataclasses.replace(plant, emulated=True)
     references = [reversals(duration=0.2), reversals(duration=0.2), reversals(duration=0.2, speed=200.0)]
     states = run([plant, emulated, plant], references)
-    np.testing.assert_array_equal(states.axis(0).velocity, run_native(plant, references[0]).velocity)
-    np.testing.assert_array_equal(states.axis(1).velocity, run_ticks([emulated], references[1:2]).velocity)
-    np.testing.assert_array_equal(states.axis(2).velocity, run_ticks([plant], references[2:]).velocity)
+    np.testing.assert_array_equal(states.axis(0).velocity, run_native(plant.native_loop(references[0])).velocity)
+    np.testing.assert_array_equal(states.axis(1).velocity, run_ticked([emulated.ticked_loop(references[1])]).velocity)
+    np.testing.assert_array_equal(states.axis(2).velocity, run_ticked([plant.ticked_loop(references[2])]).velocity)
 
 
 def test_runs_again_the_same(plant):
@@ -71,4 +71,4 @@ def test_a_lone_axis_diverges_as_axes_side_by_side_do(plant):
     axis = dataclasses.replace(plant, effects=(effect,))
     for count in (1, 2):
         with np.errstate(all="ignore"), pytest.raises(SimulationError, match="diverged"):
-            run_ticks([axis] * count, [reversals(duration=0.05)] * count)
+            run([axis] * count, [reversals(duration=0.05)] * count)

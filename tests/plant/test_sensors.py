@@ -6,10 +6,10 @@ import pytest
 from bench.axis_kind import LINEAR
 from bench.errors import InputError
 from bench.plant.model import AxisParameters, build_spec
-from bench.plant.native import run_controls, sense_torque
 from bench.plant.sensors import Sensors
 from bench.plant.states import States
 from bench.rig.torque_constant import TorqueConstant
+from tests.plant.open_loop import open_loop
 from tests.plant.test_drive import reversals
 
 SATURATING = TorqueConstant.from_datasheet(1.4, 1.8, 3.5, 5.7)
@@ -83,10 +83,8 @@ def test_apparent_inertia_differs_from_the_true_one_only_by_the_hold():
     """|M|/(omega*|w|) of a sine: J*(1 - (omega*T)**2/24), as sampling a held torque has it; a plain mean loses more."""
     inertia, omega, period = 2.2e-3, 600.0, 250e-6
     parameters = AxisParameters(inertia)
-    spec = build_spec(parameters, period)
-    sense_torque(spec)
     time = np.arange(8000) * period
-    states = run_controls(spec.compile(), np.sin(omega * time)[:, None], 0.0, 0.0)
+    states = open_loop(build_spec(parameters, period), np.sin(omega * time))
     trace = Sensors(1e-3).record(states, motion()[1], np.random.default_rng(0), "test")
     mean = (states.torque[3:-1:4, 0] + states.torque[4::4, 0]) / 2.0
 

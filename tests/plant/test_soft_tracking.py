@@ -6,7 +6,7 @@ from scipy.linalg import expm
 
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import AxisParameters
-from bench.plant.track_effects import Held, track_motion
+from bench.plant.soft_tracking import Held, track
 from bench.trace.trace import Trace
 
 INERTIA, VISCOUS, PERIOD, BANDWIDTH = 2e-3, 3e-3, 1e-3, 12.0
@@ -40,15 +40,16 @@ def test_a_torque_that_is_too_large_moves_it_as_its_cascade_lets_it(inertia):
     """K_v = J*w, K_i = J*w**2/6, K_p = w/5 of the inertia that the cascade is laid out for, the model's or another."""
     held = Held(FREE, at_rest(), np.full(TIME.size, 0.02), inertia=inertia)
     expected = answer(0.02, inertia or INERTIA)
-    for found, exact in zip(track_motion(held, BANDWIDTH), expected, strict=True):
+    tracked = track(held, BANDWIDTH)
+    for found, exact in zip((tracked.position, tracked.velocity), expected, strict=True):
         # its integral is summed by rectangles of half a millisecond, and so is its damping
         assert np.abs(found - exact).max() < 5e-3 * np.abs(exact).max()
 
 
 def test_the_measured_position_is_where_it_is_held():
-    position, velocity = track_motion(Held(FREE, at_rest(0.7), np.zeros(TIME.size)), BANDWIDTH)
-    np.testing.assert_allclose(position, 0.7, atol=1e-12)
-    np.testing.assert_allclose(velocity, 0.0, atol=1e-12)
+    found = track(Held(FREE, at_rest(0.7), np.zeros(TIME.size)), BANDWIDTH)
+    np.testing.assert_allclose(found.position, 0.7, atol=1e-12)
+    np.testing.assert_allclose(found.velocity, 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("late", [3e-3, -3e-3])
@@ -57,7 +58,7 @@ def test_an_effort_that_is_reported_late_is_read_ahead(late):
 
     def velocity(delay, misalignment):
         effort = 0.1 * (np.maximum(TIME, 0.05) - delay - 0.05) ** 2
-        return track_motion(Held(FREE, at_rest(), effort, misalignment), BANDWIDTH)[1]
+        return track(Held(FREE, at_rest(), effort, misalignment), BANDWIDTH).velocity
 
     in_time, told = velocity(0.0, 0.0), velocity(late, late)
     inside = slice(100, -10)

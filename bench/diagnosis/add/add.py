@@ -25,7 +25,7 @@ from bench.diagnosis.name.name import Suspects, named
 from bench.diagnosis.recordings import Recordings
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
-from bench.plant.track import measured_velocity
+from bench.plant.measured_motion import measured_velocity
 from bench.trace.noise import white_noise
 
 

@@ -11,7 +11,7 @@ from bench.diagnosis.add.extension import Extension
 from bench.diagnosis.recordings import Recordings
 from bench.errors import BenchError
 from bench.plant.follow import follow_references
-from bench.plant.track import measured_velocity
+from bench.plant.measured_motion import measured_velocity
 
 
 def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float, float] | None:

@@ -24,8 +24,8 @@ from bench.diagnosis.recordings import Recordings
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.fit.parameter import Parameter
+from bench.plant.measured_motion import measured_velocity
 from bench.plant.model_file import StoredModel
-from bench.plant.track import measured_velocity
 from bench.statistics import NORMAL95
 from bench.trace.noise import white_noise
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from bench.arrays import Array, rms
 from bench.diagnosis.add.extension import Stage
 from bench.diagnosis.add.model import without_events
+from bench.plant.measured_motion import in_stretches, measured_velocity
 from bench.plant.model_file import StoredModel
-from bench.plant.track import in_stretches, measured_velocity
-from bench.plant.track_effects import Held, track_models
+from bench.plant.soft_tracking import Held, track_all
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -122,7 +122,7 @@ class VelocityGaps:
     def velocities(self, models: Iterable[StoredModel], recordings: Iterable[Recorded]) -> list[Array | None]:
         """Velocities of models along recordings, one each, (n,) - rad/s (m/s); None where one diverged."""
         held = [r.holding(model, self.inertia) for model, r in zip(models, recordings, strict=True)]
-        return track_models(held, self.bandwidth)
+        return [None if each is None else each.velocity for each in track_all(held, self.bandwidth)]
 
     def _key(self, stage: Stage, recorded: Recorded) -> tuple[object, ...]:
         return (stage.rows, tuple(term.key for term in stage.fitted.terms), stage.beside, recorded.name)

@@ -16,7 +16,7 @@ from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.where.where import LEAST, bins_of, coordinates, means_in, where
 from bench.fit.fit import Fit
 from bench.fit.stored import Balance
-from bench.plant.track import measured_velocity
+from bench.plant.measured_motion import measured_velocity
 from bench.trace.noise import white_noise
 
 

@@ -31,12 +31,12 @@ from bench.fit.rows import SIGN_WIDTHS
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade
 from bench.plant.limits import MotionLimits
+from bench.plant.measured_motion import measured_velocity
 from bench.plant.plant import Plant
 from bench.plant.profiles import PROFILES, plan
 from bench.plant.references import References
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
-from bench.plant.track import measured_velocity
 from bench.trace.filter import GaussianFilter
 
 #: Least duration of a recording - s: a shorter profile is repeated.

@@ -12,8 +12,9 @@ from mujoco import rollout
 from bench.plant.drive import add_pid
 from bench.plant.native import run_native
 from bench.plant.plant import Plant
+from bench.plant.references import References
 from bench.plant.run import run
-from bench.plant.ticks import batch_of, run_ticks
+from bench.plant.ticked import batch_of, run_ticked
 from tests.effects.axes import Reversals, plant
 from tests.studies.benchmarks.table import Table
 from tests.studies.benchmarks.timing import Way, in_turn
@@ -50,6 +51,12 @@ def batched(plants: list[Plant], steps: int) -> None:
         batch.step()
 
 
+def by_ticks(one: Plant, motions: list[References]) -> None:
+    """An axis along motions side by side, its model compiled anew."""
+    alike = replace(one)
+    run_ticked([alike.ticked_loop(motion) for motion in motions])
+
+
 def with_pid(one: Plant) -> mujoco.MjModel:
     """The axis with its drive as MuJoCo's own actuator."""
     spec = one.spec()
@@ -67,13 +74,13 @@ def measured(steps: int = 4000, axes: int = 1000, few: int = 200, rounds: int = 
     ways: dict[str, tuple[Way, int]] = {
         BARE: (partial(stepped, with_pid(bare), steps), steps),
         "`mujoco.rollout`": (partial(rolled, with_pid(bare), steps), steps),
-        "one axis, drive in MuJoCo": (partial(run_native, bare, motion), steps),
-        "the same with five native effects": (partial(run_native, native, motion), steps),
-        "one axis by ticks": (partial(run_ticks, [bare], one), steps),
-        "the same with friction by the drive": (partial(run_ticks, [replace(bare, emulated=True)], one), steps),
+        "one axis, drive in MuJoCo": (lambda: run_native(replace(bare).native_loop(motion)), steps),
+        "the same with five native effects": (lambda: run_native(replace(native).native_loop(motion)), steps),
+        "one axis by ticks": (partial(by_ticks, bare, one), steps),
+        "the same with friction by the drive": (partial(by_ticks, replace(bare, emulated=True), one), steps),
         "the same with five ticked effects": (partial(run, [ticked], one), steps),
         BATCH.format(axes): (partial(batched, [bare] * axes, few), few * axes),
-        f"{axes} axes by ticks": (partial(run_ticks, [bare] * axes, many), few * axes),
+        f"{axes} axes by ticks": (partial(by_ticks, bare, many), few * axes),
         f"{axes} axes, five ticked effects": (partial(run, [ticked] * axes, many), few * axes),
     }
     timed = in_turn({name: way for name, (way, _) in ways.items()}, rounds)

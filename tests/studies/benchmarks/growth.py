@@ -20,7 +20,7 @@ from bench.fit.memory import Memory
 from bench.fit.regression import identify
 from bench.fit.rows import Rows
 from bench.plant.run import run
-from bench.plant.ticks import run_ticks
+from bench.plant.ticked import run_ticked
 from bench.trace.read import read
 from bench.trace.stream import stream
 from tests.effects.axes import VALUES, Reversals, plant
@@ -90,7 +90,7 @@ def by_axes(sizes: Sequence[int], ticks: int, rounds: int) -> Table:
     """Axes side by side, their drives ticked."""
     one = plant()
     motion = Reversals(one.cascade.control_period * (ticks - 0.5)).references()
-    timed = in_turn({str(size): partial(run_ticks, [one] * size, [motion] * size) for size in sizes}, rounds)
+    timed = in_turn({str(size): partial(run_ticked, [one.ticked_loop(motion)] * size) for size in sizes}, rounds)
     seconds = [timed.median(str(size)) for size in sizes]
     each = (f"{1e6 * taken / (ticks * size):.3g} us" for size, taken in zip(sizes, seconds, strict=True))
     rows = zip(map(str, sizes), (f"{taken:.3g} s" for taken in seconds), each, growth(sizes, seconds), strict=True)

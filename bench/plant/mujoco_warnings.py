@@ -1,4 +1,4 @@
-"""MuJoCo's own warnings, silenced while the bench runs it: divergence is raised as an error instead."""
+"""MuJoCo's own warnings, silenced while the bench runs it: divergence is told as a result instead."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import mujoco
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
+def silenced() -> Iterator[None]:
     """Keep MuJoCo from printing warnings and from leaving a MUJOCO_LOG.TXT behind, within the block."""
     before, silent = mujoco.MjLogConfig.get(), mujoco.MjLogConfig.get()
     silent.logto_console = silent.logto_file = False

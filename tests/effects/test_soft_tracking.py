@@ -7,11 +7,9 @@ import pytest
 
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
-from bench.plant.model import build_spec
-from bench.plant.track import holding_cascade, holding_model, step_of, track
-from bench.plant.track_effects import Held, track_models, track_motion
+from bench.plant.soft_tracking import Held, track, track_all
 from bench.trace.trace import Trace
-from tests.effects.axes import AXIS, PARAMETERS, PERIOD, model
+from tests.effects.axes import AXIS, PERIOD, model
 from tests.effects.conftest import CASES
 
 EVERY = 8
@@ -37,7 +35,7 @@ def recording(signals, position=True):
 
 def velocity_of(axis: AxisModel, trace: Trace, misalignment=0.0):
     """Velocity of an axis held to a recording - rad/s - (n,)."""
-    return track_motion(Held(axis, trace, AXIS.torque_constant * trace["current"], misalignment))[1]
+    return track(Held(axis, trace, AXIS.torque_constant * trace["current"], misalignment)).velocity
 
 
 def gap(axis: AxisModel, trace: Trace) -> float:
@@ -63,11 +61,19 @@ def test_without_position_the_velocity_holds_the_model(recordings):
     assert gap(model("torque_offset"), blind) < LEFT
 
 
-def test_without_effects_it_is_the_plain_track(recordings):
-    trace = recordings[()]
-    effort, (timestep, _) = AXIS.torque_constant * trace["current"], step_of(trace)
-    compiled = holding_model(build_spec(PARAMETERS, timestep), holding_cascade(AXIS.inertia, timestep))
-    np.testing.assert_array_equal(velocity_of(model(), trace), track(compiled, trace, effort))
+def test_models_side_by_side_move_as_each_alone(recordings):
+    """Ticked ones on one batch, native ones on threads, of recordings that differ in length."""
+    trace = recordings["stribeck_friction",]
+    shorter = trace.between(0.0, 0.7)
+    cases = [
+        ((), trace),
+        (("stribeck_friction",), trace),
+        (("torque_ripple",), trace),
+        (("stribeck_friction",), shorter),
+    ]
+    held = [Held(model(*names), one, AXIS.torque_constant * one["current"]) for names, one in cases]
+    for one, together in zip(held, track_all(held), strict=True):
+        np.testing.assert_array_equal(together.velocity, track(one).velocity)
 
 
 def test_natively_and_step_by_step_alike(recordings):
@@ -83,6 +89,6 @@ def test_natively_and_step_by_step_alike(recordings):
 def test_position_is_told_as_the_sensor_has_it(case, recordings):
     trace = recordings[case]
     held = Held(model(*case), trace, AXIS.torque_constant * trace["current"], -PERIOD / 2.0)
-    position, velocity = track_motion(held)
-    np.testing.assert_array_equal(velocity, track_models([held])[0])
-    assert np.abs(position - trace["position"]).max() < 0.01
+    found, (again,) = track(held), track_all([held])
+    np.testing.assert_array_equal(found.velocity, again.velocity)
+    assert np.abs(found.position - trace["position"]).max() < 0.01

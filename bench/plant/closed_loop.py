@@ -1,0 +1,155 @@
+"""A closed loop: an axis in MuJoCo and what controls it, ready for one of the two runners.
+
+MuJoCo's position belongs half a step later than its velocity (see `bench.plant.model`); runners start it there and
+bring it back, so that positions in and out of them are those of the velocities beside them.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import mujoco
+import numpy as np
+
+from bench.arrays import Array
+from bench.effects.kinds import Number
+from bench.plant.axis_model import AxisModel
+from bench.plant.stepped_effects import per_axis
+
+#: Bytes of inputs and states that a simulation holds at once, however long it is.
+BLOCK_BYTES = 8 * 2**20
+
+
+class Ticking(Protocol):
+    """Controllers of axes side by side, asked at every tick."""
+
+    def tick(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
+        """Effort from tick k to the next - N*m (N) - (axes,): reported, and asked of the motor.
+
+        Of a lone axis everything may be numbers.
+
+        Args:
+            k: number of the tick; they come in turn.
+            position, velocity: true ones at it - rad (m), rad/s (m/s) - (axes,).
+        """
+        ...
+
+
+class Controller(ABC):
+    """What sets the inputs of the actuator `drive` of an axis."""
+
+    @classmethod
+    @abstractmethod
+    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Ticking:
+        """Controllers of axes of one kind.
+
+        Args:
+            loops: of the axes, whose controllers are all of this class.
+            setpoints: inputs of the actuators before the effort, to be written at each tick - (axes, inputs).
+        """
+
+
+class PlannedInputs(Controller):
+    """Inputs that are known before the motion: MuJoCo's own actuator closes the loop."""
+
+    @abstractmethod
+    def between(self, start: int, stop: int) -> Array:
+        """Inputs from a tick to before another, held from each to the next - (ticks, inputs); the last is an effort."""
+
+    @classmethod
+    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Ticking:
+        """Read in blocks; after the end of a loop its last inputs are held."""
+        return _PlannedSideBySide(loops, setpoints)
+
+
+class Listed(PlannedInputs):
+    """Inputs in an array, (ticks, inputs)."""
+
+    def __init__(self, inputs: Array) -> None:
+        self._inputs = inputs
+
+    def between(self, start: int, stop: int) -> Array:
+        """See `PlannedInputs`."""
+        return self._inputs[start:stop]
+
+
+@dataclass(frozen=True, eq=False)
+class ClosedLoop:
+    """An axis with its controller, and how it starts.
+
+    Attributes:
+        axis: the model with the effects that act inside the loop.
+        compiled: the axis for MuJoCo, what is native in it and its actuator `drive`.
+        controller: of the actuator.
+        time: of the controller's ticks, from zero - s - (ticks,).
+        position: to start at - rad (m).
+        velocity: to start with - rad/s (m/s).
+        substeps: steps of the integration per tick.
+        every: ticks from one that is recorded to the next.
+        since: first tick from the start of the recording, in which the time of effects counts - s.
+        began: start of that recording from that of the first, of several that are joined - s.
+    """
+
+    axis: AxisModel
+    compiled: mujoco.MjModel
+    controller: Controller
+    time: Array
+    position: float = 0.0
+    velocity: float = 0.0
+    substeps: int = 1
+    every: int = 1
+    since: float = 0.0
+    began: float = 0.0
+
+    @property
+    def ticks(self) -> int:
+        """How many there are."""
+        return self.time.size
+
+    @property
+    def native(self) -> bool:
+        """Whether MuJoCo runs it all by itself."""
+        return isinstance(self.controller, PlannedInputs) and self.substeps == 1 and self.axis.all_native
+
+    @property
+    def alike(self) -> tuple[object, ...]:
+        """What loops have in common that can run side by side; none is twice as long as another or more."""
+        timestep = round(self.compiled.opt.timestep, 12)
+        return type(self.controller), self.axis.structure, timestep, self.substeps, self.every, self.ticks.bit_length()
+
+
+def blocks(ticks: int, bytes_per_tick: int) -> Iterator[tuple[int, int]]:
+    """First tick of each block and the one after its last."""
+    size = max(1, BLOCK_BYTES // bytes_per_tick)
+    for start in range(0, ticks, size):
+        yield start, min(start + size, ticks)
+
+
+class _PlannedSideBySide:
+    """Planned inputs of several axes, read block by block."""
+
+    def __init__(self, loops: Sequence[ClosedLoop], setpoints: Array) -> None:
+        self._loops, self._setpoints = loops, setpoints
+        inputs = setpoints.shape[1] + 1
+        self._blocks = blocks(max(loop.ticks for loop in loops), 8 * inputs * len(loops))
+        self._start, self._stop, self._inputs = 0, 0, np.empty((0, len(loops), inputs))
+
+    def tick(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
+        """See `Ticking`."""
+        if k == self._stop:
+            self._start, self._stop = next(self._blocks)
+            self._inputs = np.stack([self._held(loop) for loop in self._loops], axis=1)
+        inputs = self._inputs[k - self._start]
+        self._setpoints[:] = inputs[:, :-1]
+        effort = per_axis(inputs[:, -1])
+        return effort, effort
+
+    def _held(self, loop: ClosedLoop) -> Array:
+        assert isinstance(loop.controller, PlannedInputs)
+        last = loop.ticks - 1
+        first = min(self._start, last)
+        known = loop.controller.between(first, min(self._stop, loop.ticks))
+        return known[np.minimum(np.arange(self._start, self._stop), last) - first]

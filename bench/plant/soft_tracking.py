@@ -1,0 +1,230 @@
+"""Hold a model softly to a recording: what it does differently is the velocity gap.
+
+The recorded effort drives the model as feed-forward; measured position and velocity are set-points of one weak
+cascade, which keeps the model near the recording where integration alone would drift away. It needs no references and
+no drive data. Its bandwidth decides what is seen: a difference in torque of frequency well above it shows in full, one
+well below it is held down. State it beside every velocity gap.
+
+Every effect is where it acts: electronics on the recorded effort before the simulation, mechanisms in MuJoCo, sensing
+on what comes out. What holds the model is the true motion as far as the recording tells it: sensing is undone on the
+set-points, or the model would be pulled after the sensor's errors.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import mujoco
+import numpy as np
+
+from bench.arrays import Array
+from bench.effects.kinds import Electronics, Mechanism
+from bench.errors import SimulationError
+from bench.plant.axis_model import AxisModel
+from bench.plant.closed_loop import ClosedLoop, PlannedInputs
+from bench.plant.drive import Cascade, add_pid
+from bench.plant.measured_motion import integrated, measured_velocity, stretches_of
+from bench.plant.native import sense_torque
+from bench.plant.run import run_loops
+from bench.plant.sensing import filters, misreads_effort, reported, true_effort, true_motion, true_velocity
+from bench.plant.states import DIVERGED
+from bench.trace.trace import Trace
+
+#: Bandwidth of the cascade that holds the model - rad/s.
+BANDWIDTH = 10.0
+#: Longest step of the integration - s.
+LONGEST_STEP = 0.5e-3
+
+
+@dataclass(frozen=True)
+class Held:
+    """A model and the recording that it is to be held to.
+
+    Attributes:
+        model: with effects.
+        trace: the recording, with velocity or position.
+        effort: (n,) torque - N*m (force - N) that the rig makes of it.
+        misalignment: by how much the effort is reported late - s.
+        inertia: that the cascade is laid out for, the model's if None - kg*m**2 (kg).
+    """
+
+    model: AxisModel
+    trace: Trace
+    effort: Array
+    misalignment: float = 0.0
+    inertia: float | None = None
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """What a held model reports at the samples of its recording, (n,) each; nan outside of `stretches_of`.
+
+    Attributes:
+        position: rad (m); where the recording holds none, that of each stretch counts from zero.
+        velocity: rad/s (m/s).
+    """
+
+    position: Array
+    velocity: Array
+
+
+def track(held: Held, bandwidth: float = BANDWIDTH) -> Tracked:
+    """Motion that a model reports, held to its recording.
+
+    Each stretch without holes starts from the recording; time of effects counts from the recording's start.
+
+    Args:
+        held: the model and its recording.
+        bandwidth: of the cascade that holds the model - rad/s.
+
+    Raises:
+        SimulationError: the model diverged, or MuJoCo refuses it, for an inertia too small for one.
+    """
+    (found,) = track_all([held], bandwidth)
+    if found is None:
+        raise SimulationError(DIVERGED)
+    return found
+
+
+def track_all(held: Sequence[Held], bandwidth: float = BANDWIDTH) -> list[Tracked | None]:
+    """The same of several models, each held to its recording; None where one diverged.
+
+    Raises:
+        SimulationError: MuJoCo refuses a model, for an inertia too small for one.
+    """
+    stretches = [(row, stretch) for row, one in enumerate(held) for stretch in _stretches(one, bandwidth)]
+    motions = run_loops([stretch.loop for _, stretch in stretches])
+    found = [Tracked(*np.full((2, len(one.trace)), np.nan)) for one in held]
+    diverged = set()
+    for (row, stretch), states in zip(stretches, motions, strict=True):
+        if states.diverged:
+            diverged.add(row)
+            continue
+        step, skip = stretch.loop.compiled.opt.timestep, stretch.substeps // stretch.loop.every
+        position, velocity = reported(held[row].model, states.position[:, 0], states.velocity[:, 0], step)
+        found[row].position[stretch.part], found[row].velocity[stretch.part] = position[::skip], velocity[::skip]
+    return [None if row in diverged else each for row, each in enumerate(found)]
+
+
+def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDTH) -> Cascade:
+    """Cascade of a bandwidth w - rad/s - for an inertia J - kg*m**2 (kg): K_v = J*w, K_i = J*w**2/6, K_p = w/5.
+
+    With them the loop J*s + K_v + K_i/s has its zero a sixth, its position loop a fifth of the bandwidth below it.
+    """
+    return Cascade(
+        position_gain=bandwidth / 5.0,
+        velocity_gain=inertia * bandwidth,
+        integral_gain=inertia * bandwidth**2 / 6.0,
+        inertia_feedforward=0.0,
+        torque_limit=math.inf,
+        control_period=timestep,
+    )
+
+
+def step_of(trace: Trace) -> tuple[float, int]:
+    """Timestep - s - that divides the sample period and is at most LONGEST_STEP, and how many make a period."""
+    substeps = math.ceil(trace.sample_period / LONGEST_STEP * (1.0 - 1e-9))
+    return trace.sample_period / substeps, substeps
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """One stretch without holes of a recording: its samples, the loop along it, and steps per sample."""
+
+    part: slice
+    loop: ClosedLoop
+    substeps: int
+
+
+def _stretches(held: Held, bandwidth: float) -> Iterator[_Stretch]:
+    """The stretches of a recording, each with its model in the loop that holds it."""
+    model, trace = held.model, held.trace
+    (timestep, substeps), velocity = step_of(trace), measured_velocity(trace)
+    cascade = holding_cascade(held.inertia or model.parameters.inertia, timestep, bandwidth)
+    compiled, mechanics = _compiled(model, cascade), model.with_effects(model.of_kind(Mechanism))
+    for part in stretches_of(trace):
+        inputs = _HoldingInputs(held, part, velocity[part], timestep, substeps)
+        start = trace.start_of(part)
+        loop = ClosedLoop(
+            mechanics,
+            compiled,
+            inputs,
+            timestep * np.arange(inputs.ticks, dtype=np.float64),
+            *inputs.start,
+            every=1 if filters(model) else substeps,  # a filter needs every step, and nothing else does
+            since=float(trace.time[part.start]) - start,
+            began=start - float(trace.time[0]),
+        )
+        yield _Stretch(part, loop, substeps)
+
+
+def _compiled(model: AxisModel, cascade: Cascade) -> mujoco.MjModel:
+    """The model with the cascade, effort being its feed-forward; SimulationError where MuJoCo refuses it."""
+    spec = model.spec(cascade.control_period)
+    add_pid(spec, cascade)
+    sense_torque(spec)
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise SimulationError(f"MuJoCo refuses the model: {str(error).splitlines()[0]}") from error
+
+
+class _HoldingInputs(PlannedInputs):
+    """Position, velocity and effort that the cascade of a held model gets along one stretch.
+
+    Args:
+        held: the model and its recording.
+        part: samples of the stretch.
+        velocity: reported in it - rad/s (m/s) - (n,).
+        timestep: of the model - s.
+        substeps: timesteps that make a sample period.
+    """
+
+    def __init__(self, held: Held, part: slice, velocity: Array, timestep: float, substeps: int) -> None:
+        model, trace = held.model, held.trace
+        velocity = true_velocity(model, velocity, trace.sample_period)
+        position = trace["position"][part] if "position" in trace else integrated(velocity, trace.sample_period)
+        self._position, self._velocity = true_motion(model, position, velocity)
+        self._time, self._effort, self._held = trace.time[part], held.effort[part], held
+        self._since, self._timestep = float(trace.time[part.start]) - trace.start_of(part), timestep
+        self._electronics = [(values, effect) for effect, values in model.acting(Electronics)]
+        self.ticks = (velocity.size - 1) * substeps + 1
+
+    @property
+    def start(self) -> tuple[float, float]:
+        """Position and velocity - rad (m), rad/s (m/s) - that the model starts with."""
+        return float(self._position[0]), float(self._velocity[0])
+
+    def between(self, start: int, stop: int) -> Array:
+        """See `PlannedInputs`: read between samples."""
+        ticks = self._ticks(start, stop)
+        wanted = np.interp(ticks, self._time, self._velocity)
+        # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts
+        lead = np.interp(ticks, self._time, self._position) + self._timestep / 2.0 * wanted
+        effort = self._recorded(start, stop) if self._acting is None else self._acting[start:stop]
+        for values, effect in self._electronics:
+            effort = effect.delivered(values, self._held.model.axis, effort)
+        return np.stack([lead, wanted, effort], axis=-1)
+
+    def _ticks(self, start: int, stop: int) -> Array:
+        return self._time[0] + np.arange(start, stop) * self._timestep
+
+    def _recorded(self, start: int, stop: int) -> Array:
+        """Effort as it is recorded - N*m (N) - (ticks,)."""
+        at = self._ticks(start, stop) + self._timestep / 2.0 + self._held.misalignment
+        return np.interp(at, self._time, self._effort)
+
+    @cached_property
+    def _acting(self) -> Array | None:
+        """Effort at all ticks, faults of its sensor and lags undone - N*m (N); None without any."""
+        model = self._held.model
+        lags = any(effect.overrides("acting_along") for _, effect in self._electronics)
+        if not misreads_effort(model) and not lags:
+            return None
+        effort = true_effort(model, self._recorded(0, self.ticks), self._since, self._timestep)
+        for values, effect in self._electronics:
+            effort = effect.acting_along(values, effort, self._timestep)
+        return effort

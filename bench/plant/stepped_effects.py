@@ -1,0 +1,257 @@
+"""Effects that MuJoCo does not make by itself: in every step they set friction, inertia and torque.
+
+They act as at the middle of the step, which keeps the integration second order: MuJoCo's position is there already (see
+`bench.plant.model`), velocity is extrapolated from the last two steps. Friction levels combine as
+
+    forward, backward = (K_0 + sum of excesses +- sum of differences/2)*product of factors, neither below zero,
+
+of which MuJoCo's dry friction takes the mean, so that sticking stays exact, and a torque half of the difference.
+
+Values are arrays of axes side by side; of a lone axis they are numbers, of which all that is computed costs a fraction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array
+from bench.effects.effect import Effect
+from bench.effects.kinds import Axis, Electronics, Friction, Mechanism, Moment, Number, Sensing, Winding
+from bench.plant.axis_model import AxisModel
+from bench.plant.joints import Joints
+
+Kind = TypeVar("Kind", bound=Effect)
+
+
+class SteppedEffects:
+    """Ticked effects of axes side by side.
+
+    Args:
+        joints: where MuJoCo has the axes.
+        models: one for each of them.
+        velocity: they start with - rad/s (m/s) - (axes,), or a number of a lone axis.
+    """
+
+    def __init__(self, joints: Joints, models: Sequence[AxisModel], velocity: Number) -> None:
+        self._joints, self._step = joints, joints.step
+        self._none = per_axis([0.0] * len(models))
+        self._mechanisms = on_axes(models, Mechanism, ticked=True)
+        electronics = on_axes(models, Electronics)
+        self._flowing = _through(electronics, "flowing")
+        self._acting = _through(electronics, "acting")
+        self._delivered = _through(electronics, "delivered")
+        self._acted = _through(on_axes(models, Sensing), "acted")
+        self._friction = _FrictionLevels(joints, models)
+        self._inertia = _through(self._mechanisms, "added_inertia")
+        self._resisting = _through(self._mechanisms, "resisting_torque")
+        self._factors = _through(self._mechanisms, "torque_factor")
+        self._before = velocity
+
+    def act(
+        self, time: Number, position: Number, velocity: Number, demand: Number, began: Number = 0.0
+    ) -> tuple[Number, Number]:
+        """Set up the next step; returns the effort that is reported and the motor's torque, (axes,) each.
+
+        Of a lone axis everything may be numbers. The velocity is kept, and must not change afterwards.
+
+        Args:
+            time: at the start of the step, since the recording's start - s - one for all axes, or (axes,).
+            position: MuJoCo's, half a step on - rad (m) - (axes,).
+            velocity: at the start of the step - rad/s (m/s) - (axes,).
+            demand: effort that the drive asks for - N*m (N) - (axes,).
+            began: the recording, as `Moment` has it - s - one for all axes, or (axes,).
+        """
+        middle = 1.5 * velocity - 0.5 * self._before
+        self._before = velocity
+        reported, torque = self._driven(time + 0.5 * self._step, middle, demand)
+        at = Moment(time + 0.5 * self._step, position, middle, torque, began)
+        if self._factors:
+            for rows in self._factors:
+                factor = rows.effect.torque_factor(rows.values, rows.axis, rows.moment(at))
+                torque = rows.with_these(torque, rows.of(torque) * factor)
+            at = Moment(at.time, position, middle, torque, began)
+        applied = self._none - self._friction.offset(at)
+        for rows in self._resisting:
+            resisting = rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))
+            applied = rows.with_these(applied, rows.of(applied) - resisting)
+        self._joints.set_torque(applied)
+        if self._inertia:
+            added = self._none
+            for rows in self._inertia:
+                more = rows.effect.added_inertia(rows.values, rows.axis, rows.moment(at))
+                added = rows.with_these(added, rows.of(added) + more)
+            self._joints.set_added_inertia(added)
+        return reported, torque
+
+    def _driven(self, time: Number, velocity: Number, demand: Number) -> tuple[Number, Number]:
+        """In the order of the signal: what flows of a demand, what that truly is, what acts, what torque it makes."""
+        reported = demand
+        for rows in self._flowing:
+            wanted, speed = rows.of(demand), rows.of(velocity)
+            flows, rows.memory = rows.effect.flowing(rows.values, rows.axis, speed, wanted, rows.memory, self._step)
+            reported = rows.with_these(reported, flows)
+        torque = reported
+        for rows in self._acted:
+            torque = rows.with_these(torque, rows.effect.acted(rows.values, rows.axis, rows.of(torque), rows.of(time)))
+        for rows in self._acting:
+            acts, rows.memory = rows.effect.acting(rows.values, rows.of(torque), rows.memory, self._step)
+            torque = rows.with_these(torque, acts)
+        for rows in self._delivered:
+            torque = rows.with_these(torque, rows.effect.delivered(rows.values, rows.axis, rows.of(torque)))
+        return reported, torque
+
+
+class _FrictionLevels:
+    """The level of dry friction, where effects change it in every step."""
+
+    def __init__(self, joints: Joints, models: Sequence[AxisModel]) -> None:
+        mechanisms = on_axes(models, Friction, ticked=True)
+        self._coulomb = per_axis([model.parameters.coulomb_friction for model in models])
+        self._none = per_axis([0.0] * len(models))
+        self._excesses = _through(mechanisms, "friction_excess")
+        self._factors = _through(mechanisms, "friction_factor")
+        self._differences = _through(mechanisms, "friction_difference")
+        self._under_load = _through(mechanisms, "friction_under_load")
+        self._loads = _through(on_axes(models, Mechanism), "load_torque") if self._under_load else []
+        self._joints = joints
+        self._changes = bool(self._excesses or self._factors or self._differences or self._under_load)
+
+    def offset(self, at: Moment) -> Number:
+        """Set the level; returns half the difference of the two directions' levels - N*m (N) - (axes,)."""
+        if not self._changes:
+            return 0.0
+        level = self._coulomb
+        for rows in self._excesses:
+            excess = rows.effect.friction_excess(rows.values, rows.axis, rows.moment(at))
+            level = rows.with_these(level, rows.of(level) + excess)
+        if self._under_load:
+            level = self._with_load(level, at)
+        half = self._none
+        for rows in self._differences:
+            difference = rows.effect.friction_difference(rows.values, rows.axis)
+            half = rows.with_these(half, rows.of(half) + 0.5 * difference)
+        for rows in self._factors:
+            factor = rows.effect.friction_factor(rows.values, rows.axis, rows.moment(at))
+            level, half = (rows.with_these(each, rows.of(each) * factor) for each in (level, half))
+        if not self._differences:
+            self._joints.set_friction(np.maximum(level, 0.0))
+            return 0.0
+        forward, backward = np.maximum(level + half, 0.0), np.maximum(level - half, 0.0)
+        if self._joints.bristled:  # which bend to the level of their direction, and hold no torque beside
+            self._joints.set_friction(np.where(at.velocity > 0.0, forward, backward))
+            return 0.0
+        self._joints.set_friction(0.5 * (forward + backward))
+        return 0.5 * (forward - backward)
+
+    def _with_load(self, level: Number, at: Moment) -> Number:
+        """The level with what the transmitted torque adds to it - N*m (N) - (axes,)."""
+        load = self._none
+        for rows in self._loads:
+            load = rows.with_these(load, rows.of(load) + rows.effect.load_torque(rows.values, rows.moment(at)))
+        for rows in self._under_load:
+            pulled = rows.effect.friction_under_load(rows.values, rows.axis, rows.moment(at), rows.of(load))
+            level = rows.with_these(level, rows.of(level) + pulled)
+        return level
+
+
+def _through(rows: Sequence[EffectOnAxes], hook: str) -> list[EffectOnAxes]:
+    return [some for some in rows if some.effect.overrides(hook)]
+
+
+@dataclass
+class EffectOnAxes(Generic[Kind]):
+    """One effect on some axes of a batch.
+
+    Attributes:
+        effect: what it is.
+        index: of the axes that have it, None where all do.
+        values: of its quantities, (k,) each, or numbers of a lone axis.
+        axis: constants of these axes, alike.
+        memory: of the effect, alike.
+    """
+
+    effect: Kind
+    index: NDArray[np.intp] | None
+    values: dict[str, Number]
+    axis: Axis
+    memory: Number = 0.0
+
+    def moment(self, at: Moment) -> Moment:
+        """What these axes see of a moment."""
+        if self.index is None:
+            return at
+        return Moment(*(self.of(each) for each in (at.time, at.position, at.velocity, at.effort, at.began)))
+
+    def of(self, values: Number) -> Number:
+        """Of values of all axes, or one for all, those of these axes."""
+        return values if self.index is None or not isinstance(values, np.ndarray) else values[self.index]
+
+    def with_these(self, values: Number, these: Number) -> Number:
+        """Values of all axes with those of these axes in their places; what came in stays as it is."""
+        if self.index is None or not isinstance(values, np.ndarray):
+            return these
+        changed = values.copy()
+        changed[self.index] = these
+        return changed
+
+
+def on_axes(models: Sequence[AxisModel], kind: type[Kind], ticked: bool = False) -> list[EffectOnAxes[Kind]]:
+    """Effects of a kind, in the order of their names; an effect that an axis has twice makes two of them.
+
+    Args:
+        models: of the axes side by side.
+        kind: of the effects.
+        ticked: only those that MuJoCo does not make by itself.
+    """
+    found: dict[tuple[str, int], list[int]] = {}
+    values: dict[tuple[str, int], list[dict[str, float]]] = {}
+    for row, model in enumerate(models):
+        count: dict[str, int] = {}
+        for present in model.of_kind(kind):
+            if ticked and present not in model.ticked:
+                continue
+            count[present.name] = count.get(present.name, -1) + 1
+            key = present.name, count[present.name]
+            found.setdefault(key, []).append(row)
+            values.setdefault(key, []).append(dict(present.values))
+    return [_rows(models, key[0], found[key], values[key], kind) for key in sorted(found)]
+
+
+def _rows(
+    models: Sequence[AxisModel], name: str, index: list[int], values: list[dict[str, float]], kind: type[Kind]
+) -> EffectOnAxes[Kind]:
+    effect = next(p.effect for p in models[index[0]].effects if p.name == name)
+    assert isinstance(effect, kind)
+    axes = [models[row].axis for row in index]
+    constants = {
+        key: per_axis([float(getattr(axis, key)) for axis in axes])
+        for key in ("inertia", "motor_inertia", "viscous", "coulomb", "peak_effort")
+    }
+    return EffectOnAxes(
+        effect,
+        None if len(index) == len(models) else np.array(index),
+        {key: per_axis([value[key] for value in values]) for key in values[0]},
+        Axis(**constants, winding=_windings(axes)),
+        per_axis([0.0] * len(index)),
+    )
+
+
+def _windings(axes: Sequence[Axis]) -> Winding | None:
+    known = [axis.winding for axis in axes if axis.winding is not None]
+    if len(known) < len(axes):
+        return None
+    names = ("torque_constant", "resistance", "inductance", "back_emf_constant")
+    return Winding(**{name: per_axis([float(getattr(winding, name)) for winding in known]) for name in names})
+
+
+def per_axis(values: Sequence[float] | Array) -> Number:
+    """Values of axes side by side, (axes,), as they are now; that of a lone axis as a number.
+
+    NumPy's, which overflows to infinity as arrays do, where one of Python's raises an error.
+    """
+    return np.float64(values[0]) if len(values) == 1 else np.array(values, dtype=np.float64)

@@ -1,0 +1,19 @@
+"""An axis under given efforts, without a controller."""
+
+import mujoco
+import numpy as np
+
+from bench.plant.axis_model import AxisModel
+from bench.plant.closed_loop import ClosedLoop, Listed
+from bench.plant.model import AxisParameters
+from bench.plant.native import run_native, sense_torque
+from bench.plant.states import States
+
+
+def open_loop(spec: mujoco.MjSpec, efforts: np.ndarray, position: float = 0.0, velocity: float = 0.0) -> States:
+    """Motion of a model - rad, rad/s (m, m/s) - whose drive makes efforts, each held for a step - N*m (N) - (n,)."""
+    sense_torque(spec)
+    model = spec.compile()
+    time = np.arange(efforts.size) * model.opt.timestep
+    nothing = AxisModel(AxisParameters(1.0))
+    return run_native(ClosedLoop(nothing, model, Listed(efforts[:, None]), time, position, velocity))
