@@ -14,6 +14,13 @@ def rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
+def all_finite(values: Array) -> bool:
+    """Whether no value is infinite or nan; costs no temporary array where none is."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        # a sum is finite only if every term is; that of large finite ones may overflow, hence the second look
+        return bool(np.isfinite(values.sum()) or np.isfinite(values).all())
+
+
 def column_rms(table: Array) -> Array:
     """Root mean square of each column (m,) of a table (n, m), in its unit."""
     return np.sqrt(np.mean(table**2, axis=0))

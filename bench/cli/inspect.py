@@ -25,10 +25,10 @@ def inspect(
     from bench.report.gate import checks_json, checks_table
     from bench.report.inspection import table
     from bench.rig.rig import load_rig
-    from bench.trace.assemble import assemble
     from bench.trace.inspect import inspect_recording, to_json
     from bench.trace.read import read_recording
     from bench.trace.reading_options import GivenOptions
+    from bench.trace.trace import assemble
 
     axis = load_rig(rig).on_axis(axis_name) if rig else None
     how = axis.trace if axis is not None else GivenOptions(axis=axis_name)

@@ -17,12 +17,12 @@ from bench.names import nearest
 from bench.plant.truth import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.structured import parse_json
-from bench.trace.assemble import assemble
 from bench.trace.channel import Recording
 from bench.trace.choose import choose
 from bench.trace.read import read_recording
 from bench.trace.readers.catalogue import readers
 from bench.trace.reading_options import reading_options
+from bench.trace.trace import assemble
 
 WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"
 #: Signals that the tasks need.

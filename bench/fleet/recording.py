@@ -20,11 +20,10 @@ from bench.fleet.remote import fetched
 from bench.gate.check import Check
 from bench.gate.gate import UnanswerableError
 from bench.rig.rig import Rig
-from bench.trace.assemble import assemble
 from bench.trace.choose import axes_of
 from bench.trace.read import read_recording
 from bench.trace.stream import cut
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, assemble
 
 #: What a recording is called in what is said of it: the same whatever its path is, and wherever it was copied to.
 CALLED = "recording"

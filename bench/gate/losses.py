@@ -20,8 +20,8 @@ from bench.arrays import Array, rms
 from bench.gate.check import Check, absent
 from bench.gate.parts import resolution_of
 from bench.rig.rig import Rig
-from bench.trace.time_base import counted, interpolate
-from bench.trace.trace import HOLE, Trace
+from bench.trace.time_base import HOLE, counted, interpolate
+from bench.trace.trace import Trace
 
 NAME = "lost_samples"
 #: Samples of the running median, and of the shortest stretch that is looked at.

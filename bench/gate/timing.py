@@ -12,7 +12,8 @@ from bench.gate.balance import balance, effort_of
 from bench.gate.check import Check, absent
 from bench.gate.parts import speed_of, stretches
 from bench.rig.rig import Rig
-from bench.trace.trace import HOLE, TimeBase, Trace
+from bench.trace.time_base import HOLE, TimeBase
+from bench.trace.trace import Trace
 
 REGULAR, RATE = "time_is_regular", "sampling_rate_plausible"
 #: Deviation of a step from whole sample periods that is told, and that is refused where nothing resampled it - share.

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.report.figures import MEASURED, in_style, save_as_named, thinned, title_figure
-from bench.trace.assemble import assemble
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import of_axis
 from bench.trace.reading_options import ReadingOptions
+from bench.trace.trace import assemble
 
 #: Rows of a page that can still be read.
 MOST = 16

@@ -19,7 +19,7 @@ _INDEX = Scale("samples", 1.0)
 
 
 @dataclass(frozen=True)
-class Chosen:
+class SignalColumn:
     """The channel that holds a signal.
 
     Attributes:
@@ -33,7 +33,7 @@ class Chosen:
     sign: float = 1.0
 
 
-def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, Chosen], tuple[str, ...]]:
+def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, SignalColumn], tuple[str, ...]]:
     """Channel of every signal, `time` among them where the recording is a table, and what had to be assumed.
 
     Raises:
@@ -45,7 +45,7 @@ def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, Chosen]
             allowed = f"allowed: time, {', '.join(SI_UNITS)}"
             raise InputError(f"columns: {signal}", f"not a signal{nearest(signal, [*SI_UNITS])}", allowed)
     recording = replace(recording, channels=of_axis(recording, how.axis))
-    chosen: dict[str, Chosen] = {}
+    chosen: dict[str, SignalColumn] = {}
     faults: dict[str, InputError] = {}
     notes: list[str] = []
     for signal in ("time", *SI_UNITS):
@@ -61,7 +61,7 @@ def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, Chosen]
     _require(recording, chosen, faults, how)
     if "time" not in chosen and how.sample_period is not None:
         index = _index(recording, how.columns)
-        chosen |= {"time": Chosen(index, _INDEX)} if index is not None else {}
+        chosen |= {"time": SignalColumn(index, _INDEX)} if index is not None else {}
     left = (f"{signal} left out: {fault.where} {fault.found}" for signal, fault in faults.items() if signal != "time")
     return chosen, (*notes, *left)
 
@@ -94,7 +94,7 @@ def axes_of(channels: Iterable[Channel]) -> tuple[str, ...]:
 
 
 def _require(
-    recording: Recording, chosen: Mapping[str, Chosen], faults: dict[str, InputError], how: ReadingOptions
+    recording: Recording, chosen: Mapping[str, SignalColumn], faults: dict[str, InputError], how: ReadingOptions
 ) -> None:
     """Raise the first fault that leaves a trace without what it needs."""
     timed = "time" in chosen or any(choice.channel.time is not None for choice in chosen.values())
@@ -111,7 +111,7 @@ def _require(
                     raise faults[signal]
 
 
-def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes: list[str]) -> Chosen | None:
+def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes: list[str]) -> SignalColumn | None:
     """The channel of a signal; None where the recording has none."""
     given = columns.get(signal)
     channel, unit, sign = None, None, 1.0
@@ -135,7 +135,7 @@ def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes
         own = _own_scale(signal, channel)
         if own is not None and own != scale:
             notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
-    return Chosen(channel, scale, sign)
+    return SignalColumn(channel, scale, sign)
 
 
 def _scale(recording: Recording, signal: str, channel: Channel, given: str | None, notes: list[str]) -> Scale:

@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.trace.channel import Channel
+from bench.trace.choose import SignalColumn
+from bench.trace.reading_options import ReadingOptions
+from bench.trace.signal_names import scale_in
 
+#: Share of cells that may be empty as lost samples; a column with more of them is sampled by a clock of its own.
+FEW = 0.05
+#: Share by which the sample period of a rig may differ from the mean step of the times in the file.
+PERIOD = 0.01
 #: Largest share of samples with a time that another sample already has, and other values.
 MOST_DUPLICATES = 0.01
 
@@ -47,7 +55,7 @@ class Clock:
 
 
 @dataclass(frozen=True, eq=False)
-class Sampled:
+class SampledSignal:
     """Values of a signal with the clock they were sampled by.
 
     Attributes:
@@ -59,6 +67,20 @@ class Sampled:
     clock: Clock
     values: Array
     unknown: NDArray[np.bool_] | None = None
+
+
+def require_finite(channel: Channel) -> None:
+    """Raise InputError for an infinite value of a channel."""
+    infinite = np.isinf(channel.values)
+    if infinite.any():
+        first = int(np.argmax(infinite))
+        raise InputError(channel.place(first), f"found {channel.values[first]}", "allowed: a finite number")
+
+
+def between_known(values: Array) -> Array:
+    """Values (n,) with nan filled in by the line between their neighbours."""
+    known, place = ~np.isnan(values), np.arange(values.size)
+    return np.interp(place, place[known], values[known])
 
 
 def without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Clock, Mapping[str, Array], int]:
@@ -91,3 +113,79 @@ def without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Clock
     keep = ~again
     kept = {name: array[keep] for name, array in values.items()}
     return Clock(time[keep], clock.recorded[keep], clock.tick, clock.place), kept, int(again.sum())
+
+
+def clock_of(channel: Channel, time: SignalColumn | None, how: ReadingOptions, notes: list[str]) -> Clock:
+    """The clock of a channel: its own times, those of its table, or the sample period's.
+
+    Args:
+        channel: whose clock it is.
+        time: of its table, if that has one.
+        how: it is to be read.
+        notes: what the user should know, to be added to.
+
+    Raises:
+        InputError: times that are infinite or mostly empty, an index that does not increase, or a sample period that
+            the times contradict.
+    """
+    own = channel.time if channel.time is not None else getattr(time, "channel", None)
+    if own is None:
+        return _every(how.sample_period, np.arange(channel.values.size, dtype=np.float64), channel)
+    scale = time.scale if time is not None and own is time.channel else scale_in("time", own.unit or "s", own.place())
+    raw = own.values
+    if not np.isfinite(raw).all():
+        require_finite(own)
+        raw = _filled(own, notes)
+    if scale.unit == "samples":
+        return _every(how.sample_period, _counts(own, raw), own)
+    clock = Clock(raw * scale.factor if scale.factor != 1.0 else raw, raw, scale.factor, own.place)
+    return clock if how.sample_period is None else _agreeing(clock, how.sample_period, own, notes)
+
+
+def _every(period: float | None, count: Array, channel: Channel) -> Clock:
+    """The clock of counted samples (n,)."""
+    assert period is not None  # `choose` asks for it where there is no time
+    return Clock(count * period, count, period, channel.place)
+
+
+def _filled(time: Channel, notes: list[str]) -> Array:
+    """Times with those that are empty taken from their neighbours."""
+    unknown = np.isnan(time.values)
+    count, first = int(unknown.sum()), time.place(int(np.argmax(unknown)))
+    if count > FEW * unknown.size:
+        raise InputError(first, f"found {count} of {unknown.size} times empty", f"allowed: {FEW:.0%} of them")
+    notes.append(f"{count} times empty, the first at {first}; taken from their neighbours")
+    return between_known(time.values)
+
+
+def _counts(time: Channel, index: Array) -> Array:
+    """Samples from the first by an index (n,) that counts them, whatever its usual step."""
+    steps = np.diff(index)
+    if index.size < 2 or not (steps > 0).all():
+        first = int(np.argmax(steps <= 0)) + 1 if index.size > 1 else 0
+        raise InputError(time.place(first), "the sample index does not increase", "allowed: an increasing index")
+    return (index - index[0]) / float(np.median(steps))
+
+
+def _agreeing(clock: Clock, period: float, time: Channel, notes: list[str]) -> Clock:
+    """The clock, checked against the rig's sample period; times by that period if the clock is too coarse.
+
+    Raises:
+        InputError: they contradict each other.
+    """
+    steps = np.diff(clock.time)
+    coarse = steps.size > 0 and float(np.mean(steps == 0.0)) > FEW
+    mean = float(clock.time[-1] - clock.time[0]) / max(steps.size, 1)
+    slack = float(steps.max(initial=0.0)) / max(steps.size, 1) if coarse else PERIOD * period
+    typical = mean if coarse else float(np.median(steps)) if steps.size else period
+    if abs(typical - period) > slack + PERIOD * period:
+        raise InputError(
+            time.place(),
+            f"steps by {typical:.6g} s, where the rig's [trace] says sample_period = {period:.6g} s",
+            "allowed: one of them, or both alike",
+        )
+    if not coarse:
+        return clock
+    notes.append(f"times are too coarse to tell samples apart; taken every {period:g} s, as the rig says")
+    count = np.arange(clock.time.size, dtype=np.float64)
+    return Clock(clock.time[0] + count * period, count, period, clock.place)

@@ -1,4 +1,4 @@
-"""From arrays or a data frame to a trace: columns as a reader returns them, assembled as any recording is."""
+"""Samples in memory, arrays or a data frame, as a recording: columns as a reader returns them."""
 
 from __future__ import annotations
 
@@ -13,12 +13,10 @@ from numpy.typing import ArrayLike
 
 from bench.errors import InputError
 from bench.names import nearest
-from bench.trace.assemble import assemble
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.columns import channel_of
 from bench.trace.signal_names import signal_of
 from bench.trace.signals import SI_UNITS
-from bench.trace.trace import Trace
 from bench.units import parse
 
 FORMAT = "arrays"
@@ -35,14 +33,14 @@ class ArrowStream(Protocol):
 Arrays = Mapping[str, ArrayLike] | ArrowStream
 
 
-def trace_of(
+def recording_of(
     signals: Arrays,
     units: Mapping[str, str],
     sample_period: float | str | None,
     columns: Mapping[str, str],
     origin: str,
-) -> Trace:
-    """See `Trace.from_arrays`."""
+) -> Recording:
+    """Columns of `Trace.from_arrays`, whose arguments these are."""
     channels = list(_channels(signals, origin))
     names = [channel.name for channel in channels]
     for name in units:
@@ -61,7 +59,7 @@ def trace_of(
         channels.append(
             Channel("time", "s", np.arange(samples, dtype=np.float64) * _period(sample_period, origin), origin)
         )
-    return assemble(Recording(tuple(channels), FORMAT, origin), columns)
+    return Recording(tuple(channels), FORMAT, origin)
 
 
 def _channels(signals: Arrays, origin: str) -> Iterator[Channel]:

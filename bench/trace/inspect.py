@@ -13,15 +13,14 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.errors import InputError
 from bench.structured import json_text
-from bench.trace.assemble import assemble
 from bench.trace.channel import Channel, Recording
-from bench.trace.choose import Chosen, axes_of, choose, of_axis
-from bench.trace.in_si import in_si
+from bench.trace.choose import SignalColumn, axes_of, choose, of_axis
+from bench.trace.in_si import InSI, in_si
 from bench.trace.likely import Likely, likely_signals
 from bench.trace.read import read_recording
 from bench.trace.reading_options import ReadingOptions, reading_options
 from bench.trace.signal_names import scale_in
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, on_time_base, unused
 
 SCHEMA = "bench.inspect/1"
 
@@ -143,8 +142,9 @@ def inspect(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None
 def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
     """See `inspect`."""
     try:
-        chosen, _ = choose(recording, how)
-        trace = assemble(recording, how)
+        chosen, notes = choose(recording, how)
+        found = in_si(chosen, recording, how)
+        trace = on_time_base(found, recording, chosen, (*recording.notes, *notes))
     except InputError as error:
         if how.columns:
             raise
@@ -158,16 +158,16 @@ def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
             metadata=dict(recording.metadata),
             notes=recording.notes,
         )
-    return _of_trace(recording, chosen, trace, how)
+    return _of_trace(recording, chosen, found, trace, how)
 
 
-def _of_trace(recording: Recording, chosen: Mapping[str, Chosen], trace: Trace, how: ReadingOptions) -> Inspection:
-    recorded = in_si(chosen, recording, how).signals
+def _of_trace(
+    recording: Recording, chosen: Mapping[str, SignalColumn], found: InSI, trace: Trace, how: ReadingOptions
+) -> Inspection:
     base = trace.time_base
     assert base is not None  # a trace that was read has one
-    used = {id(choice.channel) for choice in chosen.values()}
     signals = tuple(
-        _summary(name, trace.units[name], chosen[name].channel.label, values, recorded[name].values)
+        _summary(name, trace.units[name], chosen[name].channel.label, values, found.signals[name].values)
         for name, values in trace.signals.items()
     )
     return Inspection(
@@ -187,7 +187,7 @@ def _of_trace(recording: Recording, chosen: Mapping[str, Chosen], trace: Trace, 
         interpolated=base.interpolated,
         resampled=base.resampled,
         signals=signals,
-        dropped=tuple(channel.label for channel in recording.channels if id(channel) not in used),
+        dropped=tuple(unused(chosen, recording)),
         metadata=dict(recording.metadata),
         notes=trace.notes,
     )
@@ -206,7 +206,9 @@ def _resolution(values: Array) -> float | None:
     return float(steps.min()) if steps.size else None
 
 
-def _columns(recording: Recording, chosen: Mapping[str, Chosen], how: ReadingOptions) -> tuple[ColumnSummary, ...]:
+def _columns(
+    recording: Recording, chosen: Mapping[str, SignalColumn], how: ReadingOptions
+) -> tuple[ColumnSummary, ...]:
     """Every column of the axis in numbers, with what it is read as or likely to be."""
     channels = of_axis(recording, how.axis)
     read = {id(choice.channel): signal for signal, choice in chosen.items()}

@@ -14,8 +14,8 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
-from bench.trace.time_base import interpolate
-from bench.trace.trace import TimeBase, Trace
+from bench.trace.time_base import TimeBase, interpolate
+from bench.trace.trace import Trace
 
 #: Sample periods between the end of a recording and the start of the next: a hole.
 APART = 10.0

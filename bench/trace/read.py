@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from bench.trace.assemble import assemble
 from bench.trace.channel import Recording
 from bench.trace.readers.catalogue import reader_of
 from bench.trace.reading_options import ReadingOptions
 from bench.trace.source import open_source
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, assemble
 
 
 def read(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = None) -> Trace:

@@ -16,14 +16,13 @@ from bench.errors import InputError
 from bench.names import readable
 from bench.trace.channel import Recording
 from bench.trace.choose import choose
-from bench.trace.in_si import InSI, in_si
+from bench.trace.in_si import in_si
 from bench.trace.read import read
 from bench.trace.readers.columns import channel_of, is_moment
 from bench.trace.readers.containers import reading
 from bench.trace.readers.parquet import DAMAGE, MAGIC, WIDTH, Parquet
 from bench.trace.reading_options import ReadingOptions, reading_options
-from bench.trace.time_base import regular
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, on_time_base
 from bench.trace.wraps import Unwrapping
 
 #: Samples of a chunk: few enough for the processor's cache, enough to make Python's overhead negligible.
@@ -121,25 +120,10 @@ def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
                 name: replace(choice, channel=channel_of(field_of[name], batch[field_of[name].name], path, start))
                 for name, choice in chosen.items()
             }
-            found = in_si(pieces, empty, how, wrapping)
-            last = _trace(found, empty, (*notes, *found.notes), last)
+            part = on_time_base(in_si(pieces, empty, how, wrapping), empty, chosen, notes)
+            last = replace(part, continues=_continues(last, part.time, part.sample_period, part.origin))
             yield last
             start += batch.num_rows
-
-
-def _trace(found: InSI, recording: Recording, notes: tuple[str, ...], last: Trace | None) -> Trace:
-    base = regular(found.signals)
-    return Trace(
-        time=base.time,
-        signals=base.signals,
-        units=found.units,
-        origin=recording.origin,
-        metadata={"format": Parquet.format},
-        time_base=base.time_base,
-        notes=(*notes, *base.notes),
-        continues=_continues(last, base.time, base.time_base.sample_period, recording.origin),
-        wraps=found.wraps,
-    )
 
 
 def _batches(file: pq.ParquetFile, names: list[str], chunk: int) -> Iterator[pa.RecordBatch]:

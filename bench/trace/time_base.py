@@ -22,14 +22,44 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.errors import InputError
-from bench.trace.clock import Clock, Sampled, without_duplicates
-from bench.trace.sample_base import LONGEST_STEP, STEADY, Base, find_base
-from bench.trace.trace import HOLE, TimeBase
+from bench.trace.clock import Clock, SampledSignal, without_duplicates
 
+#: A step this many sample periods long is a hole, not jitter: no signal of a servo is known inside it.
+HOLE = 1.5
+#: Steps up to this many sample periods are filled; a longer one is a hole.
+LONGEST_STEP = 2.5
+#: Deviation from the line, as share of the sample period, that is no more than the rounding of floats.
+EXACT = 1e-6
+#: Deviation from the line, as share of the sample period, below which interpolating would change nothing that matters.
+STEADY = 1e-3
+#: Rounded times q apart leave q/sqrt(12) of noise, which tilts a line fitted to n of them: their peak-to-peak deviation
+#: exceeds q by up to 2*3 standard deviations at its ends, 6*q*sqrt(3/(12*n)) = 3*q/sqrt(n).
+_SLOPE = 3.0
 #: Signals whose clock makes the time base, best first.
 LEADING = ("velocity", "position", "current", "torque", "force", "voltage")
 #: Akima's slopes look at two samples on each side.
 _AKIMA = 5
+
+
+@dataclass(frozen=True)
+class TimeBase:
+    """Sample times as found by a reader, before they were brought to a regular base.
+
+    Attributes:
+        sample_period: median step - s.
+        jitter: largest deviation of a step (holes aside) from the sample period - share of the period.
+        holes: (start, duration) of each stretch without samples - s.
+        duplicates: samples dropped because their time stood already in the recording.
+        interpolated: samples placed between measured ones, inside steps too short to be a hole.
+        resampled: whether signals were interpolated onto the regular base.
+    """
+
+    sample_period: float
+    jitter: float = 0.0
+    holes: tuple[tuple[float, float], ...] = ()
+    duplicates: int = 0
+    interpolated: int = 0
+    resampled: bool = False
 
 
 @dataclass(frozen=True)
@@ -42,7 +72,7 @@ class Regular:
     notes: tuple[str, ...]
 
 
-def regular(signals: Mapping[str, Sampled]) -> Regular:
+def regular(signals: Mapping[str, SampledSignal]) -> Regular:
     """Bring signals to the regular time base of the leading one.
 
     Raises:
@@ -54,7 +84,7 @@ def regular(signals: Mapping[str, Sampled]) -> Regular:
     cleaned = {key: without_duplicates(clocks[key], of_clock[key]) for key in clocks}
     lead = id(signals[leader].clock)
     clock, values, duplicates = cleaned[lead]
-    base = find_base(clock, duplicates)
+    base = _find(clock, duplicates)
     placed = {name: _on_own_base(base, clock.time, array) for name, array in values.items()}
     notes = list(_notes(base, clock))
     time, valid = base.time, np.ones(base.time.size, dtype=bool)
@@ -64,11 +94,11 @@ def regular(signals: Mapping[str, Sampled]) -> Regular:
         for name, array in others.items():
             placed[name], known = _on_foreign_base(time, base, clock, other, array)
             valid &= known
-        notes.append(_foreign_note(list(others), leader, base, find_base(other, 0)))
+        notes.append(_foreign_note(list(others), leader, base, _find(other, 0)))
     found = base.found
     empty = _empty(signals)
     if empty.size:
-        reach = (1.0 if base.resampled else 0.5) * found.sample_period
+        reach = (1.0 if found.resampled else 0.5) * found.sample_period
         full = _distance(time, empty) >= reach
         time, placed, valid = time[full], {name: array[full] for name, array in placed.items()}, valid[full]
         found = replace(found, holes=_holes(time, found.sample_period))
@@ -80,7 +110,7 @@ def regular(signals: Mapping[str, Sampled]) -> Regular:
     return Regular(time, {name: placed[name] for name in signals}, found, tuple(notes))
 
 
-def _empty(signals: Mapping[str, Sampled]) -> Array:
+def _empty(signals: Mapping[str, SampledSignal]) -> Array:
     """Times at which a signal has no value - s."""
     times = [signal.clock.time[signal.unknown] for signal in signals.values() if signal.unknown is not None]
     return np.unique(np.concatenate(times)) if times else np.empty(0)
@@ -98,9 +128,9 @@ def _holes(time: Array, period: float) -> tuple[tuple[float, float], ...]:
     return tuple((float(time[at]), float(step[at])) for at in np.flatnonzero(step > HOLE * period))
 
 
-def _on_own_base(base: Base, time: Array, values: Array) -> Array:
+def _on_own_base(base: _RegularTimes, time: Array, values: Array) -> Array:
     """Values of a signal on the base found in its own clock."""
-    if base.resampled:
+    if base.found.resampled:
         return interpolate(base.time, time, values)
     if base.measured is None:
         return values
@@ -124,10 +154,10 @@ def interpolate(at: Array, time: Array, values: Array) -> Array:
 
 
 def _on_foreign_base(
-    time: Array, base: Base, clock: Clock, other: Clock, values: Array
+    time: Array, base: _RegularTimes, clock: Clock, other: Clock, values: Array
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Values of a signal of another clock on the base, and where they are known."""
-    same = other.time.size == clock.time.size and base.measured is None and not base.resampled
+    same = other.time.size == clock.time.size and base.measured is None and not base.found.resampled
     if same and np.abs(other.time - clock.time).max() <= max(clock.quantum, other.quantum) * (1.0 + 1e-3):
         return values, np.ones(time.size, dtype=bool)  # the same instants, stamped apart by their rounding
     step = np.diff(other.time)
@@ -139,7 +169,7 @@ def _on_foreign_base(
     return interpolate(time, other.time, values), known
 
 
-def _notes(base: Base, clock: Clock) -> list[str]:
+def _notes(base: _RegularTimes, clock: Clock) -> list[str]:
     found, notes = base.found, []
     if found.resampled:
         notes.append(
@@ -164,7 +194,121 @@ def counted(count: int, what: str) -> str:
     return f"{count} {what}{'s' * (count != 1)}"
 
 
-def _foreign_note(names: list[str], leader: str, base: Base, other: Base) -> str:
+def _foreign_note(names: list[str], leader: str, base: _RegularTimes, other: _RegularTimes) -> str:
     every, own = other.found.sample_period, base.found.sample_period
     who = ", ".join(names)
     return f"{who} sampled every {every:g} s by a clock of its own; taken at the times of {leader}, every {own:g} s"
+
+
+@dataclass(frozen=True, eq=False)
+class _RegularTimes:
+    """The regular time base found in a clock.
+
+    Attributes:
+        time: regular within each segment - s - (m,).
+        measured: which of them are measured samples, in order - (m,); None: each is, unless it was resampled.
+        found: what the clock was like.
+    """
+
+    time: Array
+    measured: NDArray[np.bool_] | None
+    found: TimeBase
+
+
+def _find(clock: Clock, duplicates: int) -> _RegularTimes:
+    """The regular time base in increasing sample times."""
+    time = clock.time
+    if time.size < 2:
+        raise InputError(clock.place(None), f"found {time.size} different times", "allowed: at least two")
+    exact = _exact(time)
+    if exact is not None:
+        return _RegularTimes(time, None, TimeBase(*exact, duplicates=duplicates))
+    step = np.diff(time)
+    period = float(np.median(step))
+    contiguous = step[step <= LONGEST_STEP * period]
+    edges = np.flatnonzero(step > LONGEST_STEP * period) + 1
+    holes = tuple((float(time[edge - 1]), float(step[edge - 1])) for edge in edges)
+    segments = np.split(np.arange(time.size), edges) if edges.size else [np.arange(time.size)]
+    mean = float(contiguous.mean())
+    line = _line(time, segments, [np.arange(s.size, dtype=float) for s in segments], mean)
+    tolerance = max(clock.quantum * (1.0 + _SLOPE / np.sqrt(time.size)), 2.0 * STEADY * mean)
+    if line.spread > tolerance:
+        counts = [np.concatenate([[0.0], np.cumsum(np.maximum(np.rint(step[s[:-1]] / period), 1.0))]) for s in segments]
+        line = _line(time, segments, counts, period)
+    if line.spread > tolerance:
+        missing = int(np.maximum(np.rint(contiguous / period), 1.0).sum()) - contiguous.size
+        return _resampled(
+            time, segments, TimeBase(period, _jitter(contiguous, period), holes, duplicates, missing, True)
+        )
+    missing = int(sum(count[-1] + 1 - count.size for count in line.counts))
+    found = TimeBase(line.period, _jitter(contiguous, line.period), holes, duplicates, missing)
+    if line.spread <= EXACT * line.period and not missing:
+        return _RegularTimes(time, None, found)
+    return _snapped(line, found)
+
+
+def _exact(time: Array) -> tuple[float, float] | None:
+    """Period - s - and jitter - share of it - of times that follow one line through their ends exactly; None if not."""
+    period = float(time[-1] - time[0]) / (time.size - 1)
+    off = np.arange(time.size, dtype=np.float64)
+    off *= -period
+    off += time
+    spread = float(off.max() - off.min()) / period
+    return (period, spread) if spread <= EXACT else None
+
+
+@dataclass(frozen=True, eq=False)
+class _StraightLine:
+    """Fit t = start + k*T to the times of all segments: one period, one start a segment.
+
+    Attributes:
+        period: T - s.
+        starts: of the segments - s.
+        counts: k of each sample, a segment an array.
+        spread: largest peak-to-peak deviation within a segment - s.
+    """
+
+    period: float
+    starts: list[float]
+    counts: list[Array]
+    spread: float
+
+
+def _line(time: Array, segments: list[NDArray[np.intp]], counts: list[Array], guess: float) -> _StraightLine:
+    """Least squares of the times on their counts; `guess` where no segment has two samples."""
+    along, across = 0.0, 0.0
+    for segment, count in zip(segments, counts, strict=True):
+        centred = count - count.mean()
+        # times relative to the guess keep the sums small: the slope to 1e-12 even far from t = 0
+        along += float(centred @ (time[segment] - time[segment[0]] - guess * count))
+        across += float(centred @ centred)
+    period = guess + along / across if across > 0.0 else guess
+    starts, spread = [], 0.0
+    for segment, count in zip(segments, counts, strict=True):
+        rest = time[segment] - period * count
+        starts.append(float(rest.mean()))
+        spread = max(spread, float(np.ptp(rest)))
+    return _StraightLine(period, starts, counts, spread)
+
+
+def _jitter(step: Array, period: float) -> float:
+    """Largest deviation of a step from the nearest whole number of periods - share of the period."""
+    return float(np.abs(step / period - np.maximum(np.rint(step / period), 1.0)).max())
+
+
+def _snapped(line: _StraightLine, found: TimeBase) -> _RegularTimes:
+    times, measured = [], []
+    for start, count in zip(line.starts, line.counts, strict=True):
+        every = np.arange(count[-1] + 1.0)
+        times.append(start + line.period * every)
+        measured.append(np.isin(every, count))
+    flags = np.concatenate(measured)
+    return _RegularTimes(np.concatenate(times), None if flags.all() else flags, found)
+
+
+def _resampled(time: Array, segments: list[NDArray[np.intp]], found: TimeBase) -> _RegularTimes:
+    times = []
+    for segment in segments:
+        first, last = time[segment[0]], time[segment[-1]]
+        times.append(first + found.sample_period * np.arange(int((last - first) / found.sample_period + EXACT) + 1))
+    return _RegularTimes(np.concatenate(times), None, found)

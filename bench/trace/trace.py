@@ -12,44 +12,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import Array, all_finite
 from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
+from bench.trace.channel import Recording
+from bench.trace.choose import SignalColumn, choose
+from bench.trace.in_si import InSI, in_si
+from bench.trace.reading_options import ReadingOptions, reading_options
+from bench.trace.time_base import HOLE, TimeBase, regular
+from bench.trace.wraps import Wraps
 
 if TYPE_CHECKING:
     from bench.trace.from_arrays import Arrays
-    from bench.trace.wraps import Wraps
-
-#: A step this many sample periods long is a hole, not jitter: no signal of a servo is known inside it.
-HOLE = 1.5
-
-
-def all_finite(values: Array) -> bool:
-    """Whether no value is infinite or nan; costs no temporary array where none is."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        # a sum is finite only if every term is; that of large finite ones may overflow, hence the second look
-        return bool(np.isfinite(values.sum()) or np.isfinite(values).all())
-
-
-@dataclass(frozen=True)
-class TimeBase:
-    """Sample times as found by a reader, before they were brought to a regular base.
-
-    Attributes:
-        sample_period: median step - s.
-        jitter: largest deviation of a step (holes aside) from the sample period - share of the period.
-        holes: (start, duration) of each stretch without samples - s.
-        duplicates: samples dropped because their time stood already in the recording.
-        interpolated: samples placed between measured ones, inside steps too short to be a hole.
-        resampled: whether signals were interpolated onto the regular base.
-    """
-
-    sample_period: float
-    jitter: float = 0.0
-    holes: tuple[tuple[float, float], ...] = ()
-    duplicates: int = 0
-    interpolated: int = 0
-    resampled: bool = False
 
 
 @dataclass(frozen=True)
@@ -133,12 +107,11 @@ class Trace:
             origin: what messages call it.
 
         Raises:
-            InputError: as `bench.trace.assemble.assemble`; a unit for a column that is not there; neither time nor
-                sample period, or both.
+            InputError: as `assemble`; a unit for a column that is not there; neither time nor sample period, or both.
         """
-        from bench.trace.from_arrays import trace_of  # which imports this module
+        from bench.trace.from_arrays import recording_of  # pyarrow: 0.05 s, which a trace of a simulation need not pay
 
-        return trace_of(signals, units or {}, sample_period, columns or {}, origin)
+        return assemble(recording_of(signals, units or {}, sample_period, columns or {}, origin), columns)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         """Values of a signal; InputError naming it when the trace does not hold it."""
@@ -193,3 +166,58 @@ class Trace:
         return replace(
             self, time=self.time[first:last], signals={name: v[first:last] for name, v in self.signals.items()}
         )
+
+
+def assemble(recording: Recording, given: Mapping[str, str] | ReadingOptions | None = None) -> Trace:
+    """Trace of a recording: signals are chosen and named, brought to SI, and to one regular time base.
+
+    Args:
+        recording: as a reader returned it.
+        given: signal (or `time`) -> column of the file with unit, e.g. `{"velocity": "-Axis1.ActVel [mm/s]"}`, where a
+            leading `-` inverts the sign; or a rig's `[trace]`. Other signals are taken from columns with well-known
+            names.
+
+    Raises:
+        InputError: a column missing, ambiguous, without unit or of the wrong dimension; no time; values that are not
+            finite; times that run backwards or stand twice too often.
+    """
+    how = reading_options(given)
+    chosen, notes = choose(recording, how)
+    return on_time_base(in_si(chosen, recording, how), recording, chosen, (*recording.notes, *notes))
+
+
+def on_time_base(
+    found: InSI, recording: Recording, chosen: Mapping[str, SignalColumn], notes: tuple[str, ...]
+) -> Trace:
+    """Trace of signals in SI units, with the sample times that they were recorded at.
+
+    Args:
+        found: signals.
+        recording: that they are of.
+        chosen: its columns that they were made of.
+        notes: what the user should know of these.
+
+    Raises:
+        InputError: times that run backwards or stand twice too often.
+    """
+    base = regular(found.signals)
+    metadata = {**recording.metadata, "format": recording.format}
+    dropped = unused(chosen, recording)
+    if dropped:
+        metadata["dropped_columns"] = ", ".join(dropped)
+    return Trace(
+        time=base.time,
+        signals=base.signals,
+        units=found.units,
+        origin=recording.origin,
+        metadata=metadata,
+        time_base=base.time_base,
+        notes=(*notes, *found.notes, *base.notes),
+        wraps=found.wraps,
+    )
+
+
+def unused(chosen: Mapping[str, SignalColumn], recording: Recording) -> list[str]:
+    """Labels of the columns that are no signal of the trace."""
+    used = {id(choice.channel) for choice in chosen.values()}
+    return [channel.label for channel in recording.channels if id(channel) not in used]

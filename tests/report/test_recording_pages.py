@@ -12,10 +12,10 @@ from bench.report.pages.inspection import inspection_page
 from bench.report.publish import write_html
 from bench.report.simulation import simulation
 from bench.rig.rig import load_rig
-from bench.trace.assemble import assemble
 from bench.trace.inspect import inspect_recording
 from bench.trace.read import read_recording
 from bench.trace.reading_options import GivenOptions
+from bench.trace.trace import assemble
 from bench.trace.write import write
 from tests.diagnosis.conftest import bench
 from tests.diagnosis.test_commands import run_of

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.trace.assemble import assemble
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.reading_options import GivenOptions
+from bench.trace.trace import assemble
 
 
 def recording(**columns):

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from bench.errors import InputError
-from bench.trace.clock import Clock, Sampled
+from bench.trace.clock import Clock, SampledSignal
 from bench.trace.time_base import interpolate, regular
 
 
@@ -17,7 +17,9 @@ def clock(time, tick=1.0):
 
 def one(time, tick=1.0, values=None):
     """A velocity alone on a clock."""
-    return {"velocity": Sampled(clock(time, tick), np.arange(len(time), dtype=float) if values is None else values)}
+    return {
+        "velocity": SampledSignal(clock(time, tick), np.arange(len(time), dtype=float) if values is None else values)
+    }
 
 
 def test_a_regular_recording_passes_untouched():
@@ -109,7 +111,10 @@ def test_time_running_backwards_is_refused():
 def test_a_faster_signal_is_taken_at_the_velocitys_times():
     slow, fast = clock(np.arange(200) * 1e-3), clock(np.arange(800) * 0.25e-3)
     found = regular(
-        {"current": Sampled(fast, np.sin(20.0 * fast.time)), "velocity": Sampled(slow, np.cos(20.0 * slow.time))}
+        {
+            "current": SampledSignal(fast, np.sin(20.0 * fast.time)),
+            "velocity": SampledSignal(slow, np.cos(20.0 * slow.time)),
+        }
     )
     assert found.time is slow.time
     assert list(found.signals) == ["current", "velocity"]
