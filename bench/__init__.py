@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from bench.errors import BenchError, InputError, UndeterminedError
 
 if TYPE_CHECKING:
-    from bench.baseline.check import check
-    from bench.baseline.compare import Checked
+    from bench.baseline.check import Checked, check
     from bench.diagnosis.diagnosis import diagnose
     from bench.diagnosis.replay import replay
     from bench.diagnosis.show.show import Diagnosis
@@ -45,7 +44,7 @@ __version__ = "0.1.0"
 
 #: Module of each name; a test compares it with the imports above, which type checkers read.
 _MODULES = {
-    "Checked": "bench.baseline.compare",
+    "Checked": "bench.baseline.check",
     "Diagnosis": "bench.diagnosis.show.show",
     "Effects": "bench.export.effects",
     "Estimate": "bench.fit.estimate",

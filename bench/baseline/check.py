@@ -1,14 +1,25 @@
-"""Check an axis, or a model of one, against its baseline."""
+"""Check an axis against its baseline: quantities, names, gaps and verdict, at one false-alarm rate for all of them.
+
+Naming is a threshold: an effect near it is named in one recording and not in the next. So torques are compared instead
+of names. For an effect that the baseline does not name there is an upper bound - the torque from which on it would have
+been named, or that the residual may hide -; it has appeared if its torque is clearly above that now. An effect that the
+baseline names is fitted again, named or not.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
-from bench.baseline.allowed import Allowed
-from bench.baseline.baseline import require_source
-from bench.baseline.compare import Checked, compare
-from bench.baseline.observe import Observed, diagnosed, identified
-from bench.baseline.state import State
+import numpy as np
+
+from bench.baseline.allowed import FLOOR, MARGINS, OF_EFFECTS, OTHER_MOTION, Allowed
+from bench.baseline.conditions import differing, unlike
+from bench.baseline.observe import Observed, Under, observe
+from bench.baseline.state import GAPS, TORQUE_GAP, VELOCITY_GAP, NamedHere, State
+from bench.comparison.difference import CHANGED, RESULTS, SAME, UNDECIDED, Comparison, Difference, Measured, holm
+from bench.effects.catalogue import catalogue
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -28,7 +39,7 @@ def check(
     Args:
         trace: a recording of the axis now, or a list of several.
         rig: of the axis.
-        baseline: its earlier state (`bench.baseline.baseline.read_baseline`).
+        baseline: its earlier state (`bench.baseline.state.read_baseline`).
         false_alarm_rate: probability that an axis within its margins is called changed, over all comparisons.
         progress: called with the share done.
 
@@ -36,20 +47,257 @@ def check(
         UndeterminedError: the recording does not determine what the baseline holds.
         InputError: rig and recording do not fit together, or the baseline is that of a model.
     """
-    require_source(baseline, "recordings")
+    baseline.require_source("recordings")
     return compare(baseline, observe(trace, rig, baseline.names, progress), Allowed.of(rig), false_alarm_rate)
 
 
-def observe(
-    trace: Trace | Sequence[Trace], rig: Rig, names: bool = True, progress: Callable[[float], None] = lambda share: None
-) -> Observed:
-    """The state of an axis now.
+@dataclass(frozen=True)
+class Checked:
+    """What a check found.
+
+    Attributes:
+        result: `same`, `changed` or `undecided`.
+        comparisons: of every quantity and name, worst first.
+        baseline, now: the states.
+        appeared, gone: effects that are named in one of the states only, with their comparisons.
+        rig, conditions: a line for each difference in the rig, and in motion and sampling.
+        false_alarm_rate: of all comparisons together.
+        family: number of comparisons, including those of effects that neither state names.
+    """
+
+    result: str
+    comparisons: tuple[Comparison, ...]
+    baseline: State
+    now: State
+    appeared: tuple[tuple[NamedHere, Comparison], ...]
+    gone: tuple[tuple[NamedHere, Comparison], ...]
+    rig: tuple[str, ...] = ()
+    conditions: tuple[str, ...] = ()
+    false_alarm_rate: float = 0.0
+    family: int = 0
+
+    @classmethod
+    def of(cls, answered: Sequence[Comparison], baseline: State, now: State, effects: Matched) -> Checked:
+        """From answered comparisons; a verdict that differs alone is near its threshold and decides nothing."""
+        worst_first = sorted(answered, key=lambda one: (RESULTS.index(one.result), one.chance))
+        by_name, results = {one.name: one for one in worst_first}, {one.result for one in answered}
+        same = results <= {SAME} and baseline.verdict == now.verdict
+        return cls(
+            result=CHANGED if CHANGED in results else SAME if same else UNDECIDED,
+            comparisons=tuple(worst_first),
+            baseline=baseline,
+            now=now,
+            appeared=tuple((effect, by_name[effect.label]) for effect in effects.appeared),
+            gone=tuple((effect, by_name[effect.label]) for effect in effects.gone),
+            family=len(answered),
+        )
+
+
+def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Checked:
+    """Whether the axis is the same.
 
     Args:
-        trace: a recording, or a list of several.
-        rig: of the axis.
-        names: whether effects are searched for, which takes seconds; else only parameters and residual.
-        progress: called with the share done.
+        baseline: what it was.
+        now: what it is by recordings.
+        allowed: margins and spreads.
+        rate: probability that an axis that differs by no more than its margins is called changed.
     """
-    traces = [trace] if isinstance(trace, Trace) else list(trace)
-    return diagnosed(traces, rig, progress) if names else identified(traces, rig)
+    state = now.state
+    rig, moved = differing(baseline.rig, state.rig), unlike(baseline.conditions, state.conditions)
+    effects = matched(baseline, state)
+    under = None if effects.alike or now.fitted is None else now.under(effects.others(baseline))
+    names = [*_of_names(effects, under, baseline, allowed, "the motion is not that of the baseline" if moved else "")]
+    pairs = [*_of_both(effects.both, allowed, baseline, OTHER_MOTION if moved else 0.0)]
+    silent = _silent(baseline, state) if baseline.shows is not None else 0
+    family = len(baseline.quantities) + len(names) + len(pairs) + silent
+    # Where all names that differ are significant the axis changed, and each state is described by its own effects;
+    # where a name is near its threshold, a change has to show with the effects of both.
+    both_sets = None if all(one.chance <= rate / family for one in names) else under
+    quantities = [*_of_quantities(baseline, state, under, both_sets, allowed, bool(moved))]
+    comparisons = [*quantities, *_missing_now(baseline, state), *pairs, *names]
+    if rig:
+        comparisons = [replace(one, chance=1.0, held_back="the rig is not that of the baseline") for one in comparisons]
+    chances = holm(np.array([one.chance for one in comparisons]), silent)
+    answered = [one.answered(bool(chance <= rate)) for one, chance in zip(comparisons, chances, strict=True)]
+    found = Checked.of(answered, baseline, state, effects)
+    return replace(found, rig=tuple(rig), conditions=tuple(moved), false_alarm_rate=rate, family=family)
+
+
+def _silent(baseline: State, now: State) -> int:
+    """Number of effects that neither state names: they were searched for too."""
+    return len(set(catalogue()) - {effect.name for effect in (*baseline.effects, *now.effects)})
+
+
+def _of_quantities(
+    baseline: State, now: State, under: Under | None, both_sets: Under | None, allowed: Allowed, moved: bool
+) -> Iterator[Comparison]:
+    """Comparisons of parameters and gaps.
+
+    Args:
+        baseline, now: the states.
+        under: now with the effects of the baseline; None where they are the same.
+        both_sets: the same where a change has to show with both sets of effects.
+        allowed: margins and spreads.
+        moved: whether motion or sampling differ.
+    """
+    for name, own in now.quantities.items():
+        if name not in baseline.quantities or (name == VELOCITY_GAP and under is not None):
+            continue  # simulated models with other effects are compared by these
+        before, values, least_chance = baseline.quantities[name], [own], 0.0
+        if before.unit != own.unit:
+            yield _untold(name, before, f"now in {own.unit}")
+            continue
+        if name == TORQUE_GAP:  # what the effects of the baseline leave now, whatever else was found
+            if under is not None:
+                values = [under.quantities[name]]
+            floor = now.gaps["torque"].noise_floor if under is None else under.noise_floor
+            least_chance = _louder(baseline, values[0].value / floor)
+        elif both_sets is not None and name in both_sets.quantities:
+            values.append(both_sets.quantities[name])
+        between, margin = allowed.between_of(name, before), allowed.margin_of(name, before, baseline)
+        beside = OTHER_MOTION * between if moved else 0.0
+        differences = tuple(Difference.of(before, value, between, beside) for value in values)
+        held_back = "what a model leaves depends on the motion" if name in GAPS and moved else ""
+        found = Comparison(name, before.unit, before.value, values[0].value, differences, margin, held_back=held_back)
+        yield found.tested(least_chance)
+
+
+def _missing_now(baseline: State, now: State) -> Iterator[Comparison]:
+    """Quantities of the baseline that the recordings now do not determine."""
+    for name, before in baseline.quantities.items():
+        if name not in now.quantities:
+            yield _untold(name, before, "it is not told now")
+
+
+def _untold(name: str, before: Measured, why: str) -> Comparison:
+    """A quantity of the baseline that has no value now to be held against it."""
+    return Comparison(name, before.unit, before.value, None, (), 0.0, held_back=why)
+
+
+def _louder(baseline: State, now: float) -> float:
+    """Probability of this torque gap over its noise floor, if only the sensors' noise had grown since the baseline."""
+    before = baseline.gaps["torque"]
+    ratio = before.after / before.noise_floor
+    shown = Difference(now - ratio, math.sqrt(2.0) * FLOOR * ratio)
+    return shown.chance(MARGINS[TORQUE_GAP] * ratio)
+
+
+@dataclass(frozen=True)
+class Matched:
+    """Effects of two states, matched; those that occur in every recording of the axis.
+
+    Attributes:
+        both: pairs of one name.
+        renamed: pairs that a recording cannot distinguish.
+        gone: those of the baseline that are not named now.
+        appeared: those named now that the baseline does not have.
+    """
+
+    both: tuple[tuple[NamedHere, NamedHere], ...]
+    renamed: tuple[tuple[NamedHere, NamedHere], ...]
+    gone: tuple[NamedHere, ...]
+    appeared: tuple[NamedHere, ...]
+
+    @property
+    def alike(self) -> bool:
+        """Whether both states have the same effects."""
+        return not (self.renamed or self.gone or self.appeared)
+
+    def others(self, baseline: State) -> list[tuple[NamedHere, NamedHere | None]]:
+        """Effects of the baseline, each with its match now; None without one."""
+        own = {before.label: now for before, now in self.both}
+        return [(effect, own.get(effect.label)) for effect in _lasting(baseline)]
+
+
+def _lasting(state: State) -> list[NamedHere]:
+    return [effect for effect in state.effects if not effect.effect.occasional]
+
+
+def matched(baseline: State, now: State) -> Matched:
+    """Pairs of the same effect, then pairs that are `ambiguous_with` each other, then the rest."""
+    before, after = _lasting(baseline), _lasting(now)
+    both = _paired(before, after, NamedHere.same)
+    renamed = _paired(before, after, NamedHere.indistinguishable_from)
+    return Matched(tuple(both), tuple(renamed), tuple(before), tuple(after))
+
+
+def _paired(
+    before: list[NamedHere], after: list[NamedHere], alike: Callable[[NamedHere, NamedHere], bool]
+) -> list[tuple[NamedHere, NamedHere]]:
+    """Pairs that are alike, removed from both lists."""
+    pairs = []
+    for one in list(before):
+        other = next((candidate for candidate in after if alike(one, candidate)), None)
+        if other is not None:
+            before.remove(one)
+            after.remove(other)
+            pairs.append((one, other))
+    return pairs
+
+
+def _of_both(
+    pairs: Sequence[tuple[NamedHere, NamedHere]], allowed: Allowed, state: State, beside: float
+) -> Iterator[Comparison]:
+    """Comparisons of the quantities of effects that both states name.
+
+    Args:
+        pairs: effects in the baseline and now.
+        allowed: margins and spreads.
+        state: the baseline.
+        beside: factor on the spread between recordings of different motion or sampling; 0 for the same.
+    """
+    for before, after in pairs:
+        for key in (key for key in before.compared if key in after.compared):
+            key_in_full, baseline, now = f"{before.name}.{key}", before.compared[key], after.compared[key]
+            between = allowed.between_of(key_in_full, baseline)
+            difference = Difference.of(baseline, now, between, beside * between)
+            margin = allowed.margin_of(key_in_full, baseline, state)
+            name = key_in_full if before.name == before.label else f"{before.label}: {key}"
+            yield Comparison(name, baseline.unit, baseline.value, now.value, (difference,), margin).tested()
+
+
+def _of_names(
+    found: Matched, under: Under | None, baseline: State, allowed: Allowed, unlike: str
+) -> Iterator[Comparison]:
+    """Comparisons of all names that differ between the states.
+
+    Args:
+        found: effects of both states.
+        under: the recording now with the effects of the baseline; None where they are alike.
+        baseline: the state.
+        allowed: margins.
+        unlike: why the motion of the two cannot be compared; empty where it can.
+    """
+    torques = {} if under is None else under.torques
+    for before, after in found.renamed:
+        yield _of_torque(before, after.torque, allowed, unlike, f"{before.label} or {after.label}")
+    for before in found.gone:
+        yield _of_torque(before, torques.get(before.label), allowed, unlike, before.label, "gone")
+    for after in found.appeared:
+        yield _of_appeared(after, baseline, allowed, unlike)
+
+
+def _of_torque(
+    before: NamedHere, now: Measured | None, allowed: Allowed, unlike: str, name: str, effect: str = ""
+) -> Comparison:
+    """Comparison of the torque of an effect of the baseline, whatever its name is now."""
+    was = before.torque
+    if was is None or now is None:
+        held_back = "the torque balance does not hold it, so its strength is not told"
+        return Comparison(name, "", None, None, (), 0.0, effect, held_back)
+    difference = Difference.of(was, now, allowed.between_of(before.name, was))
+    return Comparison(
+        name, was.unit, was.value, now.value, (difference,), OF_EFFECTS * was.value, effect, unlike
+    ).tested()
+
+
+def _of_appeared(after: NamedHere, baseline: State, allowed: Allowed, unlike: str) -> Comparison:
+    """Comparison of the torque of an effect that is new with what the baseline's recording would have shown."""
+    torque = after.torque
+    if torque is None or baseline.shows is None:
+        held_back = "told by its signals alone, which do not say from when on the baseline would have shown it"
+        return Comparison(after.label, "", None, None, (), 0.0, "appeared", held_back)
+    least = baseline.shows.named_from(max(len(after.quantities), 1))
+    nothing = Measured(0.0, torque.unit, torque.std_error)
+    difference = Difference.of(nothing, torque, allowed.between_of(after.name, torque))
+    return Comparison(after.label, torque.unit, None, torque.value, (difference,), least, "appeared", unlike).tested()

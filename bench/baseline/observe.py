@@ -7,9 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from bench.baseline.conditions import conditions
-from bench.baseline.same_rig import rig_values
-from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, Gap, NamedHere, Shows, State
+from bench.baseline.conditions import conditions, rig_values
+from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, NamedHere, RemainingGap, Shows, State
 from bench.comparison.difference import Measured
 from bench.diagnosis.diagnosis import POLICY, Diagnosis, diagnose
 from bench.diagnosis.found import NamedEffect
@@ -39,12 +38,12 @@ class Under:
 
     Attributes:
         quantities: by name.
-        torques: of those effects that are in the torque balance, by their `id`.
+        torques: of those effects that are in the torque balance, by their labels.
         noise_floor: of the torque gap - N*m (N).
     """
 
     quantities: Mapping[str, Measured]
-    torques: Mapping[int, Measured]
+    torques: Mapping[str, Measured]
     noise_floor: float
 
 
@@ -82,10 +81,28 @@ class Observed:
             if mine is None:
                 fitted = shaped(fitted.rows, fitted.hypothesis, index)
         base = uncertain(fitted).base(self.base_units)
-        torques = iter([_torque(fitted, index, self.unit) for index in range(len(held))])
-        found = {id(effect): next(torques) for effect, _ in held}
+        torques = {effect.label: _torque(fitted, index, self.unit) for index, (effect, _) in enumerate(held)}
         parameters = {name: Measured.of(one) for name, one in base.items()}
-        return Under(parameters | {TORQUE_GAP: _torque_gap(fitted, self.unit)}, found, fitted.floor)
+        return Under(parameters | {TORQUE_GAP: _torque_gap(fitted, self.unit)}, torques, fitted.floor)
+
+
+def observe(
+    trace: Trace | Sequence[Trace], rig: Rig, names: bool = True, progress: Progress = lambda share: None
+) -> Observed:
+    """The state of an axis now.
+
+    Args:
+        trace: a recording, or a list of several.
+        rig: of the axis.
+        names: whether effects are searched for, which takes seconds; else only parameters and residual.
+        progress: called with the share done.
+
+    Raises:
+        UndeterminedError: the recordings do not determine a parameter.
+        InputError: rig and recording do not fit together.
+    """
+    traces = [trace] if isinstance(trace, Trace) else list(trace)
+    return diagnosed(traces, rig, progress) if names else identified(traces, rig)
 
 
 def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
@@ -104,7 +121,7 @@ def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
         source="recordings",
         names=False,
         quantities=_parameters(names, found.parameters, found.recordings) | {TORQUE_GAP: gap},
-        gaps={"torque": Gap(gap.value, fitted.floor, gap.unit)},
+        gaps={"torque": RemainingGap(gap.value, fitted.floor, gap.unit)},
         conditions=conditions(traces, rig, found.cutoff),
         rig=rig_values(rig),
     )
@@ -133,7 +150,7 @@ def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda sha
         effects=tuple(effects),
         verdict=found.verdict,
         gaps={
-            name: Gap(gap.identify[1], gap.noise_floor, gap.unit)
+            name: RemainingGap(gap.identify[1], gap.noise_floor, gap.unit)
             for name, gap in (("torque", found.torque), ("velocity", found.velocity))
             if gap.identify is not None
         },
@@ -205,7 +222,7 @@ def _shows(fitted: Fit) -> Shows:
 def _gaps(found: Diagnosis, fitted: Fit, unit: str) -> dict[str, Measured]:
     gaps, velocity = {TORQUE_GAP: _torque_gap(fitted, unit)}, found.velocity
     if velocity.identify is not None:
-        gaps[VELOCITY_GAP] = Measured(velocity.identify[1], velocity.unit, 0.0)
+        gaps[VELOCITY_GAP] = Measured(velocity.identify[1], velocity.unit)
     return gaps
 
 

@@ -1,22 +1,55 @@
-"""The state of an axis, from recordings or from a model: everything that is compared."""
+"""The state of an axis, from recordings or from a model: everything that is compared, and the file that keeps it.
+
+The file is TOML for version control, readable in a diff:
+
+schema = "bench.baseline/1"
+source = "recordings"
+names = true
+verdict = "explained"
+[provenance]
+version = "0.1.0"
+[quantities.moment_of_inertia]
+value = "0.00131 kg*m**2"
+std_error = "1.2e-06 kg*m**2"
+recordings = 1
+spread = "not told by fewer than two recordings"
+[[effects]]
+name = "cogging_torque"
+"""
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tomli_w
 
 from bench.axis_kind import AxisKind, axis_kind
-from bench.baseline.response import Response
 from bench.comparison.difference import Measured
 from bench.effects.effect import Effect
+from bench.effects.present import named
+from bench.errors import InputError
+from bench.files import write_text
+from bench.structured import read_toml
 
 #: Quantities that are not parameters: gaps over their noise floors.
 GAPS = TORQUE_GAP, VELOCITY_GAP = "torque_gap", "velocity_gap"
 #: Share by which the harmonics of two waves may differ and still be one: the pitch of a linear axis is fitted.
 SAME_WAVE = 0.01
+#: Number of instants at which the torque of a model's run is kept.
+INSTANTS = 24
+
+SCHEMA = "bench.baseline/1"
+HEAD = "# What `bench check` holds the axis against. `bench check --update` writes it anew: look at the difference.\n"
+#: Written instead of an unknown spread.
+NO_SPREAD = "not told by fewer than two recordings"
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?: (.+))?")
+_ALLOWED = "allowed: as bench check --update wrote it"
 
 
 @dataclass(frozen=True)
@@ -81,7 +114,7 @@ class NamedHere:
 
 
 @dataclass(frozen=True)
-class Gap:
+class RemainingGap:
     """A gap that remains with the effects found.
 
     Attributes:
@@ -113,6 +146,21 @@ class Shows:
 
 
 @dataclass(frozen=True)
+class Response:
+    """A run of a model.
+
+    Attributes:
+        inertia: for which drive and speeds are laid out - kg*m**2 (kg).
+        acceleration: largest of the reference - rad/s**2 (m/s**2).
+        torque: of the drive at INSTANTS of the run - N*m (N).
+    """
+
+    inertia: float
+    acceleration: float
+    torque: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class State:
     """The state of an axis.
 
@@ -125,7 +173,7 @@ class State:
         gaps: by `torque` and `velocity`.
         shows: smallest effects that the recording would have shown; None without names.
         conditions: motion, sampling and cut-off by name, SI (`bench.baseline.conditions`).
-        rig: values that identification reads of the rig, by key (`bench.baseline.same_rig`).
+        rig: values that identification reads of the rig, by key (`bench.baseline.conditions`).
         provenance: version, digests, options.
         response: of a model; None of recordings.
     """
@@ -135,7 +183,7 @@ class State:
     quantities: Mapping[str, Measured]
     effects: tuple[NamedHere, ...] = ()
     verdict: str = ""
-    gaps: Mapping[str, Gap] = field(default_factory=dict)
+    gaps: Mapping[str, RemainingGap] = field(default_factory=dict)
     shows: Shows | None = None
     conditions: Mapping[str, Measured] = field(default_factory=dict)
     rig: Mapping[str, str] = field(default_factory=dict)
@@ -146,3 +194,193 @@ class State:
     def kind(self) -> AxisKind:
         """Of the axis."""
         return axis_kind(self.rig.get("kind"), "kind")
+
+    def require_source(self, source: str, where: object = "baseline") -> None:
+        """InputError where this baseline is of recordings and a model is checked, or the other way round."""
+        if self.source != source:
+            raise InputError(where, f"found that of {self.source}", f"allowed: one of {source}; --update makes one")
+
+
+def write_baseline(path: str | Path, state: State) -> None:
+    """Write a state, whole or not at all.
+
+    Raises:
+        InputError: the place cannot be written to.
+    """
+    content: dict[str, Any] = {"schema": SCHEMA, "source": state.source, "names": state.names}
+    if state.verdict:
+        content["verdict"] = state.verdict
+    content["provenance"] = _without_none(state.provenance)
+    content["quantities"] = {name: _measured(found) for name, found in state.quantities.items()}
+    if state.gaps:
+        content["gap"] = {
+            name: {"after": _text(gap.after, gap.unit), "noise_floor": _text(gap.noise_floor, gap.unit)}
+            for name, gap in state.gaps.items()
+        }
+    if state.shows is not None:
+        unit = state.gaps["torque"].unit
+        content["shows"] = {key: _text(value, unit) for key, value in asdict(state.shows).items()}
+    if state.conditions:
+        content["conditions"] = {key: _text(one.value, one.unit) for key, one in state.conditions.items()}
+    if state.rig:
+        content["rig"] = dict(state.rig)
+    if state.response is not None:
+        content["response"] = asdict(state.response)
+    content["effects"] = [_effect(effect) for effect in state.effects]
+    write_text(path, HEAD + tomli_w.dumps(content))
+
+
+def _measured(found: Measured) -> dict[str, Any]:
+    """A quantity; one that is exact has a value alone."""
+    table: dict[str, Any] = {"value": _text(found.value, found.unit)}
+    if not found.std_error:
+        return table
+    table["std_error"] = _text(found.std_error, found.unit)
+    if math.isfinite(found.degrees):
+        table["degrees"] = round(found.degrees, 1)
+    table["recordings"] = found.recordings
+    table["spread"] = NO_SPREAD if found.spread is None else _text(found.spread, found.unit)
+    return table
+
+
+def _effect(effect: NamedHere) -> dict[str, Any]:
+    table: dict[str, Any] = {"name": effect.name, "ambiguous_with": list(effect.ambiguous_with)}
+    if effect.shape is not None:
+        table |= {"shape": list(effect.shape), "on_load": effect.on_load}
+    if effect.torque is not None:
+        table |= {"torque": _measured(effect.torque), "gain": effect.gain}
+    return table | {"quantities": {key: _measured(found) for key, found in effect.quantities.items()}}
+
+
+def _text(value: float, unit: str) -> str:
+    """A number in as many digits as any comparison needs, with its unit."""
+    return f"{value:.9g} {unit}" if unit != "dimensionless" else f"{value:.9g}"
+
+
+def _without_none(content: Any) -> Any:  # noqa: ANN401 - TOML has no null
+    if isinstance(content, Mapping):
+        return {key: _without_none(value) for key, value in content.items() if value is not None}
+    return [_without_none(value) for value in content] if isinstance(content, list | tuple) else content
+
+
+def read_baseline(path: str | Path) -> State:
+    """The state that a file holds.
+
+    Raises:
+        InputError: no such file, no TOML, another schema, or a key that is missing or wrong.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise InputError(path, "no such baseline", "run the same command with --update to make one of this state")
+    table = read_toml(path, "a baseline that bench check wrote")
+    if table.get("schema") != SCHEMA:
+        raise InputError(f"{path}: schema", f"found {table.get('schema')!r}", f"allowed: '{SCHEMA}'")
+    return _Table(str(path), "", table).state()
+
+
+@dataclass(frozen=True)
+class _Table:
+    """A table of a baseline's file, and what it stands for; every error names file and key.
+
+    Attributes:
+        source: the file.
+        place: of the table in it, dotted; empty for the whole file.
+        content: as TOML has it.
+    """
+
+    source: str
+    place: str
+    content: Mapping[str, Any]
+
+    def error(self, key: str, found: str, allowed: str = _ALLOWED) -> InputError:
+        """What is wrong with a key, or with the table itself where that is empty."""
+        return InputError(f"{self.source}: {'.'.join(filter(None, (self.place, key)))}", found, allowed)
+
+    def one(self, key: str, kind: type) -> Any:  # noqa: ANN401
+        """A value of a kind that has to be there."""
+        if key not in self.content:
+            raise self.error(key, "missing")
+        if not isinstance(self.content[key], kind):
+            raise self.error(key, f"found {self.content[key]!r}")
+        return self.content[key]
+
+    def number(self, key: str) -> tuple[float, str]:
+        """A number with its unit."""
+        text = self.one(key, str)
+        match = _NUMBER.fullmatch(text)
+        if match is None or not math.isfinite(float(match[1])):
+            raise self.error(key, f"found {text!r}", "allowed: a number and its unit")
+        return float(match[1]), match[2] or "dimensionless"
+
+    def table(self, key: str) -> _Table:
+        """A table of this one, empty where there is none."""
+        found = self.content.get(key, {})
+        if not isinstance(found, dict):
+            raise self.error(key, f"found {found!r}", "allowed: a table")
+        return _Table(self.source, f"{self.place}.{key}" if self.place else key, found)
+
+    def tables(self, key: str) -> dict[str, _Table]:
+        """Tables of a table of this one, by name."""
+        found = self.table(key)
+        return {name: found.table(name) for name in found.content}
+
+    def state(self) -> State:
+        """The whole file."""
+        entries = self.content.get("effects", [])
+        effects = [_Table(self.source, f"effects[{k}]", entry).effect() for k, entry in enumerate(entries)]
+        shows, conditions, rig = self.table("shows"), self.table("conditions"), self.table("rig")
+        gaps = {name: (one.number("after"), one.number("noise_floor")) for name, one in self.tables("gap").items()}
+        return State(
+            source=self.one("source", str),
+            names=self.one("names", bool),
+            quantities={name: one.measured() for name, one in self.tables("quantities").items()},
+            effects=tuple(effects),
+            verdict=str(self.content.get("verdict", "")),
+            gaps={name: RemainingGap(after, floor, unit) for name, ((after, unit), (floor, _)) in gaps.items()},
+            shows=Shows(shows.number("torque")[0], shows.number("left")[0]) if shows.content else None,
+            conditions={key: Measured(*conditions.number(key)) for key in conditions.content},
+            rig={str(key): str(value) for key, value in rig.content.items()},
+            provenance=self.table("provenance").content,
+            response=self.table("response").response() if "response" in self.content else None,
+        )
+
+    def measured(self) -> Measured:
+        """A quantity."""
+        value, unit = self.number("value")
+        if "std_error" not in self.content:
+            return Measured(value, unit)
+        error, _ = self.number("std_error")
+        degrees, count = self.content.get("degrees", math.inf), self.one("recordings", int)
+        spread = None if self.content.get("spread", NO_SPREAD) == NO_SPREAD else self.number("spread")[0]
+        if not (isinstance(degrees, float | int) and degrees > 0.0 and count > 0 and error >= 0.0):
+            raise self.error("", "found an error or a count below zero")
+        return Measured(value, unit, error, float(degrees), count, spread)
+
+    def response(self) -> Response:
+        """The run of a model."""
+        torque, laid_out = self.one("torque", list), [self.one(key, float) for key in ("inertia", "acceleration")]
+        if len(torque) != INSTANTS or not all(isinstance(one, float) and math.isfinite(one) for one in torque):
+            raise self.error("torque", f"found {torque!r}", f"allowed: {INSTANTS} numbers")
+        if not all(0.0 < one < math.inf for one in laid_out):
+            raise self.error("", f"found {laid_out!r}", "allowed: numbers above zero")
+        return Response(laid_out[0], laid_out[1], tuple(torque))
+
+    def effect(self) -> NamedHere:
+        """An effect."""
+        if not isinstance(self.content, dict):
+            raise self.error("", f"found {self.content!r}")
+        effect = named(self.one("name", str), f"{self.source}: {self.place}.name")
+        shape = self.content.get("shape")
+        if shape is not None and not (isinstance(shape, list) and len(shape) == len(effect.shapes)):
+            raise self.error("shape", f"found {shape!r}", f"allowed: {len(effect.shapes)} numbers")
+        if shape is not None and not all(isinstance(one, float | int) and math.isfinite(one) for one in shape):
+            raise self.error("shape", f"found {shape!r}", "allowed: finite numbers")
+        return NamedHere(
+            effect=effect,
+            quantities={key: one.measured() for key, one in self.tables("quantities").items()},
+            shape=None if shape is None else tuple(map(float, shape)),
+            on_load=bool(self.content.get("on_load", False)),
+            torque=self.table("torque").measured() if "torque" in self.content else None,
+            ambiguous_with=tuple(map(str, self.content.get("ambiguous_with", []))),
+            gain=float(self.content.get("gain", math.nan)),
+        )

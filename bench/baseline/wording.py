@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
-from bench.baseline.compare import Checked
-from bench.baseline.comparison import CHANGED, SAME, Comparison
-from bench.baseline.response import RESPONSE_TORQUE
+from bench.baseline.check import Checked
+from bench.baseline.model import RESPONSE_TORQUE
 from bench.baseline.state import GAPS, NamedHere
-from bench.comparison.difference import Measured
+from bench.comparison.difference import CHANGED, SAME, Comparison, Measured
 from bench.names import words
 
 #: Units shown in another one, with the factor.

@@ -28,7 +28,7 @@ from bench.files import keeping, require_writable, write_text
 from bench.names import in_a_row, readable
 
 if TYPE_CHECKING:
-    from bench.baseline.compare import Checked
+    from bench.baseline.check import Checked
     from bench.baseline.observe import Observed
     from bench.baseline.state import State
     from bench.rig.rig import Rig
@@ -116,7 +116,7 @@ class Asked:
 
     def observed(self, names: bool) -> Observed:
         """What recordings tell now, with where it comes from."""
-        from bench.baseline.check import observe
+        from bench.baseline.observe import observe
         from bench.report.provenance import provenance
         from bench.report.terminal import progress
         from bench.trace.read import read
@@ -132,7 +132,7 @@ class Asked:
     def of_model(self, model: Path, like: State | None = None) -> State:
         """What a model has, with where it comes from."""
         from bench import __version__
-        from bench.baseline.modelled import modelled
+        from bench.baseline.model import modelled
         from bench.report.provenance import sha256
 
         basis = {"version": __version__, "model": {"file": str(model), "sha256": sha256(model)}}
@@ -141,19 +141,19 @@ class Asked:
     def checked(self, rate: float) -> Checked:
         """The check."""
         from bench.baseline.allowed import Allowed
-        from bench.baseline.baseline import read_baseline, require_source
-        from bench.baseline.compare import compare
+        from bench.baseline.check import compare
+        from bench.baseline.state import read_baseline
 
         if self.simulated is None:
             axis, before = self.axis, read_baseline(self.baseline)
-            require_source(before, "recordings", self.baseline)
+            before.require_source("recordings", self.baseline)
             assert axis is not None
             allowed = Allowed.of(axis)
             return compare(before, self.observed(before.names), allowed, rate)
-        from bench.baseline.modelled import compare_models, is_model
+        from bench.baseline.model import compare_models, is_model
 
         before = self.of_model(self.baseline) if is_model(self.baseline) else read_baseline(self.baseline)
-        require_source(before, "model", self.baseline)
+        before.require_source("model", self.baseline)
         now = self.of_model(self.simulated, before)
         return compare_models(before, now, Allowed.of(self.axis, now.kind))
 
@@ -177,7 +177,7 @@ def _require_consistent(asked: Asked, update: bool, quick: bool, written: list[P
 
 def _update(asked: Asked, names: bool) -> None:
     """Accept the present state, and say what a check against it will not be able to tell."""
-    from bench.baseline.baseline import write_baseline
+    from bench.baseline.state import write_baseline
     from bench.comparison.difference import ENOUGH
 
     state = asked.of_model(asked.simulated) if asked.simulated is not None else asked.observed(names).state

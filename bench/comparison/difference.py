@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -35,6 +35,9 @@ from bench.arrays import Array
 ENOUGH = 5
 #: Probability that a quantity that differs by more than its margin is called the same.
 NOT_EQUIVALENT = 0.05
+SAME, CHANGED, UNDECIDED = "same", "changed", "undecided"
+#: From worst to best.
+RESULTS = (CHANGED, UNDECIDED, SAME)
 
 
 class Estimated(Protocol):
@@ -81,7 +84,7 @@ class Measured:
 
     value: float
     unit: str
-    std_error: float
+    std_error: float = 0.0
     degrees: float = math.inf
     recordings: int = 1
     spread: float | None = None
@@ -171,6 +174,65 @@ class Difference:
             return float(abs(self.value) <= margin)
         sides = ((abs(self.value) + side * margin) / self.std_error for side in (-1.0, 1.0))
         return min(1.0, sum(float(special.stdtr(self.degrees, -side)) for side in sides))
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A quantity in two states, and the answer to whether it changed.
+
+    Attributes:
+        name: of the quantity, or of the effect whose torque it is.
+        unit: of all numbers.
+        baseline, now: its values; None for an effect that is absent.
+        differences: now less baseline: one, or one for each state's effects where these differ; () if unknown.
+        margin: difference that does not matter - unit.
+        effect: `appeared` or `gone` if it is about the presence of an effect; else empty.
+        held_back: why it never raises an alarm; empty if it may.
+        chance: probability of such a difference if the true one is within the margin; uncorrected.
+        result: `same`, `changed` or `undecided`.
+    """
+
+    name: str
+    unit: str
+    baseline: float | None
+    now: float | None
+    differences: tuple[Difference, ...]
+    margin: float
+    effect: str = ""
+    held_back: str = ""
+    chance: float = 1.0
+    result: str = UNDECIDED
+
+    def tested(self, least_chance: float = 0.0) -> Comparison:
+        """With its chance: the largest of its differences, if all have one sign and it may alarm.
+
+        Args:
+            least_chance: lower bound, of another quantity that has to differ too.
+        """
+        signs = {difference.value > 0.0 for difference in self.differences}
+        if self.held_back or len(signs) != 1:
+            return self
+        chances = (difference.chance(self.margin) for difference in self.differences)
+        return replace(self, chance=max(least_chance, *chances))
+
+    def answered(self, rejected: bool) -> Comparison:
+        """With its result; `rejected`: whether the corrected test rejects that it is the same."""
+        if rejected:
+            return replace(self, result=CHANGED)
+        may = self.differences and not self.held_back and self.effect != "appeared"
+        shown = may and all(one.within(self.margin) for one in self.differences)
+        return replace(self, result=SAME if shown else UNDECIDED)
+
+    @property
+    def difference(self) -> Difference | None:
+        """The smallest of its differences."""
+        return min(self.differences, key=lambda one: abs(one.value), default=None)
+
+    @property
+    def difference95(self) -> tuple[float, float] | None:
+        """Interval of 95 % around all differences - unit."""
+        bounds = [one.interval(0.95) for one in self.differences]
+        return (min(low for low, _ in bounds), max(high for _, high in bounds)) if bounds else None
 
 
 def holm(chances: Array, silent: int = 0) -> Array:

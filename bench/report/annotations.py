@@ -14,9 +14,9 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from bench.baseline.compare import Checked
-from bench.baseline.comparison import CHANGED, Comparison
+from bench.baseline.check import Checked
 from bench.baseline.wording import headline
+from bench.comparison.difference import CHANGED, Comparison
 from bench.files import read_text
 from bench.names import plain
 from bench.report.check import sentences

@@ -9,11 +9,10 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
-from bench.baseline.compare import Checked
-from bench.baseline.comparison import SAME, Comparison
-from bench.baseline.state import Gap, NamedHere, State
+from bench.baseline.check import Checked
+from bench.baseline.state import NamedHere, RemainingGap, State
 from bench.baseline.wording import DISPLAYED, described, formatted, headline
-from bench.comparison.difference import Measured
+from bench.comparison.difference import SAME, Comparison, Measured
 from bench.structured import json_text
 
 SCHEMA = "bench.check/1"
@@ -86,7 +85,7 @@ def _measured(found: Measured) -> dict[str, Any]:
 
 
 def _gaps(baseline: State, now: State) -> dict[str, Any]:
-    def gap_json(gap: Gap | None) -> dict[str, float] | None:
+    def gap_json(gap: RemainingGap | None) -> dict[str, float] | None:
         return None if gap is None else {"after": gap.after, "noise_floor": gap.noise_floor}
 
     names = dict.fromkeys([*baseline.gaps, *now.gaps])

@@ -8,9 +8,9 @@ from __future__ import annotations
 import re
 from xml.etree import ElementTree
 
-from bench.baseline.compare import Checked
-from bench.baseline.comparison import CHANGED, UNDECIDED
+from bench.baseline.check import Checked
 from bench.baseline.wording import described, headline
+from bench.comparison.difference import CHANGED, UNDECIDED
 from bench.names import plain
 
 #: Characters that XML 1.0 does not have at all, escaped or not.

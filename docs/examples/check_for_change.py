@@ -2,8 +2,8 @@
 
 import bench
 from bench.assets import asset
-from bench.baseline.baseline import read_baseline, write_baseline
-from bench.baseline.check import observe
+from bench.baseline.observe import observe
+from bench.baseline.state import read_baseline, write_baseline
 from bench.effects.present import parse_effect
 
 rig = bench.load_rig(asset("data", "rigs", "sh30701p.toml"))

@@ -9,9 +9,8 @@ from dataclasses import dataclass, field
 from scipy.stats import binomtest, norm
 
 from bench.baseline.allowed import Allowed
-from bench.baseline.check import FALSE_ALARM_RATE, observe
-from bench.baseline.compare import Checked, compare
-from bench.baseline.observe import Observed
+from bench.baseline.check import FALSE_ALARM_RATE, Checked, compare
+from bench.baseline.observe import Observed, observe
 from bench.errors import BenchError
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace

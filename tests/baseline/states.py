@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from bench.baseline.observe import Observed, Under
-from bench.baseline.state import TORQUE_GAP, Gap, NamedHere, Shows, State
+from bench.baseline.state import TORQUE_GAP, NamedHere, RemainingGap, Shows, State
 from bench.comparison.difference import Measured
 from bench.effects.catalogue import catalogue
 
@@ -37,7 +37,7 @@ def state(changed: Mapping[str, float] | None = None, effects=(), verdict="nothi
         quantities=values,
         effects=tuple(effects),
         verdict=verdict,
-        gaps={"torque": Gap(values[TORQUE_GAP].value, floor, "N*m")},
+        gaps={"torque": RemainingGap(values[TORQUE_GAP].value, floor, "N*m")},
         shows=Shows(1e-3, 2.5e-3),
         conditions={n: Measured(v * conditions.get(n, 1.0), unit, 0.0) for n, (v, unit) in CONDITIONS.items()},
         rig={"kind": "rotary", "motor.torque_constant": "0.8"},
@@ -75,5 +75,5 @@ class GivenObserved(Observed):
             name: replace(one, value=one.value * self.factors.get(name, 1.0))
             for name, one in self.state.quantities.items()
         }
-        torques = {id(e): Measured(self.torques[e.name], "N*m", 1e-4) for e, _ in others if e.name in self.torques}
+        torques = {e.label: Measured(self.torques[e.name], "N*m", 1e-4) for e, _ in others if e.name in self.torques}
         return Under(found, torques, self.state.gaps["torque"].noise_floor)

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.baseline.baseline import read_baseline, write_baseline
-from bench.baseline.response import INSTANTS, Response
+from bench.baseline.model import INSTANTS, Response
+from bench.baseline.state import read_baseline, write_baseline
 from bench.comparison.difference import Measured
 from bench.errors import InputError
 from tests.baseline.states import named, state

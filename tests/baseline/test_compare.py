@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import norm
 
 from bench.baseline.allowed import Allowed
-from bench.baseline.compare import compare
+from bench.baseline.check import compare
 from bench.baseline.wording import headline
 from bench.comparison.difference import Measured
 from bench.effects.catalogue import catalogue

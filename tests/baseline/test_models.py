@@ -7,9 +7,8 @@ import pytest
 
 from bench.axis_kind import ROTARY
 from bench.baseline.allowed import Allowed
-from bench.baseline.modelled import compare_models
-from bench.baseline.response import DURATION, INSTANTS, Response, response
-from bench.baseline.state import State
+from bench.baseline.model import DURATION, compare_models, response
+from bench.baseline.state import INSTANTS, Response, State
 from bench.comparison.difference import Measured
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import AxisParameters

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from bench.baseline.compare import Checked
-from bench.baseline.comparison import CHANGED, SAME, UNDECIDED, Comparison
+from bench.baseline.check import Checked
 from bench.baseline.wording import described, headline
+from bench.comparison.difference import CHANGED, SAME, UNDECIDED, Comparison
 from bench.names import short, words
 from bench.report.check import cells
 from bench.report.document import (

@@ -1,0 +1,162 @@
+"""A model of an axis as a state, and the comparison of two of them.
+
+All values are exact, so nothing is undecided: a quantity has changed if it differs by more than its margin, an effect
+is present or absent. Values show a change of the file, the response one of the simulator: the model's torque in one
+stated run. Its speed reference is a sum of two sines, faded in; the drive a cascade of BANDWIDTH laid out for an
+inertia, as are the speeds for a torque. Both come from the model of the baseline, so that every later model runs the
+same.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from bench.arrays import Array, rms
+from bench.baseline.allowed import Allowed
+from bench.baseline.check import Checked, matched
+from bench.baseline.state import INSTANTS, NamedHere, Response, State
+from bench.comparison.difference import CHANGED, SAME, Comparison, Difference, Measured
+from bench.plant.axis_model import AxisModel
+from bench.plant.drive import Cascade
+from bench.plant.model import parameter_quantities
+from bench.plant.model_file import SCHEMA, StoredModel, load_model, read_table
+from bench.plant.plant import Plant
+from bench.plant.references import References
+from bench.plant.run import run
+from bench.units import Quantity
+
+#: Margins: of an angle - rad -, and of the torque of the response as a share of its RMS.
+ANGLE, RESPONSE = 0.05, 0.01
+#: Name of the comparison of runs.
+RESPONSE_TORQUE = "response_torque"
+#: Duration and tick of the run - s -; of its speed: frequencies - Hz -, shares of them, and fade-in - s.
+DURATION, TICK = 2.5, 250e-6
+FREQUENCIES, SHARES, FADE = (0.8, 3.1), (0.6, 0.4), 0.3
+#: Bandwidth of the velocity loop - rad/s -: low enough for a coupling behind the motor.
+BANDWIDTH = 30.0
+#: Accelerating torque over Coulomb friction; and the least acceleration by `turns` - rad/s**2 (m/s**2).
+OVER_FRICTION, LEAST = 3.0, {True: 50.0, False: 0.5}
+
+
+def is_model(path: str | Path) -> bool:
+    """Whether a file is a `model.toml`, a baseline of a model too."""
+    return Path(path).exists() and read_table(path).get("schema") == SCHEMA
+
+
+def modelled(path: str | Path, baseline: State | None = None) -> State:
+    """The state of a `model.toml` that `bench diagnose` wrote.
+
+    Args:
+        path: of the model.
+        baseline: whose run the response repeats; without one, a run laid out for the model.
+
+    Raises:
+        InputError: no such model.
+        SimulationError: the model diverged.
+    """
+    stored = load_model(path)
+    own, kind = stored.model.parameters, stored.model.parameters.kind
+    quantities = {q.name: Measured(getattr(own, f), q.unit) for f, q in parameter_quantities(kind).items()}
+    moves = response(stored.model, None if baseline is None else baseline.response)
+    return State("model", True, quantities, tuple(_effects(stored)), rig={"kind": kind.name}, response=moves)
+
+
+def _effects(stored: StoredModel) -> Iterator[NamedHere]:
+    kind = stored.model.parameters.kind
+    for present in stored.model.effects:
+        values, known = dict(present.values), {q.name: q for q in present.effect.quantities}
+        found = {key: Measured(value, kind.unit(known[key])) for key, value in values.items()}
+        shape = [values.get(slot.quantity.name, math.nan) for slot in present.effect.shapes]
+        yield NamedHere(present.effect, found, tuple(shape))
+
+
+def response(model: AxisModel, like: Response | None = None) -> Response:
+    """Run a model.
+
+    Args:
+        model: of an axis.
+        like: a run whose drive and speeds are used; without one they are laid out for the model.
+
+    Raises:
+        SimulationError: the model diverged.
+    """
+    own = model.parameters
+    least = max(OVER_FRICTION * own.coulomb_friction / own.inertia, LEAST[own.kind.turns])
+    inertia, acceleration = (own.inertia, least) if like is None else (like.inertia, like.acceleration)
+    wide = BANDWIDTH * inertia
+    drive = Cascade(BANDWIDTH / 5.0, wide, wide * BANDWIDTH / 6.0, inertia, model.peak_effort, TICK)
+    plant = Plant(own, drive, TICK, effects=model.effects, winding=model.winding)
+    torque = run([plant], [_references(acceleration)]).torque[:, 0]
+    kept = torque[np.linspace(0, torque.size - 1, INSTANTS + 1).astype(np.intp)[1:]]
+    return Response(inertia, acceleration, tuple(kept.tolist()))
+
+
+def _references(acceleration: float) -> References:
+    time: Array = TICK * np.arange(round(DURATION / TICK) + 1, dtype=np.float64)
+    omega = 2.0 * np.pi * np.array(FREQUENCIES)
+    speeds = np.array(SHARES) * acceleration / omega
+    velocity = np.minimum(time / FADE, 1.0) * (speeds @ np.sin(omega[:, None] * time))
+    position = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1])) * TICK])
+    return References(time, position, velocity, np.gradient(velocity, TICK))
+
+
+def compare_models(baseline: State, now: State, allowed: Allowed) -> Checked:
+    """Whether a model is the same: its values, its effects, and how it moves.
+
+    Args:
+        baseline: what it was.
+        now: what it is.
+        allowed: margins.
+    """
+    effects = matched(baseline, now)
+    comparisons = [
+        _of_value(name, *pair, allowed, baseline) for name, pair in _pairs(baseline.quantities, now.quantities)
+    ]
+    for before, after in (*effects.both, *effects.renamed):
+        for key, pair in _pairs(before.quantities, after.quantities):
+            quantity = next(q for q in before.effect.quantities if q.name == key)
+            comparisons.append(_of_value(f"{before.label}.{key}", *pair, allowed, baseline, quantity))
+    comparisons += [_of_presence(effect, "gone") for effect in effects.gone]
+    comparisons += [_of_presence(effect, "appeared") for effect in effects.appeared]
+    comparisons += _of_response(baseline, now)
+    return Checked.of(comparisons, baseline, now, effects)
+
+
+def _pairs(
+    before: Mapping[str, Measured], after: Mapping[str, Measured]
+) -> list[tuple[str, tuple[Measured, Measured]]]:
+    return [(name, (before[name], after[name])) for name in before if name in after]
+
+
+def _of_value(
+    name: str, before: Measured, after: Measured, allowed: Allowed, state: State, quantity: Quantity | None = None
+) -> Comparison:
+    """Comparison of an exact value; angles by the shorter way round."""
+    away, margin = after.value - before.value, allowed.margin_of(name, before, state)
+    if quantity is not None and quantity.angle:
+        away, margin = math.remainder(away, 2.0 * math.pi), ANGLE
+    if not math.isfinite(away):
+        away = 0.0 if after.value == before.value else math.inf
+    return _exact(name, before.unit, (before.value, after.value), away, margin)
+
+
+def _of_presence(effect: NamedHere, how: str) -> Comparison:
+    return Comparison(effect.label, "", None, None, (), 0.0, how, chance=0.0, result=CHANGED)
+
+
+def _of_response(baseline: State, now: State) -> Iterator[Comparison]:
+    """Comparison of the torque of both runs."""
+    if baseline.response is not None and now.response is not None:
+        before, after = np.array(baseline.response.torque), np.array(now.response.torque)
+        values, margin = (rms(before), rms(after)), RESPONSE * rms(before)
+        yield _exact(RESPONSE_TORQUE, now.kind.effort_unit, values, rms(after - before), margin)
+
+
+def _exact(name: str, unit: str, values: tuple[float, float], away: float, margin: float) -> Comparison:
+    same = away == 0.0 or abs(away) <= margin < math.inf  # a share of an infinite value is no margin
+    difference = Difference(away, 0.0)
+    return Comparison(name, unit, *values, (difference,), margin, chance=float(same), result=SAME if same else CHANGED)
