@@ -13,7 +13,7 @@ from bench.assets import asset
 from bench.errors import InputError, UndeterminedError
 from bench.fit.regression import identify
 from bench.plant.model_file import load_model, read_table
-from bench.plant.s_curve import s_curve
+from bench.plant.profiles import s_curve
 from bench.rig.rig import Rig, load_rig
 from bench.structured import json_text, parse_json
 from bench.trace.inspect import inspect, to_json

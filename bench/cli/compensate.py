@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from bench.axis_kind import AxisKind
-    from bench.export.tracking import Tracking
+    from bench.export.feedforward import Tracking
 
 
 def compensate(
@@ -29,12 +29,10 @@ def compensate(
     import numpy as np
 
     from bench.export.drive_units import DriveUnits
-    from bench.export.feedforward import feedforward
-    from bench.export.tracking import tracking
+    from bench.export.feedforward import feedforward, tracking
     from bench.plant.drive import Cascade
-    from bench.plant.limits import MotionLimits
     from bench.plant.model_file import load_model
-    from bench.plant.profiles import plan
+    from bench.plant.profiles import MotionLimits, plan
     from bench.report.terminal import progress
     from bench.rig.rig import load_rig
 

@@ -12,7 +12,7 @@ from bench.errors import InputError
 from bench.files import write_text
 
 if TYPE_CHECKING:
-    from bench.export.joint import Carried
+    from bench.export.mjcf import Carried
     from bench.plant.model_file import StoredModel
 
 #: Name of the joint of a file that holds the joint alone, unless another is given.
@@ -53,14 +53,13 @@ def export(
 def _text(
     stored: StoredModel, out: Path, mjcf: Path | None, joint: str | None, armature: str | None
 ) -> tuple[str, Carried]:
-    from bench.export.joint import Share
-    from bench.export.mjcf import joint_alone, robot_with
+    from bench.export.mjcf import ArmatureShare, joint_alone, robot_with
 
     if mjcf is None:
         return joint_alone(stored, joint or ALONE)
     if joint is None:
         raise InputError("--joint", "missing", "allowed: a joint of the MJCF")
-    shares = {share.value: share for share in Share}
+    shares = {share.value: share for share in ArmatureShare}
     if armature is not None and armature not in shares:
         raise InputError("--armature", f"found '{armature}'", f"allowed: {', '.join(shares)}")
     return robot_with(mjcf, joint, stored, out, shares.get(armature or ""))

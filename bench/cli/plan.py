@@ -14,7 +14,7 @@ from bench.names import words
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from bench.export.plan import Planned
+    from bench.export.plan import PlannedMotion
 
 
 def plan(
@@ -47,7 +47,7 @@ def plan(
     list_files([out])
 
 
-def _table(best: Planned) -> Table:
+def _table(best: PlannedMotion) -> Table:
     from rich import box
     from rich.table import Table
 
@@ -60,7 +60,7 @@ def _table(best: Planned) -> Table:
     return table
 
 
-def _others(found: list[Planned]) -> str:
+def _others(found: list[PlannedMotion]) -> str:
     """How well the other profiles tell the same, in a line."""
     others = [f"{each.profile} {each.worst:.2%}" if not each.reason else f"{each.profile} nothing" for each in found]
     return f"largest standard error over its value: {', '.join(others)}"

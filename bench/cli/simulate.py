@@ -26,7 +26,7 @@ def simulate(
     from bench.effects.present import parse_effect
     from bench.files import held
     from bench.plant.simulate import simulate as run_simulation
-    from bench.plant.truth import write_truth
+    from bench.plant.simulate import write_truth
     from bench.report.terminal import progress
     from bench.rig.rig import load_rig
     from bench.rig.suffices import require

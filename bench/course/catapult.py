@@ -13,7 +13,7 @@ from bench.arrays import Array
 from bench.assets import asset
 from bench.errors import SimulationError
 from bench.files import write_text
-from bench.plant.states import DIVERGED
+from bench.plant.closed_loop import DIVERGED
 from bench.structured import json_text
 
 FLIGHTS, POINTS = 10, 20

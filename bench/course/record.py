@@ -17,8 +17,7 @@ from bench.course.winding import STEP, Winding, WindingRun, run_winding
 from bench.files import whole, write_text
 from bench.plant.model import AxisParameters
 from bench.plant.sensors import Sensors
-from bench.plant.simulate import simulate
-from bench.plant.truth import SCHEMA, truth_path, write_truth
+from bench.plant.simulate import SCHEMA, simulate, truth_path, write_truth
 from bench.rig.circuit import COLD, Circuit
 from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig

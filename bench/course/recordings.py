@@ -14,7 +14,7 @@ from bench.course.sources import Sources, embedded
 from bench.errors import InputError
 from bench.files import read_text
 from bench.names import nearest
-from bench.plant.truth import truth_path
+from bench.plant.simulate import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.structured import parse_json
 from bench.trace.channel import Recording

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from bench.assets import asset
 from bench.errors import InputError
+from bench.rig.motor import TorqueConstant
 from bench.rig.rig import Rig, load_rig
-from bench.rig.torque_constant import TorqueConstant
 
 
 def lab_rig() -> Rig:

@@ -21,7 +21,7 @@ from bench.errors import InputError
 from bench.plant.model import AxisParameters
 from bench.rig.circuit import COLD, HOT, Circuit
 from bench.rig.limits import peak_curve
-from bench.rig.peak_curve import PeakCurve
+from bench.rig.motor import PeakCurve
 from bench.rig.rig import Rig
 
 KEY, TITLE = "11", "Why the measured corner lies higher"

@@ -13,10 +13,9 @@ from bench.course.sources import Sources, joined
 from bench.course.t06_inertia import KG_CM2
 from bench.errors import InputError
 from bench.plant.drive import Cascade
-from bench.plant.limits import MotionLimits
 from bench.plant.model import AxisParameters
 from bench.plant.plant import Plant
-from bench.plant.profiles import plan
+from bench.plant.profiles import MotionLimits, plan
 from bench.plant.run import run
 from bench.rig.rig import Rig
 

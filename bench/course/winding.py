@@ -16,10 +16,10 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.errors import SimulationError
+from bench.plant.closed_loop import DIVERGED
 from bench.plant.model import AxisParameters, build_spec
-from bench.plant.states import DIVERGED
 from bench.rig.circuit import HOT, Circuit
-from bench.rig.torque_constant import TorqueConstant
+from bench.rig.motor import TorqueConstant
 
 #: Name of the motor's actuator in mjcf/rotary_axis.xml.
 DRIVE = "drive"

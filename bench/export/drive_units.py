@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.arrays import Array
-from bench.export.feedforward import Feedforward, Table
+from bench.export.feedforward import Feedforward, TorqueTable
 from bench.rig.rig import Rig
 from bench.trace.channel import split_label
 from bench.trace.signal_names import scale_in
@@ -64,7 +64,7 @@ class DriveUnits:
         constant = self.rig.motor.torque_per_ampere
         return None if constant is None else constant.current(torque) / self.current.factor
 
-    def table(self, name: str, unit: Unit, table: Table) -> str:
+    def table(self, name: str, unit: Unit, table: TorqueTable) -> str:
         """A table as CSV, in the order of the drive's own count."""
         coordinate, currents = table.coordinate / unit.factor, self.currents(table.torque)
         columns = [coordinate, table.torque] + ([] if currents is None else [currents])

@@ -127,7 +127,7 @@ class Copies:
         joints, here = BatchJoints(batch, joint, self._ratio, _bristles(batch.model, joint)), batch.model.joint(joint)
         self._position = batch.bind("qpos")[:, here.qposadr[0]]
         self._velocity = batch.bind("qvel")[:, here.dofadr[0]]
-        self._drive = Drive.of(batch.model, joint, self._ratio)
+        self._drive = Actuators.of(batch.model, joint, self._ratio)
         self._control, self._force = batch.bind("ctrl"), batch.bind("actuator_force")
         self._time, self._joints = batch.bind("time"), joints
         self._ticked = SteppedEffects(joints, [each.model for each in models], self._ratio * self._velocity)
@@ -144,7 +144,7 @@ class Copies:
 
 
 @dataclass(frozen=True)
-class Drive:
+class Actuators:
     """Actuators that drive a joint.
 
     Attributes:
@@ -162,7 +162,7 @@ class Drive:
     limits: Array
 
     @classmethod
-    def of(cls, model: mujoco.MjModel, joint: str, ratio: float) -> Drive:
+    def of(cls, model: mujoco.MjModel, joint: str, ratio: float) -> Actuators:
         """All actuators with an input on a joint."""
         at_joint = (model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT) & (
             model.actuator_trnid[:, 0] == model.joint(joint).id
@@ -200,7 +200,7 @@ class _Running:
         self.model, self.data, self.time = model, data, -np.inf
         self._ratio, here = stored.mounting.gear_ratio, model.joint(joint)
         self._qpos, self._dof = int(here.qposadr[0]), int(here.dofadr[0])
-        self.drive = Drive.of(model, joint, self._ratio)
+        self.drive = Actuators.of(model, joint, self._ratio)
         self.joint = SimulationJoint(model, data, joint, self._ratio, _bristles(model, joint))
         velocity = self._ratio * float(data.qvel[self._dof])
         self._ticked = SteppedEffects(self.joint, [stored.model], velocity)

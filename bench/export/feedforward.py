@@ -5,6 +5,10 @@
 F - mean over a turn of what resists steady motion at a speed - N*m; C - what it varies by over the position, mean over
 both directions at a slow speed - N*m; alpha, omega, q - references. What is neither - ripple, which grows with the
 current; a friction level that varies with position; what the drive itself does - is left to the drive's feedback.
+
+What resists is asked of all effects at once: native ones through MuJoCo, which makes their torques of position and
+speed; the others through their own hooks, as in a simulation. Time stands at its end: what warms up is warm, what
+happens for a while is over. How much better a drive tracks with it is told by simulation of the model.
 """
 
 from __future__ import annotations
@@ -13,13 +17,21 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import mujoco
 import numpy as np
+from mujoco.batch import Batch
 
-from bench.arrays import Array
+from bench.arrays import Array, rms
+from bench.effects.mjcf import AXIS, BRISTLES
 from bench.errors import InputError
-from bench.export.resisting import resisting_torque
 from bench.plant.axis_model import AxisModel
+from bench.plant.drive import Cascade
+from bench.plant.joints import BatchJoints
+from bench.plant.plant import Plant
 from bench.plant.references import References
+from bench.plant.run import run
+from bench.plant.stepped_effects import SteppedEffects
+from bench.rig.rig import Rig
 
 #: Points of the table over position, and of each side of the table over speed.
 POSITIONS, SPEEDS = 720, 60
@@ -31,10 +43,12 @@ SLOWLY = 0.05
 NOTHING = 1e-6
 #: Share of the torque over a turn by which its ends differ where it does not repeat itself.
 OPEN = 1e-3
+#: Timestep of a model that is asked and does not move - s.
+TIMESTEP = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class TorqueTable:
     """Torque over a coordinate, linear between its points and held beyond them.
 
     Attributes:
@@ -64,8 +78,8 @@ class Feedforward:
     """
 
     inertia: float
-    friction: Table
-    cogging: Table
+    friction: TorqueTable
+    cogging: TorqueTable
     left: tuple[str, ...]
 
     def along(self, references: References) -> References:
@@ -74,8 +88,70 @@ class Feedforward:
         return replace(references, torque=torque)
 
 
+def feedforward(model: AxisModel, fastest: float, travelled: tuple[float, float]) -> Feedforward:
+    """What a drive is to feed forward for a model.
+
+    Args:
+        model: with effects.
+        fastest: speed that the tables reach - rad/s (m/s).
+        travelled: positions they reach on an axis that does not turn, or whose torque does not repeat itself - rad (m).
+
+    Raises:
+        InputError: no speed to lay the tables out for.
+    """
+    if not fastest > 0.0:
+        raise InputError("the motion", "found no speed in it", "allowed: one that moves")
+    turn = _SteadyTorque(model, fastest, (0.0, 2.0 * math.pi))
+    ends = resisting_torque(model, np.array(turn.span), np.full(2, SLOWLY * fastest))
+    repeats = model.parameters.kind.turns and abs(ends[1] - ends[0]) <= OPEN * max(
+        np.abs(turn.over_speed).max(), 1e-300
+    )
+    asked = turn if repeats else replace(turn, span=travelled)
+    return Feedforward(
+        model.parameters.inertia,
+        TorqueTable(asked.speeds, asked.over_speed),
+        TorqueTable(asked.positions, asked.over_position, 2.0 * math.pi if repeats else None),
+        tuple(_left(asked)),
+    )
+
+
+def tracking(model: AxisModel, rig: Rig, references: References, feedforward: Feedforward | None = None) -> Tracking:
+    """Errors of a rig's drive on an axis.
+
+    Args:
+        model: of the axis, with effects.
+        rig: with `[drive]`.
+        references: the motion, at the drive's ticks.
+        told: what the drive feeds forward; None: what its rig file says.
+
+    Raises:
+        InputError: a rig without drive.
+        SimulationError: the simulation diverged.
+    """
+    cascade = Cascade.from_rig(rig)
+    motion = references
+    if feedforward is not None:
+        cascade, motion = replace(cascade, inertia_feedforward=feedforward.inertia), feedforward.along(references)
+    plant = Plant.of(model, cascade)
+    states = run([plant], [motion])
+    return Tracking(rms(references.position - states.position[:, 0]), rms(references.velocity - states.velocity[:, 0]))
+
+
 @dataclass(frozen=True)
-class Asked:
+class Tracking:
+    """Errors of a drive along a motion, RMS: reference less motion.
+
+    Attributes:
+        position: rad (m).
+        velocity: rad/s (m/s).
+    """
+
+    position: float
+    velocity: float
+
+
+@dataclass(frozen=True)
+class _SteadyTorque:
     """What a model is asked for: torque over speed and position.
 
     Attributes:
@@ -115,34 +191,7 @@ class Asked:
         return resisting_torque(self.model, q, w).reshape(some.size, -1).mean(axis=0)
 
 
-def feedforward(model: AxisModel, fastest: float, travelled: tuple[float, float]) -> Feedforward:
-    """What a drive is to feed forward for a model.
-
-    Args:
-        model: with effects.
-        fastest: speed that the tables reach - rad/s (m/s).
-        travelled: positions they reach on an axis that does not turn, or whose torque does not repeat itself - rad (m).
-
-    Raises:
-        InputError: no speed to lay the tables out for.
-    """
-    if not fastest > 0.0:
-        raise InputError("the motion", "found no speed in it", "allowed: one that moves")
-    turn = Asked(model, fastest, (0.0, 2.0 * math.pi))
-    ends = resisting_torque(model, np.array(turn.span), np.full(2, SLOWLY * fastest))
-    repeats = model.parameters.kind.turns and abs(ends[1] - ends[0]) <= OPEN * max(
-        np.abs(turn.over_speed).max(), 1e-300
-    )
-    asked = turn if repeats else replace(turn, span=travelled)
-    return Feedforward(
-        model.parameters.inertia,
-        Table(asked.speeds, asked.over_speed),
-        Table(asked.positions, asked.over_position, 2.0 * math.pi if repeats else None),
-        tuple(_left(asked)),
-    )
-
-
-def _left(asked: Asked) -> list[str]:
+def _left(asked: _SteadyTorque) -> list[str]:
     """Effects without which both tables would be the same."""
     model, left = asked.model, []
     least = NOTHING * max(float(np.abs(asked.over_speed).max()), 1e-300)
@@ -155,3 +204,33 @@ def _left(asked: Asked) -> list[str]:
         if moved < least:
             left.append(present.name)
     return left
+
+
+def resisting_torque(model: AxisModel, position: Array, velocity: Array) -> Array:
+    """Motor torque that a steady motion takes - N*m (N) - (n,), dry friction against its direction and none at rest.
+
+    Args:
+        model: with effects.
+        position, velocity: of the motor - rad (m), rad/s (m/s) - (n,).
+    """
+    spec = model.spec(TIMESTEP)
+    spec.joint(AXIS).frictionloss = dry_friction(model)
+    bristles = spec.actuator(BRISTLES)
+    if bristles is not None:  # steady, they have bent as far as dry friction bends them
+        spec.delete(bristles)
+    batch = Batch(spec.compile(), position.size)
+    joint = batch.model.joint(AXIS)
+    dof = joint.dofadr[0]
+    batch.bind("qpos")[:, joint.qposadr[0]], batch.bind("qvel")[:, dof] = position, velocity
+    applied, passive, made = (batch.bind(f"qfrc_{part}")[:, dof] for part in ("applied", "passive", "actuator"))
+    effects = SteppedEffects(BatchJoints(batch), [model] * position.size, velocity)
+    effects.act(np.full(position.size, np.inf), position, velocity, np.zeros(position.size))
+    batch.forward()
+    return batch.expand("dof_frictionloss")[:, dof] * np.sign(velocity) - applied - passive - made
+
+
+def dry_friction(model: AxisModel) -> float:
+    """Level of dry friction that is native in a model - N*m (N)."""
+    spec = model.spec(TIMESTEP)
+    bristles: mujoco.MjsActuator | None = spec.actuator(BRISTLES)
+    return float(spec.joint(AXIS).frictionloss) if bristles is None else float(bristles.biasprm[3])

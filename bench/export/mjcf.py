@@ -1,41 +1,113 @@
-"""MJCF with a model as text: another robot with its joint, or a file of the joint alone."""
+"""MJCF with a model: put onto a joint of another robot, or alone as a file with its joint.
+
+Everything native to MuJoCo goes onto the joint, in the joint's own units. A model is on the motor's side of its gear, a
+joint behind it. With i motor turns per turn of the joint, q_m = i*q:
+
+    armature: J*i**2,  damping of order k: d_k*i**(k + 2),  frictionloss: K_0*i,  stiffness: c*i**2
+
+What the model has as actuators (cogging, bristles, a constant torque) keeps the motor's units behind `gear="i"`. The
+effects are asked for their parts by building the axis alone (`AxisModel.spec`); these are then moved over, so whatever
+an effect adds comes along. A coupling of motor and load becomes a second joint of the link, behind the first one:
+then the first joint is the motor's shaft, its armature the motor's inertia.
+"""
 
 from __future__ import annotations
 
 import os
 import re
+from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
+from bench.effects.mjcf import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.errors import InputError
-from bench.export.joint import Armature, Carried, Share, armature_of, compiled, onto
 from bench.files import read_bytes, reason
-from bench.names import plain
-from bench.plant.model import NO_MASS, disk_inertia
+from bench.names import nearest, plain
+from bench.plant.axis_model import AxisModel
+from bench.plant.model import NO_MASS, STICKING_IMPEDANCE, disk_inertia
 from bench.plant.model_file import StoredModel
 
 #: The body of a file that holds the joint alone.
 BODY = "load"
+#: What makes an actuator what it is, but for its name, its joint and its gear.
+ACTUATOR = (
+    *(
+        "gaintype",
+        "biastype",
+        "dyntype",
+        "gainprm",
+        "biasprm",
+        "dynprm",
+        "actdim",
+        "actearly",
+        "actlimited",
+        "actrange",
+    ),
+    *("ctrllimited", "ctrlrange", "ctrlspec", "forcelimited", "forcerange", "nsample", "interp", "delay"),
+)
+TRANSMISSION = mujoco.mjtTrn.mjTRN_JOINT
+#: Whether a joint of a type turns.
+TURNS = {mujoco.mjtJoint.mjJNT_HINGE: True, mujoco.mjtJoint.mjJNT_SLIDE: False}
+#: What makes an effect that is not native.
+STEPPED, SEEN = "bench.Effects steps it", "it is in what sensors report, not in the motion"
+
+
+class ArmatureShare(StrEnum):
+    """Of the model's inertia, what becomes a joint's armature."""
+
+    MOTOR = "motor"
+    ALL = "all"
+
+
+@dataclass(frozen=True)
+class Armature:
+    """Inertia of a joint beside that of its links.
+
+    Attributes:
+        value: on the joint's side - kg*m**2 (kg).
+        origin: what of the model's inertia it is.
+    """
+
+    value: float
+    origin: str
+
+
 #: Of a joint whose motor is not known: the body has all of the inertia.
 UNKNOWN = Armature(0.0, "as the motor's inertia is not known")
 
 
-def read_mjcf(path: Path) -> mujoco.MjSpec:
-    """Editable model of an MJCF file.
+@dataclass(frozen=True)
+class Carried:
+    """What went onto a joint.
 
-    Raises:
-        InputError: no such file, or MuJoCo does not read it.
+    Attributes:
+        joint: its name.
+        native: effects that MuJoCo now makes by itself.
+        left: effects that are not in the MJCF, each with what does it instead.
+        notes: what a user has to know of the rest.
     """
-    read_bytes(path, "an MJCF file")
-    try:
-        return mujoco.MjSpec.from_file(str(path))
-    except (ValueError, OSError) as error:
-        message = " ".join(reason(error).split())
-        raise InputError(path, f"MuJoCo does not read it: {message}", "allowed: MJCF") from error
+
+    joint: str
+    native: tuple[str, ...]
+    left: tuple[tuple[str, str], ...]
+    notes: tuple[str, ...]
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """All of it in sentences."""
+        native = (
+            f"native: {', '.join(self.native)}" if self.native else "no effect beyond friction and inertia is native"
+        )
+        left = [f"not carried: {name} ({instead})" for name, instead in self.left]
+        return f"{self.joint}: {native}", *left, *self.notes
 
 
-def robot_with(path: Path, joint: str, stored: StoredModel, out: Path, share: Share | None) -> tuple[str, Carried]:
+def robot_with(
+    path: Path, joint: str, stored: StoredModel, out: Path, share: ArmatureShare | None
+) -> tuple[str, Carried]:
     """Text of a robot's MJCF with a model at a joint, and what went onto it.
 
     Args:
@@ -81,6 +153,66 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
     return commented(spec, (*carried.lines, _mass_of(body, stored))), carried
 
 
+def read_mjcf(path: Path) -> mujoco.MjSpec:
+    """Editable model of an MJCF file.
+
+    Raises:
+        InputError: no such file, or MuJoCo does not read it.
+    """
+    read_bytes(path, "an MJCF file")
+    try:
+        return mujoco.MjSpec.from_file(str(path))
+    except (ValueError, OSError) as error:
+        message = " ".join(reason(error).split())
+        raise InputError(path, f"MuJoCo does not read it: {message}", "allowed: MJCF") from error
+
+
+def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature | None = None) -> Carried:
+    """Put a model onto a joint of a robot, instead of the joint's own armature, damping and friction.
+
+    Args:
+        spec: of the robot; changed.
+        name: of the joint.
+        stored: the model.
+        armature: of the joint; None: what the model tells.
+
+    Raises:
+        InputError: no such joint, one of another kind, a coupling on a body of several joints, or no armature is left.
+    """
+    joint, model, ratio = joint_of(spec, name, stored.model), stored.model, stored.mounting.gear_ratio
+    links = link_inertia(spec, name)
+    armature = armature or armature_of(stored)
+    axis = model.spec(spec.option.timestep)
+    alone = axis.joint(AXIS)
+    if model.coupled:
+        _couple(joint, axis, name, ratio)
+    joint.armature = armature.value
+    joint.damping = _scaled(alone.damping, ratio)
+    joint.stiffness = np.asarray(joint.stiffness) + _scaled(alone.stiffness, ratio)
+    joint.frictionloss = alone.frictionloss * ratio
+    joint.solimp_friction, joint.solref_friction = STICKING_IMPEDANCE, [2.0 * spec.option.timestep, 1.0]
+    moving = [actuator.name or "an actuator without a name" for actuator in spec.actuators if actuator.target == name]
+    for actuator in axis.actuators:
+        if actuator.name != DRIVE and (actuator.name != LOAD_TORQUE or actuator.biasprm[0] != 0.0):
+            _add(spec, actuator, f"{name} {actuator.name}", name, ratio)
+    driven = f"driven by {', '.join(moving)} as before"
+    if not moving:
+        spec.add_actuator(name=f"{name} motor", target=name, trntype=TRANSMISSION, gear=[ratio, 0, 0, 0, 0, 0])
+        driven = (
+            f"the joint had no actuator: '{name} motor' takes the motor's {model.parameters.kind.effort} as control"
+        )
+    unit = model.parameters.kind.inertia_unit
+    geared = f", behind a gear of {ratio:g}: all values are those of the joint" if ratio != 1.0 else ""
+    inertia = (
+        f"armature {armature.value:.4g} {unit}, {armature.origin}; the links beyond the joint have {links:.4g} {unit} "
+        f"where the MJCF stands{geared}"
+    )
+    between = [
+        f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in joint.parent.joints[1:]
+    ]
+    return Carried(name, model.structure, _left(model), (inertia, driven, *(between if model.coupled else [])))
+
+
 def _mass_of(body: mujoco.MjsBody, stored: StoredModel) -> str:
     """Where the mass of a body comes from."""
     if not stored.model.parameters.kind.turns:
@@ -99,3 +231,103 @@ def commented(spec: mujoco.MjSpec, lines: tuple[str, ...]) -> str:
     """XML of a model with sentences before it, in which nothing ends the comment."""
     text = "\n     ".join(plain(line).replace("--", "- -") for line in lines)
     return f"<!-- {text} -->\n{spec.to_xml()}"
+
+
+def joint_of(spec: mujoco.MjSpec, name: str, model: AxisModel) -> mujoco.MjsJoint:
+    """The joint of a name, of the model's kind.
+
+    Raises:
+        InputError: there is none, or it turns where the model slides.
+    """
+    joint, names = spec.joint(name), [each.name for each in spec.joints if each.name]
+    if joint is None:
+        found = f"found no joint of that name{nearest(name, names)}"
+        raise InputError(f"--joint {name}", found, f"allowed: {', '.join(names) or 'an MJCF with a named joint'}")
+    if TURNS.get(joint.type) is not model.parameters.kind.turns:
+        found = f"found a joint of type {joint.type.name.removeprefix('mjJNT_').lower()}"
+        raise InputError(
+            f"--joint {name}", found, f"allowed: one that moves as the model does, {model.parameters.kind.name}"
+        )
+    return joint
+
+
+def armature_of(stored: StoredModel, share: ArmatureShare | None = None) -> Armature:
+    """Armature of the joint: a share of the model's inertia, or what the model tells.
+
+    Raises:
+        InputError: the model tells no inertia of the motor, or none is left beside the links.
+    """
+    parameters, mounting = stored.model.parameters, stored.mounting
+    if share is None:
+        known = parameters.motor_inertia > 0.0 and not mounting.link_inertia
+        share = ArmatureShare.MOTOR if stored.model.coupled or known else ArmatureShare.ALL
+    if share is ArmatureShare.MOTOR:
+        if parameters.motor_inertia <= 0.0:
+            raise InputError("--armature motor", "found a model without the motor's inertia", "allowed: --armature all")
+        return Armature(parameters.motor_inertia * mounting.gear_ratio**2, "the motor's")
+    armature = parameters.inertia * mounting.gear_ratio**2 - mounting.link_inertia
+    if armature <= 0.0:
+        found = f"found an inertia of {parameters.inertia:.4g}, of which the links have {mounting.link_inertia:.4g}"
+        raise InputError("the model's inertia", found, "allowed: more than the links have")
+    beside = "all that moved but the links" if mounting.link_inertia else "all that moved in the recording"
+    return Armature(armature, beside)
+
+
+def link_inertia(spec: mujoco.MjSpec, name: str) -> float:
+    """Inertia about a joint of all that it carries, its armature aside, where the MJCF stands - kg*m**2 (kg).
+
+    Raises:
+        InputError: MuJoCo does not compile the MJCF.
+    """
+    model = compiled(spec)
+    data, whole = mujoco.MjData(model), np.zeros((model.nv, model.nv))
+    mujoco.mj_forward(model, data)
+    mujoco.mj_fullM(model, data, whole)
+    dof = model.joint(name).dofadr[0]
+    return float(whole[dof, dof] - model.dof_armature[dof])
+
+
+def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """The compiled model; InputError with MuJoCo's reason where it refuses it."""
+    try:
+        return spec.compile()
+    except ValueError as error:
+        reason = " ".join(str(error).split())
+        raise InputError("the MJCF", f"MuJoCo refuses it: {reason}", "allowed: what MuJoCo compiles") from error
+
+
+def _scaled(values: np.ndarray, ratio: float) -> np.ndarray:
+    """Coefficients of a torque's powers of speed, or of angle, as they are on the joint's side of a gear."""
+    return np.asarray(values) * ratio ** (2.0 + np.arange(len(values)))
+
+
+def _couple(joint: mujoco.MjsJoint, axis: mujoco.MjSpec, name: str, ratio: float) -> None:
+    """Join motor and link by a second joint of the link, along the first: the sum of both is the link's position."""
+    if len(joint.parent.joints) > 1:
+        found, allowed = (
+            "found a body of several joints",
+            "allowed: one that has its body alone, as motor and load part",
+        )
+        raise InputError(f"--joint {name}", found, allowed)
+    for between in axis.body(LOAD).joints:
+        added = joint.parent.add_joint(name=f"{name} {between.name}", type=joint.type, axis=joint.axis, pos=joint.pos)
+        added.stiffness, added.damping = _scaled(between.stiffness, ratio), _scaled(between.damping, ratio)
+        angle = np.rad2deg(1.0) if joint.compiler.degree and joint.type == mujoco.mjtJoint.mjJNT_HINGE else 1.0
+        added.range, added.limited = np.asarray(between.range) / ratio * angle, between.limited
+        added.solref_limit, added.solimp_limit = between.solref_limit, between.solimp_limit
+
+
+def _add(spec: mujoco.MjSpec, like: mujoco.MjsActuator, name: str, joint: str, ratio: float) -> None:
+    """Add an actuator like another one to a joint behind a gear."""
+    added = spec.add_actuator(name=name, target=joint, trntype=TRANSMISSION, gear=[ratio, 0, 0, 0, 0, 0])
+    for key in ACTUATOR:
+        setattr(added, key, getattr(like, key))
+
+
+def _left(model: AxisModel) -> tuple[tuple[str, str], ...]:
+    """Effects that are not native, with what makes them instead."""
+    return tuple(
+        (present.name, STEPPED if present in model.stepped else SEEN)
+        for present in model.effects
+        if present not in model.native
+    )

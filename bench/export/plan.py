@@ -25,9 +25,8 @@ from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.shapes import shaped
 from bench.names import words
-from bench.plant.limits import MotionLimits
 from bench.plant.plant import Plant
-from bench.plant.profiles import PROFILES, full_torque, plan
+from bench.plant.profiles import PROFILES, MotionLimits, full_torque, plan
 from bench.plant.references import References
 from bench.plant.simulate import simulate
 from bench.rig.rig import Rig
@@ -38,7 +37,7 @@ PLANNED = tuple(name for name, profile in PROFILES.items() if profile is not ful
 
 
 @dataclass(frozen=True, eq=False)
-class Planned:
+class PlannedMotion:
     """A motion, and the errors to expect from its recording.
 
     Attributes:
@@ -60,7 +59,7 @@ class Planned:
         return max((share for share in shares if np.isfinite(share)), default=np.inf) if not self.reason else np.inf
 
 
-def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
+def motions(rig: Rig, wanted: Present | None = None) -> list[PlannedMotion]:
     """Every profile that the rig can follow, the most accurate first.
 
     Args:
@@ -90,24 +89,24 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[Planned]:
     return found
 
 
-def _planned(name: str, motion: References, trace: Trace, rig: Rig, effect: Effect | None) -> Planned:
+def _planned(name: str, motion: References, trace: Trace, rig: Rig, effect: Effect | None) -> PlannedMotion:
     """What a simulated recording tells of the effect, or of inertia and friction."""
     kind = rig.axis_kind
     units = kind.base_parameters()
     try:
         rows = Rows.of(trace, rig)
     except UndeterminedError as error:
-        return Planned(name, motion, {}, error.reason)
+        return PlannedMotion(name, motion, {}, error.reason)
     bare = fit(rows, Hypothesis())
     if effect is None:
-        return Planned(name, motion, uncertain(bare).base(units))
+        return PlannedMotion(name, motion, uncertain(bare).base(units))
     tried = candidates(bare, [effect])
     if not tried:
-        return Planned(name, motion, {}, "the motion cannot show it")
+        return PlannedMotion(name, motion, {}, "the motion cannot show it")
     fitted = shaped(rows, Hypothesis().plus(tried[0].term), 0)
 
     def unit_of(owner: Effect, key: str) -> str:
         known = (*owner.quantities, *owner.derived, *(shape.quantity for shape in owner.shapes))
         return kind.unit(next(quantity for quantity in known if quantity.name == key))
 
-    return Planned(name, motion, uncertain(fitted).quantities(0, unit_of))
+    return PlannedMotion(name, motion, uncertain(fitted).quantities(0, unit_of))

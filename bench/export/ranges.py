@@ -15,7 +15,7 @@ from bench.axis_kind import ARMATURE, COULOMB, VISCOUS
 from bench.effects.effect import Effect
 from bench.effects.present import named
 from bench.errors import InputError
-from bench.export.joint import Share, armature_of
+from bench.export.mjcf import ArmatureShare, armature_of
 from bench.files import read_text
 from bench.plant.model_file import StoredModel
 from bench.structured import json_text, parse_json
@@ -92,6 +92,6 @@ def _joint(stored: StoredModel, parameters: Mapping[str, Mapping[str, Any]]) -> 
         if name in parameters
     }
     if ARMATURE not in found:
-        value = armature_of(stored, Share.MOTOR).value if stored.model.parameters.motor_inertia else 0.0
+        value = armature_of(stored, ArmatureShare.MOTOR).value if stored.model.parameters.motor_inertia else 0.0
         found[ARMATURE] = {"value": value, "low": value, "high": value}
     return found

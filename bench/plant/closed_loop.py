@@ -1,4 +1,4 @@
-"""A closed loop: an axis in MuJoCo and what controls it, ready for one of the two runners.
+"""A closed loop: an axis in MuJoCo and what controls it, ready for one of the two runners; and the motion they give.
 
 MuJoCo's position belongs half a step later than its velocity (see `bench.plant.model`); runners start it there and
 bring it back, so that positions in and out of them are those of the velocities beside them.
@@ -21,59 +21,7 @@ from bench.plant.stepped_effects import per_axis
 
 #: Bytes of inputs and states that a simulation holds at once, however long it is.
 BLOCK_BYTES = 8 * 2**20
-
-
-class Ticking(Protocol):
-    """Controllers of axes side by side, asked at every tick."""
-
-    def tick(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
-        """Effort from tick k to the next - N*m (N) - (axes,): reported, and asked of the motor.
-
-        Of a lone axis everything may be numbers.
-
-        Args:
-            k: number of the tick; they come in turn.
-            position, velocity: true ones at it - rad (m), rad/s (m/s) - (axes,).
-        """
-        ...
-
-
-class Controller(ABC):
-    """What sets the inputs of the actuator `drive` of an axis."""
-
-    @classmethod
-    @abstractmethod
-    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Ticking:
-        """Controllers of axes of one kind.
-
-        Args:
-            loops: of the axes, whose controllers are all of this class.
-            setpoints: inputs of the actuators before the effort, to be written at each tick - (axes, inputs).
-        """
-
-
-class PlannedInputs(Controller):
-    """Inputs that are known before the motion: MuJoCo's own actuator closes the loop."""
-
-    @abstractmethod
-    def between(self, start: int, stop: int) -> Array:
-        """Inputs from a tick to before another, held from each to the next - (ticks, inputs); the last is an effort."""
-
-    @classmethod
-    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Ticking:
-        """Read in blocks; after the end of a loop its last inputs are held."""
-        return _PlannedSideBySide(loops, setpoints)
-
-
-class Listed(PlannedInputs):
-    """Inputs in an array, (ticks, inputs)."""
-
-    def __init__(self, inputs: Array) -> None:
-        self._inputs = inputs
-
-    def between(self, start: int, stop: int) -> Array:
-        """See `PlannedInputs`."""
-        return self._inputs[start:stop]
+DIVERGED = "the simulation diverged: lower the drive's gains or its control period"
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +67,103 @@ class ClosedLoop:
         """What loops have in common that can run side by side; none is twice as long as another or more."""
         timestep = round(self.compiled.opt.timestep, 12)
         return type(self.controller), self.axis.structure, timestep, self.substeps, self.every, self.ticks.bit_length()
+
+
+@dataclass(frozen=True)
+class States:
+    """True motion at a controller's ticks, without any sensor; position and velocity are simultaneous.
+
+    Attributes:
+        time: s - (ticks,).
+        position: rad (m on a linear axis) - (ticks, axes).
+        velocity: rad/s (m/s) - (ticks, axes).
+        torque: set-point from each tick to the next - N*m (N) - (ticks, axes).
+        motor_torque: what the motor makes; less the emulated friction - N*m (N) - (ticks, axes).
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    torque: Array
+    motor_torque: Array
+
+    @classmethod
+    def of_one(cls, time: Array, position: Array, velocity: Array, torque: Array) -> States:
+        """Motion of one axis without emulated friction, from signals of shape (ticks,)."""
+        return cls(time, position[:, None], velocity[:, None], torque[:, None], torque[:, None])
+
+    def axis(self, index: int, ticks: int | None = None) -> States:
+        """Motion of one axis, over its first ticks; signals stay two-dimensional."""
+        signals = (signal[:ticks, index : index + 1] for signal in self._signals)
+        return States(self.time[:ticks], *signals)
+
+    @property
+    def diverged(self) -> bool:
+        """Whether a value is not finite: runners leave nan where a simulation diverged."""
+        return not all(np.isfinite(signal).all() for signal in self._signals)
+
+    @property
+    def _signals(self) -> tuple[Array, ...]:
+        return self.position, self.velocity, self.torque, self.motor_torque
+
+
+def side_by_side(states: Sequence[States]) -> States:
+    """Motions of several axes over one time, as one."""
+    signals = (np.concatenate(signal, axis=1) for signal in zip(*(s._signals for s in states), strict=True))
+    return States(states[0].time, *signals)
+
+
+class Controller(ABC):
+    """What sets the inputs of the actuator `drive` of an axis."""
+
+    @classmethod
+    @abstractmethod
+    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Ticking:
+        """Controllers of axes of one kind.
+
+        Args:
+            loops: of the axes, whose controllers are all of this class.
+            setpoints: inputs of the actuators before the effort, to be written at each tick - (axes, inputs).
+        """
+
+
+class Ticking(Protocol):
+    """Controllers of axes side by side, asked at every tick."""
+
+    def tick(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
+        """Effort from tick k to the next - N*m (N) - (axes,): reported, and asked of the motor.
+
+        Of a lone axis everything may be numbers.
+
+        Args:
+            k: number of the tick; they come in turn.
+            position, velocity: true ones at it - rad (m), rad/s (m/s) - (axes,).
+        """
+        ...
+
+
+class PlannedInputs(Controller):
+    """Inputs that are known before the motion: MuJoCo's own actuator closes the loop."""
+
+    @abstractmethod
+    def between(self, start: int, stop: int) -> Array:
+        """Inputs from a tick to before another, held from each to the next - (ticks, inputs); the last is an effort."""
+
+    @classmethod
+    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Ticking:
+        """Read in blocks; after the end of a loop its last inputs are held."""
+        return _PlannedSideBySide(loops, setpoints)
+
+
+class Listed(PlannedInputs):
+    """Inputs in an array, (ticks, inputs)."""
+
+    def __init__(self, inputs: Array) -> None:
+        self._inputs = inputs
+
+    def between(self, start: int, stop: int) -> Array:
+        """See `PlannedInputs`."""
+        return self._inputs[start:stop]
 
 
 def blocks(ticks: int, bytes_per_tick: int) -> Iterator[tuple[int, int]]:

@@ -28,7 +28,6 @@ from bench.axis_kind import COULOMB, ROTARY, VISCOUS, AxisKind
 from bench.effects.mjcf import AXIS, LOAD, LOAD_TORQUE, MOTOR
 from bench.effects.mjcf import DRIVE as DRIVE
 from bench.errors import InputError
-from bench.plant.mounting import Mounting
 from bench.rig.load import Load
 from bench.rig.rig import Rig
 from bench.units import Quantity
@@ -154,21 +153,6 @@ def _set_inertia(spec: mujoco.MjSpec, parameters: AxisParameters) -> None:
 def disk_inertia(inertia: float) -> list[float]:
     """Inertia about the shaft and about two diameters of a flat disk - kg*m**2 - whose shaft is x."""
     return [inertia, ACROSS * inertia, ACROSS * inertia]
-
-
-def set_masses(spec: mujoco.MjSpec, kind: AxisKind, mounting: Mounting) -> str:
-    """Set the known masses of the bodies of an axis, and negligible ones for the others; returns a sentence about them.
-
-    About the shaft no mass is felt; it is where the axis itself is moved. What moves along a slide has its mass.
-    """
-    if not kind.turns:
-        return "Masses are those of the model, parted between motor and load."
-    spec.body(MOTOR).mass = NO_MASS
-    known = mounting.load_mass
-    spec.body(LOAD).mass = NO_MASS if known is None else known
-    load = "the load's either" if known is None else f"the load's is the disk's, {known:.4g} kg"
-    nothing = f"{NO_MASS:g} kg stands in for what is not known"
-    return f"Inertias are those of flat disks. The motor's mass is not known, {load}; {nothing}."
 
 
 def _set_friction(joint: mujoco.MjsJoint, parameters: AxisParameters, timestep: float) -> None:

@@ -1,5 +1,7 @@
 """A model of an axis on disk: `model.toml` holds all of it, `model.xml` beside it what MuJoCo makes by itself.
 
+With the model stands how it is mounted: what one on the motor's side needs to be put onto a joint of a robot.
+
 schema = "bench.model/1"
 name = "axis"
 kind = "rotary"
@@ -18,16 +20,19 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import mujoco
 import tomli_w
 
 from bench.axis_kind import AxisKind, axis_kind
 from bench.effects.kinds import Winding
+from bench.effects.mjcf import LOAD, MOTOR
 from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.errors import InputError
 from bench.names import nearest
 from bench.plant.axis_model import AxisModel
-from bench.plant.model import FLOOR, AxisParameters, parameter_quantities, set_masses
-from bench.plant.mounting import DIRECT, Mounting
+from bench.plant.model import FLOOR, NO_MASS, AxisParameters, parameter_quantities
+from bench.rig.load import Load
+from bench.rig.rig import Rig
 from bench.structured import read_toml
 
 SCHEMA = "bench.model/1"
@@ -35,6 +40,36 @@ SCHEMA = "bench.model/1"
 TIMESTEP = 250e-6
 #: Units of what a mounting holds.
 MOUNTED = {"gear_ratio": "dimensionless", "load_mass": "kg", "link_inertia": "kg*m**2"}
+
+
+@dataclass(frozen=True)
+class Mounting:
+    """Gear and load of an axis.
+
+    Attributes:
+        gear_ratio: motor turns per turn of the joint; 1 without a gear.
+        load_mass: of the disk on the joint - kg; None where the rig does not tell.
+        link_inertia: part of the model's inertia that is the links' of a robot, on the joint's side - kg*m**2 (kg).
+    """
+
+    gear_ratio: float = 1.0
+    load_mass: float | None = None
+    link_inertia: float = 0.0
+
+    @classmethod
+    def of(cls, rig: Rig) -> Mounting:
+        """As a rig describes it."""
+        load = rig.load or Load()
+        return cls(float(load.gear_ratio), load.disk_mass, load.link_inertia or 0.0)
+
+    @property
+    def stated(self) -> dict[str, float]:
+        """Values other than those of an axis without gear and robot, by name - SI."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if getattr(self, f.name) != f.default}
+
+
+#: Of an axis without gear and robot, and of an unknown load.
+DIRECT = Mounting()
 
 
 @dataclass(frozen=True)
@@ -59,7 +94,7 @@ def model_xml(stored: StoredModel) -> str:
     model, mounting = stored.model, stored.mounting
     spec = model.spec(TIMESTEP)
     spec.delete(spec.geom(FLOOR))
-    mass = set_masses(spec, model.parameters.kind, mounting)
+    mass = _set_masses(spec, model.parameters.kind, mounting)
     spec.compile()
     missing = sorted({present.name for present in model.effects} - set(model.structure))
     rest = f"; not in it, but in model.toml: {', '.join(missing)}" if missing else ""
@@ -193,3 +228,18 @@ def _winding_units(kind: AxisKind) -> dict[str, str]:
 
 def _determined(value: float, unit: str) -> float | str:
     return float(value) if unit == "dimensionless" else f"{float(value)!r} {unit}"
+
+
+def _set_masses(spec: mujoco.MjSpec, kind: AxisKind, mounting: Mounting) -> str:
+    """Set the known masses of the bodies of an axis, and negligible ones for the others; returns a sentence about them.
+
+    About the shaft no mass is felt; it is where the axis itself is moved. What moves along a slide has its mass.
+    """
+    if not kind.turns:
+        return "Masses are those of the model, parted between motor and load."
+    spec.body(MOTOR).mass = NO_MASS
+    known = mounting.load_mass
+    spec.body(LOAD).mass = NO_MASS if known is None else known
+    load = "the load's either" if known is None else f"the load's is the disk's, {known:.4g} kg"
+    nothing = f"{NO_MASS:g} kg stands in for what is not known"
+    return f"Inertias are those of flat disks. The motor's mass is not known, {load}; {nothing}."

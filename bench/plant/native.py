@@ -7,8 +7,7 @@ import numpy as np
 from mujoco import rollout
 
 from bench.effects.mjcf import AXIS, DRIVE
-from bench.plant.closed_loop import ClosedLoop, PlannedInputs, blocks
-from bench.plant.states import States
+from bench.plant.closed_loop import ClosedLoop, PlannedInputs, States, blocks
 
 #: Sensor that has to be in a model that runs natively.
 TORQUE = "torque"

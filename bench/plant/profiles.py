@@ -1,21 +1,37 @@
-"""Motion profiles: what an axis is made to do so that its recording tells what is asked."""
+"""Motion profiles: what an axis is made to do, within the limits of its rig, so that its recording tells what is asked.
+
+Their jerk is limited, in closed form: acceleration passes from knot to knot along half a cosine.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import reduce
 
 import numpy as np
 
 from bench.errors import InputError
 from bench.names import nearest
-from bench.plant.limits import MotionLimits
+from bench.plant.drive import peak_torque
+from bench.plant.model import AxisParameters
 from bench.plant.references import References
-from bench.plant.s_curve import s_curve, speed_change, through_speeds
+from bench.rig.rig import Rig
 
-Profile = Callable[[MotionLimits], References]
-
+#: Without a stated speed, profiles run up to the speed that full torque reaches in this time - s.
+RUN_UP = 0.1
+#: Share of the motor's stated speed, or of its no-load speed (supply voltage over back-EMF constant), that a motion
+#: asks for; the rest is for overshoot.
+SPEED_SHARE = 0.8
+#: Share of peak torque that friction and load may take at top speed; the rest accelerates.
+RESISTING_SHARE = 0.5
+#: Share of the torque left for acceleration that a motion asks for; the rest is for the controller.
+ACCELERATION_SHARE = 0.8
+#: Time in which acceleration builds up, as a share of the time to reach top speed: limits the jerk.
+RAMP_SHARE = 0.1
+#: Travel of a linear axis whose rig states no stroke - m.
+TRAVEL = 0.4
 #: How much more acceleration than there is `full_torque` asks for, so that the motor gives all it has.
 OVERDEMAND = 1.05
 #: Ticks in which that demand builds up; time spent at top speed after it - s.
@@ -26,6 +42,74 @@ SLOW_SPEED, SLOW_ACCELERATION = 0.04, 0.05
 MULTISINE_DURATION, HARMONICS, FALL = 1.5, (1, 2, 3, 5, 8, 12, 18, 27, 40), 1.5
 #: Share of the multisine over which it fades in, and out.
 FADE = 0.15
+#: Ticks of a motion: 20 minutes of a drive that ticks every 250 us; all signals of one take 0.5 GB.
+MOST_TICKS = 5e6
+
+
+@dataclass(frozen=True)
+class MotionLimits:
+    """Limits of a motion and the period it is planned at.
+
+    Attributes:
+        speed: highest - rad/s (m/s on a linear axis).
+        acceleration: highest that leaves the controller some torque - rad/s**2 (m/s**2).
+        full_acceleration: at peak torque, close to standstill - rad/s**2 (m/s**2).
+        travel: from one end to the other - rad (m); infinite on a rotary axis.
+        period: of the references - s.
+    """
+
+    speed: float
+    acceleration: float
+    full_acceleration: float
+    travel: float
+    period: float
+
+    @classmethod
+    def from_rig(cls, rig: Rig, parameters: AxisParameters, period: float) -> MotionLimits:
+        """Limits from the motor's peak torque and speed, and the inertia and friction it has to overcome.
+
+        Args:
+            rig: motor, load and, on a linear axis, its stroke.
+            parameters: true or identified.
+            period: of the references - s.
+
+        Raises:
+            InputError: no peak current or torque, or too little torque for friction and load.
+        """
+        torque = peak_torque(rig)
+        if not np.isfinite(torque):
+            raise InputError(f"{rig.source}: motor.peak_current", "missing", "motions are planned inside its torque")
+        standing = parameters.coulomb_friction + abs(parameters.load_torque)
+        full = (torque - standing) / parameters.inertia
+        if standing >= RESISTING_SHARE * torque:
+            raise InputError(
+                f"{rig.source}: simulation",
+                f"found friction and load of {standing:.3g} {rig.effort_unit}",
+                f"allowed: below half of the peak torque, {RESISTING_SHARE * torque:.3g} {rig.effort_unit}",
+            )
+        viscous = parameters.viscous_friction_coefficient
+        speed = _stated_speed(rig) or RUN_UP * full
+        if viscous > 0.0:
+            speed = min(speed, (RESISTING_SHARE * torque - standing) / viscous)
+        acceleration = ACCELERATION_SHARE * (torque - standing - viscous * speed) / parameters.inertia
+        travel = math.inf if rig.axis_kind.turns else (rig.load and rig.load.stroke) or TRAVEL
+        return cls(speed, acceleration, full, travel, period)
+
+    @property
+    def ramp_time(self) -> float:
+        """Time in which acceleration builds up - s; at least four ticks."""
+        return max(RAMP_SHARE * self.speed / self.acceleration, 4.0 * self.period)
+
+
+def _stated_speed(rig: Rig) -> float | None:
+    motor = rig.motor
+    speeds = [speed for speed in (motor.maximum_speed or motor.rated_speed,) if speed is not None]
+    if motor.supply_voltage is not None and motor.back_emf_constant is not None:
+        speeds.append(motor.supply_voltage / motor.back_emf_constant)
+    return SPEED_SHARE * min(speeds) if speeds else None
+
+
+Profile = Callable[[MotionLimits], References]
 
 
 def fast_reversals(limits: MotionLimits) -> References:
@@ -116,3 +200,78 @@ def _fade(share: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndarray, np.nd
     slope = 30.0 * u**2 * (1.0 - u) ** 2
     bend = 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u)
     return w, slope * du, bend * du**2
+
+
+def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: float) -> References:
+    """Motion from rest whose acceleration passes from one knot to the next along half a cosine.
+
+    Within a piece of duration T from acceleration a0 to a1, with p = pi*t/T and d = (a1 - a0)/2:
+        a = a0 + d*(1 - cos(p)),  v = v0 + a0*t + d*(t - T/pi*sin(p)),
+        x = x0 + v0*t + a0*t**2/2 + d*(t**2/2 + (T/pi)**2*(cos(p) - 1)).
+
+    Args:
+        durations: of the pieces, those of zero length are passed over - s - (m,).
+        accelerations: at the end of each piece, the first one starting at zero - rad/s**2 (m/s**2) - (m,).
+        period: of the ticks - s.
+
+    Returns:
+        References at ticks from zero to the first at or after the end.
+
+    Raises:
+        InputError: it takes more than `MOST_TICKS`.
+    """
+    length = np.asarray(durations, dtype=np.float64)
+    end = np.asarray(accelerations, dtype=np.float64)[length > 0.0]
+    length = np.append(length[length > 0.0], period)  # at rest, for the tick after the end
+    start, end = np.append(0.0, end), np.append(end, end[-1])
+    rise = (end - start) / 2.0
+    gained = start * length + rise * length
+    velocity = np.append(0.0, np.cumsum(gained)[:-1])
+    moved = velocity * length + start * length**2 / 2.0 + rise * (length**2 / 2.0 - 2.0 * (length / np.pi) ** 2)
+    position = np.append(0.0, np.cumsum(moved)[:-1])
+    knots = np.append(0.0, np.cumsum(length)[:-1])
+
+    ticks = knots[-1] / period
+    if not ticks < MOST_TICKS:
+        raise InputError("the motion", f"takes {ticks:.3g} periods of the drive", f"allowed: below {MOST_TICKS:g}")
+    time = period * np.arange(int(np.ceil(ticks - 1e-9)) + 1, dtype=np.float64)
+    piece = np.searchsorted(knots, time, side="right") - 1
+    t, a0, d, scale = time - knots[piece], start[piece], rise[piece], length[piece] / np.pi
+    phase = t / scale
+    return References(
+        time,
+        position[piece] + velocity[piece] * t + a0 * t**2 / 2.0 + d * (t**2 / 2.0 + scale**2 * (np.cos(phase) - 1.0)),
+        velocity[piece] + a0 * t + d * (t - scale * np.sin(phase)),
+        a0 + d * (1.0 - np.cos(phase)),
+    )
+
+
+def through_speeds(
+    speeds: Sequence[float], dwell: float, acceleration: float, ramp_time: float, period: float
+) -> References:
+    """Motion from rest through a sequence of speeds, each held for a while.
+
+    Args:
+        speeds: to pass through in order - rad/s (m/s).
+        dwell: time at each - s.
+        acceleration: highest on the way - rad/s**2 (m/s**2).
+        ramp_time: in which it builds up, and fades - s.
+        period: of the ticks - s.
+    """
+    durations: list[float] = []
+    accelerations: list[float] = []
+    for change in np.diff([0.0, *speeds]):
+        lengths, knots = speed_change(float(change), acceleration, ramp_time)
+        durations += [*lengths, dwell]
+        accelerations += [*knots, 0.0]
+    return s_curve(durations, accelerations, period)
+
+
+def speed_change(change: float, acceleration: float, ramp_time: float) -> tuple[list[float], list[float]]:
+    """Durations - s - and end accelerations of the pieces in which speed changes: build up, hold, fade.
+
+    A change too small to reach the acceleration within the ramp stays below it.
+    """
+    top = math.copysign(min(acceleration, abs(change) / ramp_time), change)
+    hold = change / top - ramp_time if top else 0.0
+    return [ramp_time, hold, ramp_time], [top, top, 0.0]

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 
+import mujoco
 import numpy as np
 
 from bench.errors import InputError, SimulationError
-from bench.plant.closed_loop import ClosedLoop
-from bench.plant.mujoco_warnings import silenced
+from bench.plant.closed_loop import DIVERGED, ClosedLoop, States, side_by_side
 from bench.plant.native import run_native
 from bench.plant.plant import Plant
 from bench.plant.references import References
-from bench.plant.states import DIVERGED, States, side_by_side
 from bench.plant.ticked import Progress, run_ticked
 
 
@@ -75,3 +75,15 @@ def _check_ticks(plants: Sequence[Plant], references: Sequence[References]) -> N
 
 def _limited(states: States, plant: Plant) -> bool:
     return not states.diverged and bool((np.abs(states.torque) >= plant.cascade.torque_limit).any())
+
+
+@contextmanager
+def silenced() -> Iterator[None]:
+    """Keep MuJoCo from printing warnings and from leaving a MUJOCO_LOG.TXT behind, within the block."""
+    before, silent = mujoco.MjLogConfig.get(), mujoco.MjLogConfig.get()
+    silent.logto_console = silent.logto_file = False
+    silent.set()
+    try:
+        yield
+    finally:
+        before.set()

@@ -10,7 +10,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.effects.kinds import Number, Sensing
 from bench.plant.axis_model import AxisModel
-from bench.plant.states import States
+from bench.plant.closed_loop import States
 from bench.plant.stepped_effects import EffectOnAxes, on_axes
 
 

@@ -10,10 +10,10 @@ from scipy.interpolate import PchipInterpolator
 from bench.arrays import Array
 from bench.axis_kind import ROTARY, AxisKind
 from bench.errors import InputError
+from bench.plant.closed_loop import States
 from bench.plant.references import References
-from bench.plant.states import States
+from bench.rig.motor import TorqueConstant
 from bench.rig.rig import Rig
-from bench.rig.torque_constant import TorqueConstant
 from bench.trace.signals import unit_on
 from bench.trace.trace import Trace
 

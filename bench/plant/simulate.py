@@ -1,28 +1,32 @@
-"""Simulate a rig: its axis under its drive along a motion, as its sensors record it, with the truth."""
+"""Simulate a rig: its axis under its drive along a motion as its sensors record it, and the truth to write beside."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
+from bench.axis_kind import AxisKind
 from bench.effects.present import Present
 from bench.errors import InputError
-from bench.plant.limits import MotionLimits
+from bench.files import write_text
+from bench.plant.closed_loop import States
+from bench.plant.model import AxisParameters, parameter_quantities
 from bench.plant.plant import Plant
 from bench.plant.profile_names import DEFAULT
-from bench.plant.profiles import plan
+from bench.plant.profiles import MOST_TICKS, MotionLimits, plan
 from bench.plant.references import References
 from bench.plant.run import run
-from bench.plant.s_curve import MOST_TICKS
 from bench.plant.sensing import reported_states
 from bench.plant.sensors import Sensors
-from bench.plant.states import States
 from bench.plant.ticked import Progress
-from bench.plant.truth import Truth
 from bench.rig.rig import Rig
+from bench.structured import json_text
 from bench.trace.trace import Trace
+
+SCHEMA = "bench.truth/1"
 
 
 @dataclass(frozen=True)
@@ -77,3 +81,76 @@ def simulate(
     friction = "drive" if plant.emulated else "mechanics"
     truth = Truth(rig.name, plant.parameters, friction, sensors, profile, seed, plant.model.effects)
     return Simulated(trace, truth, states, references)
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What a trace was simulated from.
+
+    Attributes:
+        rig: name of the axis.
+        parameters: of its equation of motion.
+        friction: `mechanics`, or `drive` where the drive's software makes it.
+        sensors: that recorded it.
+        profile: name of the motion.
+        seed: of the sensors' noise.
+        effects: beyond the equation of motion.
+    """
+
+    rig: str
+    parameters: AxisParameters
+    friction: str
+    sensors: Sensors
+    profile: str
+    seed: int
+    effects: tuple[Present, ...] = ()
+
+    def as_json(self) -> str:
+        """Truth as text, quantities under the names that `bench identify --json` gives them."""
+        kind = self.parameters.kind
+        parameters = {
+            q.name: (getattr(self.parameters, field), q.unit) for field, q in parameter_quantities(kind).items()
+        }
+        sensors = {
+            "sample_period": (self.sensors.sample_period, "s"),
+            "encoder_resolution": (self.sensors.encoder_resolution, kind.length_unit),
+            "velocity_noise": (self.sensors.velocity_noise, kind.speed_unit),
+            "current_noise": (self.sensors.current_noise, "A" if self.sensors.torque_constant else kind.effort_unit),
+        }
+        content = {
+            "schema": SCHEMA,
+            "rig": self.rig,
+            "kind": kind.name,
+            "profile": self.profile,
+            "seed": self.seed,
+            "friction": self.friction,
+            "parameters": _with_units(parameters),
+            "sensors": _with_units(sensors),
+            "effects": [{"name": p.name, "parameters": _with_units(_parameters(p, kind))} for p in self.effects],
+        }
+        return json_text(content) + "\n"
+
+
+def _parameters(present: Present, kind: AxisKind) -> dict[str, tuple[float, str]]:
+    units = {quantity.name: kind.unit(quantity) for quantity in present.effect.quantities}
+    return {key: (value, units[key]) for key, value in present.values}
+
+
+def _with_units(values: dict[str, tuple[float, str]]) -> dict[str, dict[str, float | str]]:
+    return {name: {"value": value, "unit": unit} for name, (value, unit) in values.items()}
+
+
+def truth_path(trace: str | Path) -> Path:
+    """Where the truth of a trace lies: `run.csv.gz` has `run.csv.gz.truth.json`."""
+    return Path(f"{trace}.truth.json")
+
+
+def write_truth(trace: str | Path, truth: Truth) -> Path:
+    """Write the truth beside a trace, whole or not at all; returns its path.
+
+    Raises:
+        InputError: the folder cannot be written to.
+    """
+    path = truth_path(trace)
+    write_text(path, truth.as_json())
+    return path

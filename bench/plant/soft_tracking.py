@@ -24,13 +24,12 @@ from bench.arrays import Array
 from bench.effects.kinds import Electronics, Mechanism
 from bench.errors import SimulationError
 from bench.plant.axis_model import AxisModel
-from bench.plant.closed_loop import ClosedLoop, PlannedInputs
+from bench.plant.closed_loop import DIVERGED, ClosedLoop, PlannedInputs
 from bench.plant.drive import Cascade, add_pid
 from bench.plant.measured_motion import integrated, measured_velocity, stretches_of
 from bench.plant.native import sense_torque
 from bench.plant.run import run_loops
 from bench.plant.sensing import filters, misreads_effort, reported, true_effort, true_motion, true_velocity
-from bench.plant.states import DIVERGED
 from bench.trace.trace import Trace
 
 #: Bandwidth of the cascade that holds the model - rad/s.

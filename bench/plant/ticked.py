@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from bench.effects.kinds import Number
 from bench.effects.mjcf import AXIS, DRIVE
-from bench.plant.closed_loop import ClosedLoop
+from bench.plant.closed_loop import ClosedLoop, States
 from bench.plant.joints import BatchJoints
-from bench.plant.states import States
 from bench.plant.stepped_effects import SteppedEffects, per_axis
 
 Progress = Callable[[float], None]

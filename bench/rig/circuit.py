@@ -17,8 +17,7 @@ import math
 from dataclasses import dataclass
 
 from bench.errors import InputError
-from bench.rig.motor import Motor
-from bench.rig.peak_curve import PeakCurve
+from bench.rig.motor import Motor, PeakCurve
 
 #: Winding temperatures of the datasheet's curve and of a cold motor - degC.
 HOT, COLD = 120.0, 20.0

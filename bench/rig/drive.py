@@ -6,10 +6,10 @@ import math
 
 from pydantic import model_validator
 
-from bench.rig.values import Feedforward, IntegralGain, Period, Rate, Table, Viscous
+from bench.rig.values import Feedforward, IntegralGain, Period, Rate, RigTable, Viscous
 
 
-class Drive(Table):
+class Drive(RigTable):
     """Cascade of a position P controller and a velocity PI controller with inertia feed-forward.
 
     torque = velocity_gain*e_v + integral_gain*integral(e_v dt) + inertia_feedforward*acceleration_reference,

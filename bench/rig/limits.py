@@ -9,9 +9,7 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.errors import InputError
 from bench.rig.circuit import COLD, Circuit
-from bench.rig.motor import Motor
-from bench.rig.peak_curve import PeakCurve
-from bench.rig.torque_constant import TorqueConstant
+from bench.rig.motor import Motor, PeakCurve, TorqueConstant
 
 #: Torque this share of the peak torque beyond a limit is still at it: noise of current and speed.
 AT_LIMIT = 0.01

@@ -11,10 +11,10 @@ from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
-from bench.rig.values import Angle, Density, Inertia, Length, Mass, Table
+from bench.rig.values import Angle, Density, Inertia, Length, Mass, RigTable
 
 
-class Load(Table):
+class Load(RigTable):
     """A flat disk or ring on the shaft, and the gear between it and the motor.
 
     Attributes:

@@ -13,20 +13,18 @@ from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
 from bench.names import nearest, short
 from bench.rig.catalogue import catalogue_motor
-from bench.rig.check import Check
 from bench.rig.drive import Drive
 from bench.rig.load import Load
-from bench.rig.motor import Motor
-from bench.rig.peak_curve import PeakCurve
+from bench.rig.motor import Motor, PeakCurve
 from bench.rig.simulation import Simulation
-from bench.rig.values import Table, Time, Wrap, tolerance_of
+from bench.rig.values import RigTable, Time, Wrap, tolerance_of
 from bench.structured import read_toml
 from bench.trace.known_torque import less_known
 from bench.trace.plausible import require_plausible
 from bench.trace.trace import Trace
 
 
-class TraceNotes(Table):
+class TraceNotes(RigTable):
     """`[trace]`: how foreign recordings of this axis are to be read.
 
     Attributes:
@@ -43,7 +41,19 @@ class TraceNotes(Table):
     axis: str | None = None
 
 
-class Rig(Table):
+class CheckTable(RigTable):
+    """What `bench check` allows; quantities by name, each a share such as `"2 %"` or a number with its unit.
+
+    Attributes:
+        margin: changes below it do not matter.
+        between: standard deviation of one axis from recording to recording.
+    """
+
+    margin: dict[str, str] = Field(default_factory=dict)
+    between: dict[str, str] = Field(default_factory=dict)
+
+
+class Rig(RigTable):
     """One axis as its rig file describes it, in SI units.
 
     Attributes:
@@ -60,7 +70,7 @@ class Rig(Table):
     drive: Drive | None = None
     trace: TraceNotes = TraceNotes()
     simulation: Simulation | None = None
-    check: Check | None = None
+    check: CheckTable | None = None
     source: Annotated[str, Field(exclude=True)] = "rig"
 
     @classmethod
@@ -227,14 +237,14 @@ def _input_error(path: Path, error: ValidationError) -> InputError:
 
 
 def _known_keys(keys: list[str]) -> list[str]:
-    table: type[Table] = Rig
-    tables: dict[str, type[Table]] = {
+    table: type[RigTable] = Rig
+    tables: dict[str, type[RigTable]] = {
         "motor": Motor,
         "load": Load,
         "drive": Drive,
         "trace": TraceNotes,
         "simulation": Simulation,
-        "check": Check,
+        "check": CheckTable,
         "peak_curves": PeakCurve,
     }
     for key in keys:

@@ -12,13 +12,13 @@ from bench.rig.values import (
     Mass,
     Period,
     Resolution,
-    Table,
+    RigTable,
     VelocityNoise,
     Viscous,
 )
 
 
-class Simulation(Table):
+class Simulation(RigTable):
     """`[simulation]` of a rig file.
 
     Attributes:

@@ -21,7 +21,7 @@ from bench.errors import InputError
 from bench.units import parse_with_tolerance
 
 
-class Table(BaseModel):
+class RigTable(BaseModel):
     """A table of a rig file: frozen, and an unknown key in it is an error."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)

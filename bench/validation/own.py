@@ -14,9 +14,8 @@ from bench.errors import InputError
 from bench.fit.regression import identify
 from bench.plant.axis_model import winding_of
 from bench.plant.drive import Cascade
-from bench.plant.limits import MotionLimits
 from bench.plant.model import AxisParameters
-from bench.plant.profiles import plan
+from bench.plant.profiles import MotionLimits, plan
 from bench.rig.rig import Rig
 from bench.rig.simulation import Simulation
 from bench.rig.suffices import require

@@ -12,10 +12,9 @@ from bench.axis_kind import KINDS, AxisKind
 from bench.diagnosis.replay import Replay
 from bench.errors import InputError
 from bench.plant.drive import Cascade
-from bench.plant.limits import MotionLimits
 from bench.plant.model_file import load_model
 from bench.plant.plant import Plant
-from bench.plant.profiles import plan
+from bench.plant.profiles import MotionLimits, plan
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from bench.rig.rig import Rig

@@ -3,8 +3,7 @@
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
 from bench.plant.model import AxisParameters
-from bench.plant.model_file import StoredModel
-from bench.plant.mounting import Mounting
+from bench.plant.model_file import Mounting, StoredModel
 
 PARAMETERS = AxisParameters(1e-3, 1.1e-3, 0.08, motor_inertia=1e-4)
 ARM = """

@@ -10,12 +10,9 @@ import pytest
 from bench.assets import asset
 from bench.effects.present import Present
 from bench.export.drive_units import DriveUnits
-from bench.export.feedforward import Feedforward, Table, feedforward
-from bench.export.resisting import resisting_torque
-from bench.export.tracking import tracking
-from bench.plant.limits import MotionLimits
+from bench.export.feedforward import Feedforward, TorqueTable, feedforward, resisting_torque, tracking
 from bench.plant.plant import Plant
-from bench.plant.profiles import plan
+from bench.plant.profiles import MotionLimits, plan
 from bench.plant.references import References
 from bench.rig.rig import Rig, load_rig
 from tests.diagnosis.command import started
@@ -119,7 +116,7 @@ def test_the_inertias_feedforward_is_in_the_units_of_the_drive():
     rig = Rig.of(
         {"name": "axis", "kind": "rotary", "motor": {"torque_constant": "0.5 N*m/A"}, "trace": {"columns": columns}}
     )
-    nothing = Table(np.zeros(1), np.zeros(1))
+    nothing = TorqueTable(np.zeros(1), np.zeros(1))
     (_, inertia, unit), (_, current, per) = DriveUnits.of(rig).inertia(Feedforward(1e-3, nothing, nothing, ()))
     assert (inertia, unit) == (1e-3, "kg*m**2")
     assert (current, per) == (pytest.approx(2.0 * 2.0 * np.pi / 60.0), "mA/(rpm/s)")
@@ -138,9 +135,9 @@ def test_a_table_is_in_the_units_of_the_drive():
     motor = {"torque_constant": "0.5 N*m/A"}
     rig = Rig.of({"name": "axis", "kind": "rotary", "motor": motor, "trace": {"columns": columns}})
     units = DriveUnits.of(rig)
-    speed = units.table("velocity", units.velocity, Table(np.array([0.0, np.pi]), np.array([0.0, 0.25])))
+    speed = units.table("velocity", units.velocity, TorqueTable(np.array([0.0, np.pi]), np.array([0.0, 0.25])))
     assert speed == "velocity [rpm],torque [N*m],current [mA]\n0,0,0\n30,0.25,500\n"
-    place = units.table("position", units.position, Table(np.array([0.0, np.pi]), np.array([0.0, 0.25])))
+    place = units.table("position", units.position, TorqueTable(np.array([0.0, np.pi]), np.array([0.0, 0.25])))
     assert place == "position [deg],torque [N*m],current [mA]\n-180,0.25,500\n-0,0,0\n"
 
 

@@ -11,10 +11,9 @@ import bench
 from bench.effects.catalogue import catalogue
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
-from bench.export.joint import Share, armature_of, onto
+from bench.export.mjcf import ArmatureShare, armature_of, onto
 from bench.plant.drive import CascadeDrive
-from bench.plant.model_file import StoredModel, model_toml
-from bench.plant.mounting import Mounting
+from bench.plant.model_file import Mounting, StoredModel, model_toml
 from bench.plant.references import References, side_by_side
 from bench.plant.run import run
 from tests.effects.axes import CASCADE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant
@@ -64,7 +63,7 @@ def test_it_agrees_on_a_joint_behind_a_gear(tmp_path):
       <inertial pos="0 0 0" mass="1" diaginertia="{load} {load} {load}"/></body></body></worldbody></mujoco>"""
     spec = mujoco.MjSpec.from_string(xml.replace("</body></body>", "</body>"))
     effects = bench.Effects(toml, joint="elbow")
-    onto(spec, "elbow", effects.stored, armature_of(effects.stored, Share.MOTOR))
+    onto(spec, "elbow", effects.stored, armature_of(effects.stored, ArmatureShare.MOTOR))
     velocity = driven(spec.compile(), effects, "elbow", "elbow motor", ratio)
     # damping acts at the end of a step here, in its middle in the plant
     assert np.abs(velocity - expected).max() < 1e-3 * np.abs(expected).max()

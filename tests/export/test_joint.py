@@ -10,10 +10,18 @@ from hypothesis import strategies as st
 
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
-from bench.export.joint import Share, armature_of, link_inertia, onto
-from bench.export.mjcf import commented, joint_alone, read_mjcf, robot_with
+from bench.export.mjcf import (
+    ArmatureShare,
+    armature_of,
+    commented,
+    joint_alone,
+    link_inertia,
+    onto,
+    read_mjcf,
+    robot_with,
+)
 from bench.plant.model_file import model_xml
-from bench.plant.mujoco_warnings import silenced
+from bench.plant.run import silenced
 from tests.export.arms import ARM, PARAMETERS, stored
 from tests.export.two_links import C2, I2, M2, MJCF
 
@@ -56,7 +64,7 @@ def test_it_moves_as_the_axis_alone(effects, ratio):
       <inertial pos="0 0 0" mass="1" diaginertia="{load} {load} {load}"/></body></body></worldbody></mujoco>"""
     spec = mujoco.MjSpec.from_string(xml)
     spec.option.timestep = TIMESTEP
-    carried = onto(spec, "joint", model, armature_of(model, Share.MOTOR))
+    carried = onto(spec, "joint", model, armature_of(model, ArmatureShare.MOTOR))
     assert set(carried.native) == {name for name, _ in effects}
     robot = moved(spec, "joint", "joint motor", ratio)
     alone = model.model.spec(TIMESTEP)
@@ -117,8 +125,8 @@ def test_drag_and_damping_grow_with_powers_of_the_gear():
         (None, 1e-4, 0.0, 1e-2),
         (None, 0.0, 0.0, 0.1),
         (None, 1e-4, 0.03, 0.07),
-        (Share.ALL, 1e-4, 0.0, 0.1),
-        (Share.MOTOR, 1e-4, 0.03, 1e-2),
+        (ArmatureShare.ALL, 1e-4, 0.0, 0.1),
+        (ArmatureShare.MOTOR, 1e-4, 0.03, 1e-2),
     ],
 )
 def test_armature_is_the_share_that_is_asked_for_or_known(share, motor, links, armature):

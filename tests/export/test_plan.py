@@ -8,8 +8,8 @@ from bench.assets import asset
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.export.plan import motions
-from bench.plant.limits import MotionLimits
 from bench.plant.plant import Plant
+from bench.plant.profiles import MotionLimits
 from bench.rig.rig import load_rig
 
 RIG = load_rig(asset("data", "rigs", "sh30701p.toml"))

@@ -7,7 +7,7 @@ import pytest
 from mujoco.batch import Batch
 
 import bench
-from bench.export.joint import onto
+from bench.export.mjcf import onto
 from tests.effects.axes import VALUES
 from tests.export.arms import ARM, stored
 

@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.plant.limits import MotionLimits
 from bench.plant.model import AxisParameters
 from bench.plant.profile_names import DEFAULT, NAMES
-from bench.plant.profiles import PROFILES, plan
-from bench.plant.s_curve import s_curve, through_speeds
+from bench.plant.profiles import PROFILES, MotionLimits, plan, s_curve, through_speeds
 
 FINE = MotionLimits(speed=150.0, acceleration=1200.0, full_acceleration=1500.0, travel=np.inf, period=10e-6)
 

@@ -8,8 +8,7 @@ import pytest
 from bench.errors import InputError
 from bench.plant.model import AxisParameters
 from bench.plant.profiles import PROFILES
-from bench.plant.simulate import simulate
-from bench.plant.truth import truth_path, write_truth
+from bench.plant.simulate import simulate, truth_path, write_truth
 from bench.rig.load import Load
 from bench.rig.rig import load_rig
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.rig.torque_constant import TorqueConstant
+from bench.rig.motor import TorqueConstant
 
 SH30701P = TorqueConstant.from_datasheet(1.4, 1.8, 3.5, 5.7)
 

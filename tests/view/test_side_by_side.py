@@ -7,13 +7,12 @@ from bench.arrays import rms
 from bench.assets import asset
 from bench.diagnosis.replay import replay
 from bench.errors import InputError
-from bench.export.tracking import tracking
+from bench.export.feedforward import tracking
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade
-from bench.plant.limits import MotionLimits
 from bench.plant.model import AxisParameters
 from bench.plant.model_file import StoredModel, model_toml
-from bench.plant.profiles import plan
+from bench.plant.profiles import MotionLimits, plan
 from bench.rig.rig import load_rig
 from bench.view.side_by_side import along_profile, along_recording
 from tests.diagnosis.test_commands import diagnosed, only, run_of, with_unbalance

@@ -14,8 +14,7 @@ from bench.fit.fit import Fit
 from bench.fit.layout import MISALIGNMENT
 from bench.plant.axis_model import AxisModel, winding_of
 from bench.plant.model import AxisParameters
-from bench.plant.model_file import StoredModel
-from bench.plant.mounting import Mounting
+from bench.plant.model_file import Mounting, StoredModel
 from bench.rig.rig import Rig
 
 #: Bandwidth of the cascade by which a model tracks a recording - rad/s -, and the largest that a model may need. On the

@@ -30,10 +30,9 @@ from bench.fit.fit import fit
 from bench.fit.rows import SIGN_WIDTHS
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade
-from bench.plant.limits import MotionLimits
 from bench.plant.measured_motion import measured_velocity
 from bench.plant.plant import Plant
-from bench.plant.profiles import PROFILES, plan
+from bench.plant.profiles import PROFILES, MotionLimits, plan
 from bench.plant.references import References
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
