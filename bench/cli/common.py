@@ -21,7 +21,7 @@ from bench.files import keeping, require_writable, write_text
 from bench.names import plain
 
 if TYPE_CHECKING:
-    from bench.report.document import Document
+    from bench.report.document import Document, Picture
 
 #: Parameters of commands that name what is written, files or folders; every other path is read.
 WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "video"})
@@ -109,6 +109,30 @@ def write_json(path: Path, text: str) -> None:
         typer.echo(text)
     else:
         write_text(path, text + "\n", make_folder=False)
+
+
+def write_page(path: Path | None, document: Document) -> None:
+    """Write the page of a result to a file, where one is asked for.
+
+    Raises:
+        InputError: another ending than .html, or a place that cannot be written to.
+    """
+    if path is not None:
+        from bench.report.publish import write_html
+
+        write_html(path, document)
+
+
+def write_picture(path: Path | None, picture: Picture) -> None:
+    """Write a picture to a file, where one is asked for; the ending decides the format.
+
+    Raises:
+        InputError: an ending that is no picture's, or a place that cannot be written to.
+    """
+    if path is not None:
+        from bench.report.figures import drawn, save_as_named  # matplotlib: 0.35 s
+
+        save_as_named(drawn(picture), path)
 
 
 @contextmanager

@@ -14,10 +14,8 @@ from bench.cli.common import (
     FiguresOption,
     JsonOption,
     TracesArgument,
-    list_files,
-    printed,
     refusal_as_json,
-    warn,
+    tell,
     write_json,
 )
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
@@ -43,8 +41,7 @@ def diagnose(
     from bench.diagnosis.diagnosis import diagnose as run_diagnosis
     from bench.effects.present import named
     from bench.files import held
-    from bench.gate.gate import warnings_of
-    from bench.report.diagnosis import SCHEMA, diagnosis_json, diagnosis_table, write_diagnosis
+    from bench.report.diagnosis import SCHEMA, diagnosis, diagnosis_json, write_diagnosis
     from bench.report.provenance import provenance
     from bench.report.terminal import progress
 
@@ -64,7 +61,4 @@ def diagnose(
             files = write_diagnosis(out, found, title, basis, figures.ending)
         if json is not None:
             write_json(json, diagnosis_json(found, basis))
-    if json != Path("-"):
-        printed(diagnosis_table(found, title))
-        list_files(files)
-    warn([*found.warnings, *warnings_of(found.checks)])
+    tell(diagnosis(found, title, basis), files, json)

@@ -12,11 +12,11 @@ from bench.cli.common import (
     JsonOption,
     ReportOption,
     RigOption,
-    list_files,
-    printed,
     refusal_as_json,
-    warn,
+    tell,
     write_json,
+    write_page,
+    write_picture,
 )
 
 
@@ -30,24 +30,17 @@ def friction(
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
     from bench.friction_map.map import friction_map
-    from bench.gate.gate import warnings_of
-    from bench.report.friction import SCHEMA, draw_friction, friction_json, friction_table
+    from bench.report.friction import SCHEMA, friction_json
+    from bench.report.friction import friction as document_of
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
     axis = load_rig(rig).on_axis(axis_name)
     with refusal_as_json(json, SCHEMA):
         found = friction_map([read(trace, axis.trace) for trace in traces], axis)
-    if out is not None:
-        draw_friction(found, axis.name, out)
-    if report is not None:
-        from bench.report.pages.friction import friction_page
-        from bench.report.publish import write_html
-
-        write_html(report, friction_page(found, axis.name))
+    document = document_of(found, axis.name)
+    write_picture(out, document.pictures[0])
+    write_page(report, document)
     if json is not None:
         write_json(json, friction_json(found))
-    if json != Path("-"):
-        printed(friction_table(found, axis.name))
-        list_files([path for path in (out, report) if path is not None])
-    warn(warnings_of(found.checks))
+    tell(document, [out, report], json)

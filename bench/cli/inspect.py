@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.cli.common import AxisOption, JsonOption, ReportOption, list_files, printed, write_json
+from bench.cli.common import AxisOption, JsonOption, ReportOption, tell, write_json, write_page, write_picture
 
 
 def inspect(
@@ -22,8 +22,8 @@ def inspect(
 ) -> None:
     """Say what a recording holds: every column, what it is likely to be, rate, holes, signals with their range."""
     from bench.gate.gate import gate
-    from bench.report.gate import checks_json, checks_table
-    from bench.report.inspection import table
+    from bench.report.inspection import inspection, signals_picture
+    from bench.report.serial import as_json
     from bench.rig.rig import load_rig
     from bench.trace.inspect import inspect_recording, to_json
     from bench.trace.read import read_recording
@@ -36,25 +36,15 @@ def inspect(
     found = inspect_recording(recording, how)
     trace = None if found.asks is not None else assemble(recording, how)
     checks = () if trace is None else gate(trace, axis).checks
-    files = [path for path in (out, draft, report) if path is not None]
+    document = inspection(found, checks, trace)
     if draft is not None:
         from bench.files import write_text
         from bench.rig.draft import draft as drafted
 
         write_text(draft, drafted(found, motor, axis_name))
     if out is not None:
-        from bench.report.signals import draw_signals  # matplotlib: 0.35 s
-
-        draw_signals(recording, how, out)
-    if report is not None:
-        from bench.report.pages.inspection import inspection_page
-        from bench.report.publish import write_html
-
-        write_html(report, inspection_page(found, checks, trace))
+        write_picture(out, signals_picture(recording, how))
+    write_page(report, document)
     if json is not None:
-        write_json(json, to_json(found, {"checks": checks_json(checks)}))
-    if json != Path("-"):
-        printed(table(found))
-        if checks:
-            printed(checks_table(checks))
-        list_files(files)
+        write_json(json, to_json(found, {"checks": as_json(checks)}))
+    tell(document, [out, draft, report], json)

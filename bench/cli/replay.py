@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.cli.common import AxisOption, ReportOption, list_files, say, warn
+from bench.cli.common import AxisOption, ReportOption, list_files, say, warn, write_page
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
 from bench.files import read_text, write_text
 from bench.names import readable
@@ -32,13 +32,12 @@ def replay(
     write_text(out, replayed.csv())
     if report is not None:
         from bench.report.document import File
-        from bench.report.publish import write_html
-        from bench.report.replay import replay as document
+        from bench.report.replay import replay as document_of
 
         file = File(
             name=readable(model.name), about="the model", media="application/toml", content=read_text(model, "a model")
         )
-        write_html(report, document(replayed, f"{readable(model.name)} along {readable(trace.name)}", [file]))
+        write_page(report, document_of(replayed, f"{readable(model.name)} along {readable(trace.name)}", [file]))
     say(replayed.summary)
-    list_files([path for path in (out, report) if path is not None])
+    list_files([out, report])
     warn(replayed.warnings)

@@ -45,4 +45,4 @@ def simulate(
         from bench.report.simulation import simulation
 
         write_html(report, simulation(simulated, readable(out.name)))
-    list_files([path for path in (out, truth, report) if path is not None])
+    list_files([out, truth, report])

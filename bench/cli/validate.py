@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from bench.cli.common import JsonOption, list_files, printed, write_json
+from bench.cli.common import JsonOption, tell, write_json
 from bench.errors import InputError
 from bench.plant.profile_names import DEFAULT, NAMES
 
 if TYPE_CHECKING:
     from bench.validation.own import OwnAxis
-    from bench.validation.validate import Validation
 
 
 def validate(
@@ -39,7 +38,7 @@ def validate(
     """Monte Carlo on synthetic recordings: how far off numbers are, and how often intervals and names hold."""
     from bench.report.provenance import without_files
     from bench.report.terminal import progress
-    from bench.report.validation import determined, sheets, validation_json
+    from bench.report.validation import validation, validation_json, write_validation
     from bench.validation.case import AnyAxis
     from bench.validation.hiding import Hiding
     from bench.validation.plan import Plan
@@ -56,27 +55,11 @@ def validate(
         found = run_validation(plan, rigs, workers, scheduler, done)
     command = f"bench validate --rigs {rigs} --seed {seed} --effects {effects}{' --diagnose' * named}"
     command += "" if rig is None else f" --rig {rig} --profile {profile}"
-    written = _write(out, found, basis, command, rig is not None) if out is not None else []
+    document = validation(found, basis, command, rig is not None)
+    written = [] if out is None else write_validation(out, found, basis, command, rig is not None)
     if json is not None:
         write_json(json, validation_json(found, basis))
-    if json != Path("-"):
-        if rig is not None:
-            printed(determined(found.runs).table())
-        for sheet in sheets(found):
-            printed(sheet.table())
-        list_files(written)
-
-
-def _write(out: Path, found: Validation, basis: dict[str, Any], command: str, own: bool) -> list[Path]:
-    """Page, tables, figures and JSON in a folder; `own`: whether the axis is of a rig file."""
-    from bench.files import held
-    from bench.report.pages.validation import validation_page
-    from bench.report.publish import write_document
-    from bench.report.validation import write_validation
-
-    with held(out):
-        page = write_document(out, validation_page(found, basis, command, own))
-        return [*page, *write_validation(out, found, basis, command)]
+    tell(document, written, json)
 
 
 def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis, dict[str, Any]]:

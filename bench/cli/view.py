@@ -58,7 +58,7 @@ def view(
         with progress(f"rendering {video.name}") as done:
             write_video(video, shown, Scene.of(shown, of.rig.load), slowed, done)
     _write_page(out, shown, model, readable(profile if trace is None else trace.name), warnings)
-    list_files([path for path in (out, video) if path is not None])
+    list_files([out, video])
     warn(warnings)
 
 

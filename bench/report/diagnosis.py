@@ -1,255 +1,546 @@
-"""A diagnosis as JSON (contract `bench.diagnose/1`), as a table, and as the folder it leaves."""
+"""A diagnosis: what was missing, how sure that is, and whether the simulation moves as the axis does.
+
+As the contract's JSON (`bench.diagnose/1`) and as a document; its pictures show where the gap sits and how it shrinks.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich import box
-from rich.table import Table
+import numpy as np
 
-from bench.axis_kind import KINDS
+from bench.axis_kind import INERTIA, KINDS, AxisKind
+from bench.diagnosis.add.refine import NULL
 from bench.diagnosis.add.same_axis import SameAxis
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.found import Gap, Shrunk
+from bench.diagnosis.found import Course, Gap, NamedEffect, Profile, Shrunk
 from bench.diagnosis.where.where import Where
-from bench.files import held, write_text
+from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml
-from bench.report.diagnosis_figures import gaps_figure, where_figure
-from bench.report.document import File
-from bench.report.figures import save
-from bench.report.gate import checks_json
+from bench.report.document import (
+    Chart,
+    Document,
+    Downloads,
+    File,
+    Intervals,
+    Panel,
+    Paragraph,
+    Picture,
+    Points,
+    Section,
+    Span,
+    Table,
+    TimeGraph,
+    series,
+    table,
+)
 from bench.report.identification import recordings_json
-from bench.report.pages.diagnosis import diagnosis_page
+from bench.report.numbers import coordinate_word, effort_word, interval, number, sentence, share, unit_text
+from bench.report.over_time import Plotted, time_graph
+from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
 from bench.report.publish import write_document
-from bench.report.serial import as_json
-from bench.structured import json_text
+from bench.report.serial import known, picked, serialised
 
 SCHEMA = "bench.diagnose/1"
 #: Between rows of the motion to record next - s.
 PERIOD = 1e-3
+#: Coordinates of the gap that the page draws; its table and the picture have all.
+DRAWN = ("position", "velocity", "current", "time")
+#: Additions drawn over time at most, the last ones: more would be no page any more.
+STEPS = 6
+#: Empty space beside the outermost gaps - factor on a logarithmic axis.
+BESIDE = 1.5
 
 
-def diagnosis_json(diagnosis: Diagnosis, provenance: Mapping[str, Any] | None = None) -> str:
+def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None) -> str:
     """The diagnosis as the contract's JSON.
 
     Args:
-        diagnosis: what was found.
+        found: by the diagnosis.
         provenance: of the files it came from (`bench.report.provenance`); null where it came from none.
     """
-    content = {
-        "schema": SCHEMA,
-        "verdict": diagnosis.verdict,
-        "because": diagnosis.because,
-        "effects": [
-            {
-                "name": effect.name,
-                "kind": effect.effect.kind,
-                "parameters": as_json(effect.parameters),
-                "ambiguous_with": list(effect.ambiguous_with),
-                "evidence": dict(effect.evidence),
-            }
-            for effect in diagnosis.effects
-        ],
-        "where": [_where(account) for account in diagnosis.where],
-        "unexplained": {
-            "share": diagnosis.unexplained_share,
-            "where": [_where(account) for account in diagnosis.unexplained_where],
-        },
-        "parameters": as_json(diagnosis.parameters),
-        **as_json(recordings_json(diagnosis.recordings, diagnosis.between, provenance)),
-        "gap": {"torque": _gap(diagnosis.torque), "velocity": _velocity_gap(diagnosis)},
-        "steps": [_step(step) for step in diagnosis.steps[1:]],
-        "rejected": [{"name": found.name, "reason": found.reason} for found in diagnosis.rejected],
-        "holdout": _same_axis(diagnosis.holdout),
-        "next_experiment": _experiment(diagnosis),
-        "stopped": diagnosis.stopped,
-        "provenance": provenance,
-        "model": {"mjcf": "model.xml" if diagnosis.model is not None else None, "toml": "model.toml"},
-        "checks": checks_json(diagnosis.checks),
-        "warnings": diagnosis.warnings,
-    }
-    return json_text(content)
+    return serialised(
+        {
+            "schema": SCHEMA,
+            "verdict": found.verdict,
+            "because": found.because,
+            "effects": [
+                {
+                    "name": each.name,
+                    "kind": each.effect.kind,
+                    **picked(each, "parameters", "ambiguous_with", "evidence"),
+                }
+                for each in found.effects
+            ],
+            "where": [_where_json(each) for each in found.where],
+            "unexplained": {
+                "share": found.unexplained_share,
+                "where": [_where_json(each) for each in found.unexplained_where],
+            },
+            "parameters": found.parameters,
+            **recordings_json(found.recordings, found.between, provenance),
+            "gap": {"torque": _gap_json(found.torque), "velocity": _velocity_json(found)},
+            "steps": [_step_json(step) for step in found.steps[1:]],
+            "rejected": found.rejected,
+            "holdout": _holdout_json(found.holdout),
+            "next_experiment": _experiment_json(found),
+            "stopped": found.stopped,
+            "provenance": provenance,
+            "model": {"mjcf": "model.xml" if found.model is not None else None, "toml": "model.toml"},
+            "checks": found.checks,
+            "warnings": found.warnings,
+        }
+    )
 
 
-def _where(account: Where) -> dict[str, Any]:
-    return {
-        "coordinate": account.coordinate,
-        "region": list(account.region),
-        "unit": account.unit,
-        "share": account.share,
-    }
+def _where_json(account: Where) -> dict[str, Any]:
+    return picked(account, "coordinate", "region", "unit", "share")
 
 
-def _gap(gap: Gap) -> dict[str, Any]:
-    def pair(values: tuple[float, float] | None) -> dict[str, float] | None:
-        return None if values is None else {"before": values[0], "after": values[1]}
+def _before_after(pair: tuple[float, float] | None) -> dict[str, float] | None:
+    return None if pair is None else {"before": pair[0], "after": pair[1]}
 
-    content = {
-        "unit": gap.unit,
-        "noise_floor": gap.noise_floor,
-        "identify": pair(gap.identify),
-        "holdout": pair(gap.holdout),
-    }
+
+def _gap_json(gap: Gap) -> dict[str, Any]:
+    content = picked(gap, "unit", "noise_floor")
+    content |= {"identify": _before_after(gap.identify), "holdout": _before_after(gap.holdout)}
     return content if gap.judged is None else content | {"judged": {"share": gap.judged[0], "after": gap.judged[1]}}
 
 
-def _velocity_gap(diagnosis: Diagnosis) -> dict[str, Any]:
+def _velocity_json(found: Diagnosis) -> dict[str, Any]:
     """The gap, and how it was had: models held to the recording by a cascade, fed with the recorded effort."""
-    content = _gap(diagnosis.velocity)
-    content["loop"] = {"kind": "held", "bandwidth": {"value": diagnosis.bandwidth, "unit": "rad/s"}}
-    closed = diagnosis.closed_loop
-    content["closed_loop"] = None if closed is None else {"before": closed[0], "after": closed[1]}
-    refined = diagnosis.refined
-    content["refined"] = None if refined is None else {"before": refined[0], "after": refined[1]}
-    return content
-
-
-def _same_axis(compared: SameAxis) -> dict[str, Any]:
-    """Whether the holdout is of the same axis; what each of the two recordings tells of what differs."""
     return {
-        "same_axis": compared.same,
-        "differs": [
-            {
-                "quantity": each.quantity,
-                "unit": each.recording.unit,
-                "recording": each.recording.value,
-                "holdout": each.holdout.value,
-                "recording_ci95": list(each.recording.ci95),
-                "holdout_ci95": list(each.holdout.ci95),
-            }
-            for each in compared.differs
-        ],
+        **_gap_json(found.velocity),
+        "loop": {"kind": "held", "bandwidth": {"value": found.bandwidth, "unit": "rad/s"}},
+        "closed_loop": _before_after(found.closed_loop),
+        "refined": _before_after(found.refined),
     }
 
 
-def _experiment(diagnosis: Diagnosis) -> dict[str, Any] | None:
-    found = diagnosis.next_experiment
-    if found is None:
-        return None
-    speed = diagnosis.velocity.unit
-    parameters = {"top_speed": (found.speed, speed), "acceleration": (found.acceleration, f"{speed}**2")}
-    parameters |= {"duration": (found.duration, "s"), "repetitions": (found.repetitions, "dimensionless")}
-    return {
-        "profile": found.profile,
-        "parameters": {key: {"value": value, "unit": unit} for key, (value, unit) in parameters.items()},
-        "tells_apart": list(found.tells_apart),
-        "separation": found.separation,
-        "reason": found.reason,
-    }
-
-
-def _step(step: Shrunk) -> dict[str, Any]:
+def _step_json(step: Shrunk) -> dict[str, Any]:
     """Gaps after an addition, of the recording and of the holdout; null where there is none."""
     content: dict[str, Any] = {"effect": step.effect}
     for name, gaps in (("torque_gap", step.torque), ("velocity_gap", step.velocity)):
-        found = [gap if math.isfinite(gap) else None for gap in gaps]
-        content |= {name: found[0], f"{name}_holdout": found[1] if len(found) > 1 else None}
+        content |= {name: known(gaps[0]), f"{name}_holdout": known(gaps[1]) if len(gaps) > 1 else None}
     return content
 
 
-def diagnosis_table(diagnosis: Diagnosis, title: str) -> Table:
-    """Effects with their quantities, and the gaps they closed."""
-    caption = [f"verdict: {diagnosis.verdict.replace('_', ' ')}", *(f"  {reason}" for reason in diagnosis.because)]
-    caption += _at_fault(diagnosis)
-    for name, gap in (("torque", diagnosis.torque), ("velocity", diagnosis.velocity)):
-        for recording, pair in (("recording", gap.identify), ("holdout", gap.holdout)):
-            if pair is not None:
-                closed = f"{pair[0]:.4g} -> {pair[1]:.4g} {gap.unit}, noise floor {gap.noise_floor:.3g}"
-                caption.append(f"{name} gap, {recording}: {closed}")
-    caption += [
-        f"the holdout differs: {each.quantity.replace('_', ' ')} {each.recording.value:.4g} -> "
-        f"{each.holdout.value:.4g} {each.recording.unit}"
-        for each in diagnosis.holdout.differs
+def _holdout_json(compared: SameAxis) -> dict[str, Any]:
+    """Whether the holdout is of the same axis; what each of the two recordings tells of what differs."""
+    differs = [
+        {
+            "quantity": each.quantity,
+            "unit": each.recording.unit,
+            "recording": each.recording.value,
+            "holdout": each.holdout.value,
+            "recording_ci95": each.recording.ci95,
+            "holdout_ci95": each.holdout.ci95,
+        }
+        for each in compared.differs
     ]
-    caption.append(f"velocity gap: models held to the recording at {diagnosis.bandwidth:.3g} rad/s")
-    if diagnosis.closed_loop is not None:
-        before, after = diagnosis.closed_loop
-        caption.append(f"velocity gap under the rig's drive: {before:.4g} -> {after:.4g} {diagnosis.velocity.unit}")
-    caption += [f"rejected: {found.name}, {found.reason}" for found in diagnosis.rejected]
-    if diagnosis.next_experiment is not None:
-        following = diagnosis.next_experiment
-        caption.append(
-            f"record next: {following.repetitions} times {following.profile} to {following.speed:.3g} "
-            f"{diagnosis.velocity.unit}, which tells {' from '.join(following.tells_apart)} "
-            f"({following.separation:.0f} times the noise): {following.reason}"
-        )
-    if diagnosis.unexplained_where:
-        first = diagnosis.unexplained_where[0]
-        low, high = first.region
-        caption.append(
-            f"unexplained: {diagnosis.unexplained_share:.1%} of the gap, most over {first.coordinate} "
-            f"{low:.4g} to {high:.4g} {first.unit}"
-        )
-    table = Table(
-        title=title, caption="\n".join(caption), title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD
-    )
-    for heading in ("effect", "quantity"):
-        table.add_column(heading, no_wrap=True)
-    for heading in ("value", "± (95 %)"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
-    rows = [("", diagnosis.parameters, ()), *((e.name, e.parameters, e.ambiguous_with) for e in diagnosis.effects)]
-    for name, parameters, ambiguous in rows:
-        label = f"{name} (or {', '.join(ambiguous)})" if ambiguous else name
-        for quantity, found in parameters.items():
-            reach = f"{found.half_width:.2g}"
-            table.add_row(label, words(quantity), f"{found.value:.5g}", reach, found.unit)
-            label = ""
-    return table
+    return {"same_axis": compared.same, "differs": differs}
 
 
-def _at_fault(diagnosis: Diagnosis) -> list[str]:
-    """That a sensor errs where the axis does not."""
-    sensors = [effect.name for effect in diagnosis.effects if effect.effect.kind == "measurement"]
-    return [f"at fault is the sensor, not the axis: {', '.join(sensors)}"] if sensors else []
+def _experiment_json(found: Diagnosis) -> dict[str, Any] | None:
+    experiment = found.next_experiment
+    if experiment is None:
+        return None
+    speed = found.velocity.unit
+    parameters = {
+        "top_speed": {"value": experiment.speed, "unit": speed},
+        "acceleration": {"value": experiment.acceleration, "unit": f"{speed}**2"},
+        "duration": {"value": experiment.duration, "unit": "s"},
+        "repetitions": {"value": experiment.repetitions, "unit": "dimensionless"},
+    }
+    told = picked(experiment, "tells_apart", "separation", "reason")
+    return {"profile": experiment.profile, "parameters": parameters, **told}
 
 
 def write_diagnosis(
-    out: Path, diagnosis: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, ending: str = ".png"
+    out: Path, found: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, ending: str = ".png"
 ) -> list[Path]:
-    """Write the page, `diagnosis.json`, two figures, `model.toml` and, where MuJoCo has all of it, `model.xml`.
+    """Write the page, `diagnosis.json`, two pictures, `model.toml` and, where MuJoCo has all of it, `model.xml`.
 
     Args:
         out: folder, made if it is not there.
-        diagnosis: what was found.
+        found: by the diagnosis.
         title: rig and recordings.
         provenance: of the files it came from.
-        ending: of the figures' files, one of `bench.report.figures.FORMATS`.
+        ending: of the pictures' files, one of `bench.report.figures.FORMATS`.
 
     Returns:
         Paths written.
     """
-    toml, xml = _model_toml(diagnosis), None if diagnosis.model is None else model_xml(diagnosis.model)
-    json = diagnosis_json(diagnosis, provenance) + "\n"
-    files = [File(name="diagnosis.json", about="all of it as numbers", media="application/json", content=json)]
-    if xml is not None:
-        about = "what MuJoCo has of it natively; opens alone"
-        files.insert(0, File(name="model.xml", about=about, media="application/xml", content=xml))
+    beside, experiment = {}, found.next_experiment
+    if experiment is not None:
+        kind = _kind(found)
+        beside["next_experiment.csv"] = experiment.motion.csv(PERIOD, (kind.length_unit, 1.0), (kind.speed_unit, 1.0))
+    return write_document(out, diagnosis(found, title, provenance, _files(found, provenance)), ending, beside)
+
+
+def diagnosis(
+    found: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, files: Sequence[File] = ()
+) -> Document:
+    """The document of a diagnosis.
+
+    Args:
+        found: by it.
+        title: rig and recordings.
+        provenance: of the files it came from.
+        files: to take along: the model, and all numbers.
+    """
+    sections = (
+        _motion(found),
+        _where(found),
+        _parameters(found),
+        *_beside(found),
+        _suspects(found),
+        _next(found),
+        checks_section(found.checks, found.warnings),
+        Section(key="model", heading="The model", blocks=(Downloads(files=tuple(files)),)),
+    )
+    return Document(
+        title=title,
+        subject=f"Diagnosis of {title}",
+        verdict=verdict_sentence(found),
+        tone="open" if found.verdict == "unexplained_remainder" else "sure",
+        answers=_answers(found),
+        sections=sections,
+        origin=origin(provenance),
+        pictures=(_where_picture(found, title), _gaps_picture(found, title)),
+        warnings=(*found.warnings, *warnings_of(found.checks)),
+    )
+
+
+def _kind(found: Diagnosis) -> AxisKind:
+    return next(kind for kind in KINDS if kind.speed_unit == found.velocity.unit)
+
+
+def _files(found: Diagnosis, provenance: Mapping[str, Any] | None) -> list[File]:
+    """The model, and all numbers."""
+    tables = {"torque_balance": found.balance.table()}
+    toml = tables_toml(_kind(found), tables) if found.model is None else model_toml(found.model, tables)
     about = "the model with all that was found, for bench replay"
-    files.insert(0, File(name="model.toml", about=about, media="application/toml", content=toml))
-    written = [out / "diagnosis.json", out / f"where{ending}", out / f"gaps{ending}", out / "model.toml"]
-    with held(out):
-        write_text(written[0], json)
-        save(where_figure(diagnosis, title), written[1])
-        save(gaps_figure(diagnosis, title), written[2])
-        write_text(written[3], toml)
-        if xml is not None:
-            written.append(out / "model.xml")
-            write_text(written[-1], xml)
-        if diagnosis.next_experiment is not None:
-            kind = next(kind for kind in KINDS if kind.speed_unit == diagnosis.velocity.unit)
-            units = (kind.length_unit, 1.0), (kind.speed_unit, 1.0)
-            written.append(out / "next_experiment.csv")
-            write_text(written[-1], diagnosis.next_experiment.motion.csv(PERIOD, *units))
-        return [*write_document(out, diagnosis_page(diagnosis, title, files, provenance)), *written]
+    files = [File(name="model.toml", about=about, media="application/toml", content=toml)]
+    if found.model is not None:
+        about, xml = "what MuJoCo has of it natively; opens alone", model_xml(found.model)
+        files.append(File(name="model.xml", about=about, media="application/xml", content=xml))
+    text = diagnosis_json(found, provenance) + "\n"
+    return [*files, File(name="diagnosis.json", about="all of it as numbers", media="application/json", content=text)]
 
 
-def _model_toml(diagnosis: Diagnosis) -> str:
-    tables = {"torque_balance": diagnosis.balance.table()}
-    if diagnosis.model is not None:
-        return model_toml(diagnosis.model, tables)
-    return tables_toml(next(kind for kind in KINDS if kind.speed_unit == diagnosis.velocity.unit), tables)
+def verdict_sentence(found: Diagnosis) -> str:
+    """What was missing and how much of the gap it accounts for, in a sentence."""
+    gap, unit = found.torque, unit_text(found.torque.unit)
+    effort = effort_word(found.torque.unit)
+    before, after = gap.identify or (math.nan, math.nan)
+    noise = f"the noise floor is {number(gap.noise_floor, digits=3)} {unit}"
+    if not found.effects:
+        if found.verdict == "nothing_missing":
+            left = f"inertia and friction leave {number(after, digits=3)} {unit} of the {effort}"
+            return f"Nothing is missing: {left}, {noise}."
+        return (
+            f"Something is missing that no effect of the catalogue explains: {number(after, digits=3)} {unit} "
+            f"of the {effort} are left, {noise}."
+        )
+    several = len(found.effects) > 1
+    named = "; ".join(_named(effect) for effect in found.effects)
+    sensors = len(_sensors(found)) == len(found.effects)
+    what = f"{'were' if several else 'was'} {'wrong in the measurement' if sensors else 'missing'}"
+    gone = f"with {'them' if several else 'it'} {share(1.0 - after / before)} of the {effort} gap is gone"
+    if found.verdict == "explained":
+        return f"{sentence(named)} {what}; {gone}, and what is left is noise."
+    return f"{sentence(named)} {what}; {gone}, but {number(_chi(gap), digits=2)} times the noise is left."
+
+
+def _named(effect: NamedEffect) -> str:
+    """An effect with its quantities; a phase says nothing to a reader."""
+    angles = {quantity.name for quantity in effect.effect.quantities if quantity.angle}
+    values = [f"{words(name)} {interval(found)}" for name, found in effect.parameters.items() if name not in angles]
+    return f"{words(effect.name)} ({', '.join(values)})" if values else words(effect.name)
+
+
+def _sensors(found: Diagnosis) -> list[str]:
+    """Names of sensors' faults."""
+    return [words(effect.name) for effect in found.effects if effect.effect.kind == "measurement"]
+
+
+def _answers(found: Diagnosis) -> dict[str, str]:
+    kind = _kind(found)
+    names = "; ".join(f"{_named(effect)}: {effect.effect.summary}" for effect in found.effects)
+    return {
+        f"{sentence(kind.in_words(INERTIA))}?": f"{interval(found.parameters[kind.parameter(INERTIA)])} (95 %)",
+        "What was missing?": names or "No effect of the catalogue.",
+        "How sure?": _sure(found),
+        "Does it move like the axis now?": _moves(found.velocity, bool(found.effects)),
+        "What next?": _following(found) or "Nothing is left open that another motion would tell.",
+    }
+
+
+def _sure(found: Diagnosis) -> str:
+    """What bears the verdict out, and what speaks against it."""
+    gap, lines, effort = found.torque, [], effort_word(found.torque.unit)
+    if found.because:
+        lines.append(f"Not wholly: {'; '.join(map(words, found.because))}.")
+    if gap.holdout is not None:
+        before, after = gap.holdout
+        lines.append(
+            f"On the recording that was not fitted the {effort} gap goes from {number(before, digits=3)} to "
+            f"{number(after, gap.unit, 3)}, where noise alone leaves {number(gap.noise_floor, digits=3)}."
+        )
+    elif found.effects:
+        lines.append("The last third of the recording, kept from the fit, bears it out; no holdout was given.")
+    if found.holdout.same is False:
+        lines.append("The holdout is of another axis, or of this one changed.")
+    lines += [
+        f"{sentence(words(effect.name))} cannot be told here from {' or '.join(map(words, effect.ambiguous_with))}."
+        for effect in found.effects
+        if effect.ambiguous_with
+    ]
+    if not lines:
+        lines.append(f"What is left of the {effort} is {number(_chi(gap), digits=3)} times what noise alone leaves.")
+    return " ".join(lines)
+
+
+def _chi(gap: Gap) -> float:
+    return math.nan if gap.identify is None else gap.identify[1] / gap.noise_floor
+
+
+def _moves(gap: Gap, added: bool) -> str:
+    """Whether the simulation moves as the axis does."""
+    pair = gap.holdout or gap.identify
+    if pair is None:
+        return "Not known: MuJoCo cannot have the model, or it diverged."
+    like = "Yes" if pair[1] <= NULL * gap.noise_floor else "Not wholly"
+    before = f", {number(pair[0], digits=3)} before" if added else ""
+    where = "on the recording that was not fitted" if gap.holdout else "on the recording"
+    return (
+        f"{like}: simulated speed is off by {number(pair[1], gap.unit, 3)} RMS {where}{before}; "
+        f"the sensor's noise is {number(gap.noise_floor, digits=3)}."
+    )
+
+
+def _following(found: Diagnosis) -> str:
+    """What to record or look at next; empty where nothing is open."""
+    experiment = found.next_experiment
+    if experiment is not None:
+        return (
+            f"Record {words(experiment.profile)} up to {number(experiment.speed, found.velocity.unit, 3)}, "
+            f"{experiment.repetitions} times: it tells {' from '.join(map(words, experiment.tells_apart))} "
+            f"({number(experiment.separation, digits=2)} times the noise); {experiment.reason}."
+        )
+    if found.unexplained_where:
+        most = found.unexplained_where[0]
+        return (
+            f"Look at what is left: {share(most.share)} of it hangs on {coordinate_word(most.coordinate, most.unit)}, "
+            f"most between {number(most.region[0], digits=3)} and {number(most.region[1], most.unit, 3)}; "
+            "what the catalogue holds is not it."
+        )
+    return ""
+
+
+def _motion(found: Diagnosis) -> Section:
+    """Speed and torque over time for each recording, and the gaps after each addition."""
+    graphs = (_over_time(found, course) for course in found.courses)
+    loop = Paragraph(
+        text=f"The models run in MuJoCo on the recorded torque, held softly to the recorded motion at "
+        f"{number(found.bandwidth, 'rad/s', 3)}."
+    )
+    return Section(key="motion", heading="Measured and simulated", blocks=(_steps(found), *graphs, loop))
+
+
+def _labels(found: Diagnosis) -> list[str]:
+    """The bare axis, then each addition."""
+    return ["inertia and friction", *(f"+ {words(step.effect)}" for step in found.steps[1:])]
+
+
+def _steps(found: Diagnosis) -> Table:
+    names = [course.name for course in found.courses]
+    gaps = (effort_word(found.torque.unit), found.torque), ("speed", found.velocity)
+    headings = [f"{what} gap, {name} / {unit_text(gap.unit)}>" for what, gap in gaps for name in names]
+    rows = [
+        (label, *(number(gap, digits=3) for gap in (*step.torque, *step.velocity)))
+        for label, step in zip(_labels(found), found.steps, strict=True)
+    ]
+    rows.append(("noise floor", *(number(gap.noise_floor, digits=3) for _, gap in gaps for _ in names)))
+    return table("RMS gaps before and after each addition", ("model", *headings), rows)
+
+
+def _over_time(found: Diagnosis, course: Course) -> TimeGraph:
+    shown = [0, *range(max(1, len(found.steps) - STEPS), len(found.steps))]
+    labels, effort = _labels(found), effort_word(found.torque.unit)
+    first, last = found.steps[0], found.steps[-1]
+    place = [one.name for one in found.courses].index(course.name)
+    speed_left, torque_left = ([left[k] for k in shown] for left in (course.velocity_left, course.torque_left))
+    signals = [
+        Plotted("speed", found.velocity.unit, course.time, course.velocity, speed_left),
+        Plotted(effort, found.torque.unit, course.time[course.rows], course.torque, torque_left, "modelled"),
+    ]
+    alternative = (
+        f"Speed and {effort} of {Path(course.origin).name} as measured and as the model has them. RMS of what is left "
+        f"with inertia and friction alone, then with all that was found: speed "
+        f"{number(first.velocity[place], digits=3)}, {number(last.velocity[place], found.velocity.unit, 3)}; {effort} "
+        f"{number(first.torque[place], digits=3)}, {number(last.torque[place], found.torque.unit, 3)}."
+    )
+    title = {"recording": "The recording.", "holdout": "The holdout, which was not fitted."}[course.name]
+    part = course.time.size / sum(one.time.size for one in found.courses)
+    return time_graph(title, alternative, course.time, signals, [labels[k] for k in shown], part)
+
+
+def _where(found: Diagnosis) -> Section:
+    """The gap over the coordinates."""
+    rows = (
+        (
+            coordinate_word(one.coordinate, one.unit),
+            share(one.share),
+            f"{number(one.region[0])} and {number(one.region[1])}",
+            unit_text(one.unit),
+        )
+        for one in found.where
+    )
+    headings = ("coordinate", "share of the gap>", "most of it between>", "unit")
+    shares = table("Share of the gap's variance that each coordinate accounts for", headings, rows)
+    blocks = (_gap_chart(found, DRAWN), shares)
+    return Section(key="where", heading="Where the gap sits", blocks=blocks, detail=True)
+
+
+def _gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> Chart:
+    profiles, most = {profile.coordinate: profile for profile in found.profiles}, found.profiles[0]
+    return Chart(
+        title="The gap, and what was found in it.",
+        alternative=f"Mean of measured less modelled {effort_word(found.torque.unit)} in bins of each coordinate. "
+        f"Most of it hangs on {most.coordinate}, {share(most.share)} of its variance.",
+        y_label="gap",
+        y_unit=unit_text(found.torque.unit),
+        panels=tuple(_over(profiles[name], found) for name in coordinates if name in profiles),
+    )
+
+
+def _over(profile: Profile, found: Diagnosis) -> Panel:
+    """Before and after, what the found effects make of it, and the noise of a row."""
+    order = np.argsort(profile.centres)
+    x, before, after = profile.centres[order], profile.before[order], profile.after[order]
+    drawn = [noise_band(x.tolist(), found.torque.noise_floor), series("gap before", "dots", "ink", x, before)]
+    if found.effects:
+        names = " and ".join(words(effect.name) for effect in found.effects)
+        drawn.append(series(f"what {names} makes of it", "line", "model", x, before - after))
+        drawn.append(series("left after", "rings", "left", x, after))
+    return Panel(
+        x_label=coordinate_word(profile.coordinate, profile.unit),
+        x_unit=unit_text(profile.unit),
+        note=f"{share(profile.share)} of the gap",
+        series=tuple(drawn),
+    )
+
+
+def _parameters(found: Diagnosis) -> Section:
+    tables = [parameters_table("The axis", found.parameters)]
+    tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in found.effects]
+    if found.recordings:
+        units = {name: each.unit for name, each in found.parameters.items()}
+        tables.append(recordings_table(found.recordings, found.between, units))
+    return Section(key="parameters", heading="Parameters", blocks=tuple(tables))
+
+
+def _beside(found: Diagnosis) -> list[Section]:
+    """What was found beside effects and parameters, if anything."""
+    unit, sensors = found.velocity.unit, _sensors(found)
+    lines = [f"at fault is the sensor, not the axis: {', '.join(sensors)}"] if sensors else []
+    lines += [
+        f"the holdout differs: {words(each.quantity)} {number(each.recording.value)} to "
+        f"{number(each.holdout.value, each.recording.unit)}"
+        for each in found.holdout.differs
+    ]
+    pairs = {"under the rig's drive": found.closed_loop, "of held-out motion, refined by simulation": found.refined}
+    lines += [
+        f"velocity gap {name}: {number(pair[0])} to {number(pair[1], unit)}" for name, pair in pairs.items() if pair
+    ]
+    lines += [f"rejected: {words(one.name)}, {one.reason}" for one in found.rejected]
+    lines += [f"stopped: {found.stopped}"] if found.stopped else []
+    if found.unexplained_where:
+        lines.append(f"unexplained: {share(found.unexplained_share)} of the gap")
+    return [Section(key="beside", heading="Beside it", blocks=(Points(items=tuple(lines)),))] if lines else []
+
+
+def _suspects(found: Diagnosis) -> Section:
+    def of_gap(value: float | None) -> str:
+        return "–" if value is None else share(value)
+
+    rows = (
+        (words(one.effect.name), "yes" if one.taken else "no", of_gap(one.alone), of_gap(one.beside), one.reason)
+        for one in found.considered
+    )
+    caption = "Every effect of the catalogue: the share it would explain, and why it was taken or was not"
+    headings = ("effect", "taken", "of the gap, alone>", "of what is left, beside the others>", "why~")
+    marked = (k for k, one in enumerate(found.considered) if one.taken)
+    return Section(key="suspects", heading="Suspects", blocks=(table(caption, headings, rows, marked),), detail=True)
+
+
+def _next(found: Diagnosis) -> Section:
+    """What to record next, and what is unexplained."""
+    text = _following(found) or "Nothing is left open that another motion of this rig would tell."
+    blocks: list[Paragraph | Points] = [Paragraph(text=text)]
+    if found.because:
+        blocks.append(Paragraph(text="What speaks against this being all:"))
+        blocks.append(Points(items=tuple(map(words, found.because))))
+    if found.unexplained_where:
+        blocks.append(Points(items=tuple(map(_sits, found.unexplained_where))))
+    return Section(key="next", heading="What to record next", blocks=tuple(blocks), detail=True)
+
+
+def _sits(account: Where) -> str:
+    """Where a part of what is left is."""
+    return (
+        f"{share(account.share)} of what is left hangs on {coordinate_word(account.coordinate, account.unit)}, most of "
+        f"it between {number(account.region[0])} and {number(account.region[1], account.unit)}"
+    )
+
+
+def _where_picture(found: Diagnosis, title: str) -> Picture:
+    """The gap over all coordinates on one scale, and its spectrum on a scale of its own."""
+    spectrum = next(account for account in found.where if account.coordinate == "frequency")
+    panel = Panel(
+        x_label="frequency",
+        x_unit="Hz",
+        y_label=f"gap before / ({unit_text(found.torque.unit)}/√Hz)",
+        note=f"{share(spectrum.share)} of the gap in one band",
+        series=(series("", "line", "ink", spectrum.centres[1:], spectrum.means[1:]),),
+    )
+    over = _gap_chart(found, [profile.coordinate for profile in found.profiles])
+    below = Chart(title="", alternative="Spectrum of the gap before.", panels=(panel,))
+    return Picture(name="where", title=title, rows=((over,), (below,)))
+
+
+def _gaps_picture(found: Diagnosis, title: str) -> Picture:
+    """RMS gaps of the bare axis and after each addition, on both recordings, against the noise floor."""
+    gaps = (effort_word(found.torque.unit), "torque", found.torque), ("speed", "velocity", found.velocity)
+    parts = (_shrinking(found, what, [getattr(step, name) for step in found.steps], gap) for what, name, gap in gaps)
+    return Picture(name="gaps", title=title, rows=(tuple(part for part in parts if part is not None),))
+
+
+def _shrinking(found: Diagnosis, what: str, steps: Sequence[tuple[float, ...]], gap: Gap) -> Intervals | None:
+    """Gaps of all steps; None where none is known."""
+    spans = [
+        Span(name=f"{label}, {course.name}", colour=colour, value=value, low=value, high=value)
+        for label, values in zip(_labels(found), steps, strict=True)
+        for course, colour, value in zip(found.courses, ("ink", "model"), values, strict=False)
+        if math.isfinite(value) and value > 0.0
+    ]
+    if not spans or not gap.noise_floor > 0.0:
+        return None
+    ends = [gap.noise_floor, *(span.value for span in spans)]
+    limits = min(ends) / BESIDE, max(ends) * BESIDE
+    return Intervals(
+        title=f"{sentence(what)} gap",
+        alternative="RMS gaps before and after each addition; the band is noise.",
+        label=f"RMS {what} gap",
+        unit=unit_text(gap.unit),
+        right=(limits[0], gap.noise_floor),
+        limits=limits,
+        spans=tuple(spans),
+        log=True,
+    )

@@ -48,6 +48,13 @@ class Points(Part):
     items: tuple[str, ...]
 
 
+class Code(Part):
+    """Lines of a file to write, or of a command, as they stand."""
+
+    kind: Literal["code"] = "code"
+    text: str
+
+
 class Heading(Part):
     """Of a column of a table.
 
@@ -359,9 +366,13 @@ class Neighbours(Part):
 
 
 AnyPart = Annotated[
-    Paragraph | Points | Table | TimeGraph | Moving | Chart | Intervals | HeatMap | Downloads | Neighbours,
+    Paragraph | Points | Code | Table | TimeGraph | Moving | Chart | Intervals | HeatMap | Downloads | Neighbours,
     Field(discriminator="kind"),
 ]
+
+
+#: What a picture can hold.
+Drawable = Table | TimeGraph | Chart | Intervals | HeatMap
 
 
 class Section(Part):
@@ -391,7 +402,7 @@ class Picture(Part):
 
     name: str
     title: str
-    rows: tuple[tuple[Table | Chart | Intervals | HeatMap | TimeGraph, ...], ...]
+    rows: tuple[tuple[Drawable, ...], ...]
 
 
 def _from_list(given: Any) -> Any:  # noqa: ANN401 - whatever a file holds

@@ -20,7 +20,18 @@ from bench.arrays import Array
 from bench.errors import InputError
 from bench.files import whole
 from bench.names import plain
-from bench.report.document import Chart, HeatMap, Intervals, Panel, Picture, Series, Table, TimeGraph, TimePanel
+from bench.report.document import (
+    Chart,
+    Drawable,
+    HeatMap,
+    Intervals,
+    Panel,
+    Picture,
+    Series,
+    Table,
+    TimeGraph,
+    TimePanel,
+)
 from bench.report.over_time import unpacked
 
 P = ParamSpec("P")
@@ -70,7 +81,7 @@ TIME_PANEL, STACKED, SPAN, LINE = 1.5, 1.6, 0.3, 0.2
 LEGEND, FEW = 4, 200
 #: How a series is drawn.
 DRAWN: dict[str, dict[str, Any]] = {
-    "dots": {"marker": "o", "ls": "", "ms": 3.2},
+    "dots": {"marker": "o", "ls": "", "ms": 2.5},
     "large dots": {"marker": "o", "ls": "", "ms": 7.0},
     "rings": {"marker": "o", "ls": "", "ms": 3.2, "mfc": "white", "mew": 0.9},
     "line": {"lw": 1.2},
@@ -106,13 +117,23 @@ def drawn(picture: Picture) -> Figure:
     title_figure(figure, picture.title)
     rows = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
     for place, row in zip(rows, picture.rows, strict=True):
+        row = [row[0], *(_unnamed(part, row[0]) for part in row[1:])]
         widths = [0.4 if isinstance(part, Table) else 1.0 for part in row]
         for beside, part in zip(place.subfigures(1, len(row), width_ratios=widths, squeeze=False)[0], row, strict=True):
             draw(beside, part)
     return figure
 
 
-def height(part: Table | Chart | Intervals | HeatMap | TimeGraph) -> float:
+def _unnamed(part: Drawable, first: Drawable) -> Drawable:
+    """A part of a row; intervals of the same names as the first one's without them."""
+    if not (isinstance(part, Intervals) and isinstance(first, Intervals)):
+        return part
+    if [span.name for span in part.spans] != [span.name for span in first.spans]:
+        return part
+    return part.model_copy(update={"spans": tuple(span.model_copy(update={"name": ""}) for span in part.spans)})
+
+
+def height(part: Drawable) -> float:
     """Height that a part takes - inch."""
     match part:
         case Table():
@@ -130,7 +151,7 @@ def height(part: Table | Chart | Intervals | HeatMap | TimeGraph) -> float:
             return 0.4 + ROW * (-(-len(part.panels) // ACROSS) if len(part.panels) > 1 else 1.6)
 
 
-def draw(figure: Figure | SubFigure, part: Table | Chart | Intervals | HeatMap | TimeGraph) -> None:
+def draw(figure: Figure | SubFigure, part: Drawable) -> None:
     """Draw a part into a figure, in the style that is set."""
     match part:
         case Table():
@@ -241,7 +262,7 @@ def _series(axes: Axes, one: Series) -> None:
         axes.vlines(one.x, one.low, one.high, color=colour, lw=1.2)
     style = dict(DRAWN[one.style])
     if one.style == "dots" and len(one.x) < FEW:
-        style["ms"] = 4.5
+        style["ms"] = 3.8
     axes.plot(one.x, one.y, color=colour, label=label, **style)
 
 

@@ -1,115 +1,84 @@
-"""`bench friction`: friction over steady speeds as JSON (`bench.friction/1`), as a table and as a figure."""
+"""Friction over steady speeds: the curve, the effect that bends it, and how sure that is.
+
+As JSON (`bench.friction/1`) and as a document; its picture has the recordings, the curves, and what each leaves.
+"""
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
-from rich import box
-from rich.table import Table
 
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS
 from bench.effects.catalogue import catalogue
+from bench.friction_map.curve import Curve
 from bench.friction_map.map import CHANCE, FrictionMap
+from bench.gate.gate import warnings_of
 from bench.names import words
-from bench.report.figures import MEASURED, MODELLED, REST, in_style, legend_above, save_as_named, title_figure
-from bench.report.gate import checks_json
-from bench.report.numbers import effort_word, unit_text
-from bench.structured import json_text
+from bench.report.document import Chart, Document, Panel, Picture, Section, Table, series, table
+from bench.report.numbers import effort_word, number, sentence, share, unit_text
+from bench.report.parts import checks_section, origin
+from bench.report.serial import serialised
 
 SCHEMA = "bench.friction/1"
 #: Speeds at which a curve is drawn, in each direction.
-DRAWN = 400
+DRAWN = 200
+
+Values = Mapping[str, tuple[float, str]]
 
 
 def friction_json(found: FrictionMap) -> str:
     """The map, what holds of it and how sure that is."""
-    effect = None if found.name is None else {"name": found.name, "parameters": _numbers(effect_values(found))}
     before, after = found.unexplained
-    content = {
-        "schema": SCHEMA,
-        "parameters": _numbers(base_values(found)),
-        "effect": effect,
-        "best": found.best.name or None,
-        "chance": found.probability,
-        "unexplained": {"before": before, "after": after},
-        "checks": checks_json(found.checks),
-        "velocity": {"unit": found.kind.speed_unit, "values": found.velocity.tolist()},
-        "effort": {"unit": found.effort_unit, "values": found.effort.tolist()},
-    }
-    return json_text(content)
-
-
-def friction_table(found: FrictionMap, title: str) -> Table:
-    """Quantities of the curve that holds; below it how sure the effect is and what it explains."""
-    before, after = found.unexplained
-    label = words(found.best.name)
-    if found.name is not None:
-        verdict = f"named: {label}; chance saves as much with probability {found.probability:.2g}"
-    elif label:
-        verdict = f"no effect named: {label} is best, chance saves as much with probability {found.probability:.2g}"
-    else:
-        verdict = "no effect named: physics allows none of them here"
-    low, high = np.abs(found.velocity).min(), np.abs(found.velocity).max()
-    caption = [
-        f"{verdict} (named below {CHANCE:g})",
-        f"unexplained share of the effort: {before:.4f} without, {after:.4f} with it",
-        f"{found.velocity.size} recordings, {low:.3g} to {high:.3g} {found.kind.speed_unit}",
-    ]
-    if found.offset is None:
-        caption.append("a constant offset is counted in the effect: no such recordings tell them apart")
-    table = Table(
-        title=title, caption="\n".join(caption), title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD
+    return serialised(
+        {
+            "schema": SCHEMA,
+            "parameters": _values_json(_base(found)),
+            "effect": None if found.name is None else {"name": found.name, "parameters": _values_json(_effect(found))},
+            "best": found.best.name or None,
+            "chance": found.probability,
+            "unexplained": {"before": before, "after": after},
+            "checks": found.checks,
+            "velocity": {"unit": found.kind.speed_unit, "values": found.velocity},
+            "effort": {"unit": found.effort_unit, "values": found.effort},
+        }
     )
-    for heading in ("effect", "quantity"):
-        table.add_column(heading, no_wrap=True)
-    table.add_column("value", justify="right", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
-    for owner, quantities in (("", base_values(found)), (found.name or "", effect_values(found))):
-        for name, (value, unit) in quantities.items():
-            table.add_row(owner, words(name), f"{value:.5g}", unit)
-            owner = ""
-    return table
 
 
-def draw_friction(found: FrictionMap, title: str, path: Path) -> None:
-    """Write effort over speed: the recordings, the curve without an effect and, where one is named, the curve with it.
+def _values_json(values: Values) -> dict[str, Any]:
+    return {name: {"value": value, "unit": unit} for name, (value, unit) in values.items()}
 
-    Raises:
-        InputError: an ending that is no figure's, or a place that cannot be written to.
+
+def friction(found: FrictionMap, title: str) -> Document:
+    """The document of a friction map.
+
+    Args:
+        found: the map.
+        title: of the axis.
     """
-    save_as_named(friction_figure(found, title), path)
-
-
-@in_style
-def friction_figure(found: FrictionMap, title: str) -> Figure:
-    """Effort over speed, and what each curve leaves of it."""
-    figure = Figure(figsize=(9.0, 7.0), layout="constrained")
-    title_figure(figure, title)
-    over, rest = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-    over.plot(found.velocity, found.effort, "o", ms=4.5, color=MEASURED, label="recordings")
-    curves = [(found.plain, "no effect", REST, "s")]
+    tables = [_table("The axis", _base(found))]
     if found.name is not None:
-        curves.append((found.best, words(found.name), MODELLED, "o"))
-    for curve, label, colour, marker in curves:
-        for direction in (-1.0, 1.0):
-            speeds = direction * np.abs(found.velocity[direction * found.velocity > 0.0])
-            drawn = direction * np.geomspace(np.abs(speeds).min(), np.abs(speeds).max(), DRAWN)
-            over.plot(drawn, curve.effort(drawn), lw=1.3, color=colour, label=label if direction > 0.0 else None)
-        left = found.effort - curve.effort(found.velocity)
-        rest.plot(found.velocity, left, marker, ms=4.0, color=colour, label=label)
-    rest.axhline(0.0, color="#8a94a0", lw=0.8)
-    over.set_ylabel(f"{effort_word(found.effort_unit)} / {unit_text(found.effort_unit)}")
-    rest.set_ylabel(f"left / {unit_text(found.effort_unit)}")
-    rest.set_xlabel(f"speed / ({unit_text(found.kind.speed_unit)})")
-    for axes in (over, rest):
-        legend_above(axes)
-    return figure
+        tables.append(_table(sentence(words(found.name)), _effect(found)))
+    curves, left = _over_speed(found), _left(found)
+    return Document(
+        title=f"{title}: friction",
+        subject=f"Friction of {title} over {found.velocity.size} steady speeds",
+        verdict=_verdict(found),
+        tone="sure",
+        answers=_answers(found),
+        sections=(
+            Section(key="curve", heading="Friction over speed", blocks=(curves, left)),
+            Section(key="parameters", heading="Parameters", blocks=tuple(tables)),
+            checks_section(found.checks, ()),
+        ),
+        origin=origin(None),
+        pictures=(Picture(name="friction", title=title, rows=((curves,), (left,))),),
+        warnings=tuple(warnings_of(found.checks)),
+    )
 
 
-def base_values(found: FrictionMap) -> dict[str, tuple[float, str]]:
+def _base(found: FrictionMap) -> Values:
     """K_w, K_0 and M_0 by their names, with their units."""
     columns = {VISCOUS: found.base.viscous, COULOMB: found.base.coulomb}
     if found.offset is not None:
@@ -120,7 +89,7 @@ def base_values(found: FrictionMap) -> dict[str, tuple[float, str]]:
     }
 
 
-def effect_values(found: FrictionMap) -> dict[str, tuple[float, str]]:
+def _effect(found: FrictionMap) -> Values:
     """Quantities of the effect that is named, with their units; none where none is."""
     if found.name is None:
         return {}
@@ -128,5 +97,83 @@ def effect_values(found: FrictionMap) -> dict[str, tuple[float, str]]:
     return {name: (value, found.kind.unit(quantities[name], found.effort_unit)) for name, value in found.values.items()}
 
 
-def _numbers(quantities: dict[str, tuple[float, str]]) -> dict[str, Any]:
-    return {name: {"value": value, "unit": unit} for name, (value, unit) in quantities.items()}
+def _verdict(found: FrictionMap) -> str:
+    before, after = found.unexplained
+    if found.name is None:
+        return f"Friction is a straight line over speed: no effect bends it, and {share(before)} is left unexplained."
+    values = ", ".join(f"{words(name)} {number(value, unit)}" for name, (value, unit) in _effect(found).items())
+    bent = f"{sentence(words(found.name))} ({values}) bends the curve"
+    return f"{bent}: {share(before)} was unexplained without, {share(after)} with it."
+
+
+def _answers(found: FrictionMap) -> dict[str, str]:
+    base, least, most = _base(found), np.abs(found.velocity).min(), np.abs(found.velocity).max()
+    friction = "; ".join(
+        f"{words(name)} {number(*base[name])}" for name in map(found.kind.parameter, (COULOMB, VISCOUS)) if name in base
+    )
+    chance = f"chance saves as much with probability {number(found.probability, digits=2)}"
+    if found.name is None and found.best.name:
+        chance = f"{words(found.best.name)} is best, {chance}"
+    elif found.name is None:
+        chance = "physics allows no effect here"
+    left = "Nothing that steady speeds would tell."
+    if found.offset is None:
+        left = "A constant offset is counted in the effect: such recordings do not tell them apart."
+    speeds = f"{number(least, digits=3)} to {number(most, found.kind.speed_unit, 3)}"
+    return {
+        "Friction?": friction,
+        "How sure?": f"{sentence(chance)}; named below {CHANCE:g}.",
+        "From what?": f"{found.velocity.size} recordings, {speeds}.",
+        "What is open?": left,
+    }
+
+
+def _table(caption: str, values: Values) -> Table:
+    rows = ((words(name), number(value, digits=5), unit_text(unit)) for name, (value, unit) in values.items())
+    return table(caption, ("quantity", "value>", "unit"), rows)
+
+
+def _curves(found: FrictionMap) -> list[tuple[Curve, str, bool]]:
+    """Curves that are drawn, what they are called, and whether an effect bends them."""
+    plain = [(found.plain, "no effect", False)]
+    return plain if found.name is None else [*plain, (found.best, words(found.name), True)]
+
+
+def _over_speed(found: FrictionMap) -> Chart:
+    effort, drawn = effort_word(found.effort_unit), []
+    for curve, label, bent in _curves(found):
+        for direction in (-1.0, 1.0):
+            speeds = found.velocity[direction * found.velocity > 0.0]
+            if speeds.size:
+                x = np.sort(direction * np.geomspace(np.abs(speeds).min(), np.abs(speeds).max(), DRAWN))
+                name = "" if any(one.name == label for one in drawn) else label
+                drawn.append(series(name, "line", "model" if bent else "left", x, curve.effort(x)))
+    drawn.append(series("recordings", "dots", "ink", found.velocity, found.effort))
+    return Chart(
+        title="Friction.",
+        alternative=f"{sentence(effort)} of each recording at its steady speed, and the curves fitted to them.",
+        y_label=effort,
+        y_unit=unit_text(found.effort_unit),
+        panels=(Panel(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=tuple(drawn)),),
+    )
+
+
+def _left(found: FrictionMap) -> Chart:
+    """What each curve leaves of the recordings."""
+    drawn = tuple(
+        series(
+            label,
+            "dots" if bent else "rings",
+            "model" if bent else "left",
+            found.velocity,
+            found.effort - curve.effort(found.velocity),
+        )
+        for curve, label, bent in _curves(found)
+    )
+    return Chart(
+        title="What is left.",
+        alternative="What each curve leaves of the recordings.",
+        y_label="left",
+        y_unit=unit_text(found.effort_unit),
+        panels=(Panel(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=drawn),),
+    )

@@ -1,86 +1,204 @@
-"""An inspection for a person: tables, and every signal over time on one page."""
+"""An inspection: what a recording holds, every signal over time, and what its checks say."""
 
 from __future__ import annotations
 
-from rich import box
-from rich.console import Group
-from rich.table import Table
-from rich.text import Text
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import Literal
 
-from bench.names import plain
+import numpy as np
+
+from bench.errors import InputError
+from bench.gate.check import Check
+from bench.names import readable, words
+from bench.report.document import (
+    AnyPart,
+    Chart,
+    Code,
+    Document,
+    Panel,
+    Paragraph,
+    Picture,
+    Section,
+    Table,
+    TimeCurve,
+    TimeGraph,
+    TimePanel,
+    Tone,
+    series,
+    table,
+)
+from bench.report.numbers import number, unit_text
+from bench.report.over_time import Grid
+from bench.report.parts import checks_section, origin
+from bench.trace.channel import Channel, Recording
+from bench.trace.choose import of_axis
 from bench.trace.inspect import ColumnSummary, Inspection
+from bench.trace.reading_options import ReadingOptions
+from bench.trace.trace import Trace, assemble
 
-_MOST_HOLES = 5
+#: How the signals of one unit are told apart, in their order.
+ROLES: tuple[Literal["measured", "model", "left"], ...] = ("measured", "model", "left")
+#: Holes that are listed one by one.
+MOST_HOLES = 20
+#: Columns of a picture that can still be read.
+MOST = 16
 
 
-def table(inspection: Inspection) -> Group:
-    """The inspection for a person."""
-    facts = Table(box=None, show_header=False, pad_edge=False)
-    for name, value in _facts(inspection):
-        facts.add_row(name, Text(plain(value)))
-    parts: list[Table | Text] = [facts]
-    if inspection.signals:
-        parts.append(_signals(inspection))
-    rest = [column for column in inspection.columns if not column.read]
+def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | None = None) -> Document:
+    """The document of an inspection.
+
+    Args:
+        found: in the recording.
+        checks: what the gate found; () of a recording that is not read.
+        trace: the recording as it is read; None where `found.asks` something first.
+    """
+    name, (verdict, tone) = readable(Path(found.origin).name), _verdict(found, checks)
+    sections = []
+    if found.signals:
+        graph = () if trace is None else (signals_graph(trace),)
+        sections.append(Section(key="signals", heading="Signals", blocks=(*graph, _signals(found))))
+    if found.asks is not None:
+        sections.append(Section(key="asked", heading="What to write", blocks=tuple(_what_to_write(found))))
+    rest = [column for column in found.columns if not column.read]
     if rest:
-        parts.append(_columns(rest))
-    parts += [Text(plain(f"note: {note}")) for note in inspection.notes]
-    if inspection.asks is not None:
-        parts.append(Text(plain(f"not read as a trace yet: {inspection.asks}")))
-    if inspection.suggestions and inspection.asks is not None:
-        parts.append(Text(plain("\n".join(["likely, for the rig:", "[trace.columns]", *inspection.suggestions]))))
-    return Group(*parts)
+        sections.append(Section(key="columns", heading="Columns that are not read", blocks=(_columns(rest),)))
+    if checks or found.notes:
+        told = checks_section(checks, found.notes)
+        sections.append(told.model_copy(update={"detail": False}))
+    return Document(
+        title=name,
+        subject=f"Inspection of {name} ({found.format})",
+        verdict=verdict,
+        tone=tone,
+        answers=dict(_answers(found)),
+        sections=tuple(sections),
+        origin=origin(None),
+    )
 
 
-def _signals(inspection: Inspection) -> Table:
-    signals = Table(box=box.SIMPLE_HEAD)
-    signals.add_column("signal")
-    signals.add_column("column")
-    signals.add_column("unit")
-    for heading in ("min", "max", "rms", "resolution"):
-        signals.add_column(heading, justify="right")
-    for signal in inspection.signals:
-        numbers = (signal.minimum, signal.maximum, signal.rms, signal.resolution)
-        texts = ("constant" if number is None else f"{number:.5g}" for number in numbers)
-        signals.add_row(signal.name, Text(plain(signal.column)), signal.unit, *texts)
-    return signals
+def signals_graph(trace: Trace) -> TimeGraph:
+    """Every signal of a recording over time; those of one unit share a panel."""
+    signals = sorted(trace.signals, key=lambda name: list(trace.units.values()).index(trace.units[name]))
+    grid = Grid.of(trace.time, len(signals))
+    places, panels = grid.places(trace.time), []
+    for unit, named in groupby(signals, key=lambda name: trace.units[name]):
+        names = list(named)
+        curves = tuple(
+            TimeCurve(name=words(name), role=role, choice=None, samples=grid.samples(places, trace.signals[name]))
+            for name, role in zip(names, ROLES * len(names), strict=False)
+        )
+        panels.append(TimePanel(label=words(names[0]), unit=unit_text(unit), curves=curves))
+    return TimeGraph(
+        title="Over time.",
+        alternative=f"{', '.join(map(words, signals))} of the recording.",
+        start=grid.start,
+        step=grid.step,
+        count=grid.count,
+        panels=tuple(panels),
+    )
 
 
-def _columns(columns: list[ColumnSummary]) -> Table:
-    """Columns that are not read as a signal."""
-    table = Table(box=box.SIMPLE_HEAD)
-    for heading in ("column", "unit"):
-        table.add_column(heading)
-    for heading in ("min", "max", "resolution"):
-        table.add_column(heading, justify="right")
-    table.add_column("likely")
-    for column in columns:
-        numbers = (column.minimum, column.maximum, column.resolution)
-        texts = ("" if number is None else f"{number:.5g}" for number in numbers)
-        likely = f"{column.signal}: {', '.join(column.why)}" if column.signal else ", ".join(column.why)
-        name = column.name if column.axis is None else f"{column.name} ({column.axis})"
-        table.add_row(Text(plain(name)), Text(plain(column.unit or "")), *texts, Text(plain(likely)))
-    return table
+def signals_picture(recording: Recording, how: ReadingOptions) -> Picture:
+    """The signals over time, holes as gaps; of a recording that needs a rig, the columns that change over samples."""
+    title = readable(Path(recording.origin).name)
+    try:
+        trace = assemble(recording, how)
+    except InputError:
+        channels = [channel for channel in of_axis(recording, how.axis) if _changes(channel)]
+        panels = tuple(
+            Panel(
+                x_label="sample",
+                y_label=channel.label,
+                series=(series("", "line", "ink", np.arange(channel.values.size), channel.values),),
+            )
+            for channel in channels[:MOST]
+        ) or (Panel(x_label="sample", y_label="no column changes", series=()),)
+        more = len(channels) - MOST
+        title += f" and {more} columns more" if more > 0 else ""
+        chart = Chart(title="", alternative="Columns over samples.", panels=panels)
+        return Picture(name="signals", title=title, rows=((chart,),))
+    return Picture(name="signals", title=title, rows=((signals_graph(trace),),))
 
 
-def _facts(inspection: Inspection) -> list[tuple[str, str]]:
-    facts = [("file", inspection.origin), ("format", inspection.format)]
-    if len(inspection.axes) > 1:
-        facts.append(("axes", ", ".join(inspection.axes)))
-    if inspection.samples is None or inspection.start is None or inspection.duration is None:
-        return facts
-    segments = inspection.segments
-    facts += [
-        ("samples", f"{inspection.samples} in {segments} segment{'s' * (segments != 1)}"),
-        ("time", f"{inspection.start:g} s to {inspection.start + inspection.duration:g} s"),
-        ("rate", f"{inspection.rate:.6g} Hz"),
-        ("jitter", f"{inspection.jitter:.2%} of a sample period" + (", resampled" * inspection.resampled)),
-        ("interpolated", str(inspection.interpolated)),
-        ("duplicates", str(inspection.duplicates)),
-    ]
-    holes = [f"{duration:.3g} s at {start:g} s" for start, duration in inspection.holes]
-    more = len(holes) - _MOST_HOLES
-    facts.append(("holes", ", ".join(holes[:_MOST_HOLES]) + (f" and {more} more" if more > 0 else "") or "none"))
-    if inspection.dropped:
-        facts.append(("columns not used", ", ".join(inspection.dropped)))
-    return facts
+def _changes(channel: Channel) -> bool:
+    numbers = channel.values[np.isfinite(channel.values)]
+    return channel.defect is None and numbers.size > 1 and bool(np.ptp(numbers))
+
+
+def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, Tone]:
+    """What the recording is good for, in a sentence, and how that is meant."""
+    if found.asks is not None or found.duration is None or found.rate is None:
+        return "It is not read as a recording yet: its signals have to be told first.", "refused"
+    names = [words(signal.name) for signal in found.signals]
+    held = f"It holds {number(found.duration, 's', 4)} of {', '.join(names)} at {number(found.rate, 'Hz', 6)}"
+    failed = [words(check.name) for check in checks if check.status == "fail"]
+    warned = [words(check.name) for check in checks if check.status == "warn"]
+    if failed:
+        return f"{held}, but cannot be identified from: {', '.join(failed)}.", "refused"
+    if warned:
+        return f"{held}; with care: {', '.join(warned)}.", "open"
+    return f"{held}, and every check passed.", "sure"
+
+
+def _answers(found: Inspection) -> Iterator[tuple[str, str]]:
+    yield "What is it?", f"{readable(found.origin)}: {found.format}, {len(found.columns)} columns"
+    if len(found.axes) > 1:
+        yield "Which axes?", ", ".join(found.axes)
+    if found.samples is not None and found.start is not None and found.duration is not None:
+        parts = f"{found.segments} segment{'s' * (found.segments != 1)}"
+        times = f"{number(found.start)} to {number(found.start + found.duration, 's')}"
+        yield "How long?", f"{found.samples} samples in {parts}, {times}"
+        yield "How regular?", f"jitter {found.jitter:.2%} of a sample period{', resampled' * found.resampled}"
+        yield "Is anything lost?", _lost(found)
+    if found.dropped:
+        yield "What is not used?", ", ".join(found.dropped)
+
+
+def _lost(found: Inspection) -> str:
+    holes = [f"{number(duration, 's', 3)} at {number(start, 's')}" for start, duration in found.holes[:MOST_HOLES]]
+    more = len(found.holes) - len(holes)
+    parts = [f"holes of {', '.join(holes)}" + (f" and {more} more" if more > 0 else "")] if holes else ["no hole"]
+    parts += [f"{found.interpolated} samples interpolated"] if found.interpolated else []
+    parts += [f"{found.duplicates} samples stood there twice"] if found.duplicates else []
+    return "; ".join(parts)
+
+
+def _signals(found: Inspection) -> Table:
+    rows = (
+        (
+            words(signal.name),
+            signal.column,
+            unit_text(signal.unit),
+            *(number(value, digits=5) for value in (signal.minimum, signal.maximum, signal.rms)),
+            "constant" if signal.resolution is None else number(signal.resolution, digits=3),
+        )
+        for signal in found.signals
+    )
+    headings = ("signal", "column", "unit", "least>", "most>", "RMS>", "resolution>")
+    return table("What is read, in SI units", headings, rows)
+
+
+def _columns(columns: Sequence[ColumnSummary]) -> Table:
+    rows = (
+        (
+            column.name if column.axis is None else f"{column.name} ({column.axis})",
+            column.unit or "",
+            *(
+                "" if value is None else number(value, digits=5)
+                for value in (column.minimum, column.maximum, column.resolution)
+            ),
+            f"{words(column.signal)}: {', '.join(column.why)}" if column.signal else ", ".join(column.why),
+        )
+        for column in columns
+    )
+    return table("In the file's units", ("column", "unit", "least>", "most>", "resolution>", "likely~"), rows)
+
+
+def _what_to_write(found: Inspection) -> Iterator[AnyPart]:
+    """What keeps the file from being read, and the lines of a rig that would help."""
+    yield Paragraph(text=f"{found.asks}.")
+    if found.suggestions:
+        yield Paragraph(text="Likely, for the rig file:")
+        yield Code(text="\n".join(("[trace.columns]", *found.suggestions)))

@@ -78,8 +78,8 @@ def checks_section(checks: Sequence[Check], warnings: Sequence[str]) -> Section:
     caption = f"{passed} of {len(applicable)} checks of the recording passed before anything was fitted"
     headings = ("check", "status", "found~", *(["advice~"] if advised else []))
     notes = (Points(items=tuple(warnings)),) if warnings else ()
-    blocks = (*notes, table(caption, headings, rows, marked))
-    return Section(key="checks", heading="Checks and warnings", blocks=blocks, detail=True)
+    tables = (table(caption, headings, rows, marked),) if applicable else ()
+    return Section(key="checks", heading="Checks and warnings", blocks=(*notes, *tables), detail=True)
 
 
 def origin(provenance: Mapping[str, Any] | None) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from bench.names import plain
-from bench.report.document import Document, HeatMap, Paragraph, Points, Table
+from bench.report.document import Code, Document, Paragraph, Points, Table
 
 #: Columns of a log: a terminal says how wide it is.
 WIDTH = 110
@@ -65,17 +65,12 @@ def show(document: Document) -> None:
                 shown.print(part)
 
 
-def show_part(part: Table | Paragraph | Points | HeatMap) -> None:
-    """Print a part of a document alone."""
-    console().print(rendered(part))
-
-
 def rendered(part: object) -> RenderableType | None:
     """A part of a document for a terminal; None of what only a page can show."""
     match part:
         case Table():
             return _grid(part)
-        case Paragraph():
+        case Paragraph() | Code():
             return Text(writable(part.text))
         case Points():
             return Text(writable("\n".join(f"- {item}" for item in part.items)))

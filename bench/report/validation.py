@@ -1,11 +1,14 @@
-"""A validation as tables, as JSON (`bench.validate/1`), and run by run as CSV and Parquet."""
+"""A validation: how often intervals hold, how far off numbers are, and whether names are right.
+
+As JSON (`bench.validate/1`), as a document, and run by run as CSV and Parquet.
+"""
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -13,20 +16,37 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from pyarrow import csv
 
-from bench.files import held, whole, write_text
-from bench.report.figures import save
-from bench.report.sheet import Sheet
-from bench.report.validation_figures import confusion_figure, coverage_figure
+from bench.files import held, whole
+from bench.names import words
+from bench.report.document import (
+    AnyPart,
+    Document,
+    HeatMap,
+    Intervals,
+    Neighbour,
+    Neighbours,
+    Paragraph,
+    Picture,
+    Section,
+    Span,
+    Table,
+    table,
+)
+from bench.report.markdown import markdown
+from bench.report.numbers import number, sentence, share, unit_text
+from bench.report.parts import origin
+from bench.report.publish import write_document
+from bench.report.serial import known, picked, serialised
 from bench.statistics import NORMAL95
-from bench.structured import json_text
 from bench.validation.coverage import LEVELS, Coverage, Group, Share
-from bench.validation.naming import Naming
+from bench.validation.naming import NOTHING, NOTHING_MISSING, Naming
 from bench.validation.run import Run
 from bench.validation.validate import Validation
 
 SCHEMA = "bench.validate/1"
-#: Terms of the equation of motion as tables have them.
+#: Terms of the equation of motion as tables have them, and in words.
 SYMBOLS = {"inertia": "J", "viscous": "K_w", "coulomb": "K_0"}
+TERM_WORDS = {"inertia": "inertia", "viscous": "viscous friction", "coulomb": "Coulomb friction"}
 TITLES = {
     "identify": "identify: how far off, and how often an interval holds the truth",
     "diagnose": "diagnose: the same, after it added what it named",
@@ -36,56 +56,194 @@ NOTE = (
     "width of the interval of 95 %; ±/RMS by root mean squares, 1.96 of a normal distribution's. 50%, 80%, 95%: share "
     "of the intervals of that level that hold the truth; bounds: 95 % of the last, Clopper-Pearson."
 )
+#: The level that the page's chart shows; the table has the others.
+LEVEL = LEVELS[-1]
+#: Share that the chart's scale begins at, where no bound lies below it; fewer runs than tell as much are too few.
+FROM = 0.8
+FEW = " More runs narrow these bounds."
+FILES = {
+    "validation.json": "all of it, as data",
+    "runs.csv": "what each run was, and what was said of it",
+    "quantities.csv": "each quantity that a run tells, beside the truth",
+}
 
 
-def sheets(found: Validation, every: bool = False) -> list[Sheet]:
-    """All tables.
+def validation_json(found: Validation, provenance: Mapping[str, Any]) -> str:
+    """The whole, as the contract's JSON; nan is null."""
+    status = Counter(run.status for run in found.runs)
+    return serialised(
+        {
+            "schema": SCHEMA,
+            "runs": {"asked": len(found.runs), **{name: status[name] for name in ("done", "refused", "failed")}},
+            "coverage": [_coverage_json(each) for each in found.coverage],
+            "naming": None if found.naming is None else _naming_json(found.naming),
+            "provenance": provenance,
+        }
+    )
+
+
+def _coverage_json(found: Coverage) -> dict[str, Any]:
+    names = (field.name for field in fields(found) if field.name != "inside")
+    told = {name: known(each) if isinstance(each, float) else each for name, each in picked(found, *names).items()}
+    inside = [{"level": level, **_share_json(each)} for level, each in zip(LEVELS, found.inside, strict=True)]
+    return {**told, "inside": inside}
+
+
+def _share_json(found: Share) -> dict[str, Any]:
+    return {
+        "count": found.count,
+        "of": found.of,
+        "share": found.value if found.of else None,
+        "bounds95": found.bounds,
+    }
+
+
+def _naming_json(found: Naming) -> dict[str, Any]:
+    return {
+        "nulls_with_false_name": _share_json(found.nulls),
+        "nulls_by_motion": {name: _share_json(each) for name, each in found.nulls_by_motion.items()},
+        "with_false_name": _share_json(found.false),
+        "with_false_name_explained": _share_json(found.silent),
+        "named_exactly": _share_json(found.exact),
+        "refused": _share_json(found.refused),
+        "named": {name: _share_json(each) for name, each in found.named.items()},
+        "falsely_named": found.falsely,
+        "confusion": found.confusion,
+    }
+
+
+def validation(found: Validation, provenance: Mapping[str, Any], command: str, own: bool) -> Document:
+    """The document of a validation.
 
     Args:
-        found: the validation.
-        every: whether nulls are told by plant, noise, axis and motion too, and effects by their quantities.
+        found: what was found.
+        provenance: of it.
+        command: that does the same again.
+        own: whether the axis is one's own: then how well the motion determines it comes first.
     """
-    tables = [outcomes(found.runs)]
-    for by, title in TITLES.items():
-        some = [each for each in found.coverage if each.by == by and (every or each.whole)]
-        tables += [covered(some, title)] if some else []
+    first, naming = _first(found), found.naming
+    sections = [Section(key="coverage", heading="How often an interval holds the truth", blocks=tuple(_charts(found)))]
+    if own:
+        axis = Section(key="axis", heading="This motion on this drive", blocks=_determined(found.runs))
+        sections.insert(0, axis)
+    sections.append(Section(key="numbers", heading="How far off numbers are", blocks=tuple(_numbers(found, True))))
+    parts = tuple(_numbers(found, False))
+    if parts:
+        sections.append(Section(key="parts", heading="The same, by parts of these runs", blocks=parts, detail=True))
+    if naming is not None:
+        sections.append(Section(key="names", heading="Whether names are right", blocks=tuple(_naming(naming))))
+    beside = Neighbours(files=tuple(Neighbour(name=name, about=about) for name, about in FILES.items()))
+    sections.append(Section(key="runs", heading="All runs", blocks=(_outcomes(found.runs), beside)))
+    low = any(one.inside[-1].bounds[1] < LEVEL for one in first)
+    false = naming is not None and naming.false.count > 0
+    return Document(
+        title="Validation",
+        subject=command,
+        verdict=_verdict(first, naming),
+        tone="open" if not _enough(first) or low or false else "sure",
+        answers=dict(_answers(found, first)),
+        sections=tuple(sections),
+        origin=origin(provenance),
+        pictures=tuple(_pictures(found)),
+    )
+
+
+def _first(found: Validation) -> list[Coverage]:
+    """What `identify` tells of the first whole group of runs: those with the least hidden in them."""
+    groups = [one for one in found.coverage if one.by == "identify" and one.whole and one.told]
+    return [one for one in groups if one.group == groups[0].group]
+
+
+def _enough(first: list[Coverage]) -> bool:
+    """Whether there are so many runs that a level much below the one claimed would show."""
+    return bool(first) and all(one.inside[-1].bounds[0] >= FROM for one in first)
+
+
+def _verdict(first: list[Coverage], naming: Naming | None) -> str:
+    if not first:
+        verdict = "No run tells a quantity"
+    else:
+        shares = ", ".join(f"of {TERM_WORDS[one.quantity]} in {share(one.inside[-1].value)}" for one in first)
+        verdict = f"Intervals of {share(LEVEL)} hold the truth {shares}, of {_runs(first[0])}"
+    if naming is None:
+        return f"{verdict}."
+    false = naming.false
+    has = "has" if false.count == 1 else "have"
+    return f"{verdict}; {false.count or 'none'} of {false.of} diagnosed runs {has} a false name."
+
+
+def _runs(one: Coverage) -> str:
+    hidden = "nothing" if one.group == "nulls" else one.group
+    return f"{one.runs} {'run' if one.runs == 1 else 'runs'} with {hidden} hidden"
+
+
+def _answers(found: Validation, first: list[Coverage]) -> Iterator[tuple[str, str]]:
+    far = ", ".join(f"{TERM_WORDS[one.quantity]} {share(one.typical)}" for one in first) or "not known"
+    yield "How far off are numbers?", f"RMS error over the true value: {far}."
+    bounds = "; ".join(f"{TERM_WORDS[one.quantity]} {_bounded(one.inside[-1])}" for one in first) or "not known"
+    yield f"In their {share(LEVEL)} interval?", f"{bounds} (bounds of 95 %).{'' if _enough(first) else FEW}"
     if found.naming is not None:
-        tables += [names(found.naming), *([by_name(found.naming)] if found.naming.named else [])]
-    return tables
+        yield "Named exactly?", f"{_bounded(found.naming.exact)} of {found.naming.exact.of} runs."
+    status = Counter(run.status for run in found.runs)
+    counts = ", ".join(f"{count} {words(name)}" for name, count in status.most_common())
+    yield "Runs?", f"{len(found.runs)}: {counts}."
 
 
-def outcomes(runs: tuple[Run, ...]) -> Sheet:
-    """How many runs there are, and why some tell nothing."""
-    counts = Counter((run.status, _first_words(run.reason)) for run in runs)
-    rows = [(status, reason, str(count)) for (status, reason), count in sorted(counts.items(), key=lambda e: -e[1])]
-    return Sheet("Runs", ("identify", "why", "runs"), rows, words=2)
+def _charts(found: Validation) -> Iterator[AnyPart]:
+    """Share of intervals that hold the truth with its bounds, by quantity and group of runs."""
+    charts = [_chart(found, quantity, -1) for quantity in SYMBOLS]
+    if not any(chart.spans for chart in charts):
+        yield Paragraph(text="No run tells a quantity.")
+    yield from (chart for chart in charts if chart.spans)
 
 
-def _first_words(reason: str) -> str:
-    """A reason without the numbers of its run."""
-    return reason.partition(":")[0]
+def _chart(found: Validation, quantity: str, place: int) -> Intervals:
+    """The same of a quantity, at the level of this place among all."""
+    level, shown = LEVELS[place], [one for one in found.coverage if one.quantity in SYMBOLS and one.told]
+    least = min((one.inside[place].bounds[0] for one in shown), default=FROM)
+    return Intervals(
+        title=f"{sentence(TERM_WORDS[quantity])}, {SYMBOLS[quantity]}.",
+        alternative=f"Share of the intervals of {share(level)} that hold the truth, by groups of runs, "
+        "with bounds of 95 %; the line is what they claim.",
+        label=f"in their {share(level)} interval",
+        unit="%",
+        right=(100.0 * level, 100.0 * level),
+        limits=(100.0 * min(FROM if level > FROM else level / 2.0, least), 100.0),
+        spans=tuple(_span(one, place) for one in shown if one.quantity == quantity),
+    )
 
 
-def determined(runs: tuple[Run, ...]) -> Sheet:
-    """How well a motion determines each quantity of one axis with nothing hidden in it: how often, and how closely."""
-    plain = [run for run in runs if not run.hidden and run.status != "failed"]
-    rows = []
-    for term, symbol in SYMBOLS.items():
-        scored = [one for run in plain for one in run.scored if one.by == "identify" and one.quantity == term]
-        found = Coverage.of("identify", Group("", len(plain), True), term, scored)
-        known = Share(sum(abs(one.parameter.value) > one.half_width * one.scale for one in scored), len(plain))
-        true = f"{scored[0].true:.4g} {scored[0].parameter.unit}" if scored else "-"
-        rows.append(
-            (symbol, true, _of(known), _percent(found.half_width), _percent(found.bias), _percent(found.typical))
-        )
-    headings = ("quantity", "true", "determined", "± % (95 %)", "bias %", "RMS error %")
-    note = "determined: runs, with nothing hidden, that tell the quantity by an interval which excludes zero."
-    return Sheet("How well this motion on this drive determines the axis", headings, rows, words=2, note=note)
+def _span(one: Coverage, place: int) -> Span:
+    inside = one.inside[place]
+    low, value, high = (100.0 * each for each in (inside.bounds[0], inside.value, inside.bounds[1]))
+    colour = "ink" if one.by == "identify" else "model"
+    return Span(name=f"{one.by}: {one.group}", colour=colour, value=value, low=low, high=high)
 
 
-def covered(found: Sequence[Coverage], title: str) -> Sheet:
-    """Bias, spread, width and coverage."""
-    rows = [
+def _pictures(found: Validation) -> Iterator[Picture]:
+    """Coverage of each quantity at every level, and names by what is hidden."""
+    rows = [tuple(_chart(found, quantity, place) for place in range(len(LEVELS))) for quantity in SYMBOLS]
+    told = tuple(row for row in rows if row[0].spans)
+    yield Picture(name="coverage", title="How often an interval holds the truth", rows=told or (_nothing(),))
+    if found.naming is not None:
+        matrix = confusion(found.naming.confusion)
+        yield Picture(name="confusion", title="Named, by what is hidden", rows=((matrix,),))
+
+
+def _nothing() -> tuple[Table]:
+    return (table("", ("",), [("No run tells a quantity.",)]),)
+
+
+def _numbers(found: Validation, whole: bool) -> Iterator[AnyPart]:
+    """Bias, spread, width and coverage, of whole groups of runs or of parts of them."""
+    for by, title in TITLES.items():
+        some = [one for one in found.coverage if one.by == by and one.whole is whole]
+        if some:
+            yield from (_covered(some, title), Paragraph(text=NOTE))
+
+
+def _covered(found: Sequence[Coverage], title: str) -> Table:
+    rows = (
         (
             each.group,
             SYMBOLS.get(each.quantity, each.quantity),
@@ -93,111 +251,106 @@ def covered(found: Sequence[Coverage], title: str) -> Sheet:
             f"{_percent(each.bias, 2)}±{_percent(NORMAL95 * each.bias_error, 1)}",
             _percent(each.typical),
             _percent(each.half_width),
-            _number(each.width_over_error),
-            *(f"{100.0 * share.value:.1f}" if share.of else "-" for share in each.inside),
-            "{:.1f}-{:.1f}".format(*(100.0 * bound for bound in each.inside[-1].bounds)) if each.told else "-",
+            f"{each.width_over_error:.2f}" if math.isfinite(each.width_over_error) else "–",
+            *(f"{100.0 * inside.value:.1f}" if inside.of else "–" for inside in each.inside),
+            "{:.1f}-{:.1f}".format(*(100.0 * bound for bound in each.inside[-1].bounds)) if each.told else "–",
         )
         for each in found
-    ]
-    levels = (f"{level:.0%}" for level in LEVELS)
-    headings = ("runs", "of", "told", "bias %", "RMS %", "± %", "±/RMS", *levels, "bounds")
-    return Sheet(title, headings, rows, words=2, note=NOTE)
+    )
+    levels = (f"{level:.0%}>" for level in LEVELS)
+    return table(title, ("runs", "of", "told>", "bias %>", "RMS %>", "± %>", "±/RMS>", *levels, "bounds>"), rows)
 
 
-def names(found: Naming) -> Sheet:
+def _determined(runs: tuple[Run, ...]) -> tuple[AnyPart, ...]:
+    """How well a motion determines each quantity of one axis with nothing hidden in it: how often, and how closely."""
+    plain = [run for run in runs if not run.hidden and run.status != "failed"]
+    rows = []
+    for term, symbol in SYMBOLS.items():
+        scored = [one for run in plain for one in run.scored if one.by == "identify" and one.quantity == term]
+        found = Coverage.of("identify", Group("", len(plain), True), term, scored)
+        sure = Share(sum(abs(one.parameter.value) > one.half_width * one.scale for one in scored), len(plain))
+        true = f"{scored[0].true:.4g} {unit_text(scored[0].parameter.unit)}" if scored else "–"
+        rows.append((symbol, true, _of(sure), *map(_percent, (found.half_width, found.bias, found.typical))))
+    headings = ("quantity", "true", "determined>", "± % (95 %)>", "bias %>", "RMS error %>")
+    note = "determined: runs, with nothing hidden, that tell the quantity by an interval which excludes zero."
+    title = "How well this motion on this drive determines the axis"
+    return table(title, headings, rows), Paragraph(text=note)
+
+
+def _outcomes(runs: tuple[Run, ...]) -> Table:
+    """How many runs there are, and why some tell nothing, without the numbers of a run."""
+    counts = Counter((run.status, run.reason.partition(":")[0]) for run in runs)
+    rows = ((status, reason, str(count)) for (status, reason), count in sorted(counts.items(), key=lambda e: -e[1]))
+    return table("Runs", ("identify", "why", "runs>"), rows)
+
+
+def _naming(found: Naming) -> Iterator[AnyPart]:
+    yield _names(found)
+    if found.named:
+        yield _by_name(found)
+    if found.confusion:
+        yield confusion(found.confusion)
+    rows = ((words(hidden), _counts(counts)) for hidden, counts in found.confusion.items())
+    yield table("What is said where one effect is hidden, or nothing", ("hidden", "said, and how often~"), rows)
+
+
+def _counts(counts: Mapping[str, int]) -> str:
+    ordered = sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))
+    return ", ".join(f"{words(name)} {number(count)}" for name, count in ordered)
+
+
+def _names(found: Naming) -> Table:
     """Whether names are right, over all runs that were diagnosed."""
-    rows = [
-        ("nulls with a false name", bounded(found.nulls), _of(found.nulls)),
-        *((f"  {name}", bounded(share), _of(share)) for name, share in _apart(found.nulls_by_motion)),
-        ("runs with a false name", bounded(found.false), _of(found.false)),
-        ("  and no remainder beside it", bounded(found.silent), _of(found.silent)),
-        ("runs named exactly", bounded(found.exact), _of(found.exact)),
-        ("refused", bounded(found.refused), _of(found.refused)),
-    ]
-    return Sheet("Names", ("what", "share", "runs"), rows)
+    by_motion = found.nulls_by_motion if len(found.nulls_by_motion) > 1 else {}
+    rows = {
+        "nulls with a false name": found.nulls,
+        **{f"  {name}": each for name, each in by_motion.items()},
+        "runs with a false name": found.false,
+        "  and no remainder beside it": found.silent,
+        "runs named exactly": found.exact,
+        "refused": found.refused,
+    }
+    return table("Names", ("what", "share>", "runs>"), ((name, _bounded(one), _of(one)) for name, one in rows.items()))
 
 
-def _apart(by_motion: Mapping[str, Share]) -> list[tuple[str, Share]]:
-    """By motion, where there are several."""
-    return [*by_motion.items()] if len(by_motion) > 1 else []
-
-
-def by_name(found: Naming) -> Sheet:
+def _by_name(found: Naming) -> Table:
     """Of each effect, how often it is named where it is, and where it is not."""
     every = {name: found.named.get(name, Share(0, 0)) for name in sorted({*found.named, *found.falsely})}
-    rows = [(name, bounded(share), _of(share), str(found.falsely.get(name, 0))) for name, share in every.items()]
-    return Sheet("By effect", ("effect", "named where it is", "runs", "where it is not"), rows)
+    rows = ((name, _bounded(one), _of(one), str(found.falsely.get(name, 0))) for name, one in every.items())
+    return table("By effect", ("effect", "named where it is>", "runs>", "where it is not>"), rows)
 
 
-def bounded(share: Share) -> str:
+def confusion(counts: Mapping[str, Mapping[str, int]]) -> HeatMap:
+    """What is said of runs with one effect hidden or none, as a matrix: first the right answers, in the rows' order."""
+    answers = [NOTHING_MISSING if name == NOTHING else name for name in counts]
+    columns = [*answers, *sorted({name for said in counts.values() for name in said} - set(answers))]
+    return HeatMap(
+        caption="Hidden down, said across: how often, coloured by the share of what is said in a row; "
+        "the right answer is framed",
+        corner="hidden",
+        rows=tuple(map(words, counts)),
+        columns=tuple(map(words, columns)),
+        counts=tuple(tuple(said.get(name, 0) for name in columns) for said in counts.values()),
+    )
+
+
+def _bounded(found: Share) -> str:
     """A share with its bounds."""
-    if not share.of:
-        return "-"
-    low, high = share.bounds
-    return f"{share.value:.1%} ({low:.1%} to {high:.1%})"
+    if not found.of:
+        return "–"
+    low, high = found.bounds
+    return f"{found.value:.1%} ({low:.1%} to {high:.1%})"
 
 
-def _of(share: Share) -> str:
-    return f"{share.count}/{share.of}"
+def _of(found: Share) -> str:
+    return f"{found.count}/{found.of}"
 
 
 def _percent(value: float, digits: int = 3) -> str:
     percent = 100.0 * value
     if not math.isfinite(percent):
-        return "-"
+        return "–"
     return f"{percent:.0f}" if abs(percent) >= 10.0 ** (digits - 1) else f"{percent:.{digits}g}"
-
-
-def _number(value: float) -> str:
-    return f"{value:.2f}" if math.isfinite(value) else "-"
-
-
-def validation_json(found: Validation, provenance: Mapping[str, Any]) -> str:
-    """The whole, as the contract's JSON; nan is null."""
-    status = Counter(run.status for run in found.runs)
-    return json_text(
-        {
-            "schema": SCHEMA,
-            "runs": {"asked": len(found.runs), **{name: status[name] for name in ("done", "refused", "failed")}},
-            "coverage": [_coverage_json(each) for each in found.coverage],
-            "naming": None if found.naming is None else _naming_json(found.naming),
-            "provenance": dict(provenance),
-        }
-    )
-
-
-def _coverage_json(found: Coverage) -> dict[str, Any]:
-    known = {
-        key: (value if math.isfinite(value) else None) if isinstance(value, float) else value
-        for key, value in ((field.name, getattr(found, field.name)) for field in dataclasses.fields(found))
-        if key != "inside"
-    }
-    inside = [{"level": level, **_share_json(share)} for level, share in zip(LEVELS, found.inside, strict=True)]
-    return known | {"inside": inside}
-
-
-def _share_json(share: Share) -> dict[str, Any]:
-    return {
-        "count": share.count,
-        "of": share.of,
-        "share": share.value if share.of else None,
-        "bounds95": list(share.bounds),
-    }
-
-
-def _naming_json(found: Naming) -> dict[str, Any]:
-    shares = {name: _share_json(getattr(found, name)) for name in ("nulls", "false", "silent", "exact", "refused")}
-    return {
-        "nulls_with_false_name": shares["nulls"],
-        "nulls_by_motion": {name: _share_json(share) for name, share in found.nulls_by_motion.items()},
-        "with_false_name": shares["false"],
-        "with_false_name_explained": shares["silent"],
-        "named_exactly": shares["exact"],
-        "refused": shares["refused"],
-        "named": {name: _share_json(share) for name, share in found.named.items()},
-        "falsely_named": dict(found.falsely),
-        "confusion": {hidden: dict(counts) for hidden, counts in found.confusion.items()},
-    }
 
 
 def runs_table(runs: tuple[Run, ...]) -> pa.Table:
@@ -250,34 +403,27 @@ def quantities_table(runs: tuple[Run, ...]) -> pa.Table:
     )
 
 
-def write_validation(folder: Path, found: Validation, provenance: Mapping[str, Any], command: str) -> list[Path]:
-    """Write JSON, tables and figures into a folder; returns their paths.
+def write_validation(
+    folder: Path, found: Validation, provenance: Mapping[str, Any], command: str, own: bool
+) -> list[Path]:
+    """Write page, pictures, JSON and tables into a folder; as `validation`.
+
+    Returns:
+        Paths written.
 
     Raises:
         InputError: the folder cannot be written to.
     """
+    tables = [_outcomes(found.runs), *_numbers(found, True), *_numbers(found, False)]
+    tables += [] if found.naming is None else _naming(found.naming)
+    text = "\n\n".join([f"# Validation\n\n`{command}`", *filter(None, map(markdown, tables))])
+    beside = {"validation.json": validation_json(found, provenance) + "\n", "validation.md": text + "\n"}
     with held(folder):
-        return list(_written(folder, found, provenance, command))
-
-
-def _written(folder: Path, found: Validation, provenance: Mapping[str, Any], command: str) -> Iterator[Path]:
-    yield _text(folder / "validation.json", validation_json(found, provenance) + "\n")
-    text = "\n\n".join([f"# Validation\n\n`{command}`", *(sheet.markdown() for sheet in sheets(found, every=True))])
-    yield _text(folder / "validation.md", text + "\n")
-    for name, table in (("runs", runs_table(found.runs)), ("quantities", quantities_table(found.runs))):
-        with whole(folder / f"{name}.parquet") as temporary:
-            pq.write_table(table, temporary)
-        with whole(folder / f"{name}.csv") as temporary:
-            csv.write_csv(table, temporary)
-        yield from (folder / f"{name}.parquet", folder / f"{name}.csv")
-    figures = {"coverage.png": coverage_figure(found.coverage)}
-    if found.naming is not None:
-        figures["confusion.png"] = confusion_figure(found.naming)
-    for name, figure in figures.items():
-        save(figure, folder / name)
-        yield folder / name
-
-
-def _text(path: Path, text: str) -> Path:
-    write_text(path, text)
-    return path
+        written = write_document(folder, validation(found, provenance, command, own), beside=beside)
+        for name, rows in (("runs", runs_table(found.runs)), ("quantities", quantities_table(found.runs))):
+            with whole(folder / f"{name}.parquet") as temporary:
+                pq.write_table(rows, temporary)
+            with whole(folder / f"{name}.csv") as temporary:
+                csv.write_csv(rows, temporary)
+            written += [folder / f"{name}.parquet", folder / f"{name}.csv"]
+    return written

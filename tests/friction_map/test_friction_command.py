@@ -36,7 +36,13 @@ def test_stribeck_friction_is_named_with_its_values_drawn_and_written(bench, tmp
     names = steady(rise=STATIC - COULOMB)
     status, out, err = bench("friction", *names, "--rig", "rig.toml", "--json", "f.json", "--out", "f.png")
     assert (status, err) == (0, "")
-    for words in ("named: stribeck friction", "viscous friction coefficient", "unexplained", "28 recordings", "f.png"):
+    for words in (
+        "Stribeck friction (static friction",
+        "viscous friction coefficient",
+        "unexplained",
+        "28 recordings",
+        "f.png",
+    ):
         assert words in out
     assert (tmp_path / "f.png").stat().st_size > 10_000
     found = json.loads((tmp_path / "f.json").read_text())

@@ -9,10 +9,9 @@ import pytest
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.found import NamedEffect
 from bench.effects.catalogue import catalogue
+from bench.report.diagnosis import diagnosis, verdict_sentence
 from bench.report.document import Chart, Table, TimeGraph
 from bench.report.over_time import unpacked
-from bench.report.pages.diagnosis import diagnosis_page
-from bench.report.pages.verdict import verdict_sentence
 from bench.report.publish import read_document
 from bench.rig.rig import Rig
 from tests.diagnosis.test_commands import run_of, with_unbalance
@@ -99,7 +98,7 @@ def test_the_verdict_fits_what_was_found(diagnosed):
     assert "what is left is noise" in verdict_sentence(diagnosed)
     unsure = replace(diagnosed, verdict="unexplained_remainder", because=["something is left"])
     assert "times the noise is left" in verdict_sentence(unsure)
-    page = diagnosis_page(unsure, "t", [])
+    page = diagnosis(unsure, "t")
     assert page.tone == "open"
     assert "something is left" in list(page.answers.values())[2]
     nothing = replace(diagnosed, effects=[], verdict="nothing_missing")
@@ -119,7 +118,7 @@ def test_a_page_says_where_no_model_could_be_had(diagnosed):
         velocity=replace(diagnosed.velocity, identify=None),
         courses=tuple(replace(course, velocity_left=(None, None)) for course in diagnosed.courses),
     )
-    page = diagnosis_page(unknown, "t", [])
+    page = diagnosis(unknown, "t")
     assert list(page.answers.values())[3].startswith("Not known")
     (graph,) = blocks(page, TimeGraph)
     assert [panel.label for panel in graph.panels] == ["speed", "torque", "torque, measured less modelled"]

@@ -7,8 +7,8 @@ from bench.assets import asset
 from bench.effects.present import Present
 from bench.plant.simulate import simulate
 from bench.report.document import TimeGraph
+from bench.report.inspection import inspection
 from bench.report.over_time import unpacked
-from bench.report.pages.inspection import inspection_page
 from bench.report.publish import write_html
 from bench.report.simulation import simulation
 from bench.rig.rig import load_rig
@@ -48,7 +48,7 @@ def inspected(tmp_path):
     write(run_of(), tmp_path / TRACE_NAME)
     recording = read_recording(tmp_path / TRACE_NAME)
     trace = assemble(recording, GivenOptions())
-    return inspection_page(inspect_recording(recording, GivenOptions()), (), trace), trace
+    return inspection(inspect_recording(recording, GivenOptions()), (), trace), trace
 
 
 def test_an_inspection_shows_every_signal_as_it_is_read(inspected):

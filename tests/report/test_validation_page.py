@@ -2,14 +2,13 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from bench.report.confusion import Confusion
 from bench.report.document import HeatMap, Intervals, Table
 from bench.report.html import html
-from bench.report.pages.validation import validation_page
 from bench.report.provenance import without_files
+from bench.report.validation import confusion as matrix_of
+from bench.report.validation import validation
 from bench.validation.coverage import LEVELS, Coverage, Share
 from bench.validation.naming import Naming
 from bench.validation.validate import Validation
@@ -37,7 +36,7 @@ def named(false, of, confusion=None):
 
 
 def page_of(coverage, naming=None, command="bench validate"):
-    return validation_page(Validation((), tuple(coverage), naming), without_files({"seed": 1}), command, own=False)
+    return validation(Validation((), tuple(coverage), naming), without_files({"seed": 1}), command, own=False)
 
 
 def blocks(page, kind):
@@ -97,13 +96,12 @@ def test_names_given_are_a_matrix_whose_right_answers_lie_on_its_diagonal():
         "unbalance": {"backlash": 2, "torque_offset": 1},
         "nothing": {"nothing missing": 5, "backlash": 1},
     }
-    matrix = Confusion.of(confusion)
-    assert matrix.hidden == ("backlash", "unbalance", "nothing")
-    assert matrix.said == ("backlash", "unbalance", "nothing missing", "refused", "torque offset")
-    assert matrix.counts.tolist() == [[8, 0, 0, 1, 0], [2, 0, 0, 0, 1], [1, 0, 5, 0, 0]]
-    np.testing.assert_allclose(matrix.shares.sum(axis=1), 1.0)
+    matrix = matrix_of(confusion)
+    assert matrix.rows == ("backlash", "unbalance", "nothing")
+    assert matrix.columns == ("backlash", "unbalance", "nothing missing", "refused", "torque offset")
+    assert matrix.counts == ((8, 0, 0, 1, 0), (2, 0, 0, 0, 1), (1, 0, 5, 0, 0))
     (heat,) = blocks(page_of([], named(3, 18, confusion)), HeatMap)
-    assert heat.counts == tuple(map(tuple, matrix.counts.tolist()))
+    assert heat == matrix
     made = html(page_of([], named(3, 18, confusion)))
     assert '<td class="right" style="--share: 89%">8</td>' in made
     assert '<td style="--share: 67%">2</td>' in made

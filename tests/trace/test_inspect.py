@@ -1,11 +1,10 @@
 import json
-from io import StringIO
 
 import numpy as np
 import pytest
-from rich.console import Console
 
-from bench.report.inspection import table
+from bench.report.inspection import inspection as document
+from bench.report.terminal import show
 from bench.trace.inspect import inspect, to_json
 from tests.trace.recordings import csv_text
 
@@ -42,17 +41,16 @@ def test_json(inspection):
     assert told["holes"] == [pytest.approx([0.099, 0.041])]
 
 
-def test_table(inspection):
-    console = Console(width=120, file=StringIO())
-    console.print(table(inspection))
-    text = console.file.getvalue()
+def test_table(inspection, capsys):
+    show(document(inspection))
+    text = capsys.readouterr().out.replace("\N{NO-BREAK SPACE}", " ")
     for word in (
         "CSV table",
-        "360 in 2 segments",
-        "1000 Hz",
+        "360 samples in 2 segments",
+        "at 1000 Hz",
         "0.041 s at 0.099 s",
         "spare [deg]",
         "constant",
-        "note: 1 hole",
+        "- 1 hole",
     ):
         assert word in text

@@ -15,7 +15,8 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-from bench.report.diagnosis import diagnosis_table
+from bench.report.diagnosis import diagnosis
+from bench.report.terminal import show as show_document
 from tests.studies.blind.confusion import save_confusion
 from tests.studies.blind.draw import Drawn, draw
 from tests.studies.blind.record import home, recorded, truth_of
@@ -66,7 +67,7 @@ def tell(folder: Path, name: str, without_truth: bool) -> None:
     truth, console = truth_of(folder, name), Console()
     console.print(truth)
     found = diagnosis_of(folder / name, left_out(truth["effects"], without_truth))
-    console.print(diagnosis_table(found, str(folder / name)))
+    show_document(diagnosis(found, str(folder / name)))
     for step in found.steps:
         console.print(
             f"{step.effect or 'bare axis'}: {step.torque[0] / found.torque.noise_floor:.3f} of the noise floor"
