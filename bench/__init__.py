@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from bench.diagnosis.show.show import Diagnosis
     from bench.export.effects import Effects
     from bench.fit.estimate import Estimate
-    from bench.fit.regression import identify
+    from bench.fit.identify import identify
     from bench.plant.simulate import simulate
     from bench.rig.rig import Rig, load_rig
     from bench.trace.read import read
@@ -52,7 +52,7 @@ _MODULES = {
     "Trace": "bench.trace.trace",
     "check": "bench.baseline.check",
     "diagnose": "bench.diagnosis.diagnosis",
-    "identify": "bench.fit.regression",
+    "identify": "bench.fit.identify",
     "load_rig": "bench.rig.rig",
     "read": "bench.trace.read",
     "replay": "bench.diagnosis.replay",

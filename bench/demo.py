@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bench.assets import asset
 from bench.files import held
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.plant.simulate import simulate, write_truth
 from bench.report.document import Document
 from bench.report.identification import identification, moved

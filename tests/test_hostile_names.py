@@ -9,7 +9,7 @@ import pytest
 
 from bench.assets import asset
 from bench.files import write_text
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.names import cell, readable
 from bench.plant.model_file import StoredModel, load_model, model_toml
 from bench.plant.plant import Plant

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from bench.assets import asset
 from bench.errors import InputError, UndeterminedError
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.plant.model_file import load_model, read_table
 from bench.plant.profiles import s_curve
 from bench.rig.rig import Rig, load_rig

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.rig.rig import load_rig
 from bench.trace.read import read
 from bench.trace.write import write
@@ -22,7 +22,7 @@ SAMPLES = 10_000_000
 STREAMED = """
 import re, sys, time
 from pathlib import Path
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.trace.stream import stream
 from tests.fit.motions import RIG
 began = time.perf_counter()

@@ -17,9 +17,9 @@ from bench.fit.estimate import Alone
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.identify import identify
 from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
-from bench.fit.regression import identify
 from bench.fit.rows import WIDEST, Rows
 from bench.fit.shapes import shaped
 from bench.gate.gate import passed

@@ -111,7 +111,7 @@ def _estimate(
 
         gated = passed(of.read(trace), rig)
         return replace(identify_as_in_the_lab(gated.trace, rig), checks=gated.checks), None
-    from bench.fit.regression import identify as regress
+    from bench.fit.identify import identify as regress
     from bench.report.terminal import progress
     from bench.trace.stream import stream
 

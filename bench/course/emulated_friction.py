@@ -11,7 +11,7 @@ from bench.course.rig import simulated_with, torque_constant
 from bench.course.run import run_of
 from bench.course.t06_inertia import KG_CM2
 from bench.course.t09_least_squares import Friction, identify_friction
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.plant.model import AxisParameters
 from bench.plant.sensors import Sensors
 from bench.plant.simulate import simulate

@@ -8,7 +8,7 @@ from bench.axis_kind import OFFSET
 from bench.course.result import EXAMPLE, Number, Task
 from bench.course.rig import rotor_inertia, simulated_with
 from bench.course.t06_inertia import KG_CM2
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.plant.model import AxisParameters
 from bench.plant.simulate import simulate
 from bench.rig.load import Load

@@ -9,8 +9,8 @@ from bench.course.result import EXAMPLE, Number, Task
 from bench.course.rig import without_friction
 from bench.course.run import run_of
 from bench.course.t09_least_squares import identify_friction
+from bench.fit.identify import identify
 from bench.fit.lab import identify_as_in_the_lab, mean_inertia
-from bench.fit.regression import identify
 from bench.plant.model import AxisParameters
 from bench.plant.sensors import Sensors
 from bench.plant.simulate import simulate

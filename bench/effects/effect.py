@@ -74,7 +74,7 @@ class Fitted(Protocol):
     @property
     def theta(self) -> Array: ...  # noqa: D102
     @property
-    def owners(self) -> NDArray[np.int64]: ...  # noqa: D102
+    def owners(self) -> NDArray[np.object_]: ...  # noqa: D102
     @property
     def scope(self) -> Scope: ...  # noqa: D102
     @property

@@ -129,6 +129,8 @@ def long_run_covariance(scores: Array) -> tuple[Array, float]:
 
 def _bandwidth(scores: Array) -> float:
     """WIDENED*1.3221*(a*n)**(1/5), a from first-order fits; between one lag and a quarter of the sequence."""
+    if len(scores) < 2:
+        return 1.0
     now, before = scores[1:], scores[:-1]
     power = np.sum(before**2, axis=0)
     rho = np.clip(np.sum(now * before, axis=0) / np.where(power > 0.0, power, 1.0), -0.97, 0.97)

@@ -11,21 +11,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS, AxisKind
 from bench.errors import UndeterminedError
-from bench.fit import layout
 from bench.fit.determined import left_open, only_direction
-from bench.fit.fit import fit
-from bench.fit.hum import with_hum
+from bench.fit.hum import mains
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.last_digit import plain
+from bench.fit.layout import lay_out
 from bench.fit.normal_equations import BLOCKS, NormalEquations
 from bench.fit.rows import Rows
-from bench.fit.solution import Left, equations_of, solved_with_shift
+from bench.fit.solution import Solution, equations_of, solve
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
@@ -37,8 +37,8 @@ BELOW = 10.0 ** -np.arange(0.25, 1.01, 0.25)
 NARROWER = 0.6
 #: Share of a value by which filters of different widths may differ without any noise.
 ROUNDING = 1e-4
-#: Columns of the parameters.
-TERMS = {INERTIA: layout.INERTIA, VISCOUS: layout.VISCOUS, COULOMB: layout.COULOMB}
+#: Terms of the axis, in whose order all numbers here stand.
+TERMS = (INERTIA, VISCOUS, COULOMB)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,37 +46,13 @@ class Tried:
     """An estimate at one cut-off.
 
     Attributes:
-        rows: of the recording's first part.
-        hypothesis: without effects.
-        equations: of these rows.
+        cutoff: half-power frequency - Hz.
         theta, half_widths: J, K_w and K_0 with half widths of their intervals of 95 % (3,); nan if undetermined.
     """
 
-    rows: Rows
-    hypothesis: Hypothesis
-    equations: NormalEquations
+    cutoff: float
     theta: Array
     half_widths: Array
-
-    @property
-    def cutoff(self) -> float:
-        """Half-power frequency - Hz."""
-        return self.rows.conditioning.filter.cutoff
-
-    @classmethod
-    def of(cls, rows: Rows, rig: Rig) -> Tried:
-        """The estimate of these rows."""
-        hypothesis = with_hum(fit(rows, plain(rows))).hypothesis
-        equations = equations_of(rows, hypothesis).coarsened(BLOCKS)
-        open_terms = left_open(equations, rig.axis_kind)
-        undetermined = np.array([term in open_terms for term in TERMS])
-        theta, half_widths = np.full(3, np.nan), np.full(3, np.nan)
-        if not undetermined.all():
-            found = solved_with_shift(equations, rows, rig.offset and only_direction(equations) is None)
-            misfit = Left.of(rows, hypothesis, found).misfit(found)
-            theta, half_widths = _of_base(found.theta), _of_base(np.hypot(found.reach * found.errors, misfit))
-        theta[undetermined] = half_widths[undetermined] = np.nan
-        return cls(rows, hypothesis, equations, theta, half_widths)
 
     @property
     def determines_inertia(self) -> bool:
@@ -89,12 +65,46 @@ class Tried:
         return not bool(np.any(away > np.hypot(self.half_widths, other.half_widths)))  # nan: undetermined
 
 
-def _of_base(values: Array) -> Array:
-    return values[[*TERMS.values()]]
+@dataclass(frozen=True, eq=False)
+class Solved(Tried):
+    """An estimate at one cut-off, and how it came about.
+
+    Attributes:
+        equations: of the recording's first part, every column and a constant.
+        solution: of these.
+    """
+
+    equations: NormalEquations
+    solution: Solution
+
+    @classmethod
+    def of(cls, rows: Rows, rig: Rig) -> Solved:
+        """The estimate of these rows, the hum of the mains that they show taken out."""
+        found, equations = _solved(rows, plain(rows), rig)
+        hum = mains(rows, found.residual)
+        if hum:
+            found, equations = _solved(rows, replace(found.hypothesis, hum=hum), rig)
+        unknown = left_open(equations, rig.axis_kind)
+        theta, half_widths = np.full(3, np.nan), np.full(3, np.nan)
+        for place, term in enumerate(TERMS):
+            if term not in unknown:
+                theta[place] = found.of(term, found.theta)
+                half_widths[place] = np.hypot(found.reach * found.of(term, found.errors), found.of(term, found.misfit))
+        return cls(rows.conditioning.filter.cutoff, theta, half_widths, equations, found)
+
+
+def _solved(rows: Rows, hypothesis: Hypothesis, rig: Rig) -> tuple[Solution, NormalEquations]:
+    laid = lay_out(rows, hypothesis)
+    equations = equations_of(rows, laid).coarsened(BLOCKS)
+    return solve(rows, hypothesis, laid, equations, rig.offset and only_direction(equations) is None), equations
+
+
+#: An estimate with or without how it came about.
+Estimated = TypeVar("Estimated", bound=Tried)
 
 
 @dataclass(frozen=True)
-class Chosen:
+class Chosen(Generic[Estimated]):
     """The chosen cut-off, and what the others imply.
 
     Attributes:
@@ -103,12 +113,12 @@ class Chosen:
         warnings: that the estimate moves with the cut-off.
     """
 
-    tried: Tried
+    tried: Estimated
     doubt: Array
     warnings: tuple[str, ...] = ()
 
 
-def choose(first: Trace, rig: Rig, cutoff: float | None) -> Chosen:
+def choose(first: Trace, rig: Rig, cutoff: float | None) -> Chosen[Solved]:
     """Choose the cut-off, unless one is given.
 
     Args:
@@ -120,25 +130,25 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> Chosen:
         UndeterminedError: the recording is too short, or never moves clearly.
         InputError: a signal is missing, or rig and recording do not fit together.
     """
-    highest = Tried.of(Rows.of(first, rig, cutoff=cutoff), rig)
+    highest = Solved.of(Rows.of(first, rig, cutoff=cutoff), rig)
     if cutoff is not None:
         return Chosen(highest, np.zeros(3))
-    usable = [tried for tried in (highest, *_lower(first, rig, highest)) if tried.determines_inertia]
+    usable = [tried for tried in (highest, *_lower(highest, rig)) if tried.determines_inertia]
     return among(usable, rig.axis_kind) if usable else Chosen(highest, np.zeros(3))
 
 
-def _lower(first: Trace, rig: Rig, highest: Tried) -> Iterator[Tried]:
+def _lower(highest: Solved, rig: Rig) -> Iterator[Solved]:
     """Estimates at lower cut-offs, until the filter is too long for the motion."""
-    conditioning = highest.rows.conditioning
+    rows = highest.solution.rows
     for share in BELOW:
-        smooth = GaussianFilter.from_cutoff(highest.cutoff * float(share), first.sample_period)
+        smooth = GaussianFilter.from_cutoff(highest.cutoff * float(share), rows.scope.sample_period)
         try:
-            yield Tried.of(Rows.of(first, rig, conditioning=replace(conditioning, filter=smooth)), rig)
+            yield Solved.of(rows.through(smooth), rig)
         except UndeterminedError:
             return
 
 
-def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
+def among(usable: Sequence[Estimated], kind: AxisKind) -> Chosen[Estimated]:
     """The choice among estimates.
 
     Args:
@@ -174,6 +184,6 @@ def _moves(taken: Tried, usable: Sequence[Tried], kind: AxisKind) -> str:
     term = int(np.argmax(np.nan_to_num(away).max(axis=0)))
     course = ", ".join(f"{tried.theta[term]:.4g} at {tried.cutoff:.3g} Hz" for tried in usable)
     return (
-        f"{kind.parameter([*TERMS][term])} moves with the filter's cut-off ({course}): taken at {taken.cutoff:.3g} Hz, "
+        f"{kind.parameter(TERMS[term])} moves with the filter's cut-off ({course}): taken at {taken.cutoff:.3g} Hz, "
         "its interval counts what it may still be off; bench diagnose may tell why"
     )

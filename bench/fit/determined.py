@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
-from bench.axis_kind import ARMATURE, COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
+from bench.axis_kind import ARMATURE, COULOMB, INERTIA, OFFSET, VISCOUS, AxisKind
 from bench.errors import UndeterminedError
-from bench.fit import layout
 from bench.fit.estimate import Estimate
 from bench.fit.normal_equations import NormalEquations
 from bench.fit.parameter import Parameter
@@ -19,15 +16,6 @@ from bench.names import words
 ROWS_PER_COLUMN = 20
 #: Least share of a column's power that the others do not explain; 1 % inflates its standard error tenfold.
 INDEPENDENT_SHARE = 0.01
-
-#: Columns of the terms of the equation of motion; a constant comes last.
-PLACES = {
-    INERTIA: layout.INERTIA,
-    VISCOUS: layout.VISCOUS,
-    COULOMB: layout.COULOMB,
-    MISALIGNMENT: layout.MISALIGNMENT,
-    OFFSET: -1,
-}
 
 #: Least share of the effort's variance that a model has to explain.
 LEAST_EXPLAINED = 0.5
@@ -52,67 +40,73 @@ def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
         equations: of every column, the constant included.
         kind: of the axis.
     """
-    require_inertia(equations, kind)
-    side = only_direction(equations)
-    if side is not None:
-        name = f"{kind.in_words(COULOMB)} apart from {kind.in_words(OFFSET)}"
-        raise UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
-    require_friction(equations, kind)
+    for refusal in _refusals(equations, kind).values():
+        raise refusal
 
 
 def left_open(equations: NormalEquations, kind: AxisKind) -> frozenset[str]:
     """Terms of the equation of motion that the rows do not determine."""
-    try:
-        require_inertia(equations, kind)
-    except UndeterminedError:
-        return frozenset({INERTIA, VISCOUS, COULOMB, OFFSET})
-    found = {COULOMB, OFFSET} if only_direction(equations) is not None else set[str]()
-    for term in (VISCOUS, COULOMB):
-        try:
-            _require_excited(equations, term, kind)
-        except UndeterminedError:
-            found.add(term)
-    return frozenset(found)
+    refused = _refusals(equations, kind)
+    return frozenset((INERTIA, VISCOUS, COULOMB, OFFSET) if INERTIA in refused else refused)
 
 
 def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
     """Raise UndeterminedError if the rows are too few or do not determine the inertia."""
-    least = ROWS_PER_COLUMN * equations.noise.shape[0]
-    if equations.count < least:
-        reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
-        raise UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
-    _require_excited(equations, INERTIA, kind)
+    for refusal in _too_few(equations, kind), _not_excited(equations, INERTIA, kind):
+        if refusal is not None:
+            raise refusal
 
 
 def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
     """Raise UndeterminedError if the rows do not determine viscous or Coulomb friction."""
-    for column in (VISCOUS, COULOMB):
-        _require_excited(equations, column, kind)
+    for term in (VISCOUS, COULOMB):
+        refusal = _not_excited(equations, term, kind)
+        if refusal is not None:
+            raise refusal
 
 
 def only_direction(equations: NormalEquations) -> str | None:
     """`forward` or `backward` if the axis moves one way only: Coulomb friction and offset are then inseparable."""
-    mean_direction = equations.gram[:, PLACES[COULOMB], PLACES[OFFSET]].sum() / equations.count
+    sign, constant = equations.place(COULOMB), equations.place(OFFSET)
+    mean_direction = equations.total[sign, constant] / equations.count
     if 0.5 * (1.0 - abs(mean_direction)) >= ONE_WAY:
         return None
     return "forward" if mean_direction > 0.0 else "backward"
 
 
-def _require_excited(equations: NormalEquations, column: str, kind: AxisKind) -> None:
-    """Raise UndeterminedError if too little of a column is independent of noise and of the others."""
-    share = independent_share(equations, column, [term for term in (INERTIA, VISCOUS, COULOMB) if term != column])
-    if not share >= INDEPENDENT_SHARE:
-        reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
-        raise UndeterminedError(kind.in_words(column), reason, RECORD[column])
+def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
+    """Why each term that the rows leave open is, in the order in which it is told; the inertia's alone if it is one."""
+    refusal = _too_few(equations, kind) or _not_excited(equations, INERTIA, kind)
+    if refusal is not None:
+        return {INERTIA: refusal}
+    found: dict[str, UndeterminedError] = {}
+    side = only_direction(equations)
+    if side is not None:
+        name = f"{kind.in_words(COULOMB)} apart from {kind.in_words(OFFSET)}"
+        found[COULOMB] = UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
+        found[OFFSET] = found[COULOMB]
+    for term in (VISCOUS, COULOMB):
+        refusal = _not_excited(equations, term, kind)
+        if refusal is not None:
+            found.setdefault(term, refusal)
+    return found
 
 
-def independent_share(equations: NormalEquations, column: str, others: Sequence[str]) -> float:
-    """Share of a column's power that is neither noise nor explained by others; negative if it is noise alone."""
-    places = [PLACES[column], *(PLACES[term] for term in others)]
-    power = np.diag(equations.total)[places]
-    scale = np.sqrt(np.where(power > 0.0, power, 1.0))
-    matrix = equations.matrix[np.ix_(places, places)] / np.outer(scale, scale)
-    return float(matrix[0, 0] - matrix[0, 1:] @ np.linalg.lstsq(matrix[1:, 1:], matrix[1:, 0], rcond=1e-9)[0])
+def _too_few(equations: NormalEquations, kind: AxisKind) -> UndeterminedError | None:
+    least = ROWS_PER_COLUMN * len(equations.names)
+    if equations.count >= least:
+        return None
+    reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
+    return UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
+
+
+def _not_excited(equations: NormalEquations, term: str, kind: AxisKind) -> UndeterminedError | None:
+    """Why a term is not determined if too little of its column is independent of noise and of the others."""
+    share = equations.independent_share(term, [other for other in (INERTIA, VISCOUS, COULOMB) if other != term])
+    if share >= INDEPENDENT_SHARE:
+        return None
+    reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
+    return UndeterminedError(kind.in_words(term), reason, RECORD[term])
 
 
 def require_significant(inertia: Parameter, kind: AxisKind, suspicions: Sequence[str]) -> None:
@@ -121,7 +115,7 @@ def require_significant(inertia: Parameter, kind: AxisKind, suspicions: Sequence
     Args:
         inertia: as found.
         kind: of the axis.
-        told: what else is suspicious about the recording, and may be why.
+        suspicions: what else is suspicious about the recording, and may be why.
     """
     low, high = inertia.ci95
     if low <= 0.0 <= high:
@@ -135,7 +129,7 @@ def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, suspicio
     Args:
         parameters: as found.
         kind: of the axis.
-        told: what else is suspicious about the recording, and may be why.
+        suspicions: what else is suspicious about the recording, and may be why.
     """
     for name in (kind.inertia, "load_moment_of_inertia", ARMATURE):
         found = parameters.get(name)
@@ -155,7 +149,7 @@ def require_sound(estimate: Estimate, kind: AxisKind, suspicions: Sequence[str])
     Args:
         estimate: as found.
         kind: of the axis.
-        told: what else is suspicious about the recording, and may be why.
+        suspicions: what else is suspicious about the recording, and may be why.
     """
     require_masses(estimate.parameters, kind, suspicions)
     require_significant(estimate[kind.inertia], kind, suspicions)

@@ -10,16 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
 from bench.fit.friction_levels import follows_load, multiply, with_friction, with_levels, with_load, with_pulls
 from bench.fit.gains import gains
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.last_digit import rounding
-from bench.fit.layout import COULOMB, DIGIT, INERTIA, VISCOUS, Layout, delays, lay_out, seen_by
+from bench.fit.layout import DIGIT, Layout, delays, lay_out, seen_by
 from bench.fit.load_side import with_loads
-from bench.fit.noise import Floor, noise_floor, noise_power
-from bench.fit.normal_equations import solved
+from bench.fit.noise import Floor, noise_power
+from bench.fit.normal_equations import bounded, solved
 from bench.fit.rows import Rows
 from bench.trace.filter import Column
 
@@ -73,7 +74,7 @@ class Fit:
         cut = float(self.theta[self.owners == DIGIT].sum())
         rounded = rounding(self.rows, step, modelled, cut)
         power = noise_power(self.rows, self.hypothesis, self.layout, self.theta)
-        return noise_floor(self.rows, power, self.left, rounded)
+        return Floor(self.rows, power, self.left, rounded)
 
     @property
     def floor(self) -> float:
@@ -103,7 +104,11 @@ class Fit:
     @property
     def base(self) -> Base:
         """J, K_w and K_0."""
-        return Base(*(float(self.theta[k]) for k in (INERTIA, VISCOUS, COULOMB)))
+        return Base(*(self.value(term) for term in (INERTIA, VISCOUS, COULOMB)))
+
+    def value(self, term: str) -> float:
+        """Coefficient of a term of the equation of motion - SI."""
+        return float(self.theta[self.owners == term][0])
 
     @property
     def span(self) -> Array:
@@ -137,8 +142,8 @@ class Fit:
         return self.layout.columns
 
     @property
-    def owners(self) -> NDArray[np.int64]:
-        """(p,) index of the term a column belongs to."""
+    def owners(self) -> NDArray[np.object_]:
+        """(p,) name of a column, or index of the term it belongs to."""
         return self.layout.owners
 
     @property
@@ -260,16 +265,9 @@ def _balanced(layout: Layout, determined: NDArray[np.bool_] | None) -> tuple[Arr
     """
     sure = slice(None) if determined is None else determined
     columns, effort = layout.columns[sure], layout.effort[sure]
-    theta, held = least_squares(columns, effort, layout.noise), {}
-    for place, (low, high) in layout.bounds.items():
-        if low <= theta[place] <= high:
-            continue
-        held[place] = float(np.clip(theta[place], low, high))
-        kept = np.delete(np.arange(theta.size), list(held))
-        rest = effort - columns[:, list(held)] @ list(held.values())
-        theta[list(held)] = list(held.values())
-        theta[kept] = least_squares(columns[:, kept], rest, layout.noise[np.ix_(kept, kept)])
-    return theta, tuple(held)
+    noise = columns.shape[0] * layout.noise
+    theta, _, held = bounded(columns.T @ columns, columns.T @ effort, noise, layout.bounds)
+    return theta, held
 
 
 def least_squares(columns: Array, effort: Array, noise: Array) -> Array:

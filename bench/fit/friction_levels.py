@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
+from bench.axis_kind import COULOMB
 from bench.effects.signals import Signals
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.rows import Rows
@@ -42,9 +43,9 @@ def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
     return seen.with_signals(change)
 
 
-def with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> Hypothesis:
+def with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
     """The hypothesis with the levels that a fit found: strengths over K_0 where that is positive."""
-    coulomb = float(theta[2])
+    coulomb = float(theta[owners == COULOMB][0])
 
     def level(index: int, term: Term) -> tuple[float, ...]:
         if coulomb <= 0.0 or not term.effect.overrides("level"):
@@ -78,7 +79,7 @@ def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows
     return seen.with_signals(change)
 
 
-def with_pulls(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> Hypothesis:
+def with_pulls(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
     """The hypothesis with the strengths that a fit found of its loads, if the friction of a term follows them."""
     if not follows_load(hypothesis):
         return hypothesis

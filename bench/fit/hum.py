@@ -9,6 +9,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.fit.fit import Fit, fit
+from bench.fit.rows import Rows
 
 #: Lines of the two grids of the world - Hz, and how far a grid strays - Hz.
 LINES, STRAYS = (50.0, 60.0, 100.0, 120.0, 150.0, 180.0), 0.1
@@ -23,13 +24,26 @@ RATE = 8.0 * BAND
 
 def with_hum(fitted: Fit) -> Fit:
     """The fit with the lines of the mains that its residual shows taken into the hypothesis."""
-    width, duration, times = fitted.rows.conditioning.filter.width, fitted.scope.duration, _by_recording(fitted)
-    found = list(fitted.hypothesis.hum)
+    found = mains(fitted.rows, fitted.residual, fitted.hypothesis.hum)
+    if len(found) == len(fitted.hypothesis.hum):
+        return fitted
+    return fit(fitted.rows, replace(fitted.hypothesis, hum=found))
+
+
+def mains(rows: Rows, residual: Array, known: tuple[float, ...] = ()) -> tuple[float, ...]:
+    """Lines of the mains that are known, and those that a residual shows beside - Hz.
+
+    Args:
+        rows: the recording.
+        residual: (m,) of the used rows, any unit.
+        known: lines that are in the model already - Hz.
+    """
+    width, duration, recordings = rows.conditioning.filter.width, rows.scope.duration, _by_recording(rows, residual)
+    found = list(known)
     for line in LINES:
-        known = any(abs(line - other) < 1.0 for other in found)
-        if known or np.exp(-((2.0 * np.pi * line * width) ** 2)) < PASSED:
+        if any(abs(line - other) < 1.0 for other in found) or np.exp(-((2.0 * np.pi * line * width) ** 2)) < PASSED:
             continue
-        offsets, power = _around(times, line)
+        offsets, power = _around(recordings, line)
         step = 0.5 / duration
         near, clear = np.abs(offsets) <= max(STRAYS, step), np.abs(offsets) > 4.0 * step
         if np.count_nonzero(clear) < 16:
@@ -37,15 +51,13 @@ def with_hum(fitted: Fit) -> Fit:
         best = int(np.argmax(power))
         if near[best] and power[best] > STANDS_OUT * np.median(power[clear]):
             found.append(float(line + offsets[best]))
-    if len(found) == len(fitted.hypothesis.hum):
-        return fitted
-    return fit(fitted.rows, replace(fitted.hypothesis, hum=tuple(found)))
+    return tuple(found)
 
 
-def _by_recording(fitted: Fit) -> list[tuple[Array, Array]]:
+def _by_recording(rows: Rows, residual: Array) -> list[tuple[Array, Array]]:
     """Times - s - and residuals (m,) of the rows of each recording that has some."""
-    edges = np.searchsorted(fitted.time, [*fitted.rows.starts[1:], np.inf])
-    times, residuals = np.split(fitted.time, edges)[:-1], np.split(fitted.residual, edges)[:-1]
+    edges = np.searchsorted(rows.time, [*rows.starts[1:], np.inf])
+    times, residuals = np.split(rows.time, edges)[:-1], np.split(residual, edges)[:-1]
     return [(time, residual) for time, residual in zip(times, residuals, strict=True) if time.size]
 
 
@@ -60,7 +72,9 @@ def _around(recordings: Sequence[tuple[Array, Array]], line: float) -> tuple[Arr
     for time, residual in recordings:
         turned = residual * np.exp(-2j * np.pi * line * time)
         place = np.floor((time - time[0]) * RATE).astype(np.intp)
-        sums = np.bincount(place, turned.real, count) + 1j * np.bincount(place, turned.imag, count)
+        first = np.flatnonzero(np.diff(place, prepend=-1))
+        sums = np.zeros(count, dtype=complex)
+        sums[place[first]] = np.add.reduceat(turned, first)
         power += np.abs(np.fft.fft(sums, 2 * count)) ** 2
     offsets = np.fft.fftfreq(2 * count, 1.0 / RATE)
     order = np.flatnonzero(np.abs(offsets) <= BAND)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
+from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.effects.effect import Load
 from bench.effects.signals import Signals
 from bench.fit.friction_levels import with_friction, with_load
@@ -18,12 +19,11 @@ from bench.fit.load_side import loads_of
 from bench.fit.rows import Rows, known_of
 from bench.trace.filter import Column
 
-#: Owners of columns that belong to no effect.
-BASE, HUM, DIGIT = -1, -2, -3
-#: Places of J, K_w, K_0 and of the time by which torque is behind speed among the columns.
-INERTIA, VISCOUS, COULOMB, MISALIGNMENT = range(4)
-#: Place behind them of what a last digit cuts off, where it is a column.
-CUT = 4
+#: Names of columns that belong to no effect: of the axis and the shift of torque against speed, and what else a
+#: recording has - sines and cosines of the mains, what the last digit of the effort cuts off. Those of an effect are
+#: named by the index of its term.
+BASE = (INERTIA, VISCOUS, COULOMB, MISALIGNMENT)
+HUM, DIGIT = "hum", "last digit"
 #: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
 FREQUENCIES, REACH = 400, 4.0
 
@@ -35,17 +35,22 @@ class Layout:
     Attributes:
         columns: (m, p): J, K_w, K_0, misalignment, the effort's last digit where it matters, sines and cosines of hum,
             then the effects' in order.
-        owners: (p,) index of the term a column belongs to, BASE, DIGIT or HUM.
+        owners: (p,) index of the term a column belongs to, or one of the names of BASE, DIGIT or HUM.
         effort: (m,) what they are to explain - N*m (N).
         noise: (p, p) covariance of what the sensors' noise makes of the columns in a row.
         bounds: lowest and highest value of strengths that are not free, by their places.
     """
 
     columns: Array
-    owners: NDArray[np.int64]
+    owners: NDArray[np.object_]
     effort: Array
     noise: Array
     bounds: Mapping[int, tuple[float, float]]
+
+    @property
+    def of_effects(self) -> NDArray[np.bool_]:
+        """Which columns are those of an effect (p,)."""
+        return np.array([isinstance(owner, int) for owner in self.owners])
 
 
 def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:
@@ -84,11 +89,15 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
         return [[(values, order + 1)], [(values, order)]]
 
     parts = [
-        rows.memory.get(("motion", *made_of), lambda: seen.table(motion, moving)),
-        rows.memory.get(("sign", *made_of), lambda: seen.table(lambda s: [[(s.sign, 0)]], resting)),
-        rows.memory.get(("shift", late, *made_of), lambda: seen.table(lambda s: [[(-s.effort, 1)]], resting + late)),
+        rows.memory.get(("motion", *made_of), lambda: seen.table(motion, moving, of_signals=True)),
+        rows.memory.get(("sign", *made_of), lambda: seen.table(lambda s: [[(s.sign, 0)]], resting, of_signals=True)),
+        -rows.memory.get(
+            ("rate", late, *made_of),
+            lambda: seen.table(lambda s: [[(s.effort, 1)]], resting + late, of_signals=True),
+        ),
     ]
-    owners, bounds = [BASE] * 4, {MISALIGNMENT: (-rows.scope.latched, rows.scope.latched)}
+    owners: list[str | int] = [*BASE]
+    bounds = {owners.index(MISALIGNMENT): (-rows.scope.latched, rows.scope.latched)}
     if hypothesis.step:
         parts.append(rows.memory.get(("digit", resting, *made_of), lambda: seen.table(cut_off, resting)))
         bounds[len(owners)] = (0.0, 0.5 * hypothesis.step)
@@ -103,7 +112,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
         bounds |= {len(owners) + place: most for place, most in hypothesis.terms[index].effect.bounded.items()}
         owners += [index] * table.shape[1]
     columns = np.concatenate(parts, axis=1)
-    held_by = np.array(owners)
+    held_by = np.array(owners, dtype=object)
     effort = seen.effort
     if late:
         effort = rows.memory.get(
@@ -166,7 +175,7 @@ def _made_of(rows: Rows, hypothesis: Hypothesis) -> tuple[object, ...]:
     return *delays(rows, hypothesis), seen
 
 
-def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.int64], moving: float) -> Array:
+def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], moving: float) -> Array:
     """Covariance (p, p) of what the sensors' white noise makes of the columns.
 
     A smoothed signal and its derivative are uncorrelated, as G is even and omega*G odd; what follows the motion behind
@@ -176,10 +185,11 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.int64], moving
     smooth, order = conditioning.filter, conditioning.order
     noise = np.zeros((owners.size, owners.size))
     hearing = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
-    noise[MISALIGNMENT, MISALIGNMENT] = conditioning.effort_noise**2 * hearing
+    noise[BASE.index(MISALIGNMENT), BASE.index(MISALIGNMENT)] = conditioning.effort_noise**2 * hearing
     omega = np.linspace(0.0, REACH / smooth.width, FREQUENCIES)
     accelerated = (1j * omega) ** (order + 1) * (1.0 + 1j * omega * moving)
-    heard = {INERTIA: accelerated, VISCOUS: (1j * omega) ** order * (1.0 + 1j * omega * moving)}
+    turned = (1j * omega) ** order * (1.0 + 1j * omega * moving)
+    heard = {BASE.index(INERTIA): accelerated, BASE.index(VISCOUS): turned}
     for index, term in enumerate(hypothesis.terms):
         if term.effect.of_motion:
             place = int(np.flatnonzero(owners == index)[0])

@@ -37,7 +37,7 @@ def loads_of(hypothesis: Hypothesis) -> tuple[Load, ...]:
     return tuple((term.effect, term.shape, term.load) for term in hypothesis.terms if term.load)
 
 
-def with_loads(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.int64]) -> Hypothesis:
+def with_loads(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
     """The hypothesis with the strengths over load inertia that a fit found of what acts on the load."""
     index = hypothesis.coupling
     inertia = 0.0 if index is None else hypothesis.terms[index].effect.load_inertia(theta[owners == index].tolist())

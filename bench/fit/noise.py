@@ -13,14 +13,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
+from bench.axis_kind import INERTIA, MISALIGNMENT, VISCOUS
 from bench.fit.hypothesis import Hypothesis
-from bench.fit.layout import INERTIA, MISALIGNMENT, VISCOUS, Layout, delays, effort_lag
+from bench.fit.layout import Layout, delays, effort_lag
 from bench.fit.rows import Rows
 
 #: Rows of a window, longer ones first, and windows of a length that it takes; else white noise is assumed.
@@ -42,41 +43,55 @@ CORNERS, BEYOND = 16, 3.0
 Power = Callable[[Array, Array], Array]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Floor:
-    """RMS of noise in a residual, and of its white part - N*m (N)."""
-
-    coloured: float
-    white: float
-
-
-def noise_floor(rows: Rows, power: Power, residual: Array, rounded: float = 0.0) -> Floor:
     """RMS of noise in a residual.
 
-    Args:
+    Attributes:
         rows: the recording.
         power: of noise in the torque balance before the filter.
         residual: (m,) of the used rows - N*m (N).
         rounded: RMS of what rounding of the effort leaves beside - N*m (N).
     """
-    conditioning, smooth = rows.conditioning, rows.conditioning.filter
-    omega = np.linspace(0.0, np.pi / smooth.sample_period, 2048)
 
-    def density(at: Array, source: Array) -> Array:
-        return np.exp(-((at * smooth.width) ** 2)) * power(at, source)
+    rows: Rows
+    power: Power
+    residual: Array
+    rounded: float = 0.0
 
-    def white(at: Array) -> Array:
-        return density(at, np.full(at.size, conditioning.source_noise**2))
+    @cached_property
+    def white(self) -> float:
+        """Of its white part alone - N*m (N)."""
+        return math.hypot(self._rms(self._lines(self._omega)), self.rounded)
 
-    def lines(at: Array) -> Array:
-        return density(at, conditioning.source_power(at))
+    @cached_property
+    def coloured(self) -> float:
+        """Of all of it - N*m (N)."""
+        excess, corner = colour(self.rows, self._white, self._lines, self.residual)
+        if not excess:
+            return self.white
+        omega = self._omega
+        more = self._white(omega) * excess / (1.0 + (omega / corner) ** 2)
+        return math.hypot(self._rms(self._lines(omega) + more), self.rounded)
 
-    excess, corner = colour(rows, white, lines, residual)
-    uncoloured = lines(omega)
-    coloured = uncoloured + white(omega) * excess / (1.0 + (omega / corner) ** 2)
-    scale = smooth.sample_period / np.pi
-    floor, least = (float(np.sqrt(scale * np.trapezoid(spectrum, omega))) for spectrum in (coloured, uncoloured))
-    return Floor(math.hypot(floor, rounded), math.hypot(least, rounded))
+    @property
+    def _omega(self) -> Array:
+        return np.linspace(0.0, np.pi / self.rows.conditioning.filter.sample_period, 2048)
+
+    def _rms(self, spectrum: Array) -> float:
+        period = self.rows.conditioning.filter.sample_period
+        return float(np.sqrt(period / np.pi * np.trapezoid(spectrum, self._omega)))
+
+    def _white(self, omega: Array) -> Array:
+        """Density of white noise behind the filter."""
+        return self._density(omega, np.full(omega.size, self.rows.conditioning.source_noise**2))
+
+    def _lines(self, omega: Array) -> Array:
+        """The same with what rounding leaves."""
+        return self._density(omega, self.rows.conditioning.source_power(omega))
+
+    def _density(self, omega: Array, source: Array) -> Array:
+        return np.exp(-((omega * self.rows.conditioning.filter.width) ** 2)) * self.power(omega, source)
 
 
 def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> Power:
@@ -87,16 +102,17 @@ def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
     conditioning = rows.conditioning
     left = _left_of_effort(rows, hypothesis, layout, theta)
     moving, _ = delays(rows, hypothesis)
+    inertia, viscous, shift = (float(theta[layout.owners == name][0]) for name in (INERTIA, VISCOUS, MISALIGNMENT))
 
     def power(omega: Array, source: Array) -> Array:
         s = 1j * omega
-        kinetic = theta[INERTIA] * s + theta[VISCOUS]
+        kinetic = inertia * s + viscous
         for index, term in enumerate(hypothesis.terms):
             if term.effect.of_motion:
                 heard = term.effect.noise_of_motion(term.shape, omega)
                 kinetic = kinetic + theta[layout.owners == index][0] * s * heard
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
-        late = (1.0 + theta[MISALIGNMENT] * s) * (1.0 + effort_lag(hypothesis) * s)
+        late = (1.0 + shift * s) * (1.0 + effort_lag(hypothesis) * s)
         effort = left * conditioning.effort_noise**2 * np.abs(late) ** 2
         known = conditioning.known_noise**2 * np.abs((1.0 + moving * s) * s) ** 2
         return effort + known + source * np.abs(kinetic) ** 2

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -18,6 +18,10 @@ BLOCK_WIDTHS = 8.0
 BLOCKS = 512
 #: Power of a combination of scaled columns below which it is none but rounding.
 ROUNDING = 1e-13
+#: Share of the largest eigenvalue below which columns that are held against another one count as dependent.
+DEPENDENT = 1e-9
+#: Name of a column: a term of the equation of motion, what a recording has beside, or the index of an effect's term.
+Name = str | int
 #: Rows a block up to which a product for each costs more than sums over all of them; at 50 both cost the same.
 SHORT = 24
 
@@ -27,6 +31,7 @@ class NormalEquations:
     """Sums over blocks of time, from which estimate, residual and a covariance for correlated residuals follow.
 
     Attributes:
+        names: of the columns (p,).
         gram: X'X of each block - (b, p, p).
         moment: X'y of each block - (b, p).
         power: y'y of each block - (b,).
@@ -34,17 +39,22 @@ class NormalEquations:
         noise: (p, p) covariance of the noise of the columns in a row.
     """
 
+    names: tuple[Name, ...]
     gram: Array
     moment: Array
     power: Array
     rows: NDArray[np.int64]
     noise: Array
 
-    def select(self, columns: Sequence[int]) -> NormalEquations:
-        """The same equations for some of the columns only."""
-        kept = list(columns)
-        gram = self.gram[:, kept][:, :, kept]
-        return replace(self, gram=gram, moment=self.moment[:, kept], noise=self.noise[np.ix_(kept, kept)])
+    def place(self, name: Name) -> int:
+        """Where the one column of a name stands."""
+        return self.names.index(name)
+
+    def only(self, kept: Callable[[Name], bool]) -> NormalEquations:
+        """The same equations for columns of some names only."""
+        at = [place for place, name in enumerate(self.names) if kept(name)]
+        gram, names = self.gram[:, at][:, :, at], tuple(self.names[place] for place in at)
+        return replace(self, names=names, gram=gram, moment=self.moment[:, at], noise=self.noise[np.ix_(at, at)])
 
     def coarsened(self, limit: int) -> NormalEquations:
         """The same equations with neighbouring blocks joined until there are at most `limit`."""
@@ -69,19 +79,30 @@ class NormalEquations:
         """X'X less what sensor noise put into it - (p, p)."""
         return self.total - self.count * self.noise
 
-    def solve(self) -> tuple[Array, Array]:
-        """Coefficients (p,), and the inverse of the matrix (p, p)."""
-        return solved(self.total, self.moment.sum(axis=0), self.count * self.noise)
+    def solve(self, bounds: Mapping[Name, tuple[float, float]] | None = None) -> tuple[Array, Array]:
+        """Coefficients (p,) within bounds by their names, and the inverse of the matrix (p, p)."""
+        limits = {self.place(name): ends for name, ends in (bounds or {}).items()}
+        theta, inverse, _ = bounded(self.total, self.moment.sum(axis=0), self.count * self.noise, limits)
+        return theta, inverse
 
-    def knowing(self, place: int, value: float, weight: float) -> NormalEquations:
+    def independent_share(self, name: Name, others: Iterable[Name]) -> float:
+        """Share of a column's power that is neither noise nor explained by others; negative if it is noise alone."""
+        places = [self.place(one) for one in (name, *others)]
+        power = np.diag(self.total)[places]
+        scale = np.sqrt(np.where(power > 0.0, power, 1.0))
+        matrix = self.matrix[np.ix_(places, places)] / np.outer(scale, scale)
+        return float(matrix[0, 0] - matrix[0, 1:] @ symmetric_inverse(matrix[1:, 1:], DEPENDENT) @ matrix[1:, 0])
+
+    def knowing(self, name: Name, value: float, weight: float) -> NormalEquations:
         """The same equations and, as if it had been measured, what is known of one coefficient beforehand.
 
         Args:
-            place: of the coefficient.
+            name: of the coefficient.
             value: that it is about.
             weight: variance of a row over that of the value.
         """
         gram, moment = np.zeros((1, *self.noise.shape)), np.zeros((1, self.noise.shape[0]))
+        place = self.place(name)
         gram[0, place, place], moment[0, place] = weight, weight * value
         added = {"gram": np.concatenate([self.gram, gram]), "moment": np.concatenate([self.moment, moment])}
         none = np.zeros(1)
@@ -111,10 +132,38 @@ def solved(gram: Array, moment: Array, noise: Array) -> tuple[Array, Array]:
     return inverse @ moment, inverse
 
 
-def normal_equations(columns: Array, effort: Array, time: Array, noise: Array, width: float) -> NormalEquations:
+def bounded(
+    gram: Array, moment: Array, noise: Array, bounds: Mapping[int, tuple[float, float]]
+) -> tuple[Array, Array, tuple[int, ...]]:
+    """Coefficients as of `solved`, each held at its bound where it would lie beyond, one after the other.
+
+    Args:
+        gram, moment, noise: as of `solved`.
+        bounds: lowest and highest value of coefficients by their places.
+
+    Returns:
+        Coefficients (p,), the inverse of the matrix with all of them free (p, p), and the places of those held.
+    """
+    theta, inverse = solved(gram, moment, noise)
+    held: list[int] = []
+    for place, (low, high) in bounds.items():
+        if low <= theta[place] <= high:
+            continue
+        held.append(place)
+        theta[place] = np.clip(theta[place], low, high)
+        free = np.delete(np.arange(theta.size), held)
+        rest = moment[free] - gram[np.ix_(free, held)] @ theta[held]
+        theta[free] = solved(gram[np.ix_(free, free)], rest, noise[np.ix_(free, free)])[0]
+    return theta, inverse, tuple(held)
+
+
+def normal_equations(
+    names: Iterable[Name], columns: Array, effort: Array, time: Array, noise: Array, width: float
+) -> NormalEquations:
     """Gather rows into blocks of time; blocks without rows do not appear.
 
     Args:
+        names: of the columns (p,).
         columns: (m, p).
         effort: (m,) what they are to explain.
         time: (m,) - s.
@@ -124,6 +173,7 @@ def normal_equations(columns: Array, effort: Array, time: Array, noise: Array, w
     edges = block_edges(time, width)
     products = _products(columns, effort, edges)
     return NormalEquations(
+        names=tuple(names),
         gram=products[:, :-1, :-1],
         moment=products[:, :-1, -1],
         power=products[:, -1, -1],

@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.arrays import Array
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Effect
 from bench.effects.grids import is_pitch
 from bench.effects.signals import Base, Signals
 from bench.fit.covariance import estimated, misfit
 from bench.fit.fit import Fit, least_squares
-from bench.fit.layout import BASE, COULOMB, INERTIA, VISCOUS, lay_out
+from bench.fit.layout import lay_out
 from bench.fit.normal_equations import block_edges, solved
 from bench.fit.parameter import Parameter
 from bench.fit.rows import Rows
@@ -55,10 +56,11 @@ class Uncertain:
 
     def base(self, units: Mapping[str, str]) -> dict[str, Parameter]:
         """J, K_w and K_0 with their intervals; `units` by their names, in this order."""
-        deviation = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+        deviation = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))[: self.fitted.theta.size]
         places = zip((INERTIA, VISCOUS, COULOMB), units.items(), strict=True)
         return {
-            name: self.parameter(float(self.fitted.theta[k]), float(deviation[k]), unit) for k, (name, unit) in places
+            name: self.parameter(self.fitted.value(term), float(deviation[self.fitted.owners == term][0]), unit)
+            for term, (name, unit) in places
         }
 
     def quantities(self, index: int, unit_of: Callable[[Effect, str], str]) -> dict[str, Parameter]:
@@ -68,15 +70,15 @@ class Uncertain:
             index: of the term.
             unit_of: unit of an effect's quantity by its name.
         """
-        term, size = self.fitted.terms[index], self.fitted.theta.size
+        term, size, owners = self.fitted.terms[index], self.fitted.theta.size, self.fitted.owners
 
         def values(point: Array) -> Mapping[str, float]:
             shape = list(term.shape)
             for slot, (owner, k) in enumerate(self.slots):
                 if owner == index:
                     shape[k] = float(point[size + slot])
-            base = Base(*(float(point[k]) for k in (INERTIA, VISCOUS, COULOMB)))
-            return term.effect.report(point[:size][self.fitted.owners == index].tolist(), tuple(shape), base)
+            base = Base(*(float(point[:size][owners == name][0]) for name in (INERTIA, VISCOUS, COULOMB)))
+            return term.effect.report(point[:size][owners == index].tolist(), tuple(shape), base)
 
         deviations = self._deviations(values)
         return {
@@ -100,33 +102,10 @@ class Uncertain:
 
 def uncertain(fitted: Fit) -> Uncertain:
     """Free numbers of a fit with their covariance; where not all rows are determined, as in a robust search."""
-    rows = fitted.rows
-    slots = tuple((index, k) for index, term in enumerate(fitted.terms) for k in _free(term.effect, rows))
-    jacobian = _jacobian(rows, fitted, slots)
-    noise = np.pad(fitted.layout.noise, (0, len(slots)))
-    numbers = np.concatenate([fitted.theta, np.zeros(len(slots))])
-    weight = np.ones(rows.effort.size)
-    if not fitted.determined.all():
-        weight = 1.0 / (1.0 + (fitted.left / (SCALE * fitted.floor)) ** 2)
-    edges = block_edges(fitted.time, rows.conditioning.filter.width)
-    count = np.diff(edges)
-    scores = np.add.reduceat(jacobian * (weight * fitted.left)[:, None], edges[:-1])
-    scores += np.outer(count, noise @ numbers)
-    place, known = fitted.theta.size, _known(fitted, slots)
-    instants = np.array([fitted.terms[index].effect.shapes[k].quantity.instant for index, k in slots], dtype=bool)
-    least = np.divide(fitted.floor, known, out=np.zeros(known.size), where=instants & (known > 0.0))
-    seen = np.linalg.norm(jacobian, axis=0) >= np.pad(least, (place, 0))
-    told = np.ix_(seen, seen)
-    gram = ((jacobian.T * weight) @ jacobian)[told]
-    inverse = np.zeros(noise.shape)
-    inverse[told] = solved(gram, numbers[seen], count.sum() * noise[told])[1]
-    conditioning = rows.conditioning
-    covariance, reach = estimated(scores, inverse, conditioning.effort_noise**2 / conditioning.filter.stride)
-    heavy = np.sqrt(weight)
-    left = misfit(jacobian[:, seen] * heavy[:, None], fitted.left * heavy, fitted.floor)
-    covariance[told] += np.diag((left / reach) ** 2)
-    covariance[place:, place:] += np.diag(known**2)
-    shapes = np.array([fitted.terms[index].shape[k] for index, k in slots])
+    slots = tuple((index, k) for index, term in enumerate(fitted.terms) for k in _free(term.effect, fitted.rows))
+    covariance, reach = _by_residual(fitted, slots)
+    place = fitted.theta.size
+    covariance[place:, place:] += np.diag(_known(fitted, slots) ** 2)
     for index, term in enumerate(fitted.terms):
         own = [place + slot for slot, (owner, _) in enumerate(slots) if owner == index]
         spread = term.effect.spread(fitted, index) if own else None
@@ -134,7 +113,43 @@ def uncertain(fitted: Fit) -> Uncertain:
             covariance[np.ix_(own, own)] += spread
     for moved in (*_misplaced(fitted), *_louder(fitted, slots)):
         covariance[: moved.size, : moved.size] += np.outer(moved, moved)
+    shapes = np.array([fitted.terms[index].shape[k] for index, k in slots])
     return Uncertain(fitted, np.concatenate([fitted.theta, shapes]), covariance, reach, slots)
+
+
+def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> tuple[Array, float]:
+    """Covariance (p + s, p + s) from the residual, what stands above noise included, and the reach of intervals."""
+    conditioning = fitted.rows.conditioning
+    jacobian, weight = _jacobian(fitted.rows, fitted, slots), _weight(fitted)
+    noise = np.pad(fitted.layout.noise, (0, len(slots)))
+    numbers = np.concatenate([fitted.theta, np.zeros(len(slots))])
+    edges = block_edges(fitted.time, conditioning.filter.width)
+    count = np.diff(edges)
+    scores = np.add.reduceat(jacobian * (weight * fitted.left)[:, None], edges[:-1])
+    scores += np.outer(count, noise @ numbers)
+    shown = np.linalg.norm(jacobian, axis=0) >= np.pad(_least(fitted, slots), (fitted.theta.size, 0))
+    both = np.ix_(shown, shown)
+    inverse = np.zeros(noise.shape)
+    inverse[both] = solved(((jacobian.T * weight) @ jacobian)[both], numbers[shown], count.sum() * noise[both])[1]
+    covariance, reach = estimated(scores, inverse, conditioning.effort_noise**2 / conditioning.filter.stride)
+    heavy = np.sqrt(weight)
+    left = misfit(jacobian[:, shown] * heavy[:, None], fitted.left * heavy, fitted.floor)
+    covariance[both] += np.diag((left / reach) ** 2)
+    return covariance, reach
+
+
+def _weight(fitted: Fit) -> Array:
+    """Of the rows (m,): where not all are determined, one that leaves more than noise counts less and less."""
+    if fitted.determined.all():
+        return np.ones(fitted.rows.effort.size)
+    return 1.0 / (1.0 + (fitted.left / (SCALE * fitted.floor)) ** 2)
+
+
+def _least(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
+    """Norm of a shape's derivative (s,) below which noise hides it: of an instant that is known by itself; else 0."""
+    known = _known(fitted, slots)
+    instants = np.array([fitted.terms[index].effect.shapes[k].quantity.instant for index, k in slots], dtype=bool)
+    return np.divide(fitted.floor, known, out=np.zeros(known.size), where=instants & (known > 0.0))
 
 
 def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
@@ -179,7 +194,7 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
 
     def refitted(change: Callable[[Signals], Signals]) -> Array:
         layout = lay_out(fitted.rows.with_signals(change), fitted.hypothesis)
-        columns = np.where(layout.owners > BASE, layout.columns, fitted.columns)
+        columns = np.where(layout.of_effects, layout.columns, fitted.columns)
         return least_squares(columns, fitted.effort, layout.noise) - plain
 
     def older(s: Signals) -> Signals:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from bench.errors import UndeterminedError
 from bench.fit.memory import Memory
 from bench.rig.rig import Rig
 from bench.trace.conditioning import Conditioning, condition, known_sign, raw_speed
-from bench.trace.filter import Column, GaussianFilter
+from bench.trace.filter import Column, GaussianFilter, Spectra
 from bench.trace.known_torque import known_column
 from bench.trace.trace import Trace
 
@@ -38,11 +39,25 @@ class Stretch:
         signals: of it.
         used: (r,).
         start: of its first sample in the recording.
+        spectra: of its signals, for filters of several widths.
     """
 
     signals: Signals
     used: NDArray[np.bool_]
     start: int
+    spectra: Spectra
+
+    @classmethod
+    def of(cls, signals: Signals, start: int, smooth: GaussianFilter, spectra: Spectra) -> Stretch:
+        """The stretch through a filter: a row is used where the direction is known over SIGN_WIDTHS to each side."""
+        wide = replace(smooth, width=smooth.width * SIGN_WIDTHS / SIGN_REACH)
+        size = signals.time.size
+        used = np.zeros(len(range(smooth.margin, size - smooth.margin, smooth.stride)), dtype=bool)
+        if size > 2 * wide.margin:
+            (direction,) = wide.columns([[(signals.sign, 0)]], spectra=spectra)
+            lost = (wide.margin - smooth.margin) // smooth.stride
+            used[lost : lost + direction.size] = np.abs(direction) > 1.0 - 1e-3
+        return cls(signals, used, start, spectra)
 
 
 @dataclass(frozen=True)
@@ -107,19 +122,27 @@ class Rows:
         constant, peak = rig.motor.torque_per_ampere, rig.motor.peak_current
         largest = float(np.abs(effort).max())
         peak_effort = float(constant.torque(np.asarray(peak))) if constant and peak else peak_effort or largest
-        parts = [part for part in trace.segments if part.stop - part.start > 4 * conditioning.filter.margin]
         begins = float(trace.time[0]) if begins is None else begins
-        stretches = tuple(_stretch(trace, effort, part, conditioning, peak_effort, begins) for part in parts)
-        if not any(part.used.any() for part in stretches):
-            reason = f"no filtered sample of {trace.origin} moves clearly in one direction"
-            raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, trace.axis_kind))
-        return cls(
-            stretches,
-            conditioning,
-            trace.origin,
-            _scope(trace, rig, stretches, conditioning),
-            _explained(stretches, conditioning.filter),
-        )
+        stretches = []
+        for part in _long(trace.segments, conditioning.filter):
+            signals = _signals(trace, effort, part, conditioning, peak_effort, begins)
+            stretches.append(Stretch.of(signals, part.start, conditioning.filter, Spectra()))
+        clear = _require_clear(stretches, conditioning, trace.origin, trace.axis_kind)
+        scope = _scope(trace, rig, clear, conditioning)
+        return cls(clear, conditioning, trace.origin, scope, _explained(clear, conditioning.filter))
+
+    def through(self, smooth: GaussianFilter) -> Rows:
+        """The same recording through a filter that is no narrower.
+
+        Raises:
+            UndeterminedError: it never moves clearly for as long as the filter reaches.
+        """
+        conditioning = replace(self.conditioning, filter=smooth)
+        longer = [part for part in self.stretches if part.signals.time.size > 4 * smooth.margin]
+        parts = [Stretch.of(part.signals, part.start, smooth, part.spectra) for part in longer]
+        clear = _require_clear(parts, conditioning, self.origin, self.scope.kind)
+        scope = replace(self.scope, width=smooth.width, **_moved(clear, conditioning))
+        return Rows(clear, conditioning, self.origin, scope, _explained(clear, smooth))
 
     @property
     def correlation(self) -> float:
@@ -134,7 +157,7 @@ class Rows:
             change: of each stretch's signals.
             made_by: what tells this change from others, if columns made of it may be kept; else none are.
         """
-        stretches = tuple(replace(part, signals=change(part.signals)) for part in self.stretches)
+        stretches = tuple(replace(p, signals=change(p.signals), spectra=Spectra()) for p in self.stretches)
         pairs = [(new.signals, old.signals) for new, old in zip(stretches, self.stretches, strict=True)]
         moved = any(new.position is not old.position or new.velocity is not old.velocity for new, old in pairs)
         effort = self.effort
@@ -182,14 +205,17 @@ class Rows:
         smooth = self.conditioning.filter
         return values[smooth.margin : -smooth.margin : smooth.stride][: part.used.size]
 
-    def table(self, columns: Callable[[Signals], Sequence[Column]], lag: float = 0.0) -> Array:
+    def table(
+        self, columns: Callable[[Signals], Sequence[Column]], lag: float = 0.0, *, of_signals: bool = False
+    ) -> Array:
         """Filtered columns at the used rows (m, k).
 
         Args:
             columns: of the raw signals.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag - s.
+            of_signals: whether they are sums of signals themselves, whose transforms are kept.
         """
-        return _table(self.stretches, self.conditioning.filter, columns, lag)
+        return _table(self.stretches, self.conditioning.filter, columns, lag, of_signals)
 
 
 def clear_motion(conditioning: Conditioning, kind: AxisKind) -> str:
@@ -206,18 +232,39 @@ def known_of(signals: Signals) -> list[Column]:
     return [signals.known]
 
 
+def _long(segments: Iterable[slice], smooth: GaussianFilter) -> list[slice]:
+    """Those of the segments from which a filter leaves something."""
+    return [part for part in segments if part.stop - part.start > 4 * smooth.margin]
+
+
+def _require_clear(
+    stretches: Sequence[Stretch], conditioning: Conditioning, origin: str, kind: AxisKind
+) -> tuple[Stretch, ...]:
+    if not any(part.used.any() for part in stretches):
+        reason = f"no filtered sample of {origin} moves clearly in one direction"
+        raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, kind))
+    return tuple(stretches)
+
+
 def _explained(stretches: Sequence[Stretch], smooth: GaussianFilter) -> Array:
     """Filtered motor torque less what is known to act, at the used rows - N*m (N) - (m,)."""
-    effort = _table(stretches, smooth, lambda s: [[(s.effort, 0)]], 0.0)[:, 0]
+    effort = _table(stretches, smooth, lambda s: [[(s.effort, 0)]], of_signals=True)[:, 0]
     if not stretches[0].signals.known:
         return effort
-    return effort - _table(stretches, smooth, known_of, 0.0)[:, 0]
+    return effort - _table(stretches, smooth, known_of)[:, 0]
 
 
 def _table(
-    stretches: Sequence[Stretch], smooth: GaussianFilter, columns: Callable[[Signals], Sequence[Column]], lag: float
+    stretches: Sequence[Stretch],
+    smooth: GaussianFilter,
+    columns: Callable[[Signals], Sequence[Column]],
+    lag: float = 0.0,
+    of_signals: bool = False,
 ) -> Array:
-    parts = [smooth.columns(columns(part.signals), lag)[:, part.used] for part in stretches]
+    parts = [
+        smooth.columns(columns(part.signals), lag, part.spectra if of_signals else None)[:, part.used]
+        for part in stretches
+    ]
     return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
 
 
@@ -226,26 +273,19 @@ def _since_first(signals: Signals) -> Array:
     return signals.time + signals.began if signals.began else signals.time
 
 
-def _stretch(
+def _signals(
     trace: Trace, effort: Array, part: slice, conditioning: Conditioning, peak_effort: float, begins: float
-) -> Stretch:
+) -> Signals:
+    """Raw signals of a stretch; a position that is not recorded from speed."""
     period, source = trace.sample_period, trace[conditioning.source][part]
     speed = raw_speed(source, conditioning.source, period)
     velocity = speed if conditioning.source == "position" or "velocity" not in trace else trace["velocity"][part]
     travelled = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2.0) * period])
-    position = trace["position"][part] if "position" in trace else travelled
     sign = known_sign(speed, conditioning.sign_threshold)
-    smooth = conditioning.filter
-    wide = replace(smooth, width=smooth.width * SIGN_WIDTHS / SIGN_REACH)
-    used = np.zeros(len(range(smooth.margin, position.size - smooth.margin, smooth.stride)), dtype=bool)
-    if position.size > 2 * wide.margin:
-        (direction,) = wide(sign, 0)
-        lost = (wide.margin - smooth.margin) // smooth.stride
-        used[lost : lost + direction.size] = np.abs(direction) > 1.0 - 1e-3
-    signals = Signals(
+    return Signals(
         time=trace.time[part] - (trace.start_of(part) if trace.joined else begins),
         began=trace.start_of(part) - begins if trace.joined else 0.0,
-        position=position,
+        position=trace["position"][part] if "position" in trace else travelled,
         velocity=velocity,
         sign=sign,
         effort=effort[part],
@@ -256,18 +296,9 @@ def _stretch(
         source=conditioning.source,
         known=known_column(trace, part),
     )
-    return Stretch(signals, used, part.start)
 
 
 def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: Conditioning) -> Scope:
-    signals = [part.signals for part in stretches]
-    smooth = conditioning.filter
-    reach = slice(smooth.margin, -smooth.margin, smooth.stride)
-    used = [part.used for part in stretches]
-    speed = np.concatenate([s.velocity[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
-    direction = np.concatenate([s.sign[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
-    ends = {s.began: float(s.time[-1]) for s in signals}
-    starts = {s.began: float(s.time[0]) for s in reversed(signals)}
     drift = 0.0
     if "position" not in trace:  # of the mean of integrated white noise, sigma*sqrt(T_s*T/3)
         drift = conditioning.source_noise * float(np.sqrt(trace.sample_period * (trace.time[-1] - trace.time[0]) / 3.0))
@@ -275,15 +306,39 @@ def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: C
         kind=trace.axis_kind,
         source=conditioning.source,
         signals=frozenset(trace.signals),
-        one_way=bool(0.5 * (1.0 - abs(float(np.mean(direction)))) < ONE_WAY),
-        duration=max(ends[begun] - starts[begun] for begun in starts),
         sample_period=trace.sample_period,
         latched=rig.drive.control_period if rig.drive is not None else trace.sample_period,
         drift=drift,
-        width=smooth.width,
-        travel=max(float(s.position.max()) for s in signals) - min(float(s.position.min()) for s in signals),
-        top_speed=max(float(np.abs(s.velocity).max()) for s in signals),
-        rms_speed=float(np.sqrt(np.mean(speed**2))),
-        peak_effort=signals[0].peak_effort,
+        width=conditioning.filter.width,
+        peak_effort=stretches[0].signals.peak_effort,
         rotor_inertia=rig.motor.rotor_inertia or 0.0,
+        **_moved(stretches, conditioning),
     )
+
+
+class _Moved(TypedDict):
+    """What `Scope` says of the motion."""
+
+    one_way: bool
+    duration: float
+    travel: float
+    top_speed: float
+    rms_speed: float
+
+
+def _moved(stretches: Sequence[Stretch], conditioning: Conditioning) -> _Moved:
+    """What the stretches that a filter leaves show of the motion."""
+    signals, smooth = [part.signals for part in stretches], conditioning.filter
+    reach = slice(smooth.margin, -smooth.margin, smooth.stride)
+    used = [part.used for part in stretches]
+    speed = np.concatenate([s.velocity[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
+    direction = np.concatenate([s.sign[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
+    ends = {s.began: float(s.time[-1]) for s in signals}
+    starts = {s.began: float(s.time[0]) for s in reversed(signals)}
+    return {
+        "one_way": bool(0.5 * (1.0 - abs(float(np.mean(direction)))) < ONE_WAY),
+        "duration": max(ends[begun] - starts[begun] for begun in starts),
+        "travel": max(float(s.position.max()) for s in signals) - min(float(s.position.min()) for s in signals),
+        "top_speed": max(float(np.abs(s.velocity).max()) for s in signals),
+        "rms_speed": float(np.sqrt(np.mean(speed**2))),
+    }

@@ -13,8 +13,9 @@ its own filter, noise, sample period and source of speed. The interval covers th
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -23,46 +24,38 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.errors import InputError, UndeterminedError
-from bench.fit.determined import left_open, only_direction, require_determined, require_sound
-from bench.fit.estimate import Estimate, RefusedEstimateError, Residual
+from bench.fit.alone import estimated_alone, negative, parameter_of, sound
+from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual
+from bench.fit.gathered import Gathered
+from bench.fit.layout import BASE
 from bench.fit.load_inertia import load_inertia
-from bench.fit.member import Member
 from bench.fit.normal_equations import NormalEquations, join, solved
 from bench.fit.parameter import Parameter
-from bench.fit.regression import Gathered, gather, negative
-from bench.fit.solution import Left
+from bench.fit.solution import Solution
 from bench.gate.gate import joined
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95
-from bench.trace.trace import Trace
 
 
-def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutoff: float | None = None) -> Estimate:
-    """Inertia, viscous and Coulomb friction (and offset, if the rig asks for it) of several recordings of one axis.
-
-    Args:
-        traces: the recordings, each whole or as an iterator over its consecutive parts.
-        rig: of the axis.
-        cutoff: half-power frequency of the filter instead of those chosen from the recordings - Hz.
+def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
+    """Estimate from the normal equations of several recordings of one axis.
 
     Raises:
-        RefusedEstimateError: together they leave one of them undetermined; the error carries the others.
-        UndeterminedError: one recording never moves clearly.
-        InputError: no recording, one that is given twice, a signal is missing, or efforts in different units.
+        RefusedEstimateError: together they leave a parameter undetermined; the error carries the others.
+        InputError: no recording, one that is given twice, or efforts in different units.
     """
-    gathered = [gather(trace, rig, cutoff) for trace in traces]
     _require_distinct(gathered)
     kind, unit, whole = rig.axis_kind, gathered[0].effort_unit, _joined(gathered)
     members = [Member.of(one, rig) for one in gathered]
-    terms = [INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else [])]
+    terms = members[0].terms
     excesses = {term: _excess(members, kind, term) for term in terms}
-    joint = Joint.of(members, list(excesses.values()), kind)
+    joint = Joint.of(members, list(excesses.values()))
     parameters = {}
     for term, value, error, reach in zip(terms, *(row.tolist() for row in joint.numbers), strict=True):
         tolerance = float(np.mean([member.tolerances[kind.parameter(term)] for member in members]))
-        error, reach = math.hypot(error, tolerance / NORMAL95), math.hypot(reach, tolerance)
         interval = (value - reach, value + reach)
-        parameters[kind.parameter(term)] = Parameter(value, kind.parameter_unit(term, unit), error, interval)
+        found = Parameter(value, kind.parameter_unit(term, unit), error, interval)
+        parameters[kind.parameter(term)] = found.widened(tolerance)
     filters = [one.rows.conditioning.filter for one in gathered]
     left = joint.left(members)
     estimate = Estimate(
@@ -85,53 +78,160 @@ def identify_together(traces: Sequence[Trace | Iterable[Trace]], rig: Rig, cutof
         recordings=tuple(member.alone for member in members),
         between=_between(members, kind),
     )
-    return _sound(estimate, whole, excesses[INERTIA], kind)
+    spread, suspicions = excesses[INERTIA].variance, ()
+    if spread:
+        apart = f"{math.sqrt(spread):.2g} {estimate[kind.inertia].unit}"
+        suspicions = (f"it differs from recording to recording by {apart}, and few are given",)
+    return sound(estimate, whole, kind, suspicions)
 
 
-def _sound(estimate: Estimate, whole: NormalEquations, apart: Excess, kind: AxisKind) -> Estimate:
-    """The estimate, if the recordings together determine it and it is sound; `apart`: spread of the inertia."""
-    suspicions = []
-    if apart.variance:
-        unit = estimate[kind.inertia].unit
-        spread = f"{math.sqrt(apart.variance):.2g} {unit}"
-        suspicions = [f"it differs from recording to recording by {spread}, and few are given"]
-    try:
-        require_determined(whole, kind)
-        require_sound(estimate, kind, suspicions)
-    except UndeterminedError as refusal:
-        unknown = {kind.parameter(term) for term in left_open(whole, kind)}
-        determined = {name: found for name, found in estimate.parameters.items() if name not in unknown}
-        raise RefusedEstimateError(refusal, replace(estimate, parameters=determined)) from refusal
-    return estimate
+@dataclass(frozen=True, eq=False)
+class Member:
+    """One of several recordings: its information about the axis, and its estimate alone.
+
+    Attributes:
+        gathered: its normal equations.
+        terms: that all recordings share: J, K_w, K_0 and, where it is fitted, offset (s,).
+        names: of these in results.
+        solution: its own fit, with these columns and its own shift and hum.
+        alone: its estimate alone.
+        along: if it moves in one direction only, its friction in that direction, offset included; else None.
+        tolerances: half widths of parameters from the rig's tolerances, by name.
+        warnings: of its own fit.
+    """
+
+    gathered: Gathered
+    terms: tuple[str, ...]
+    names: tuple[str, ...]
+    solution: Solution
+    alone: Alone
+    along: Parameter | None
+    tolerances: Mapping[str, float]
+    warnings: tuple[str, ...]
+
+    @classmethod
+    def of(cls, gathered: Gathered, rig: Rig) -> Member:
+        """The fit of one recording alone.
+
+        Raises:
+            InputError: rig and recording do not fit together.
+        """
+        kind, origin = rig.axis_kind, gathered.rows.origin
+        terms = (INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else []))
+        names = tuple(kind.parameter(term) for term in terms)
+        # no offset was fitted to a recording in one direction: it is in the friction
+        tolerances = {term: gathered.tolerance.get(term, gathered.tolerance[COULOMB]) for term in terms}
+        reaches = {kind.parameter(term): reach for term, reach in tolerances.items()}
+        reaches |= {"load_moment_of_inertia": tolerances[INERTIA]}
+        found, reason = None, ""
+        try:
+            found = estimated_alone(gathered, rig)
+        except RefusedEstimateError as refusal:
+            found, reason = refusal.estimate, str(refusal)
+        except UndeterminedError as refusal:
+            reason = str(refusal)
+        known = {} if found is None else found.parameters
+        kept = {name: one for name, one in known.items() if name != kind.inertia or not _holds_zero(one)}
+        return cls(
+            gathered,
+            terms,
+            names,
+            gathered.solved(rig.offset),
+            Alone(origin, kept, reason),
+            _along(gathered, kind),
+            reaches,
+            () if found is None else found.warnings,
+        )
+
+    @property
+    def _shared(self) -> list[int]:
+        return [self.solution.names.index(term) for term in self.terms]
+
+    @property
+    def equations(self) -> NormalEquations:
+        """Of the fitted columns."""
+        return self.solution.equations
+
+    @property
+    def theta(self) -> Array:
+        """Coefficients of the shared terms in its own fit (s,)."""
+        return self.solution.theta[self._shared]
+
+    @cached_property
+    def matrix(self) -> Array:
+        """Matrix of the normal equations of these, its own shift and hum eliminated, positive semidefinite (s, s).
+
+        A column with less power than expected from its noise carries no information.
+        """
+        equations, shared, held = self.equations, self._shared, self.solution.held
+        whole, gram, noise = equations.matrix, equations.total, equations.count * equations.noise
+        rest = {k: name for k, name in enumerate(equations.names) if k not in shared}
+        own = [k for k, name in rest.items() if not (held and name == MISALIGNMENT)]
+        beside = whole[np.ix_(own, shared)]
+        taken, _ = solved(gram[np.ix_(own, own)], beside, noise[np.ix_(own, own)])
+        scale = np.sqrt(np.diag(gram)[shared])
+        power, ways = np.linalg.eigh((whole[np.ix_(shared, shared)] - beside.T @ taken) / np.outer(scale, scale))
+        return (ways * np.maximum(power, 0.0)) @ ways.T * np.outer(scale, scale)
+
+    @cached_property
+    def own(self) -> dict[str, Parameter]:
+        """Its estimate alone, without the rig's tolerances, which are common to all recordings."""
+        found = dict(self.alone.parameters)
+        for name, reach in self.tolerances.items():
+            if name in found:
+                before = found[name]
+                half = math.sqrt(max(before.half_width**2 - reach**2, 0.0))
+                error = math.sqrt(max(before.std_error**2 - (reach / NORMAL95) ** 2, 0.0))
+                found[name] = replace(before, std_error=error, ci95=(before.value - half, before.value + half))
+        return found
+
+    @cached_property
+    def known(self) -> Array:
+        """Its information about these: `matrix` over the mean variance implied by its covariance (s, s)."""
+        covariance, _ = self.covariance
+        return self.matrix * len(self.terms) / max(float(np.trace(self.matrix @ covariance)), 1e-300)
+
+    @cached_property
+    def covariance(self) -> tuple[Array, Array]:
+        """Covariance of `theta` in standard errors, and in half widths of intervals of 95 % (s, s) each.
+
+        A parameter that it does not determine alone is as much wider than by its own fit as friction along one
+        direction is.
+        """
+        found = self.solution.covariance[np.ix_(self._shared, self._shared)]
+        errors = np.sqrt(np.maximum(np.diag(found), 1e-300)).tolist()
+        wider = 1.0, self.solution.reach
+        if self.along is not None:
+            bare = self.gathered.solved(offset=False)
+            error = max(bare.of(COULOMB, bare.errors), 1e-300)
+            wider = self.along.std_error / error, self.along.half_width / error
+        scales = np.array(
+            [
+                (self.own[name].std_error / error, self.own[name].half_width / error) if name in self.own else wider
+                for name, error in zip(self.names, errors, strict=True)
+            ]
+        )
+        standard, half = (found * np.outer(scale, scale) for scale in scales.T)
+        return standard, half
 
 
-def _variation(joined: NormalEquations) -> float:
-    """Sum of squares of the effort less its mean, over all recordings - the effort's unit squared."""
-    return float(joined.power.sum()) - float(joined.moment[:, -1].sum()) ** 2 / joined.count
+def _along(gathered: Gathered, kind: AxisKind) -> Parameter | None:
+    """Friction, offset included, of a recording that moves in one direction only."""
+    if gathered.one_way is None:
+        return None
+    bare = gathered.solved(offset=False)
+    alone = parameter_of(bare, COULOMB, kind, gathered.effort_unit)
+    return alone.widened(bare.of(COULOMB, bare.misfit), gathered.doubt[COULOMB])
 
 
-def _require_distinct(gathered: Sequence[Gathered]) -> None:
-    if not gathered:
-        raise InputError("recordings", "found none", "allowed: at least one")
-    for one, other in combinations(gathered, 2):
-        if one.effort_unit != other.effort_unit:
-            found = f"gives its effort in {other.effort_unit}, {one.rows.origin} in {one.effort_unit}"
-            raise InputError(other.rows.origin, found, "allowed: recordings of one kind of effort; say kT in the rig")
-        if np.array_equal(one.equations.gram, other.equations.gram):
-            found = f"found the same recording as {one.rows.origin}"
-            raise InputError(other.rows.origin, found, "allowed: each recording once; twice would count as two")
+def _holds_zero(found: Parameter) -> bool:
+    low, high = found.ci95
+    return low <= 0.0 <= high
 
 
-def _joined(gathered: Sequence[Gathered]) -> NormalEquations:
-    """Equations of all recordings in their common columns: J, K_w, K_0, misalignment, constant."""
-    parts = [one.equations.select([*range(4), one.equations.noise.shape[0] - 1]) for one in gathered]
-    noise = sum((part.count * part.noise for part in parts), np.zeros_like(parts[0].noise))
-    return replace(join(parts), noise=noise / sum(part.count for part in parts))
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Joint:
-    """Joint estimate of J, K_w, K_0 and, where it is fitted, offset (s,).
+    """Joint estimate of the shared terms.
 
     Attributes:
         theta: (s,).
@@ -149,23 +249,22 @@ class Joint:
         return self.theta, self.errors, self.reaches
 
     @classmethod
-    def of(cls, members: Sequence[Member], excesses: Sequence[Excess], kind: AxisKind) -> Joint:
+    def of(cls, members: Sequence[Member], excesses: Sequence[Excess]) -> Joint:
         """Joint fit of recordings.
 
         Args:
             members: the recordings.
             excesses: their variance in each quantity beyond their own errors (s,).
-            kind: of the axis.
         """
         between = np.array([found.variance for found in excesses])
-        known = np.array([member.known(kind) for member in members])
+        known = np.array([member.known for member in members])
         known = np.linalg.solve(np.eye(between.size) + known * between, known)
         moment = np.einsum("kij,kj->i", known, np.array([member.theta for member in members]))
         theta, inverse = solved(known.sum(axis=0), moment, np.zeros_like(known[0]))
         wide = between * np.array([found.reach for found in excesses]) ** 2
         variance, reached = np.zeros(theta.size), np.zeros(theta.size)
         for share, member in zip(inverse @ known, members, strict=True):
-            error, half_width = (np.diag(share @ found @ share.T) for found in member.covariance(kind))
+            error, half_width = (np.diag(share @ found @ share.T) for found in member.covariance)
             variance += error + share**2 @ between
             reached += half_width + share**2 @ wide
         return cls(theta, np.sqrt(variance), np.sqrt(reached))
@@ -173,7 +272,31 @@ class Joint:
     def left(self, members: Sequence[Member]) -> float:
         """Sum of squared residuals of all recordings, each with its own shift and hum - the effort's unit squared."""
         away = [self.theta - member.theta for member in members]
-        return sum(member.power + float(d @ member.matrix @ d) for member, d in zip(members, away, strict=True))
+        return sum(m.solution.power + float(d @ m.matrix @ d) for m, d in zip(members, away, strict=True))
+
+
+def _variation(whole: NormalEquations) -> float:
+    """Sum of squares of the effort less its mean, over all recordings - the effort's unit squared."""
+    return float(whole.power.sum()) - float(whole.moment[:, whole.place(OFFSET)].sum()) ** 2 / whole.count
+
+
+def _require_distinct(gathered: Sequence[Gathered]) -> None:
+    if not gathered:
+        raise InputError("recordings", "found none", "allowed: at least one")
+    for one, other in combinations(gathered, 2):
+        if one.effort_unit != other.effort_unit:
+            found = f"gives its effort in {other.effort_unit}, {one.rows.origin} in {one.effort_unit}"
+            raise InputError(other.rows.origin, found, "allowed: recordings of one kind of effort; say kT in the rig")
+        if np.array_equal(one.equations.gram, other.equations.gram):
+            found = f"found the same recording as {one.rows.origin}"
+            raise InputError(other.rows.origin, found, "allowed: each recording once; twice would count as two")
+
+
+def _joined(gathered: Sequence[Gathered]) -> NormalEquations:
+    """Equations of all recordings in their common columns: J, K_w, K_0, misalignment, constant."""
+    parts = [one.equations.only(lambda name: name in (*BASE, OFFSET)) for one in gathered]
+    noise = sum((part.count * part.noise for part in parts), np.zeros_like(parts[0].noise))
+    return replace(join(parts), noise=noise / sum(part.count for part in parts))
 
 
 def _excess(members: Sequence[Member], kind: AxisKind, term: str) -> Excess:
@@ -187,14 +310,14 @@ def _excess(members: Sequence[Member], kind: AxisKind, term: str) -> Excess:
         if name in member.own:
             groups.setdefault("both", []).append(member.own[name])
         elif term == COULOMB and member.along is not None:
-            groups.setdefault(str(only_direction(member.gathered.equations)), []).append(member.along)
+            groups.setdefault(str(member.gathered.one_way), []).append(member.along)
     return excess(list(groups.values()))
 
 
 def _residual(members: Sequence[Member], left: float, unit: str) -> Residual:
     """Residual of the joint fit over all recordings."""
     counts = np.array([member.equations.count for member in members])
-    floors = [Left.of(m.gathered.rows, m.gathered.hypothesis, m.solved).floor for m in members]
+    floors = [member.solution.floor.coloured for member in members]
     return Residual(
         rms=math.sqrt(left / counts.sum()),
         noise_floor=math.sqrt(float(counts @ np.square(floors)) / counts.sum()),
@@ -224,8 +347,8 @@ def _offset(gathered: Sequence[Gathered], members: Sequence[Member], rig: Rig) -
         return
     kind, asked = rig.axis_kind, rig.model_copy(update={"offset": True})
     members = [Member.of(one, asked) for one in gathered]
-    excesses = [_excess(members, kind, term) for term in (INERTIA, VISCOUS, COULOMB, OFFSET)]
-    value, _, reach = (float(row[-1]) for row in Joint.of(members, excesses, kind).numbers)
+    excesses = [_excess(members, kind, term) for term in members[0].terms]
+    value, _, reach = (float(row[-1]) for row in Joint.of(members, excesses).numbers)
     if abs(value) > reach:
         unit = kind.parameter_unit(OFFSET, gathered[0].effort_unit)
         yield (

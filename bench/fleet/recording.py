@@ -14,8 +14,8 @@ from bench.bounds import Bounds, within
 from bench.errors import BenchError, UndeterminedError
 from bench.files import sha256
 from bench.fit.estimate import Estimate, RefusedEstimateError
+from bench.fit.identify import identify
 from bench.fit.parameter import Parameter
-from bench.fit.regression import identify
 from bench.fleet.remote import fetched
 from bench.gate.check import Check
 from bench.gate.gate import UnanswerableError

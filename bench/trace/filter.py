@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.fft
+from numpy.typing import NDArray
 
 from bench.arrays import Array
 
@@ -81,7 +82,7 @@ class GaussianFilter:
         """
         return self.columns([[(values, order)] for order in orders], lag)
 
-    def columns(self, columns: Sequence[Column], lag: float = 0.0) -> Array:
+    def columns(self, columns: Sequence[Column], lag: float = 0.0, spectra: Spectra | None = None) -> Array:
         """Filtered sums of derivatives of several signals; a signal that occurs again is transformed once.
 
         The line between the ends of a signal is filtered by itself, in closed form: a transform takes the stretch for
@@ -93,33 +94,58 @@ class GaussianFilter:
         Args:
             columns: each a sum of terms, samples (n,) and the order of the derivative to be taken of them.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag - s.
+            spectra: transforms of signals that other filters want, too.
 
         Returns:
             (columns, m), at the samples of `__call__`.
         """
         distinct = {id(values): values for column in columns for values, _ in column}
         place = {key: row for row, key in enumerate(distinct)}
-        signals = np.stack(list(distinct.values()))
-        count = signals.shape[1]
-        slope = (signals[:, -1] - signals[:, 0]) / (count - 1)
-        signals -= signals[:, :1] + slope[:, None] * np.arange(count)
+        signals = list(distinct.values())
+        count = signals[0].size
         size = self.stride * fast_length(math.ceil(count / self.stride))
         kept = size // self.stride // 2 + 1
-        spectra = np.asarray(scipy.fft.rfft(signals, size, overwrite_x=True))[:, :kept]
         jw = 2j * math.pi / (size * self.sample_period) * np.arange(kept)
-        spectra *= np.exp(-0.5 * (jw.imag * self.width) ** 2) * (1.0 + jw * lag) / self.stride
+        gain = np.exp(-0.5 * (jw.imag * self.width) ** 2) * (1.0 + jw * lag) / self.stride
+        transformed = transformed_of(signals, size) if spectra is None else spectra.of(signals, size)
+        slope = (np.array([values[-1] for values in signals]) - [values[0] for values in signals]) / (count - 1)
         first, last = self.margin // self.stride, -(-(count - self.margin) // self.stride)
         at = self.stride * np.arange(first, last)
         sums = np.zeros((len(columns), kept), dtype=complex)
         lines = np.zeros((len(columns), at.size))
+        filtered = [spectrum[:kept] * gain for spectrum in transformed]
         for row, column in enumerate(columns):
             for values, order in column:
                 k = place[id(values)]
-                sums[row] += spectra[k] * jw**order if order else spectra[k]
+                sums[row] += filtered[k] * jw**order if order else filtered[k]
                 if order < 2:
                     rate = float(slope[k]) / self.sample_period
                     lines[row] += rate if order else values[0] + slope[k] * at + lag * rate
         return lines + np.asarray(scipy.fft.irfft(sums, size // self.stride))[:, first:last]
+
+
+class Spectra:
+    """Transforms of the signals of a stretch, for filters of several widths: five cut-offs cost one transform each."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[int, int], tuple[Array, NDArray[np.complex128]]] = {}
+
+    def of(self, signals: Sequence[Array], size: int) -> list[NDArray[np.complex128]]:
+        """Transforms of signals (n,) as of `transformed_of`, those that are new made and kept with their signals."""
+        new = [values for values in signals if (id(values), size) not in self._known]
+        if new:
+            for values, spectrum in zip(new, transformed_of(new, size), strict=True):
+                self._known[id(values), size] = values, spectrum
+        return [self._known[id(values), size][1] for values in signals]
+
+
+def transformed_of(signals: Sequence[Array], size: int) -> NDArray[np.complex128]:
+    """Transforms (k, size//2 + 1) of signals (n,) less the line between their ends, followed by zeros up to a size."""
+    table = np.stack(signals)
+    count = table.shape[1]
+    slope = (table[:, -1] - table[:, 0]) / (count - 1)
+    table -= table[:, :1] + slope[:, None] * np.arange(count)
+    return np.asarray(scipy.fft.rfft(table, size, overwrite_x=True))
 
 
 def fast_length(length: int) -> int:

@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.errors import InputError
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.plant.axis_model import winding_of
 from bench.plant.drive import Cascade
 from bench.plant.model import AxisParameters

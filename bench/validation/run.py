@@ -9,7 +9,7 @@ from typing import Literal
 from bench.diagnosis.diagnosis import diagnose
 from bench.errors import BenchError
 from bench.fit.estimate import RefusedEstimateError
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.trace.trace import Trace
 from bench.validation.case import Case
 from bench.validation.plan import Plan

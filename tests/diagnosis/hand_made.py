@@ -9,8 +9,7 @@ import numpy as np
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import Fit
 from bench.fit.hypothesis import Hypothesis, Term
-from bench.fit.layout import BASE, Layout
-from bench.fit.noise import Floor
+from bench.fit.layout import BASE, HUM, Layout
 from tests.diagnosis.constructed import bare, moved, recorded
 
 #: Independent rows are this many rows apart in a fit made by hand.
@@ -46,13 +45,13 @@ def made(
     """
     left = np.asarray(left, dtype=np.float64)
     theta = np.array([inertia, 0.0, 0.0, 0.0, *([0.0] * numbers), *(strengths or [1.0] * len(terms))])
-    owners = np.array([*([BASE] * (4 + numbers)), *range(len(terms))])
+    owners = np.array([*BASE, *([HUM] * numbers), *range(len(terms))], dtype=object)
     columns = np.zeros((left.size, theta.size))
     layout = Layout(columns, owners, left, np.zeros((theta.size, theta.size)), {})
     rows = SimpleNamespace(correlation=CORRELATION, scope=_SCOPE, effort=left)
     sure = np.ones(left.size, dtype=bool) if determined is None else np.array(determined)
     fitted = Fit(rows, Hypothesis(terms), layout, theta, (), sure)  # pyright: ignore[reportArgumentType]
-    fitted.__dict__["noise"] = Floor(floor, floor if white is None else white)
+    fitted.__dict__["noise"] = SimpleNamespace(coloured=floor, white=floor if white is None else white)
     return fitted
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.plant.robot import Robot, beside_robot, read_beside
 from bench.rig.rig import Rig
 from tests.export.two_links import HIDDEN, MJCF, log, motion, write_log

@@ -1,7 +1,6 @@
 """An estimate that moves with the cut-off, that leaves much, or that cannot be: told, widened or refused."""
 
 import json
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,9 +8,8 @@ import pytest
 from bench.arrays import rms
 from bench.fit.cutoffs import BELOW, Tried, among, choose
 from bench.fit.estimate import RefusedEstimateError
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.rig.rig import Rig
-from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
 from bench.trace.write import write
 from tests.diagnosis.command import started
@@ -41,10 +39,8 @@ def estimates(*inertias, widths):
     """Estimates of J at falling cut-offs, from 100 Hz, with half widths of 95 %; friction alike at all."""
     found = []
     for k, (inertia, width) in enumerate(zip(inertias, widths, strict=True)):
-        smooth = GaussianFilter.from_cutoff(100.0 * 10.0 ** (-0.25 * k), 1e-4)
-        rows = SimpleNamespace(conditioning=SimpleNamespace(filter=smooth))
         theta, reach = np.array([inertia, 1.0, 1.0]), np.array([width, 0.1, 0.1])
-        found.append(Tried(rows, None, None, theta, reach))
+        found.append(Tried(100.0 * 10.0 ** (-0.25 * k), theta, reach))
     return found
 
 

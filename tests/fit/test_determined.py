@@ -5,18 +5,21 @@ import pytest
 
 from bench.axis_kind import COULOMB, INERTIA, OFFSET, ROTARY, VISCOUS
 from bench.errors import UndeterminedError
-from bench.fit.determined import independent_share, left_open, only_direction, require_inertia
+from bench.fit.determined import left_open, only_direction, require_inertia
+from bench.fit.layout import BASE
 from bench.fit.normal_equations import NormalEquations
 
-#: J, K_w, K_0, misalignment, constant.
-PLACES = 5
+NAMES = (*BASE, OFFSET)
+PLACES = len(NAMES)
 
 
 def equations(gram, rows=1000, noise=None):
     """Normal equations of one block: `gram` (5, 5) a row."""
     whole = np.asarray(gram, dtype=float)[None] * rows
     none = np.zeros((PLACES, PLACES))
-    return NormalEquations(whole, np.zeros((1, PLACES)), np.ones(1), np.array([rows]), none if noise is None else noise)
+    return NormalEquations(
+        NAMES, whole, np.zeros((1, PLACES)), np.ones(1), np.array([rows]), none if noise is None else noise
+    )
 
 
 def alike(first, second, share):
@@ -28,12 +31,12 @@ def alike(first, second, share):
 
 @pytest.mark.parametrize("share", [0.5, 0.02, 0.008])
 def test_the_share_is_what_the_others_do_not_explain(share):
-    assert independent_share(equations(alike(0, 1, share)), INERTIA, (VISCOUS,)) == pytest.approx(share)
+    assert equations(alike(0, 1, share)).independent_share(INERTIA, (VISCOUS,)) == pytest.approx(share)
 
 
 def test_noise_of_a_column_is_no_share_of_it():
     noise = np.diag([0.75, 0.0, 0.0, 0.0, 0.0])
-    assert independent_share(equations(np.eye(PLACES), noise=noise), INERTIA, (VISCOUS,)) == pytest.approx(0.25)
+    assert equations(np.eye(PLACES), noise=noise).independent_share(INERTIA, (VISCOUS,)) == pytest.approx(0.25)
 
 
 @pytest.mark.parametrize(("share", "sure"), [(0.0105, True), (0.0095, False)])

@@ -8,7 +8,7 @@ from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.gap.gap import gap
 from bench.diagnosis.name.policy import Policy
 from bench.effects.catalogue import catalogue
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.fit.rows import Rows
 from bench.trace.trace import Trace
 from tests.diagnosis.constructed import (

@@ -5,9 +5,10 @@ import pytest
 
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
+from bench.fit.layout import lay_out
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
-from bench.fit.solution import Left, equations_of, solved_with_shift
+from bench.fit.solution import equations_of, solve
 from tests.fit.motions import NAMES, RIG, recording
 
 UNITS = dict.fromkeys(NAMES, "")
@@ -27,10 +28,9 @@ def base(trace):
 def test_intervals_are_those_of_identify_where_more_than_noise_is_left():
     trace = spoiled(1, 4e-6)
     rows = Rows.of(trace, RIG)
-    equations = equations_of(rows, Hypothesis())
-    found = solved_with_shift(equations, rows, offset=False)
-    left = Left.of(rows, Hypothesis(), found)
-    reach = left.misfit(found)[:3]
+    laid = lay_out(rows, Hypothesis())
+    found = solve(rows, Hypothesis(), laid, equations_of(rows, laid), offset=False)
+    reach = found.misfit[:3]
     assert (reach > 0.5 * found.reach * found.errors[:3]).all()
     for value, error, beside in zip(base(trace).values(), found.errors, reach, strict=False):
         half = 0.5 * (value.ci95[1] - value.ci95[0])

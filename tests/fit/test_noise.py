@@ -6,7 +6,7 @@ import pytest
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
-from bench.fit.layout import lay_out
+from bench.fit.layout import BASE, lay_out
 from bench.fit.noise import noise_power
 from bench.fit.rows import Rows
 from tests.fit.motions import RIG, recording
@@ -18,8 +18,8 @@ NONE = np.zeros(3)
 def theta_of(layout, **values):
     """Coefficients (p,) of a layout: J, K_w, K_0, misalignment, and the one strength of a term."""
     theta = np.zeros(layout.owners.size)
-    for place, name in enumerate(("inertia", "viscous", "coulomb", "misalignment")):
-        theta[place] = values.get(name, 0.0)
+    for name in BASE:
+        theta[layout.owners == name] = values.get(name, 0.0)
     theta[layout.owners == 0] = values.get("strength", 0.0)
     return theta
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.plant.simulate import simulate
 from bench.rig.rig import Rig, load_rig
 from bench.validation.independent import Axis, Noise, Sensors, random_motion, write_rig

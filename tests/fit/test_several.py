@@ -8,7 +8,7 @@ import pytest
 
 import bench
 from bench.errors import InputError, UndeterminedError
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.rig.rig import load_rig
 from bench.trace.trace import Trace
 from bench.trace.write import write

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.rig.rig import Rig
 from tests.fit.motions import NAMES, RIG, recording
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.gate.gate import STEADY, gate, joined, warnings_of
 from bench.trace.trace import Trace
 from tests.gate.damage import changed, keeping

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.gate import losses
 from bench.gate.gate import passed
 from tests.gate.damage import doubled, losing, stale, with_samples, without

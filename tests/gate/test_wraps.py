@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.gate import wraps
 from bench.gate.gate import passed
 from bench.trace.trace import Trace

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.trace.read import read
 from bench.trace.trace import Trace
 from tests.fit.motions import NAMES, RIG, UNITS, Truth, recording

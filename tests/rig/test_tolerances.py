@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.fit.regression import identify
+from bench.fit.identify import identify
 from bench.gate.gate import warnings_of
 from bench.rig.rig import Rig, load_rig
 from bench.rig.values import tolerance_of

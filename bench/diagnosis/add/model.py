@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from bench.axis_kind import MISALIGNMENT
 from bench.effects.effect import Effect
 from bench.effects.kinds import Friction, Moment
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.fit.fit import Fit
-from bench.fit.layout import MISALIGNMENT
 from bench.plant.axis_model import AxisModel, winding_of
 from bench.plant.model import AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
@@ -49,7 +49,7 @@ def stored_model(fitted: Fit, beside: Sequence[Present], rig: Rig) -> StoredMode
         for index, term in enumerate(fitted.terms)
     ]
     model = AxisModel(base, (*present, *beside), fitted.scope.peak_effort, winding_of(rig))
-    return StoredModel(rig.name, model, float(fitted.theta[MISALIGNMENT]), Mounting.of(rig))
+    return StoredModel(rig.name, model, fitted.value(MISALIGNMENT), Mounting.of(rig))
 
 
 def present_of(effect: Effect, values: Mapping[str, float]) -> Present:

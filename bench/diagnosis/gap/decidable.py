@@ -13,6 +13,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import require_friction, require_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.last_digit import plain
+from bench.fit.layout import lay_out
 from bench.fit.rows import Rows, clear_motion
 from bench.fit.solution import equations_of
 from bench.rig.rig import Rig
@@ -61,7 +62,7 @@ def require_decidable(trace: Trace, rig: Rig, rows: Rows) -> Fit:
         UndeterminedError: with what to record instead.
     """
     _require_length(trace, rows)
-    equations = equations_of(rows, plain(rows))
+    equations = equations_of(rows, lay_out(rows, plain(rows)))
     require_inertia(equations, rig.axis_kind)
     require_friction(equations, rig.axis_kind)
     bare = fit(rows, plain(rows))

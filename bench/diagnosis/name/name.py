@@ -14,11 +14,11 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect
 from bench.effects.present import Present
 from bench.fit.fit import Fit, fit
-from bench.fit.hint import hint
 from bench.fit.load_inertia import load_inertia
 from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
 from bench.fit.shapes import unbiased
+from bench.fit.systematic import hint
 from bench.statistics import NORMAL95
 
 

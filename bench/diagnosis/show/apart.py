@@ -15,6 +15,7 @@ from bench.fit.determined import left_open, require_determined
 from bench.fit.estimate import Alone
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis
+from bench.fit.layout import lay_out
 from bench.fit.load_inertia import load_inertia
 from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
@@ -88,7 +89,7 @@ def _each(recordings: Recordings, whole: Fit) -> tuple[Alone, ...]:
     for (begun, origin), end in zip(joined, ends, strict=True):
         start = begun - first
         rows = whole.rows.selected(lambda time, start=start, end=end: (time >= start) & (time < end))
-        equations = equations_of(rows, Hypothesis()) if rows.effort.size else None
+        equations = equations_of(rows, lay_out(rows, Hypothesis())) if rows.effort.size else None
         if equations is None:
             found.append(Alone(origin, {}, f"no filtered sample of {origin} moves clearly in one direction"))
             continue

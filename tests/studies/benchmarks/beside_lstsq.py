@@ -25,7 +25,9 @@ def measured(durations: Sequence[float] = (3.0, 30.0, 300.0), rounds: int = 15) 
         laid, time, width = lay_out(rows, plain(rows)), rows.time, rows.conditioning.filter.width
 
         def core() -> np.ndarray:
-            return normal_equations(laid.columns, laid.effort, time, laid.noise, width).coarsened(BLOCKS).solve()[0]  # noqa: B023
+            names, noise = laid.owners, laid.noise  # noqa: B023
+            whole = normal_equations(names, laid.columns, laid.effort, time, noise, width)  # noqa: B023
+            return whole.coarsened(BLOCKS).solve()[0]
 
         def lstsq() -> np.ndarray:
             return np.linalg.lstsq(laid.columns, laid.effort, rcond=None)[0]  # noqa: B023

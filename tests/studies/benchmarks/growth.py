@@ -15,9 +15,9 @@ import pyarrow.parquet as pq
 from bench.effects.catalogue import catalogue
 from bench.fit.estimate import Estimate
 from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.identify import identify
 from bench.fit.layout import Layout, lay_out
 from bench.fit.memory import Memory
-from bench.fit.regression import identify
 from bench.fit.rows import Rows
 from bench.plant.run import run
 from bench.plant.ticked import run_ticked
