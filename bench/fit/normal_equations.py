@@ -151,7 +151,7 @@ def bounded(
             continue
         held.append(place)
         theta[place] = np.clip(theta[place], low, high)
-        free = np.delete(np.arange(theta.size), held)
+        free = [k for k in range(theta.size) if k not in held]
         rest = moment[free] - gram[np.ix_(free, held)] @ theta[held]
         theta[free] = solved(gram[np.ix_(free, free)], rest, noise[np.ix_(free, free)])[0]
     return theta, inverse, tuple(held)
