@@ -32,7 +32,7 @@ def fleet(
     from bench.files import keeping, sha256, write_text
     from bench.fleet.fleet import TABLE
     from bench.fleet.fleet import fleet as run_fleet
-    from bench.jobs.limits import Limits
+    from bench.jobs.process import Limits
     from bench.report.fleet import fleet_json, fleet_tables
     from bench.report.pages.fleet import fleet_page
     from bench.report.publish import write_html

@@ -7,14 +7,13 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from bench.files import held, keeping, require_writable
+from bench.fleet.evaluate import Job, evaluate
 from bench.fleet.manifest import Manifest, read_manifest
-from bench.fleet.plan import Planned, plan
-from bench.fleet.recording import Plain, Task, evaluate
-from bench.fleet.store import Store
+from bench.fleet.plan import PlannedRecording, Store, plan
 from bench.fleet.summary import Summary, summarise
 from bench.fleet.table import tabulate, write_table
 from bench.jobs.each import each
-from bench.jobs.limits import Failure, Limits
+from bench.jobs.process import Failure, Limits
 
 #: Statuses that another try may change.
 UNLUCKY = ("failed", "timed_out")
@@ -58,7 +57,7 @@ def fleet(
         retry: what failed or timed out before is done again.
         limits, workers, scheduler: as `bench.jobs.each.each` has them.
         progress: called with the share done.
-        tell: called with what was found while no other run writes to the folder.
+        finish: called with what was found while no other run writes to the folder.
 
     Raises:
         InputError: a bad manifest, a folder that cannot be written to, or no scheduler at the address.
@@ -70,27 +69,23 @@ def fleet(
         planned = plan(manifest, diagnose, lambda share: progress(PLANNING * share))
         store = Store(out / "results")
         missing = _missing(store, planned, retry)
-        keys, tasks = list(missing), list(missing.values())
-        for count, (place, result) in enumerate(each(evaluate, tasks, limits, workers, scheduler), 1):
-            store.put(keys[place], _plain(result))
-            progress(PLANNING + (1.0 - PLANNING) * count / len(tasks))
+        keys, jobs = list(missing), list(missing.values())
+        for count, (place, result) in enumerate(each(evaluate, jobs, limits, workers, scheduler), 1):
+            store.put(keys[place], asdict(result) if isinstance(result, Failure) else result)
+            progress(PLANNING + (1.0 - PLANNING) * count / len(jobs))
         results = [one.refusal or store.get(one.key) or {} for one in planned]
         write_table(out / TABLE, tabulate(manifest, planned, results))
-        found = Fleet(manifest, summarise(manifest, planned, results), len(tasks))
+        found = Fleet(manifest, summarise(manifest, planned, results), len(jobs))
         finish(found)
     return found
 
 
-def _missing(store: Store, planned: Sequence[Planned], retry: bool) -> dict[str, Task]:
+def _missing(store: Store, planned: Sequence[PlannedRecording], retry: bool) -> dict[str, Job]:
     """What is to be evaluated, by the key of its result; recordings that are the same are evaluated once."""
     missing = {}
     for one in planned:
-        if one.task is not None and one.key not in missing:
+        if one.job is not None and one.key not in missing:
             found = store.get(one.key)
             if found is None or (retry and found["status"] in UNLUCKY):
-                missing[one.key] = one.task
+                missing[one.key] = one.job
     return missing
-
-
-def _plain(found: Plain | Failure) -> Plain:
-    return asdict(found) if isinstance(found, Failure) else found

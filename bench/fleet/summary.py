@@ -1,18 +1,31 @@
-"""What a fleet's table says: which axes changed and since when, what was named, and who needs a person and why."""
+"""What a fleet's table says: which axes changed and since when, what was named, and who needs a person and why.
+
+An axis changed where what its recordings tell of inertia or friction steps at some time (`bench.comparison.step`).
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from statistics import median
 
 import numpy as np
 
-from bench.fleet.changed import Changed, changes
+from bench.arrays import Array
+from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
+from bench.comparison.difference import holm
+from bench.comparison.step import Step, largest_step
+from bench.fleet.evaluate import Plain
 from bench.fleet.manifest import Manifest
-from bench.fleet.plan import Planned
-from bench.fleet.recording import Plain
+from bench.fleet.plan import PlannedRecording
 
+#: Chance of being told that any axis changed of a fleet in which none did.
+ALARM = 0.01
+#: Standard errors over the median one beyond which a recording says too little of a quantity to be compared.
+VAGUE = 5.0
+#: Quantities of the axis itself; what follows from them, or is the drive's, would be told twice.
+COMPARED = (INERTIA, VISCOUS, COULOMB, OFFSET)
 #: Share of the effort's variance below which the model of an axis misses too much to be believed unseen.
 EXPLAINED = 0.9
 STATUSES = ("done", "refused", "failed", "timed_out")
@@ -21,7 +34,49 @@ KINDS = ("failed", "timed_out", "refused", "unexplained", "checks")
 
 
 @dataclass(frozen=True)
-class Named:
+class History:
+    """What the recordings of one axis tell of one quantity, in the order of time.
+
+    Attributes:
+        axis, quantity, unit: what it is of, the quantity by the name of the contract.
+        rows: of the manifest (n,).
+        values, errors: with standard errors (n,).
+    """
+
+    axis: str
+    quantity: str
+    unit: str
+    rows: tuple[int, ...]
+    values: Array
+    errors: Array
+
+
+@dataclass(frozen=True)
+class Changed:
+    """A quantity of one axis that is not what it was.
+
+    Attributes:
+        history: that it was found in.
+        step: by how much, and how sure.
+        since: time of the first recording after the change, as the manifest has it.
+        file: of that recording.
+        chance: that a fleet without a change shows one like it anywhere, at most.
+    """
+
+    history: History
+    step: Step
+    since: str
+    file: str
+    chance: float
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Recordings before and after."""
+        return self.step.place, len(self.history.rows) - self.step.place
+
+
+@dataclass(frozen=True)
+class ShownEffect:
     """An effect that recordings of an axis show.
 
     Attributes:
@@ -77,11 +132,11 @@ class Summary:
     axes: int
     compared: int
     changed: tuple[Changed, ...]
-    named: tuple[Named, ...]
+    named: tuple[ShownEffect, ...]
     concerns: tuple[Concern, ...]
 
 
-def summarise(manifest: Manifest, planned: Sequence[Planned], results: Sequence[Plain]) -> Summary:
+def summarise(manifest: Manifest, planned: Sequence[PlannedRecording], results: Sequence[Plain]) -> Summary:
     """Look over a fleet.
 
     Args:
@@ -94,7 +149,7 @@ def summarise(manifest: Manifest, planned: Sequence[Planned], results: Sequence[
     axes, files, times = (manifest.text(column) for column in ("axis", "file", "time"))
     for row in order:
         rows.setdefault(axes[row], []).append(row)
-    compared, changed = changes(manifest, planned, results, order)
+    compared, changed = _changes(manifest, planned, results, order)
     named = [one for axis, own in rows.items() for one in _named(axis, times, results, own)]
     concerns = [one for axis, own in rows.items() for one in _concerns(axis, files, results, own)]
     counts = Counter(found["status"] for found in results)
@@ -102,18 +157,56 @@ def summarise(manifest: Manifest, planned: Sequence[Planned], results: Sequence[
         counts={status: counts[status] for status in STATUSES},
         axes=len(rows),
         compared=compared,
-        changed=tuple(changed),
+        changed=changed,
         named=tuple(sorted(named, key=lambda one: (-one.count / one.of, one.axis, one.effect))),
         concerns=tuple(sorted(concerns, key=lambda one: (KINDS.index(one.kind), -one.count / one.of, one.axis))),
     )
 
 
-def _named(axis: str, times: Sequence[str], results: Sequence[Plain], rows: Sequence[int]) -> Iterator[Named]:
+def _changes(
+    manifest: Manifest, planned: Sequence[PlannedRecording], results: Sequence[Plain], order: Sequence[int]
+) -> tuple[int, tuple[Changed, ...]]:
+    """How many histories could be compared, and the steps that stand out of all of them together, surest first."""
+    histories = _histories(manifest, planned, results, order)
+    steps = [(one, found) for one in histories if (found := largest_step(one.values, one.errors)) is not None]
+    files, times = manifest.text("file"), manifest.text("time")
+    chances = holm(np.array([step.chance for _, step in steps])).tolist()
+    by_chance = sorted(zip(steps, chances, strict=True), key=lambda each: each[0][1].chance)
+    changed = [
+        Changed(one, step, times[one.rows[step.place]], files[one.rows[step.place]], chance)
+        for (one, step), chance in by_chance
+        if chance < ALARM
+    ]
+    return len(steps), tuple(changed)
+
+
+def _histories(
+    manifest: Manifest, planned: Sequence[PlannedRecording], results: Sequence[Plain], order: Sequence[int]
+) -> Iterator[History]:
+    """Of what was recorded at a known time and evaluated by one rig: another rig is no other axis, but other values."""
+    axes, times = manifest.text("axis"), manifest.times
+    groups: dict[tuple[str, str, str, str], list[tuple[int, float, float]]] = {}
+    for row in order:
+        job, parameters = planned[row].job, results[row].get("parameters", {})
+        if job is None or np.isnan(times[row]) or results[row]["status"] != "done":
+            continue
+        for name in map(job.rig.axis_kind.parameter, COMPARED):
+            found = parameters.get(name)
+            if found is not None and found["std_error"] is not None:
+                key = (axes[row], planned[row].basis["rig_sha256"], name, found["unit"])
+                groups.setdefault(key, []).append((row, found["value"], found["std_error"]))
+    for (axis, _, name, unit), found in groups.items():
+        vague = VAGUE * median(error for *_, error in found)
+        rows, values, errors = zip(*(one for one in found if one[-1] <= vague), strict=True)
+        yield History(axis, name, unit, rows, np.array(values), np.array(errors))
+
+
+def _named(axis: str, times: Sequence[str], results: Sequence[Plain], rows: Sequence[int]) -> Iterator[ShownEffect]:
     """Effects that recordings of one axis show, in the order of time."""
     diagnosed = {row: {one["name"] for one in results[row]["effects"]} for row in rows if "effects" in results[row]}
     for effect in sorted(set[str]().union(*diagnosed.values())):
         showing = [row for row, names in diagnosed.items() if effect in names]
-        yield Named(axis, effect, len(showing), len(diagnosed), times[showing[0]])
+        yield ShownEffect(axis, effect, len(showing), len(diagnosed), times[showing[0]])
 
 
 def _concerns(axis: str, files: Sequence[str], results: Sequence[Plain], rows: Sequence[int]) -> Iterator[Concern]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,39 +12,55 @@ import pyarrow.parquet as pq
 
 from bench.errors import InputError
 from bench.files import whole
+from bench.fleet.evaluate import Plain
 from bench.fleet.manifest import Manifest
-from bench.fleet.plan import Planned
-from bench.fleet.recording import Plain
+from bench.fleet.plan import PlannedRecording
 
-#: Of the gaps of torque (force) and velocity.
-_GAP = ("after", "before", "noise_floor", "unit")
+NUMBER, TEXT, TEXTS = pa.float64(), pa.string(), pa.list_(pa.string())
+#: Of each parameter, by what follows its name; and of the gaps of torque (force) and velocity.
+OF_PARAMETER = {"": ("value", NUMBER), "_std_error": ("std_error", NUMBER), "_unit": ("unit", TEXT)}
+OF_GAP = {"": "after", "_before": "before", "_noise_floor": "noise_floor", "_unit": "unit"}
 
 
-def tabulate(manifest: Manifest, planned: Sequence[Planned], results: Sequence[Plain]) -> pa.Table:
+def tabulate(manifest: Manifest, planned: Sequence[PlannedRecording], results: Sequence[Plain]) -> pa.Table:
     """The manifest's columns, and behind them what was found (n rows).
 
     Raises:
         InputError: the manifest has a column of a name that the table needs.
     """
-    columns = {
-        "status": pa.array([found["status"] for found in results], pa.string()),
-        "reason": pa.array([found["reason"] for found in results], pa.string()),
-        **_parameters(results),
-        "verdict": _texts(found.get("verdict") for found in results),
-        "names": pa.array([_names(found) for found in results], pa.list_(pa.string())),
-        "explained": _numbers(found.get("explained") for found in results),
-        **_gaps(results),
-        "checks": pa.array([_checks(found) for found in results], pa.list_(pa.string())),
-        **_provenance(planned, results),
-    }
-    taken = next((name for name in manifest.table.column_names if name in columns), None)
-    if taken is not None:
-        found = "found a column that the fleet's table has too"
-        raise InputError(f"{manifest.path}: {taken}", found, "allowed: another name for it")
     table = manifest.table.replace_schema_metadata(None)
-    for name, column in columns.items():
-        table = table.append_column(name, column)
+    for name, kind, values in _columns(planned, results):
+        if name in manifest.table.column_names:
+            found = "found a column that the fleet's table has too"
+            raise InputError(f"{manifest.path}: {name}", found, "allowed: another name for it")
+        table = table.append_column(name, pa.array(values, kind))
     return table.combine_chunks()
+
+
+def _columns(
+    planned: Sequence[PlannedRecording], results: Sequence[Plain]
+) -> Iterator[tuple[str, pa.DataType, list[Any]]]:
+    """Name, type and values (n,) of each column; empty where a result tells nothing of it."""
+    for name in ("status", "reason"):
+        yield name, TEXT, [found[name] for found in results]
+    parameters = [found.get("parameters", {}) for found in results]
+    for name in dict.fromkeys(name for one in parameters for name in one):  # that any recording tells
+        for ending, (key, kind) in OF_PARAMETER.items():
+            yield name + ending, kind, [one.get(name, {}).get(key) for one in parameters]
+    yield "verdict", TEXT, [found.get("verdict") for found in results]
+    effects = [found.get("effects") for found in results]  # None where none were sought
+    yield "names", TEXTS, [None if one is None else [effect["name"] for effect in one] for one in effects]
+    yield "explained", NUMBER, [found.get("explained") for found in results]
+    for of in ("torque", "velocity"):
+        gaps = [found.get("gap", {}).get(of, {}) for found in results]
+        for ending, key in OF_GAP.items():
+            yield f"gap_{of}{ending}", TEXT if key == "unit" else NUMBER, [gap.get(key) for gap in gaps]
+    yield "checks", TEXTS, [[check["name"] for check in found.get("checks", [])] for found in results]
+    yield "version", TEXT, [one.basis["version"] for one in planned]
+    yield "rig_sha256", TEXT, [one.basis["rig_sha256"] for one in planned]
+    yield "trace_sha256", TEXT, [found.get("trace_sha256") for found in results]
+    yield "options", TEXT, [json.dumps(one.basis["options"], sort_keys=True) for one in planned]
+    yield "result", TEXT, [one.key or None for one in planned]
 
 
 def write_table(path: Path, table: pa.Table) -> None:
@@ -55,55 +71,3 @@ def write_table(path: Path, table: pa.Table) -> None:
     """
     with whole(path) as temporary:
         pq.write_table(table, temporary)
-
-
-def _parameters(results: Sequence[Plain]) -> dict[str, pa.Array]:
-    """Value, standard error and unit of each parameter that any recording tells."""
-    columns: dict[str, pa.Array] = {}
-    tables = [found.get("parameters", {}) for found in results]
-    for name in dict.fromkeys(name for one in tables for name in one):
-        columns[name] = _numbers(one.get(name, {}).get("value") for one in tables)
-        columns[f"{name}_std_error"] = _numbers(one.get(name, {}).get("std_error") for one in tables)
-        columns[f"{name}_unit"] = _texts(one.get(name, {}).get("unit") for one in tables)
-    return columns
-
-
-def _gaps(results: Sequence[Plain]) -> dict[str, pa.Array]:
-    """What is left, what was before effects were added, and what noise alone leaves."""
-    columns = {}
-    for of in ("torque", "velocity"):
-        gaps = [found.get("gap", {}).get(of, {}) for found in results]
-        for name in _GAP:
-            values = (gap.get(name) for gap in gaps)
-            columns[f"gap_{of}" if name == "after" else f"gap_{of}_{name}"] = (
-                _texts(values) if name == "unit" else _numbers(values)
-            )
-    return columns
-
-
-def _provenance(planned: Sequence[Planned], results: Sequence[Plain]) -> dict[str, pa.Array]:
-    return {
-        "version": _texts(one.basis["version"] for one in planned),
-        "rig_sha256": _texts(one.basis["rig_sha256"] for one in planned),
-        "trace_sha256": _texts(found.get("trace_sha256") for found in results),
-        "options": _texts(json.dumps(one.basis["options"], sort_keys=True) for one in planned),
-        "result": _texts(one.key or None for one in planned),
-    }
-
-
-def _names(found: Mapping[str, Any]) -> list[str] | None:
-    """Of the effects; None where none were sought."""
-    return [effect["name"] for effect in found["effects"]] if "effects" in found else None
-
-
-def _checks(found: Mapping[str, Any]) -> list[str]:
-    """Names of those that did not pass."""
-    return [check["name"] for check in found.get("checks", [])]
-
-
-def _numbers(values: Any) -> pa.Array:  # noqa: ANN401
-    return pa.array(list(values), pa.float64())
-
-
-def _texts(values: Any) -> pa.Array:  # noqa: ANN401
-    return pa.array(list(values), pa.string())

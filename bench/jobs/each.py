@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from statistics import median
 from typing import TypeVar
 
-from bench.jobs.beside import Beside
-from bench.jobs.limits import Failure, Limits
+from bench.jobs.process import Failure, Limits, WorkerProcess
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -46,11 +45,11 @@ def each(
     workers = workers or os.cpu_count() or 1
     if scheduler is None:
         seconds: list[float] = []
-        with Beside(work, limits) as beside:
+        with WorkerProcess(work, limits) as process:
             while waiting and not _worth_dask(seconds, len(waiting), workers):
                 place, item = waiting.popleft()
                 began = time.monotonic()
-                outcome = beside.do(item)
+                outcome = process.do(item)
                 seconds.append(time.monotonic() - began)
                 yield place, outcome
     if waiting:

@@ -1,7 +1,7 @@
 """Pieces of work on Dask: workers of this machine, or an existing cluster.
 
 Dask has the queue, the balance between workers, and the retries where a worker or its machine is lost; each thread of a
-worker has one process beside it (`beside.py`), so that no piece of work can hold up or end the worker itself.
+worker has one process beside it (`process.py`), so that no piece of work can hold up or end the worker itself.
 """
 
 from __future__ import annotations
@@ -19,8 +19,7 @@ from distributed import Client, Future, KilledWorker, LocalCluster, Worker, Work
 
 from bench import __version__
 from bench.errors import InputError
-from bench.jobs.beside import Beside, raised
-from bench.jobs.limits import Failure, Limits
+from bench.jobs.process import Failure, Limits, WorkerProcess, raised
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -57,10 +56,10 @@ def on_dask(
     with ExitStack() as stack:
         client = stack.enter_context(_client(workers, limits, scheduler))
         name = f"bench-{uuid4().hex}"
-        stack.enter_context(_equipped(client, Besides(name, work, limits), scheduler))
+        stack.enter_context(_equipped(client, WorkerProcesses(name, work, limits), scheduler))
         keys = [(name, number) for number, _ in numbered]  # one group, which the scheduler hands out as workers ask
         items = [item for _, item in numbered]
-        for future in as_completed(client.map(partial(_beside, name), items, key=keys, batch_size=BATCH)):
+        for future in as_completed(client.map(partial(_done, name), items, key=keys, batch_size=BATCH)):
             yield future.key[1], _outcome(future)
 
 
@@ -91,7 +90,7 @@ def _client(workers: int, limits: Limits, scheduler: str | None) -> Iterator[Cli
 
 
 @contextmanager
-def _equipped(client: Client, plugin: Besides, scheduler: str | None) -> Iterator[None]:
+def _equipped(client: Client, plugin: WorkerProcesses, scheduler: str | None) -> Iterator[None]:
     """Within the block each worker, also one that comes later, has the plugin."""
     try:
         client.register_plugin(plugin)
@@ -104,32 +103,32 @@ def _equipped(client: Client, plugin: Besides, scheduler: str | None) -> Iterato
         client.unregister_worker_plugin(plugin.name)
 
 
-class Besides(WorkerPlugin):
+class WorkerProcesses(WorkerPlugin):
     """The processes beside a worker, one for each of its threads that works.
 
     Args:
         name: by which tasks find it.
-        work, limits: see `Beside`.
+        work, limits: see `WorkerProcess`.
     """
 
     def __init__(self, name: str, work: Callable[..., object], limits: Limits) -> None:
         self.name, self._work, self._limits = name, work, limits
-        self._besides: dict[int, Beside] = {}
+        self._processes: dict[int, WorkerProcess] = {}
 
     def teardown(self, worker: Worker) -> None:
         """End the processes."""
-        for beside in list(self._besides.values()):
-            beside.close()
+        for process in list(self._processes.values()):
+            process.close()
 
     def do(self, item: object) -> object:
         """The work's result or failure, by the process of the thread that asks."""
-        beside = self._besides.setdefault(threading.get_ident(), Beside(self._work, self._limits))
-        return beside.do(item)
+        process = self._processes.setdefault(threading.get_ident(), WorkerProcess(self._work, self._limits))
+        return process.do(item)
 
 
-def _beside(name: str, item: object) -> object:
+def _done(name: str, item: object) -> object:
     """One task."""
-    return cast("Besides", get_worker().plugins[name]).do(item)
+    return cast("WorkerProcesses", get_worker().plugins[name]).do(item)
 
 
 def _outcome(future: Future) -> Any:  # noqa: ANN401

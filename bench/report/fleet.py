@@ -8,9 +8,8 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
-from bench.fleet.changed import ALARM, Changed
 from bench.fleet.fleet import TABLE, Fleet
-from bench.fleet.summary import STATUSES, Concern, Named
+from bench.fleet.summary import ALARM, STATUSES, Changed, Concern, ShownEffect
 from bench.names import short, words
 from bench.structured import json_text
 
@@ -47,9 +46,9 @@ def _changed(one: Changed) -> dict[str, Any]:
     step = one.step
     difference = step.after - step.before
     return {
-        "axis": one.axis,
-        "quantity": one.quantity,
-        "unit": one.unit,
+        "axis": one.history.axis,
+        "quantity": one.history.quantity,
+        "unit": one.history.unit,
         "before": step.before,
         "after": step.after,
         "difference95": [difference - step.reach, difference + step.reach],
@@ -60,7 +59,7 @@ def _changed(one: Changed) -> dict[str, Any]:
     }
 
 
-def _named(one: Named) -> dict[str, Any]:
+def _named(one: ShownEffect) -> dict[str, Any]:
     return {"axis": one.axis, "name": one.effect, "recordings": one.count, "of": one.of, "since": one.since}
 
 
@@ -93,15 +92,15 @@ def changed_table(changed: tuple[Changed, ...]) -> Table:
         table.add_column(heading, justify="right" if heading in ("before", "after", "change") else "left")
     for one in changed[:SHOWN]:
         step = one.step
-        difference, unit = step.after - step.before, one.unit
+        difference, unit = step.after - step.before, one.history.unit
         share = f"{difference / abs(step.before):+.1%} ± {step.reach / abs(step.before):.1%}" if step.before else ""
         values = (f"{step.before:.4g}", f"{step.after:.4g} {unit}", share)
         counts = f"{one.counts[0]} before, {one.counts[1]} after"
-        table.add_row(one.axis, words(one.quantity), *values, one.since, counts)
+        table.add_row(one.history.axis, words(one.history.quantity), *values, one.since, counts)
     return table
 
 
-def named_table(named: tuple[Named, ...]) -> Table:
+def named_table(named: tuple[ShownEffect, ...]) -> Table:
     """Effects that the axes show."""
     table = _table("effects named", len(named))
     for heading in ("axis", "effect", "recordings", "first"):

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from bench.jobs.each import each
-from bench.jobs.limits import Failure, Limits
+from bench.jobs.process import Failure, Limits
 from bench.validation.coverage import Coverage, coverage
 from bench.validation.naming import Naming, naming
 from bench.validation.plan import Plan

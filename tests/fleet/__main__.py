@@ -18,10 +18,10 @@ import pyarrow.parquet as pq
 import typer
 
 from bench.bounds import bounds
+from bench.fleet.evaluate import Job, evaluate
 from bench.fleet.manifest import read_manifest
-from bench.fleet.recording import Task, evaluate
-from bench.jobs.limits import Limits
 from bench.jobs.on_dask import on_dask
+from bench.jobs.process import Limits
 from bench.rig.rig import load_rig
 from tests.fleet.made import DAMAGES, Made, fleet_of
 from tests.fleet.storage import offer
@@ -154,7 +154,7 @@ def _speed(folder: Path, recordings: int, duration: float) -> list[str]:
     """Recordings a second by one worker and by two, once all of them have begun to work."""
     manifest = read_manifest(fleet_of(folder, axes=recordings // 10, each=10, duration=duration).write())
     rig, rates, starts = load_rig(folder / "rig.toml"), {}, {}
-    tasks = [Task(place, "", rig, False, bounds()) for place in manifest.located("file")]
+    tasks = [Job(place, "", rig, False, bounds()) for place in manifest.located("file")]
     for workers in (1, 2):
         began = time.monotonic()
         ended = [time.monotonic() for _ in on_dask(evaluate, list(enumerate(tasks)), Limits(), workers, None)]

@@ -15,7 +15,7 @@ import pytest
 from distributed import LocalCluster
 
 from bench.fleet.fleet import fleet
-from bench.jobs.limits import Limits
+from bench.jobs.process import Limits
 from bench.trace.write import write
 from tests.command import bench
 from tests.diagnosis.command import RIG
@@ -150,7 +150,11 @@ def test_another_trace_rig_or_option_is_another_result(made, tmp_path):
 
 def test_the_axis_that_changed_is_named_with_its_day(found):
     (changed,) = found[0].summary.changed
-    assert (changed.axis, changed.quantity, changed.since) == ("press 1", NAMES[2], "2026-01-05 06:00:00")
+    assert (changed.history.axis, changed.history.quantity, changed.since) == (
+        "press 1",
+        NAMES[2],
+        "2026-01-05 06:00:00",
+    )
     assert changed.file == "press_1_4.csv.gz"
     assert changed.step.after / changed.step.before == pytest.approx(1.15, abs=0.03)
     assert changed.chance < 0.01

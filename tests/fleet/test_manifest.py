@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from bench.fleet.manifest import read_manifest
-from bench.fleet.plan import Planned
+from bench.fleet.plan import PlannedRecording
 from bench.fleet.table import tabulate, write_table
 
 NAMES = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1)
@@ -21,7 +21,7 @@ FREELY = settings(max_examples=50, suppress_health_check=[HealthCheck.function_s
 def through(tmp_path, manifest):
     """Its columns, as they come back from the fleet's table."""
     refusal = {"status": "refused", "reason": "none"}
-    planned = Planned("", None, refusal, {"version": "1", "rig_sha256": None, "options": {}})
+    planned = PlannedRecording("", None, refusal, {"version": "1", "rig_sha256": None, "options": {}})
     table = tabulate(manifest, [planned] * len(manifest), [refusal] * len(manifest))
     write_table(tmp_path / "fleet.parquet", table)
     return pq.read_table(tmp_path / "fleet.parquet").select(manifest.table.column_names).to_pydict()

@@ -9,13 +9,13 @@ from scipy import stats
 
 from bench.bounds import bounds
 from bench.comparison.step import largest_step
+from bench.fleet.evaluate import Job
 from bench.fleet.manifest import Manifest
-from bench.fleet.plan import Planned
-from bench.fleet.recording import Task
+from bench.fleet.plan import PlannedRecording
 from bench.fleet.summary import summarise
 from tests.fit.motions import NAMES, RIG
 
-TASK = Task("", "", RIG, False, bounds())
+JOB = Job("", "", RIG, False, bounds())
 
 
 def looked_over(values, times=None, rigs=None, errors=None, results=None):
@@ -26,7 +26,7 @@ def looked_over(values, times=None, rigs=None, errors=None, results=None):
     files = [f"{row}.csv" for row in range(count * each)]
     table = pa.table({"file": files, "rig": ["rig.toml"] * len(files), "axis": axes, "time": times})
     rigs = ["same"] * len(files) if rigs is None else rigs
-    planned = [Planned(str(row), TASK, None, {"rig_sha256": rig}) for row, rig in enumerate(rigs)]
+    planned = [PlannedRecording(str(row), JOB, None, {"rig_sha256": rig}) for row, rig in enumerate(rigs)]
     errors = np.full(values.size, 1e-3) if errors is None else errors
     told = [found(value, error) for value, error in zip(values.ravel(), errors, strict=True)]
     return summarise(Manifest(Path("fleet.csv"), table), planned, results or told)
@@ -48,7 +48,7 @@ def test_axes_that_change_are_found_among_those_that_do_not():
     values = np.random.default_rng(1).normal(1.0, 0.01, (40, 12))
     values[[3, 17], 6:] += 0.15
     summary = looked_over(values)
-    assert {one.axis for one in summary.changed} == {"axis 3", "axis 17"}
+    assert {one.history.axis for one in summary.changed} == {"axis 3", "axis 17"}
     assert {one.since for one in summary.changed} == {"6"}
     assert {one.counts for one in summary.changed} == {(6, 6)}
     assert summary.compared == 40
@@ -89,7 +89,7 @@ def test_a_recording_counts_up_to_five_times_the_median_error(factor, compared):
     errors[11] *= factor
     (changed,) = looked_over(values, errors=errors).changed
     assert sum(changed.counts) == 11 + compared
-    assert changed.series.values.size == 11 + compared
+    assert changed.history.values.size == 11 + compared
 
 
 def test_an_alarm_is_held_against_one_in_a_hundred_of_all_axes_together():
@@ -113,7 +113,7 @@ def test_what_was_not_done_or_has_no_error_is_not_compared():
         told[place] = {**told[place], **other}
     told[9]["parameters"][NAMES[0]]["std_error"] = None
     (changed,) = looked_over(values, results=told).changed
-    assert changed.series.rows == (0, 1, 2, 4, 5, 6, 7, 8, 10, 11)
+    assert changed.history.rows == (0, 1, 2, 4, 5, 6, 7, 8, 10, 11)
     assert changed.counts == (5, 5)
 
 

@@ -6,9 +6,8 @@ import time
 import pytest
 
 from bench.errors import InputError
-from bench.jobs.beside import Beside
 from bench.jobs.each import each
-from bench.jobs.limits import Failure, Limits
+from bench.jobs.process import Failure, Limits, WorkerProcess
 from tests.jobs.pieces import refuse, work
 
 LIMITS = Limits(deadline=5.0, memory=300 * 2**20)
@@ -87,7 +86,7 @@ def test_workers_of_this_machine_are_started_and_ended(monkeypatch):
 
 
 def test_one_process_does_all_items_that_go_well():
-    with Beside(work, LIMITS) as beside:
+    with WorkerProcess(work, LIMITS) as beside:
         processes = {beside.do(("process", 0)) for _ in range(3)}
         beside.do(("killed", 0))
         after = beside.do(("process", 0))
@@ -96,7 +95,7 @@ def test_one_process_does_all_items_that_go_well():
 
 
 def test_what_is_stopped_is_gone():
-    with Beside(work, Limits(deadline=0.3)) as beside:
+    with WorkerProcess(work, Limits(deadline=0.3)) as beside:
         process = beside.do(("process", 0))
         assert beside.do(("sleep", 0)).status == "timed_out"
     with pytest.raises(ProcessLookupError):
@@ -109,7 +108,7 @@ def test_work_that_cannot_be_loaded_says_so(tmp_path, monkeypatch):
     import passing
 
     (tmp_path / "passing.py").unlink()
-    with Beside(passing.work, LIMITS) as beside:
+    with WorkerProcess(passing.work, LIMITS) as beside:
         assert "No module named 'passing'" in beside.do(1).reason
 
 

@@ -9,12 +9,12 @@ import pytest
 from bench.comparison.step import expected
 from bench.fleet.fleet import Fleet
 from bench.fleet.manifest import Manifest
-from bench.fleet.plan import Planned
+from bench.fleet.plan import PlannedRecording
 from bench.fleet.summary import summarise
 from bench.report.document import Chart, Table
 from bench.report.html import html
 from bench.report.pages.fleet import CHARTS, DOTS, ROWS, fleet_page
-from tests.fleet.test_summary import TASK, found
+from tests.fleet.test_summary import JOB, found
 from tests.report.test_page import HOSTILE
 
 BASIS = {"version": "0.1.0", "manifest_sha256": "abc", "options": {"diagnose": False}}
@@ -33,7 +33,7 @@ def fleet_of(values, results=None, name="axis {}", dated=True, evaluated=0):
         "time": days if dated else np.tile(np.arange(each, dtype=float), count),
     }
     manifest = Manifest(Path("fleet.csv"), pa.table(columns))
-    planned = [Planned(str(row), TASK, None, {"rig_sha256": "same"}) for row in rows]
+    planned = [PlannedRecording(str(row), JOB, None, {"rig_sha256": "same"}) for row in rows]
     told = [(results or {}).get(row, found(value, 1e-3)) for row, value in enumerate(values.ravel())]
     return Fleet(manifest, summarise(manifest, planned, told), evaluated)
 

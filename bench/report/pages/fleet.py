@@ -7,9 +7,8 @@ from typing import Any
 
 from bench.arrays import Array
 from bench.comparison.step import expected
-from bench.fleet.changed import ALARM, Changed
 from bench.fleet.fleet import TABLE, Fleet
-from bench.fleet.summary import STATUSES, Summary
+from bench.fleet.summary import ALARM, STATUSES, Changed, Summary
 from bench.names import short, words
 from bench.report.document import (
     AnyPart,
@@ -76,7 +75,7 @@ def fleet_page(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any]) -
 
 
 def _verdict(summary: Summary) -> str:
-    changed, called = ({one.axis for one in some} for some in (summary.changed, summary.concerns))
+    changed, called = {one.history.axis for one in summary.changed}, {one.axis for one in summary.concerns}
     first = f"{len(changed) or 'None'} of {summary.axes} axes changed"
     if not summary.compared:
         first = "No axis could be compared over time"
@@ -117,7 +116,8 @@ def _reasons(summary: Summary) -> dict[str, list[str]]:
     """By axis, why a person should look: what changed surely comes before what could not be told, gravest first."""
     reasons: dict[str, list[str]] = {}
     for one in summary.changed:
-        reasons.setdefault(one.axis, []).append(f"{words(one.quantity)} {_share(one)} since {one.since}")
+        why = f"{words(one.history.quantity)} {_share(one)} since {one.since}"
+        reasons.setdefault(one.history.axis, []).append(why)
     for one in summary.concerns:
         why = f"{words(one.kind)} ({one.count} of {one.of} recordings): {short(one.reason, REASON)}"
         reasons.setdefault(one.axis, []).append(why)
@@ -129,7 +129,7 @@ def _share(one: Changed) -> str:
     step = one.step
     difference = step.after - step.before
     if not step.before:
-        return f"{difference:+.3g}{SPACE}±{SPACE}{number(step.reach, one.unit, 2)}".replace("-", "−")
+        return f"{difference:+.3g}{SPACE}±{SPACE}{number(step.reach, one.history.unit, 2)}".replace("-", "−")
     text = f"{100.0 * difference / abs(step.before):+.3g}{SPACE}±{SPACE}{share(step.reach / abs(step.before))}"
     return text.replace("-", "−")
 
@@ -140,7 +140,7 @@ def _people(summary: Summary) -> AnyPart:
         return Paragraph(text="Nobody: no axis changed, and every recording gave a result that explains it.")
     rows = [(short(axis, NAME), "; ".join(why)) for axis, why in reasons.items()]
     columns = Heading(heading="axis"), Heading(heading="why", prose=True)
-    marked = tuple(range(min(ROWS, len({one.axis for one in summary.changed}))))
+    marked = tuple(range(min(ROWS, len({one.history.axis for one in summary.changed}))))
     return _table("Changed first, then by how grave it is", columns, rows, marked)
 
 
@@ -160,10 +160,10 @@ def _changes(fleet: Fleet) -> Iterator[AnyPart]:
     )
     rows = [
         (
-            short(one.axis, NAME),
-            words(one.quantity),
+            short(one.history.axis, NAME),
+            words(one.history.quantity),
             number(one.step.before),
-            number(one.step.after, one.unit),
+            number(one.step.after, one.history.unit),
             _share(one),
             one.since,
             f"{one.counts[0]}, {one.counts[1]}",
@@ -179,7 +179,7 @@ def _changes(fleet: Fleet) -> Iterator[AnyPart]:
 
 def _over_time(one: Changed, fleet: Fleet) -> Chart:
     """A quantity over time, and where the next recording was to be expected before and after the change."""
-    step, series = one.step, one.series
+    step, series = one.step, one.history
     near = slice(max(0, step.place - DOTS // 2), step.place + DOTS // 2)
     rows = list(series.rows)
     times, label, unit = _clock(fleet, rows)
@@ -204,11 +204,11 @@ def _over_time(one: Changed, fleet: Fleet) -> Chart:
     )
     nearest = "" if len(rows) <= x.size else f" Of {len(rows)} recordings the {x.size} nearest to it are drawn."
     return Chart(
-        title=f"{short(one.axis, NAME)}: {words(one.quantity)}.",
-        alternative=f"From {number(step.before)} to {number(step.after, one.unit)}, {_share(one)}, since {one.since} "
-        f"({short(one.file, NAME)}).{nearest}",
-        y_label=words(one.quantity),
-        y_unit=unit_text(one.unit),
+        title=f"{short(one.history.axis, NAME)}: {words(one.history.quantity)}.",
+        alternative=f"From {number(step.before)} to {number(step.after, one.history.unit)}, {_share(one)}, since "
+        f"{one.since} ({short(one.file, NAME)}).{nearest}",
+        y_label=words(one.history.quantity),
+        y_unit=unit_text(one.history.unit),
         panels=(Panel(x_label=label, x_unit=unit, series=drawn),),
     )
 

@@ -17,16 +17,16 @@ import time
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Literal, TypeVar
 
 import psutil
 
 from bench.allocation import KEPT
 from bench.bounds import shown
-from bench.jobs.limits import Failure, Limits
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -37,10 +37,36 @@ LOOK = 0.2
 GRACE = 10.0
 #: One numeric thread a process, since several compete for the cores (BLAS; Arrow reads the first too).
 _ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-_SERVE = "import sys; from bench.jobs.beside import serve; serve(int(sys.argv[1]))"
+_SERVE = "import sys; from bench.jobs.process import serve; serve(int(sys.argv[1]))"
 
 
-class Beside(Generic[Item, Result]):
+@dataclass(frozen=True)
+class Limits:
+    """Limits of one piece of work.
+
+    Attributes:
+        deadline: after which it is stopped - s.
+        memory: of its process, beyond which it is stopped - bytes.
+    """
+
+    deadline: float = 120.0
+    memory: float = 4.0 * 1024**3
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a piece of work gave no result.
+
+    Attributes:
+        status: `timed_out` where it was stopped at its deadline, `failed` where it raised, or its process died.
+        reason: for a person; the same whenever the same happens.
+    """
+
+    status: Literal["failed", "timed_out"]
+    reason: str
+
+
+class WorkerProcess(Generic[Item, Result]):
     """The process, started with the first piece of work and again after it had to be stopped.
 
     Args:
@@ -52,7 +78,7 @@ class Beside(Generic[Item, Result]):
         self._work, self._limits = work, limits
         self._running: tuple[subprocess.Popen[bytes], Connection] | None = None
 
-    def __enter__(self) -> Beside[Item, Result]:
+    def __enter__(self) -> WorkerProcess[Item, Result]:
         return self
 
     def __exit__(self, *_: object) -> None:
