@@ -29,8 +29,8 @@ LAYERS = (
     {"friction_map"},
     {"diagnosis"},
     {"baseline", "validation", "fleet", "export", "view"},
-    {"course"},
     {"report"},
+    {"course"},  # a guest: nothing but its commands imports it
     {"demo"},
     {"console"},
     {"cli", "__main__"},

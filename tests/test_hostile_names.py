@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from bench.assets import asset
+from bench.course.report import lab_html
 from bench.files import write_text
 from bench.fit.identify import identify
 from bench.names import cell, readable
@@ -15,7 +16,6 @@ from bench.plant.model_file import StoredModel, load_model, model_toml
 from bench.plant.plant import Plant
 from bench.report.figures import drawn, save
 from bench.report.identification import Moved, identification
-from bench.report.lab import lab_html
 from bench.report.terminal import show
 from bench.rig.rig import Rig, load_rig
 from bench.trace.conditioning import condition

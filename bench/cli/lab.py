@@ -54,21 +54,23 @@ def _record(folder: Path, students: int | None, seed: int) -> None:
 
 
 def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
-    from bench.report.grades import grade_class, grades_table
+    from bench.course.grade import grade_class
+    from bench.course.grades import grades_table, write_grades
 
     if truth is None:
         raise typer.BadParameter("--grade needs --truth FILE, which --record --students wrote")
-    graded, bad, files = grade_class(submissions, truth, out)
+    graded = grade_class(submissions, truth)
+    files = write_grades(graded, out)
     printed(grades_table(graded))
-    for error in bad:
+    for error in graded.unread:
         typer.echo(plain(f"not graded: {error}"), err=True)
     list_files(files[:2])
-    if bad:
+    if graded.unread:
         raise typer.Exit(1)
 
 
 def _report(data: Path | None, out: Path) -> None:
-    from bench.report.course import course_table, report_course
+    from bench.course.report import course_table, report_course
     from bench.report.terminal import progress
 
     with progress("lab course") as done:

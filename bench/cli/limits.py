@@ -17,12 +17,14 @@ def limits(
     axis_name: AxisOption = None,
 ) -> None:
     """Draw a recording into its motor's speed-torque diagram; say how much reserve it leaves."""
-    from bench.report.limits import draw_operating_range, operating_range
+    from bench.course.charts import chart_figure
+    from bench.course.operating_range import trace_in_range
+    from bench.report.figures import save_as_named
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
     axis = load_rig(rig).on_axis(axis_name)
-    found = operating_range(read(trace, axis.trace), axis)
-    draw_operating_range(found, out)
+    found = trace_in_range(read(trace, axis.trace), axis)
+    save_as_named(chart_figure(found.charts[0]), out)
     say("\n".join(found.findings))
     list_files([out])

@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bench.arrays import Array
+from bench.course.axis import KG_CM2, RPM, rotor_inertia, torque_constant
 from bench.course.corner import decline
-from bench.course.flights import Flights, find_flights, read_flights
-from bench.course.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION, Recordings
-from bench.course.rig import rotor_inertia, torque_constant
-from bench.course.run import Run
-from bench.course.t01_catapult import by_orthogonal_solver, columns
+from bench.course.recordings import LabRecordings, LabRun
+from bench.course.t01_catapult import fit_path
 from bench.course.t03_torque_constants import torque_constants
 from bench.course.t04_torque_constant_curve import coefficients
-from bench.course.t06_inertia import KG_CM2
-from bench.course.t08_fast_samples import WIDTH
-from bench.course.t10_peak_torque import LEAST_TORQUE, RPM
+from bench.course.t08_fast_samples import DELAY, WIDTH, filtered_acceleration
+from bench.course.t10_peak_torque import LEAST_TORQUE
 from bench.errors import UndeterminedError
 from bench.fit.lab import LEAST_SPEED, backward_difference, least_squares, mean_inertia
 from bench.rig.rig import Rig
 
 
 @dataclass(frozen=True)
-class Asked:
+class Question:
     """A quantity that a student hands in.
 
     Attributes:
@@ -43,110 +41,174 @@ class Asked:
     near_zero: float = 0.0
 
 
-ASKED = (
-    Asked("1", "catapult_a", "1/m", 0.02),
-    Asked("1", "catapult_b", "dimensionless", 0.02),
-    Asked("1", "catapult_c", "m", 0.02),
-    Asked("1", "catapult_E", "m**2", 0.05),
-    Asked("3", "kT_stall", "N*m/A", 0.005),
-    Asked("3", "kT_peak", "N*m/A", 0.005),
-    Asked("4", "kT_a", "N*m/A**3", 0.01),
-    Asked("4", "kT_b", "N*m/A**2", 0.01, near_zero=0.1),
-    Asked("4", "kT_c", "N*m/A", 0.005),
-    Asked("6", "alpha_max", "rad/s**2", 0.2),
-    Asked("6", "J_without_friction", "kg*cm**2", 0.02),
-    Asked("6", "J_load_without_friction", "kg*cm**2", 0.02),
-    Asked("9", "J", "kg*cm**2", 0.02),
-    Asked("9", "K_fric_w", "N*m*s/rad", 0.1),
-    Asked("9", "K_fric_0", "N*m", 0.08),
-    Asked("9", "E", "(N*m)**2", None),
-    Asked("9", "J_load", "kg*cm**2", 0.02),
-    Asked("10", "M_max", "N*m", 0.03),
-    Asked("10", "corner", "rpm", 0.05),
+QUESTIONS = (
+    Question("1", "catapult_a", "1/m", 0.02),
+    Question("1", "catapult_b", "dimensionless", 0.02),
+    Question("1", "catapult_c", "m", 0.02),
+    Question("1", "catapult_E", "m**2", 0.05),
+    Question("3", "kT_stall", "N*m/A", 0.005),
+    Question("3", "kT_peak", "N*m/A", 0.005),
+    Question("4", "kT_a", "N*m/A**3", 0.01),
+    Question("4", "kT_b", "N*m/A**2", 0.01, near_zero=0.1),
+    Question("4", "kT_c", "N*m/A", 0.005),
+    Question("6", "alpha_max", "rad/s**2", 0.2),
+    Question("6", "J_without_friction", "kg*cm**2", 0.02),
+    Question("6", "J_load_without_friction", "kg*cm**2", 0.02),
+    Question("9", "J", "kg*cm**2", 0.02),
+    Question("9", "K_fric_w", "N*m*s/rad", 0.1),
+    Question("9", "K_fric_0", "N*m", 0.08),
+    Question("9", "E", "(N*m)**2", None),
+    Question("9", "J_load", "kg*cm**2", 0.02),
+    Question("10", "M_max", "N*m", 0.03),
+    Question("10", "corner", "rpm", 0.05),
 )
 
 
 @dataclass(frozen=True)
-class Alpha:
-    """How acceleration is made for least squares: the mean of `width` differences, set back by `set_back` samples."""
-
-    width: int = WIDTH
-    set_back: int = WIDTH // 2
-
-
-@dataclass(frozen=True)
 class Way:
-    """How the recordings are worked out.
+    """How the recordings are worked out; the right one without arguments.
 
     Attributes:
         velocity: factor on the speed in rad/s that should be 1.
         current: factor on the current in A that should be 1.
         constant: torque per ampere at every current, `stall`, `peak` or `zero`; empty for kT(Iq).
-        alpha: of least squares.
+        width, set_back: acceleration for least squares is the mean of so many differences, set back by so many samples.
         rpm: factor on speeds in rpm that should be 1.
     """
 
     velocity: float = 1.0
     current: float = 1.0
     constant: str = ""
-    alpha: Alpha = Alpha()
+    width: int = WIDTH
+    set_back: int = DELAY
     rpm: float = 1.0
 
 
 @dataclass(frozen=True)
-class Material:
-    """What a student has: the rig file, three recordings and the flights."""
+class Mistake:
+    """A mistake that students make, known by the figures that it gives on their own recordings.
 
-    rig: Rig
-    without_friction: Run
-    with_friction: Run
-    fastest: Run
-    flights: Flights
+    Attributes:
+        name: of it.
+        explanation: what went wrong, to the student.
+        ways: in which recordings are worked out with it.
+    """
+
+    name: str
+    explanation: str
+    ways: tuple[Way, ...]
+
+
+MISTAKES = (
+    Mistake(
+        "degrees for radians",
+        "The speed went in in deg/s: divide by 180/π to get rad/s before anything else.",
+        (Way(velocity=180.0 / math.pi),),
+    ),
+    Mistake(
+        "milliamperes for amperes",
+        "The current went in in mA: divide by 1000 before kT(Iq).",
+        (Way(current=1e3), Way(current=1e3, constant="stall"), Way(current=1e3, constant="zero")),
+    ),
+    Mistake(
+        "no kT(Iq)",
+        "One torque constant was used at every current: torque is kT(Iq)·Iq with the curve of task 4.",
+        (Way(constant="stall"), Way(constant="peak"), Way(constant="zero")),
+    ),
+    Mistake(
+        "half-sample lag",
+        "The mean was set back by its own delay alone: the backward difference is half a sample late besides, and "
+        "J·α of that half sample is taken for friction.",
+        (*(Way(width=width, set_back=(width - 1) // 2) for width in (3, 5, 7)), Way(set_back=1)),
+    ),
+    Mistake(
+        "filter not synchronised",
+        "alpha_filt was used as the filter delivers it: set it back by its delay, so that it belongs to the same time "
+        "as speed and torque.",
+        tuple(Way(width=width, set_back=0) for width in (3, WIDTH, 5, 7)),
+    ),
+    Mistake(
+        "backward difference",
+        "The bare backward difference went into least squares: it is noisy and half a sample late; use alpha_filt on "
+        "t_sync.",
+        (Way(width=1, set_back=0),),
+    ),
+    Mistake(
+        "2π",
+        "A factor of 2π is missing: rad/s = 2π·(turns per second), n/rpm = 60/(2π)·ω.",
+        (Way(velocity=0.5 / math.pi), Way(rpm=2.0 * math.pi), Way(velocity=2.0 * math.pi)),
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Worked:
+    """Recordings that are worked out in one way after the other: what no way changes is done once.
+
+    Attributes:
+        recordings: a student's.
+        corner: of the fastest run - rad/s; NaN where its current does not tell one.
+        unchanged: answers of the catapult and of the datasheet.
+    """
+
+    recordings: LabRecordings
+    corner: float
+    unchanged: dict[str, float]
 
     @classmethod
-    def of(cls, recordings: Recordings) -> Material:
+    def of(cls, recordings: LabRecordings) -> Worked:
         """Read all of a folder.
 
         Raises:
-            InputError: one is missing or cannot be read.
+            InputError: a file is missing or cannot be read.
         """
-        return cls(
-            recordings.rig,
-            recordings.run(WITHOUT_FRICTION),
-            recordings.run(WITH_FRICTION),
-            recordings.run(FASTEST),
-            read_flights(find_flights(recordings.folder)),
-        )
+        rig = recordings.rig
+        theta, error = fit_path(*np.concatenate(recordings.flights.points).T)
+        stall, peak = torque_constants(rig)
+        unchanged = {f"catapult_{name}": float(value) for name, value in zip("abc", theta, strict=True)}
+        unchanged |= {"catapult_E": error, "kT_stall": stall, "kT_peak": peak}
+        unchanged |= {f"kT_{name}": float(value) for name, value in zip("abc", coefficients(rig), strict=True)}
+        return cls(recordings, _corner(recordings.fastest), unchanged)
+
+    def answers(self, way: Way | None = None) -> dict[str, float]:
+        """Every quantity of the form, in its unit, in one way; those are left out that it gives no value of."""
+        way = way or Way()
+        rig = self.recordings.rig
+        return {
+            **self.unchanged,
+            **_task6(_seen(self.recordings.without_friction, rig, way), rig),
+            **_task9(_seen(self.recordings.with_friction, rig, way), rig, way),
+            "M_max": float(_torque(rig, self.recordings.fastest.current, way).max()),
+            **({"corner": self.corner * way.velocity * RPM * way.rpm} if math.isfinite(self.corner) else {}),
+        }
 
 
-def answers(material: Material, way: Way | None = None) -> dict[str, float]:
-    """Every quantity of the form, in its unit, worked out in one way; those are left out that it gives no value of."""
-    way = way or Way()
-    rig = material.rig
-    y, z = np.concatenate(material.flights.points).T
-    theta = by_orthogonal_solver(columns(y), z)
-    stall, peak = torque_constants(rig.motor, rig.source)
-    found: dict[str, float] = {f"catapult_{name}": value for name, value in zip("abc", theta.tolist(), strict=True)}
-    found["catapult_E"] = float(np.sum((z - columns(y) @ theta) ** 2))
-    found |= {"kT_stall": stall, "kT_peak": peak}
-    curve = coefficients(rig.motor, rig.source).tolist()
-    found |= {f"kT_{name}": value for name, value in zip("abc", curve, strict=True)}
-    found |= _task6(material, way) | _task9(material, way) | _task10(material, way)
-    return found
+def _corner(run: LabRun) -> float:
+    """The corner, read from the torque's top on, whatever unit or constant is made of it."""
+    start = int(np.argmax(run.torque > (1.0 - LEAST_TORQUE) * run.torque.max()))
+    try:
+        return decline(run.velocity[start:], run.current[start:], run.sample_period).corner
+    except UndeterminedError:
+        return math.nan
+
+
+def _seen(run: LabRun, rig: Rig, way: Way) -> LabRun:
+    """The run with speed, acceleration and torque as one way makes them."""
+    velocity = run.velocity * way.velocity
+    alpha = backward_difference(velocity, run.sample_period)
+    return replace(run, velocity=velocity, acceleration=alpha, torque=_torque(rig, run.current, way))
 
 
 def _torque(rig: Rig, current: Array, way: Way) -> Array:
     if not way.constant:
         return torque_constant(rig).torque(current * way.current)
-    stall, peak = torque_constants(rig.motor, rig.source)
+    stall, peak = torque_constants(rig)
     constants = {"stall": stall, "peak": peak, "zero": torque_constant(rig).constant}
     return constants[way.constant] * current * way.current
 
 
-def _task6(material: Material, way: Way) -> dict[str, float]:
-    run, rig = material.without_friction, material.rig
-    alpha = backward_difference(run.velocity * way.velocity, run.sample_period)
-    inertia, largest, _ = mean_inertia(alpha, _torque(rig, run.current, way))
+def _task6(run: LabRun, rig: Rig) -> dict[str, float]:
+    inertia, largest, _ = mean_inertia(run.acceleration, run.torque)
     return {
         "alpha_max": largest,
         "J_without_friction": inertia * KG_CM2,
@@ -154,36 +216,19 @@ def _task6(material: Material, way: Way) -> dict[str, float]:
     }
 
 
-def _task9(material: Material, way: Way) -> dict[str, float]:
-    run, rig = material.with_friction, material.rig
-    velocity, torque = run.velocity * way.velocity, _torque(rig, run.current, way)
-    difference = backward_difference(velocity, run.sample_period)[1:]
-    width, set_back = way.alpha.width, way.alpha.set_back
-    alpha = np.convolve(difference, np.full(width, 1.0 / width), mode="valid")
-    # the last difference of a mean is that of its sample; the mean comes with it unless it is set back
-    part = slice(width - set_back, width - set_back + alpha.size)
-    fast = np.abs(velocity[part]) >= LEAST_SPEED
+def _task9(run: LabRun, rig: Rig, way: Way) -> dict[str, float]:
+    alpha, synchronous = filtered_acceleration(run, way.width, way.set_back)
+    velocity, torque = run.velocity[synchronous], run.torque[synchronous]
+    fast = np.abs(velocity) >= LEAST_SPEED
     try:
-        theta, _, error = least_squares(alpha[fast], velocity[part][fast], torque[part][fast])
+        theta, _, error = least_squares(alpha[fast], velocity[fast], torque[fast])
     except UndeterminedError:  # as with speeds so small by a wrong unit that none reaches the threshold
         return {}
+    inertia, viscous, coulomb = theta.tolist()
     return {
-        "J": float(theta[0]) * KG_CM2,
-        "K_fric_w": float(theta[1]),
-        "K_fric_0": float(theta[2]),
+        "J": inertia * KG_CM2,
+        "K_fric_w": viscous,
+        "K_fric_0": coulomb,
         "E": error,
-        "J_load": (float(theta[0]) - rotor_inertia(rig)) * KG_CM2,
+        "J_load": (inertia - rotor_inertia(rig)) * KG_CM2,
     }
-
-
-def _task10(material: Material, way: Way) -> dict[str, float]:
-    """The corner is read from the torque's top on, whatever unit or constant made of it."""
-    run, rig = material.fastest, material.rig
-    torque = _torque(rig, run.current, way)
-    right = torque_constant(rig).torque(run.current)
-    start = int(np.argmax(right > (1.0 - LEAST_TORQUE) * right.max()))
-    try:
-        speed = decline(run.velocity[start:], run.current[start:], run.sample_period).corner
-    except UndeterminedError:
-        return {"M_max": float(torque.max())}
-    return {"M_max": float(torque.max()), "corner": speed * way.velocity * RPM * way.rpm}

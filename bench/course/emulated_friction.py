@@ -6,11 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from bench.course.result import EXAMPLE, Number, Task
-from bench.course.rig import simulated_with, torque_constant
-from bench.course.run import run_of
-from bench.course.t06_inertia import KG_CM2
-from bench.course.t09_least_squares import Friction, identify_friction
+from bench.course.axis import KG_CM2, simulated_with, torque_constant
+from bench.course.recordings import LabRecordings, run_of
+from bench.course.result import EXAMPLE, DoneTask, Number
+from bench.course.t09_least_squares import EquationOfMotion, identify_friction
 from bench.fit.identify import identify
 from bench.plant.model import AxisParameters
 from bench.plant.sensors import Sensors
@@ -23,7 +22,7 @@ KEY, TITLE = "emulation", "Friction in the drive's software and in the mechanics
 MECHANICS, SETPOINT, PHASES = "in the mechanics", "emulated", "emulated, phases"
 
 
-def recordings(rig: Rig) -> dict[str, Trace]:
+def record_each(rig: Rig) -> dict[str, Trace]:
     """One motion with friction in the mechanics, and emulated with either current in the recording.
 
     The set-point is what the drive asks for before its software subtracts the friction; through the phases flows what
@@ -37,21 +36,22 @@ def recordings(rig: Rig) -> dict[str, Trace]:
     return {MECHANICS: mechanics, SETPOINT: emulated.trace, PHASES: phases}
 
 
-def task(rig: Rig) -> Task:
+def task(recordings: LabRecordings) -> DoneTask:
     """Simulate all three, identify each as the course does and by the default estimator.
 
     Raises:
-        InputError: the rig lacks what the simulation needs.
+        InputError: the example's rig lacks what the simulation needs.
     """
+    rig = recordings.example
     torque_constant(rig)
     truth = AxisParameters.from_rig(rig)
-    traces = recordings(rig)
+    traces = record_each(rig)
     found = {words: identify_friction(run_of(trace, rig)) for words, trace in traces.items()}
     numbers = [number for words, trace in traces.items() for number in _numbers(words, found[words], trace, rig, truth)]
-    return Task(KEY, TITLE, _findings(found, truth), tuple(numbers), example=True)
+    return DoneTask(KEY, TITLE, _findings(found, truth), tuple(numbers), example=True)
 
 
-def _numbers(words: str, found: Friction, trace: Trace, rig: Rig, truth: AxisParameters) -> list[Number]:
+def _numbers(words: str, found: EquationOfMotion, trace: Trace, rig: Rig, truth: AxisParameters) -> list[Number]:
     """Phases carry no friction: that is what is true of their current."""
     default = identify(trace, rig)
     share = 0.0 if words == PHASES else 1.0
@@ -67,7 +67,7 @@ def _numbers(words: str, found: Friction, trace: Trace, rig: Rig, truth: AxisPar
     ]
 
 
-def _findings(found: dict[str, Friction], truth: AxisParameters) -> tuple[str, ...]:
+def _findings(found: dict[str, EquationOfMotion], truth: AxisParameters) -> tuple[str, ...]:
     mechanics, setpoint, phases = found[MECHANICS], found[SETPOINT], found[PHASES]
     return (
         "Which current is recorded decides whether software friction is seen.",

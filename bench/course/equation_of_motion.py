@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from bench.axis_kind import OFFSET
-from bench.course.result import EXAMPLE, Number, Task
-from bench.course.rig import rotor_inertia, simulated_with
-from bench.course.t06_inertia import KG_CM2
+from bench.course.axis import KG_CM2, rotor_inertia, simulated_with
+from bench.course.recordings import LabRecordings
+from bench.course.result import EXAMPLE, DoneTask, Number
 from bench.fit.identify import identify
 from bench.plant.model import AxisParameters
 from bench.plant.simulate import simulate
@@ -33,13 +33,13 @@ def geared(rig: Rig) -> Rig:
     return rig.model_copy(update={"load": load, "drive": drive, "offset": True})
 
 
-def task(rig: Rig) -> Task:
+def task(recordings: LabRecordings) -> DoneTask:
     """Simulate and identify it.
 
     Raises:
-        InputError: the rig lacks what the simulation needs.
+        InputError: the example's rig lacks what the simulation needs.
     """
-    axis = geared(rig)
+    axis = geared(recordings.example)
     truth = AxisParameters.from_rig(axis)
     found = identify(simulate(axis).trace, axis)
     load = (truth.inertia - truth.motor_inertia) * RATIO**2
@@ -53,10 +53,10 @@ def task(rig: Rig) -> Task:
             truth.viscous_friction_coefficient,
         ),
         Number("K_fric_0", found["coulomb_friction_torque"].value, "N·m", truth.coulomb_friction),
-        Number("M_load behind the gear", found[rig.axis_kind.parameter(OFFSET)].value * RATIO, "N·m", LOAD_TORQUE),
+        Number("M_load behind the gear", found[axis.axis_kind.parameter(OFFSET)].value * RATIO, "N·m", LOAD_TORQUE),
     )
     findings = (
         f"With i = {RATIO:g} the motor feels J_load/i² and M_load/i. Simulated with {LOAD_TORQUE:g} N·m on the load "
         "and identified with a constant torque beside inertia and friction.",
     )
-    return Task(KEY, TITLE, findings, tuple(replace(number, source=EXAMPLE) for number in numbers), example=True)
+    return DoneTask(KEY, TITLE, findings, tuple(replace(number, source=EXAMPLE) for number in numbers), example=True)

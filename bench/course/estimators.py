@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from bench.arrays import Array, column_rms
-from bench.course.result import EXAMPLE, Number, Task
-from bench.course.rig import without_friction
-from bench.course.run import run_of
+from bench.course.axis import without_friction
+from bench.course.recordings import LabRecordings, run_of
+from bench.course.result import EXAMPLE, DoneTask, Number
 from bench.course.t09_least_squares import identify_friction
 from bench.fit.identify import identify
 from bench.fit.lab import identify_as_in_the_lab, mean_inertia
@@ -24,12 +24,13 @@ REPETITIONS = 20
 NAMES = ("moment_of_inertia", "viscous_friction_coefficient", "coulomb_friction_torque")
 
 
-def task(rig: Rig) -> Task:
-    """RMS error of each way over the recordings.
+def task(recordings: LabRecordings) -> DoneTask:
+    """RMS error of each way over recordings of the example.
 
     Raises:
-        InputError: the rig lacks what the simulation needs.
+        InputError: its rig lacks what the simulation needs.
     """
+    rig = recordings.example
     truth = AxisParameters.from_rig(rig)
     known = np.array([truth.inertia, truth.viscous_friction_coefficient, truth.coulomb_friction])
     bare = [run_of(trace, rig) for trace in _recordings(without_friction(rig))]
@@ -59,7 +60,7 @@ def task(rig: Rig) -> Task:
         "torque, speed, acceleration and sign alike: smoothing α alone shortens its peaks against the torque's, and "
         "its noise draws J towards zero (or, in the mean of M/α, away from it, as 1/α is convex).",
     )
-    return Task(KEY, TITLE, findings, tuple(numbers), example=True)
+    return DoneTask(KEY, TITLE, findings, tuple(numbers), example=True)
 
 
 def _recordings(rig: Rig) -> list[Trace]:

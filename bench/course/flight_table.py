@@ -43,7 +43,7 @@ class FoundFlights:
 
 
 @dataclass(frozen=True)
-class Column:
+class ColumnLabel:
     """Name in lower case, number of the flight or an empty text, and unit or None."""
 
     name: str
@@ -116,15 +116,17 @@ def _cells(lines: Sequence[tuple[int, str]], where: str) -> tuple[Callable[[str]
     raise InputError(f"{where}: line {number}", f"found {complaint[1]} ({text[:40]!r})", f"allowed: {_ADVICE}")
 
 
-def _columns(names: Sequence[str], split: Callable[[str], Cells], width: int, where: str) -> list[Column] | None:
+def _columns(names: Sequence[str], split: Callable[[str], Cells], width: int, where: str) -> list[ColumnLabel] | None:
     """Columns by the line of names and a line of units under it; None without names."""
-    found: list[list[Column]] = []
+    found: list[list[ColumnLabel]] = []
     for line in names:
         cells = split(line)
         cells = cells if len(cells) == width else [cell for cell in _BETWEEN_NAMES.split(line.strip()) if cell]
         matches = [_LABEL.fullmatch(cell) for cell in cells]
         if len(cells) == width:
-            parsed = [Column(m[1].lower(), m[2], (m[3] or "").strip() or None) if m else _NAMELESS for m in matches]
+            parsed = [
+                ColumnLabel(m[1].lower(), m[2], (m[3] or "").strip() or None) if m else _NAMELESS for m in matches
+            ]
             found.append(parsed)
     axes = [columns for columns in found if {"y", "z"} <= {column.name for column in columns}]
     if not axes:
@@ -134,25 +136,25 @@ def _columns(names: Sequence[str], split: Callable[[str], Cells], width: int, wh
     labels = axes[-1]
     if found[-1] is not labels:  # a row of units
         units = [cell.strip(" []()") for cell in split(names[-1])]
-        labels = [Column(c.name, c.number, c.unit or unit) for c, unit in zip(labels, units, strict=True)]
+        labels = [ColumnLabel(c.name, c.number, c.unit or unit) for c, unit in zip(labels, units, strict=True)]
     return labels
 
 
-_NAMELESS = Column("", "", None)
+_NAMELESS = ColumnLabel("", "", None)
 
 
-def _unnamed(table: Array, where: str) -> list[Column]:
+def _unnamed(table: Array, where: str) -> list[ColumnLabel]:
     """Two columns are y and z, of three the first is a time that runs evenly."""
     steps = np.diff(table[:, 0])
     even = steps.size > 0 and steps.min() > 0.0 and np.ptp(steps) <= 0.02 * steps.max()
     if table.shape[1] == 2:
-        return [Column(name, "", None) for name in "yz"]
+        return [ColumnLabel(name, "", None) for name in "yz"]
     if table.shape[1] == 3 and even:
-        return [Column(name, "", None) for name in "tyz"]
+        return [ColumnLabel(name, "", None) for name in "tyz"]
     raise InputError(where, f"found {table.shape[1]} columns without names", f"allowed: {_ADVICE}")
 
 
-def _flights(columns: Sequence[Column], table: Array, where: str) -> FoundFlights:
+def _flights(columns: Sequence[ColumnLabel], table: Array, where: str) -> FoundFlights:
     values = {(c.name, c.number): (c, table[:, k]) for k, c in enumerate(columns) if c.name in ("y", "z")}
     expected = sum(column.name in ("y", "z") for column in columns)
     numbers = list(dict.fromkeys(number for _, number in values))
@@ -170,7 +172,7 @@ def _flights(columns: Sequence[Column], table: Array, where: str) -> FoundFlight
     return FoundFlights(_checked([_complete(part) for part in parts], where), units)
 
 
-def _by_flight_number(columns: Sequence[Column], table: Array, points: list[Array]) -> list[Array]:
+def _by_flight_number(columns: Sequence[ColumnLabel], table: Array, points: list[Array]) -> list[Array]:
     """A column that numbers the flights parts those below each other."""
     numbering = [k for k, column in enumerate(columns) if column.name in _FLIGHT_NUMBERS]
     if not numbering or len(points) != 1:
@@ -179,7 +181,7 @@ def _by_flight_number(columns: Sequence[Column], table: Array, points: list[Arra
     return [points[0][numbers == number] for number in dict.fromkeys(numbers[np.isfinite(numbers)].tolist())]
 
 
-def _metres(column: Column, values: Array, where: str) -> Array:
+def _metres(column: ColumnLabel, values: Array, where: str) -> Array:
     if column.unit is None:
         return values
     unit = spelled_for_pint(column.unit)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -28,10 +28,17 @@ FARTHEST = 20.0
 
 @dataclass(frozen=True)
 class Flights:
-    """Points of each experiment, (n, 2) y and z - m - and what was passed over or assumed to get them."""
+    """What a catapult's files hold.
+
+    Attributes:
+        points: of each experiment, (n, 2) y and z - m.
+        notes: what was passed over to get them.
+        truth: a - 1/m, b, c - m of the throw without scatter; empty for real ones.
+    """
 
     points: list[Array]
     notes: tuple[str, ...] = ()
+    truth: Mapping[str, float] = field(default_factory=dict)
 
 
 def find_flights(folder: Path) -> Path:

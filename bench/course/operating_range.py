@@ -2,19 +2,43 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from bench.arrays import Array
-from bench.course.result import Chart, Curve, Number, Panel, Task
-from bench.course.t10_peak_torque import RPM
+from bench.course.axis import MAINS, RPM
+from bench.course.recordings import LabRecordings
+from bench.course.result import Curve, DoneTask, Number, chart, panel
 from bench.errors import InputError
 from bench.rig.limits import OperatingRange, Reserve, reserve
 from bench.rig.rig import Rig
+from bench.trace.trace import Trace
 
 KEY, TITLE = "range", "Operating range"
 
 
-def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
+def task(recordings: LabRecordings) -> DoneTask:
+    """The recording with friction."""
+    run = recordings.with_friction
+    return in_range(recordings.rig, run.velocity, run.torque, "recording with friction")
+
+
+def trace_in_range(trace: Trace, rig: Rig) -> DoneTask:
+    """Any recording's reserve to the motor's limits, at every mains voltage the rig has a curve for.
+
+    Raises:
+        InputError: a linear axis, no velocity, no torque in N*m to be had, or no limits in the rig.
+    """
+    if not rig.axis_kind.turns:
+        raise InputError(rig.source, f"found a {rig.kind} axis", "allowed: a rotary one, whose motor has peak_curves")
+    effort, unit = rig.effort(trace)
+    if unit != "N*m":
+        raise InputError(rig.source, f"gives the effort in {unit}", "the operating range needs it in N*m")
+    return in_range(rig, trace["velocity"], np.asarray(effort), Path(trace.origin).name)
+
+
+def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> DoneTask:
     """Draw a motion into the range at every mains voltage of the motor, and state its reserve.
 
     Args:
@@ -25,19 +49,15 @@ def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
     Raises:
         InputError: the motor lacks its torques or curves.
     """
-    ranges = [
-        OperatingRange.of(rig.motor, voltage, rig.source)
-        for voltage in [curve.mains_voltage for curve in rig.motor.peak_curves] or [230.0]
-    ]
+    mains = [curve.mains_voltage for curve in rig.motor.peak_curves] or [MAINS]
+    ranges = [OperatingRange.of(rig.motor, voltage, rig.source) for voltage in mains]
     findings, numbers, curves = [], [], []
     for limit in ranges:
         volts = f"{limit.curve.mains_voltage:g} V"
         left = reserve(limit, speed, torque)
         findings.append(f"At {volts}: {_peak_finding(left, speed, torque)} {_thermal_finding(left)}")
-        numbers += [
-            Number(f"peak reserve, {volts}", left.peak, "N·m"),
-            Number(f"thermal reserve, {volts}", left.thermal, "A"),
-        ]
+        numbers.append(Number(f"peak reserve, {volts}", left.peak, "N·m"))
+        numbers.append(Number(f"thermal reserve, {volts}", left.thermal, "A"))
         curves += _limit_curves(limit, volts)
         cold = _cold(limit, rig)
         if cold is not None:
@@ -48,25 +68,22 @@ def task(rig: Rig, speed: Array, torque: Array, what: str) -> Task:
     findings.append(_heat_finding(left, ranges[0]))
     if any(number.name.endswith("cold") for number in numbers):
         findings.append(
-            "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve stands apart "
-            "and is none "
-            "to plan with. It changes nothing where the magnets limit, nor for heat."
+            "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve stands apart and is "
+            "none to plan with. It changes nothing where the magnets limit, nor for heat."
         )
     numbers += [Number("RMS torque", left.rms_torque, "N·m"), Number("RMS current", left.rms_current, "A")]
-    panel = Panel(
-        "speed |n| / rpm", "torque M in the direction of motion / (N·m)", (*_motion(speed, torque, ranges[0]), *curves)
-    )
-    return Task(
-        KEY, f"{TITLE}: {what}", tuple(findings), tuple(numbers), (Chart(f"Operating range: {what}", (panel,)),)
-    )
+    motion = _motion(speed, torque, left, ranges[0])
+    axes = panel("speed |n| / rpm", "torque M in the direction of motion / (N·m)", *motion, *curves)
+    drawn = chart(f"Operating range: {what}", axes)
+    return DoneTask(KEY, f"{TITLE}: {what}", tuple(findings), tuple(numbers), (drawn,))
 
 
 def _peak_finding(left: Reserve, speed: Array, torque: Array) -> str:
-    braking = speed[left.at] * torque[left.at] < 0.0
+    braking = "braking" if speed[left.at] * torque[left.at] < 0.0 else "driving"
     beyond = f"; {left.beyond:.1%} of the samples lie beyond the limit" if left.beyond else ""
     return (
         f"least reserve to the peak torque {left.peak:.3g} N·m ({left.peak_share:.0%}) at "
-        f"{speed[left.at] * RPM:.0f} rpm, {'braking' if braking else 'driving'}{beyond}."
+        f"{speed[left.at] * RPM:.0f} rpm, {braking}{beyond}."
     )
 
 
@@ -74,8 +91,7 @@ def _thermal_finding(left: Reserve) -> str:
     hot = ", the motor would overheat if this repeats" if left.thermal < 0.0 else ""
     return (
         f"RMS current {left.rms_current:.3g} A at {left.mean_speed * RPM:.0f} rpm on average leaves "
-        f"{left.thermal:.3g} A "
-        f"({left.thermal_share:.0%}) to the continuous {left.continuous_current:.3g} A{hot}."
+        f"{left.thermal:.3g} A ({left.thermal_share:.0%}) to the continuous {left.continuous_current:.3g} A{hot}."
     )
 
 
@@ -83,30 +99,23 @@ def _heat_finding(left: Reserve, limit: OperatingRange) -> str:
     """Why heat goes by current and not by torque."""
     by_torque = left.rms_torque / float(limit.torque_constant(np.asarray(left.continuous_current)))
     return (
-        f"Heat goes with the square of the current. The RMS torque of {left.rms_torque:.3g} N·m over the "
-        "torque constant "
-        f"at continuous current would say {by_torque:.3g} A; the iron saturates at the peaks, so they take more: "
-        f"{left.rms_current:.3g} A."
+        f"Heat goes with the square of the current. The RMS torque of {left.rms_torque:.3g} N·m over the torque "
+        f"constant at continuous current would say {by_torque:.3g} A; the iron saturates at the peaks, so they take "
+        f"more: {left.rms_current:.3g} A."
     )
 
 
-def _motion(speed: Array, torque: Array, limit: OperatingRange) -> list[Curve]:
-    """The samples, those that brake below the axis, and the point that heats as they do together."""
-    left = reserve(limit, speed, torque)
+def _motion(speed: Array, torque: Array, left: Reserve, limit: OperatingRange) -> list[Curve]:
+    """The samples, those that brake below the axis; the point that heats as all; the least reserve to the limit."""
     effective = float(limit.torque_constant.torque(np.asarray(left.rms_current)))
+    least = np.full(2, abs(float(speed[left.at])) * RPM)
+    size, braking = abs(float(torque[left.at])), speed[left.at] * torque[left.at] < 0.0
+    reach = np.array([size, size + left.peak]) * (-1.0 if braking else 1.0)
     return [
         Curve(np.abs(speed) * RPM, np.sign(speed * torque) * np.abs(torque), "motion, braking below 0", "dots"),
         Curve(np.array([left.mean_speed * RPM]), np.array([effective]), "RMS current at mean speed", "bold dots"),
-        _least(speed, torque, left),
+        Curve(least, reach, f"least reserve to the peak, {left.peak:.3g} N·m", "reach"),
     ]
-
-
-def _least(speed: Array, torque: Array, left: Reserve) -> Curve:
-    """The sample with the least reserve, and how far it is from the limit."""
-    at, size = abs(float(speed[left.at])) * RPM, abs(float(torque[left.at]))
-    side = -1.0 if speed[left.at] * torque[left.at] < 0.0 else 1.0
-    label = f"least reserve to the peak, {left.peak:.3g} N·m"
-    return Curve(np.array([at, at]), side * np.array([size, size + left.peak]), label, "reach")
 
 
 def _limit_curves(limit: OperatingRange, volts: str) -> list[Curve]:

@@ -9,25 +9,23 @@ import numpy as np
 import pyarrow as pa
 
 from bench.arrays import Array
+from bench.course.axis import RPM, circuit, lab_rig, peak_current, torque_constant, without_friction
 from bench.course.catapult import record_flights
 from bench.course.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
-from bench.course.rig import lab_rig, torque_constant, without_friction
-from bench.course.t11_corner import VELOCITY_GAIN, peak_current, saturation
-from bench.course.winding import STEP, Winding, WindingRun, run_winding
+from bench.course.t11_corner import VELOCITY_GAIN, saturation
+from bench.course.winding import STEP, WindingModel, WindingRun, run_winding
 from bench.files import whole, write_text
 from bench.plant.model import AxisParameters
 from bench.plant.sensors import Sensors
 from bench.plant.simulate import SCHEMA, simulate, truth_path, write_truth
-from bench.rig.circuit import COLD, Circuit
-from bench.rig.limits import peak_curve
+from bench.rig.circuit import COLD
 from bench.rig.rig import Rig
 from bench.structured import json_text
 from bench.trace.readers.codesys import machine_expert_trace
 from bench.units import convert
 
-MAINS = 230.0
 #: The fastest run: speed asked for - rad/s, when, until when - s, and how fast it then stops - rad/s**2.
-TOP_SPEED, START, STOP, BRAKING = 4500.0 * 2.0 * np.pi / 60.0, 0.02, 0.6, 700.0
+TOP_SPEED, START, STOP, BRAKING = 4500.0 / RPM, 0.02, 0.6, 700.0
 
 
 def record(
@@ -62,30 +60,26 @@ def record(
 
 def fastest_run(rig: Rig) -> WindingRun:
     """The run-up with full torque, cold and with inductance, then the stop."""
-    circuit = Circuit.from_motor(rig.motor, peak_curve(rig.motor, MAINS, rig.source), rig.source)
-    winding = Winding(circuit, torque_constant(rig), peak_current(rig), COLD, inductive=True)
+    winding = WindingModel(circuit(rig), torque_constant(rig), peak_current(rig), COLD, inductive=True)
     time = np.arange(0.0, STOP + TOP_SPEED / BRAKING + START, STEP)
     demand = np.where(time < START, 0.0, np.clip(TOP_SPEED - BRAKING * (time - STOP), 0.0, TOP_SPEED))
     return run_winding(winding, AxisParameters.from_rig(rig), demand, VELOCITY_GAIN)
 
 
 def _record_fastest(path: Path, rig: Rig, random: np.random.Generator) -> list[Path]:
-    run, sensors = fastest_run(rig), Sensors.from_rig(rig)
+    run, sensors, axis = fastest_run(rig), Sensors.from_rig(rig), AxisParameters.from_rig(rig)
     every = slice(None, None, round(sensors.sample_period / STEP))
     time, velocity, current = run.time[every], run.velocity[every], run.current[every]
     velocity = velocity + sensors.velocity_noise * random.standard_normal(time.size)
     _write(path, time, velocity, current + sensors.current_noise * random.standard_normal(time.size))
-    axis = AxisParameters.from_rig(rig)
-    circuit = Circuit.from_motor(rig.motor, peak_curve(rig.motor, MAINS, rig.source), rig.source)
     parameters = {
-        "moment_of_inertia": (axis.inertia, "kg*m**2"),
-        "viscous_friction_coefficient": (axis.viscous_friction_coefficient, "N*m*s/rad"),
-        "coulomb_friction_torque": (axis.coulomb_friction, "N*m"),
-        "corner_speed": (saturation(run, circuit.voltage), "rad/s"),
+        "moment_of_inertia": {"value": axis.inertia, "unit": "kg*m**2"},
+        "viscous_friction_coefficient": {"value": axis.viscous_friction_coefficient, "unit": "N*m*s/rad"},
+        "coulomb_friction_torque": {"value": axis.coulomb_friction, "unit": "N*m"},
+        "corner_speed": {"value": saturation(run, circuit(rig).voltage), "unit": "rad/s"},
     }
-    values = {name: {"value": value, "unit": unit} for name, (value, unit) in parameters.items()}
-    content = {"schema": SCHEMA, "rig": rig.name, "kind": "rotary", "profile": "fastest run-up", "parameters": values}
-    write_text(truth_path(path), json_text(content) + "\n")
+    content = {"schema": SCHEMA, "rig": rig.name, "kind": "rotary", "profile": "fastest run-up"}
+    write_text(truth_path(path), json_text({**content, "parameters": parameters}) + "\n")
     return [path, truth_path(path)]
 
 

@@ -1,18 +1,24 @@
-"""The recordings of the course in a folder: a student's, or the synthetic ones that travel with the bench."""
+"""The recordings of the course in a folder, a student's or the synthetic ones, and each in SI as the tasks take it."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import cumulative_trapezoid
+
+from bench.arrays import Array
 from bench.assets import asset
-from bench.course.rig import lab_rig
-from bench.course.run import Run, run_of
-from bench.course.sources import Sources, embedded
-from bench.errors import InputError
+from bench.course.axis import Sources, embedded, lab_rig, torque_constant
+from bench.course.flights import Flights, find_flights, read_flights
+from bench.errors import InputError, UndeterminedError
 from bench.files import read_text
+from bench.fit.lab import backward_difference
 from bench.names import nearest
 from bench.plant.simulate import truth_path
 from bench.rig.rig import Rig, load_rig
@@ -22,17 +28,86 @@ from bench.trace.choose import choose
 from bench.trace.read import read_recording
 from bench.trace.readers.catalogue import readers
 from bench.trace.reading_options import reading_options
-from bench.trace.trace import assemble
+from bench.trace.trace import Trace, assemble
 
 WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"
 #: Signals that the tasks need.
 NEEDED = ("velocity", "current")
 #: Endings of recordings; a truth is JSON too, and none of the course's.
 ENDINGS = {ending for reader in readers() for ending in reader.endings} - {".json"}
+#: A shorter recording is no run of the course.
+LEAST = 100
 
 
 @dataclass(frozen=True)
-class Recordings:
+class LabRun:
+    """One recording, signals (n,).
+
+    Attributes:
+        time: s.
+        velocity: omega - rad/s.
+        current: Iq - A.
+        acceleration: alpha, backward difference of the speed - rad/s**2.
+        torque: kT(Iq)*Iq - N*m.
+        angle: from the start on - rad; as recorded, else the integral of the speed.
+        sample_period: s.
+        truth: values of the simulated axis by their names - SI; empty for a real one.
+    """
+
+    time: Array
+    velocity: Array
+    current: Array
+    acceleration: Array
+    torque: Array
+    angle: Array
+    sample_period: float
+    truth: Mapping[str, float] = field(default_factory=dict)
+
+    def true(self, name: str, factor: float = 1.0) -> float | None:
+        """True value of a quantity times a factor that changes its unit; None on a real axis."""
+        return self.truth[name] * factor if name in self.truth else None
+
+    def at(self, samples: NDArray[np.bool_]) -> LabRun:
+        """Some samples of it alone, told by (n,)."""
+        signals = ("time", "velocity", "current", "acceleration", "torque", "angle")
+        return replace(self, **{name: getattr(self, name)[samples] for name in signals})
+
+
+def run_of(trace: Trace, rig: Rig, truth: Mapping[str, float] | None = None) -> LabRun:
+    """Signals of a recording, its longest stretch without a hole.
+
+    Raises:
+        UndeterminedError: fewer than LEAST samples.
+        InputError: no velocity or current in it, a linear axis, or no torque constant in the rig.
+    """
+    if not trace.axis_kind.turns:
+        allowed = "allowed: a rotary one, velocity in deg/s, rad/s or rpm"
+        raise InputError(trace.origin, f"found a {trace.axis_kind.name} axis", allowed)
+    part = max(trace.segments, key=lambda segment: segment.stop - segment.start)
+    velocity, current = trace["velocity"][part], trace["current"][part]
+    if velocity.size < LEAST:
+        reason = f"{trace.origin} has {velocity.size} samples in a row, {LEAST} are the least"
+        raise UndeterminedError("motion", reason, "the whole run without holes")
+    return LabRun(
+        time=trace.time[part] - trace.time[part.start],
+        velocity=velocity,
+        current=current,
+        acceleration=backward_difference(velocity, trace.sample_period),
+        torque=torque_constant(rig).torque(current),
+        angle=_angle(trace, part),
+        sample_period=trace.sample_period,
+        truth=truth or {},
+    )
+
+
+def _angle(trace: Trace, part: slice) -> Array:
+    if "position" in trace:
+        return trace["position"][part] - trace["position"][part.start]
+    return cumulative_trapezoid(trace["velocity"][part], dx=trace.sample_period, initial=0.0)
+
+
+@dataclass(frozen=True)
+class LabRecordings:
     """A folder of recordings.
 
     Attributes:
@@ -48,7 +123,7 @@ class Recordings:
     synthetic: bool = False
 
     @classmethod
-    def in_folder(cls, folder: Path | None) -> Recordings:
+    def in_folder(cls, folder: Path | None) -> LabRecordings:
         """Recordings of a folder, or the synthetic ones.
 
         Raises:
@@ -63,6 +138,31 @@ class Recordings:
             return cls(folder, lab_rig(), Sources.of(None))
         kept = {key: value for key, value in embedded().items() if key != "simulation"}
         return cls(folder, load_rig(own, kept), Sources.of(own))
+
+    @cached_property
+    def without_friction(self) -> LabRun:
+        """The fast run, friction switched off; raises as `run`."""
+        return self.run(WITHOUT_FRICTION)
+
+    @cached_property
+    def with_friction(self) -> LabRun:
+        """The same, friction switched on; raises as `run`."""
+        return self.run(WITH_FRICTION)
+
+    @cached_property
+    def fastest(self) -> LabRun:
+        """The run-up with full torque; raises as `run`."""
+        return self.run(FASTEST)
+
+    @cached_property
+    def flights(self) -> Flights:
+        """The catapult's experiments, with the throw's truth where that lies beside them.
+
+        Raises:
+            InputError: none, several, or what is no table of points.
+        """
+        path = find_flights(self.folder)
+        return replace(read_flights(path), truth=read_truth(path / "truth.json"))
 
     @property
     def example(self) -> Rig:
@@ -92,7 +192,7 @@ class Recordings:
             self.folder / f"{name}.trace", f"no such file{hint}", f"found: {', '.join(others) or 'no recording'}"
         )
 
-    def run(self, name: str) -> Run:
+    def run(self, name: str) -> LabRun:
         """A recording in SI units, with its truth where that lies beside it.
 
         Raises:

@@ -59,14 +59,24 @@ class Chart:
     panels: tuple[Panel, ...]
 
 
+def panel(x_label: str, y_label: str, *curves: Curve, log: bool = False) -> Panel:
+    """Curves over one pair of axes, logarithmic where `log`; labels carry the unit, as `speed / (rad/s)`."""
+    return Panel(x_label, y_label, curves, log)
+
+
+def chart(title: str, *panels: Panel) -> Chart:
+    """Panels one above the other; those with the same x label share their x axis."""
+    return Chart(title, panels)
+
+
 @dataclass(frozen=True)
-class Task:
+class DoneTask:
     """A task that was done.
 
     Attributes:
         key: number in the course, or a name for what stands around the tasks.
         title: of the task.
-        says: findings, a paragraph each.
+        findings: a paragraph each.
         numbers: results.
         charts: diagrams.
         example: whether it is about the embedded example, whatever was recorded.

@@ -1,28 +1,30 @@
-"""What a student hands in: the filled form as CSV, or the same as JSON."""
+"""What a student hands in: the form to be filled in, as CSV, or the same as JSON."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from bench.course.answers import ASKED
+from bench.course.answers import QUESTIONS
 from bench.course.text import text_of
 from bench.errors import InputError
 from bench.names import nearest
 from bench.structured import parse_json
 from bench.units.text import spelled_for_pint
 
-ENDINGS = (".csv", ".json")
+#: Name of the form, and endings of filled ones.
+FORM, ENDINGS = "answers.csv", (".csv", ".json")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
-_ADVICE = "allowed: a number, and its unit in a column of its own"
 #: Powers and products as people write them.
 _SIGNS = str.maketrans({"²": "**2", "³": "**3", "·": "*", "^": "**", "Ω": "ohm"})
 
+#: Where a row stands, and its quantity, value and unit as they were written.
+Entry = tuple[str, str, str, str]
+
 
 @dataclass(frozen=True)
-class Answer:
+class GivenAnswer:
     """A value and its unit, empty where the form's own was left."""
 
     value: float
@@ -34,8 +36,14 @@ class Submission:
     """Answers of a student by the names of the form; what was left blank is not among them."""
 
     student: str
-    answers: dict[str, Answer]
+    answers: dict[str, GivenAnswer]
     source: str
+
+
+def form(student: str) -> str:
+    """The form that a student fills in."""
+    rows = "".join(f"{question.name},,{question.unit}\n" for question in QUESTIONS)
+    return f"quantity,value,unit\nstudent,{student},\n{rows}"
 
 
 def find_submissions(folder: Path) -> list[Path]:
@@ -52,6 +60,10 @@ def find_submissions(folder: Path) -> list[Path]:
     return found
 
 
+def _is_form(path: Path) -> bool:
+    return bool(re.match(r'\W*"?(quantity|student|schema)', text_of(path.read_bytes())[:200], re.IGNORECASE))
+
+
 def read_submission(path: Path) -> Submission:
     """A filled form.
 
@@ -59,65 +71,61 @@ def read_submission(path: Path) -> Submission:
         InputError: a row that cannot be read, a quantity that is not asked for or given twice, or no student.
     """
     text = text_of(path.read_bytes())
-    rows = _json_rows(text, path) if path.suffix.lower() == ".json" else _csv_rows(text, path)
-    known = {asked.name.lower(): asked.name for asked in ASKED}
+    entries = _of_json(text, path) if path.suffix.lower() == ".json" else _of_csv(text, path)
+    names = {question.name.lower(): question.name for question in QUESTIONS}
     student, answers = "", {}
-    for where, name, value, unit in rows:
-        if name.lower() == "student":
+    for where, written, value, unit in entries:
+        if written.lower() == "student":
             student = value.strip()
             continue
-        if name.lower() not in known:
-            names = [asked.name for asked in ASKED]
-            raise InputError(where, f"'{name}' is not asked for{nearest(name, names)}", f"allowed: {', '.join(names)}")
-        if not value.strip():
-            continue
-        if known[name.lower()] in answers:
-            raise InputError(where, f"'{name}' stands there twice", "give it once")
-        answers[known[name.lower()]] = Answer(_number(value, where), _unit(unit))
+        if written.lower() not in names:
+            allowed = [*names.values()]
+            found = f"'{written}' is not asked for{nearest(written, allowed)}"
+            raise InputError(where, found, f"allowed: {', '.join(allowed)}")
+        name = names[written.lower()]
+        if value.strip() and name in answers:
+            raise InputError(where, f"'{written}' stands there twice", "give it once")
+        if value.strip():
+            answers[name] = GivenAnswer(_number(value, where), _unit(unit))
     if not student:
         raise InputError(f"{path}: student", "missing", "allowed: the row student,NUMBER as the form has it")
     return Submission(student.zfill(2) if student.isdigit() else student, answers, str(path))
 
 
-def _is_form(path: Path) -> bool:
-    return bool(re.match(r'\W*"?(quantity|student|schema)', text_of(path.read_bytes())[:200], re.IGNORECASE))
-
-
-def _csv_rows(text: str, path: Path) -> list[tuple[str, str, str, str]]:
-    separator = ";" if text.split("\n", 1)[0].count(";") > 0 else ","
-    rows = []
+def _of_csv(text: str, path: Path) -> list[Entry]:
+    """Rows of the form; where semicolons separate them, a comma is a decimal one."""
+    separator = ";" if ";" in text.split("\n", 1)[0] else ","
+    entries = []
     for number, line in enumerate(text.splitlines(), 1):
         cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
         if not any(cells) or cells[0].lower() == "quantity" or cells[0].startswith("#"):
             continue
         where = f"{path}: line {number}"
-        if len(cells) > 3 and any(cells[3:]):
-            raise InputError(
-                where, f"found {len(cells)} cells", "allowed: quantity,value,unit; a decimal comma takes ; between"
-            )
-        value = cells[1].replace(",", ".") if separator == ";" and len(cells) > 1 else (cells[1:] or [""])[0]
-        rows.append((where, cells[0], value, cells[2] if len(cells) > 2 else ""))
-    return rows
+        if any(cells[3:]):
+            allowed = "allowed: quantity,value,unit; a decimal comma takes ; between"
+            raise InputError(where, f"found {len(cells)} cells", allowed)
+        name, value, unit = [*cells, "", ""][:3]
+        entries.append((where, name, value.replace(",", ".") if separator == ";" else value, unit))
+    return entries
 
 
-def _json_rows(text: str, path: Path) -> list[tuple[str, str, str, str]]:
+def _of_json(text: str, path: Path) -> list[Entry]:
     try:
         content = parse_json(text, path)
-        answers: dict[str, Any] = content["answers"]
-        rows = [(f"{path}: student", "student", str(content["student"]), "")]
-        for name, entry in answers.items():
+        entries = [(f"{path}: student", "student", str(content["student"]), "")]
+        for name, entry in content["answers"].items():
             value = "" if entry["value"] is None else str(entry["value"])
-            rows.append((f"{path}: {name}", name, value, str(entry.get("unit", ""))))
+            entries.append((f"{path}: {name}", name, value, str(entry.get("unit", ""))))
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        form = '{"student": "07", "answers": {"J": {"value": 22.4, "unit": "kg*cm**2"}, ...}}'
-        raise InputError(path, f"is no filled form ({error!r})", f"allowed: {form}") from error
-    return rows
+        allowed = 'allowed: {"student": "07", "answers": {"J": {"value": 22.4, "unit": "kg*cm**2"}, ...}}'
+        raise InputError(path, f"is no filled form ({error!r})", allowed) from error
+    return entries
 
 
 def _number(text: str, where: str) -> float:
     plain = text.strip().replace("−", "-")
     if not _NUMBER.fullmatch(plain):
-        raise InputError(where, f"found the value '{text}'", _ADVICE)
+        raise InputError(where, f"found the value '{text}'", "allowed: a number, and its unit in a column of its own")
     return float(plain)
 
 

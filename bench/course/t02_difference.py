@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from bench.course.result import COMPUTED, Chart, Curve, Number, Panel, Task
+from bench.course.recordings import LabRecordings
+from bench.course.result import COMPUTED, Curve, DoneTask, Number, chart, panel
 from bench.fit.lab import backward_difference
 from bench.trace.filter import GaussianFilter
 
@@ -17,7 +18,7 @@ DURATION = 2.0 * np.pi
 WIDTH = 2.0 * SAMPLE_PERIOD
 
 
-def task() -> Task:
+def task(recordings: LabRecordings) -> DoneTask:
     """Differentiate sin(t) both ways and compare with cos(t).
 
     The backward difference belongs half a sample earlier, so it errs by T/2*|u''|: 5e-4 here. The bench's filter is
@@ -27,37 +28,23 @@ def task() -> Task:
     backward = backward_difference(np.sin(time), SAMPLE_PERIOD)
     smooth = GaussianFilter(WIDTH, SAMPLE_PERIOD)
     kept = slice(smooth.margin, time.size - smooth.margin)
-    filtered = smooth(np.sin(time), 1)[0]
-    errors = backward - np.cos(time), filtered - np.cos(time[kept])
-    worst = [float(np.max(np.abs(error))) for error in (errors[0][1:], errors[1])]
-    return Task(
-        KEY,
-        TITLE,
-        (
-            f"On sin(t), t = 0 : {SAMPLE_PERIOD:g} : 2π ({time.size} samples), the backward difference is at "
-            f"most {worst[0]:.2g} away from "
-            f"cos(t), half a sample of delay; the bench's own derivative {worst[1]:.2g}. Its first value is 0 by "
-            "definition.",
-        ),
-        (
-            Number("largest error of the backward difference", worst[0], "1/s", SAMPLE_PERIOD / 2.0, COMPUTED),
-            Number("largest error of the bench's derivative", worst[1], "1/s", WIDTH**2 / 2.0, COMPUTED),
-        ),
-        (
-            Chart(
-                "Derivative of sin(t) against cos(t)",
-                (
-                    Panel(
-                        "time / s",
-                        "derivative / (1/s)",
-                        (
-                            Curve(time, np.cos(time), "cos(t)", "wide"),
-                            Curve(time, backward, "backward difference"),
-                        ),
-                    ),
-                    Panel("time / s", "error, backward / (1/s)", (Curve(time[1:], errors[0][1:]),)),
-                    Panel("time / s", "error, bench / (1/s)", (Curve(time[kept], errors[1]),)),
-                ),
-            ),
-        ),
+    error = (backward - np.cos(time))[1:]
+    error_of_bench = smooth(np.sin(time), 1)[0] - np.cos(time[kept])
+    worst, worst_of_bench = float(np.max(np.abs(error))), float(np.max(np.abs(error_of_bench)))
+    findings = (
+        f"On sin(t), t = 0 : {SAMPLE_PERIOD:g} : 2π ({time.size} samples), the backward difference is at "
+        f"most {worst:.2g} away from cos(t), half a sample of delay; the bench's own derivative "
+        f"{worst_of_bench:.2g}. Its first value is 0 by definition."
     )
+    numbers = (
+        Number("largest error of the backward difference", worst, "1/s", SAMPLE_PERIOD / 2.0, COMPUTED),
+        Number("largest error of the bench's derivative", worst_of_bench, "1/s", WIDTH**2 / 2.0, COMPUTED),
+    )
+    both = Curve(time, np.cos(time), "cos(t)", "wide"), Curve(time, backward, "backward difference")
+    drawn = chart(
+        "Derivative of sin(t) against cos(t)",
+        panel("time / s", "derivative / (1/s)", *both),
+        panel("time / s", "error, backward / (1/s)", Curve(time[1:], error)),
+        panel("time / s", "error, bench / (1/s)", Curve(time[kept], error_of_bench)),
+    )
+    return DoneTask(KEY, TITLE, (findings,), numbers, (drawn,))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from bench.course import t05_run_without_friction as without_friction
-from bench.course.result import Task
-from bench.course.run import Run
+from bench.course.recordings import LabRecordings
+from bench.course.result import DoneTask
+from bench.course.t05_run_without_friction import signals_of
 
 KEY, TITLE = "7", "Recording with friction"
 
 
-def task(run: Run) -> Task:
+def task(recordings: LabRecordings) -> DoneTask:
     """Draw the signals and say how far they reach."""
-    return without_friction.task(run, KEY, TITLE)
+    return signals_of(recordings.with_friction, KEY, TITLE)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.course.result import Chart, Curve, Number, Panel, Task
-from bench.course.run import Run
+from bench.course.recordings import LabRecordings, LabRun
+from bench.course.result import Chart, Curve, DoneTask, Number, chart, panel
 from bench.errors import UndeterminedError
 from bench.fit.lab import LEAST_SPEED
 from bench.trace.filter import GaussianFilter
@@ -24,58 +23,47 @@ DELAY = WIDTH // 2
 SMOOTHING, EDGE = 5.0, 25
 
 
-@dataclass(frozen=True)
-class FastSamples:
-    """What remains for least squares, signals (m,).
+def filtered_acceleration(run: LabRun, width: int = WIDTH, delay: int = DELAY) -> tuple[Array, slice]:
+    """alpha_filt, the mean of `width` backward differences, and the samples of the other signals it belongs to.
 
-    Attributes:
-        time: t_sync, at which the filtered acceleration and the other signals belong together - s.
-        velocity: rad/s.
-        acceleration: alpha_filt - rad/s**2.
-        torque: N*m.
+    It comes WIDTH/2 samples late, being (u[k] - u[k-WIDTH])/(WIDTH*T); set back by them it is in step with the rest.
+
+    Args:
+        run: that was recorded.
+        width: differences in a mean.
+        delay: samples by which the mean is set back.
     """
-
-    time: Array
-    velocity: Array
-    acceleration: Array
-    torque: Array
+    mean = np.convolve(run.acceleration[1:], np.full(width, 1.0 / width), mode="valid")
+    first = width - delay  # the mean comes with its last difference, that of sample `width`
+    return mean, slice(first, first + mean.size)
 
 
-def filtered_acceleration(run: Run) -> tuple[Array, slice]:
-    """alpha_filt, the mean of WIDTH backward differences, and the samples of the other signals it belongs to.
-
-    It comes DELAY samples late, being (u[k] - u[k-WIDTH])/(WIDTH*T); set back by them it is in step with the rest.
-    """
-    mean = np.convolve(run.acceleration[1:], np.full(WIDTH, 1.0 / WIDTH), mode="valid")
-    return mean, slice(DELAY, DELAY + mean.size)
-
-
-def acceleration_of_all(run: Run) -> Array:
-    """alpha_filt in step with every sample, (n,); at the ends, where its mean is cut short, of what there is of it."""
+def in_step(run: LabRun) -> LabRun:
+    """The run with alpha_filt on t_sync; at its ends, where the mean is cut short, with what there is of it."""
     mean, synchronous = filtered_acceleration(run)
     alpha = np.gradient(run.velocity, run.sample_period)
     alpha[synchronous] = mean
-    return alpha
+    return replace(run, acceleration=alpha)
 
 
-def fast_samples(run: Run) -> FastSamples:
-    """Samples with |omega| >= 20 rad/s.
+def fast_samples(run: LabRun) -> LabRun:
+    """Samples with |omega| >= 20 rad/s on t_sync, where alpha_filt belongs to the other signals.
 
     Raises:
-        UndeterminedError: the recording is too short or too slow, or turns one way only.
+        UndeterminedError: the recording is too short or too slow.
     """
     least = f"a run that passes {LEAST_SPEED:g} rad/s in both directions"
     if run.time.size <= WIDTH + 1:
         raise UndeterminedError("inertia and friction", f"the recording has {run.time.size} samples", least)
-    acceleration, synchronous = filtered_acceleration(run)
-    fast: NDArray[np.bool_] = np.abs(run.velocity[synchronous]) >= LEAST_SPEED
+    _, synchronous = filtered_acceleration(run)
+    fast = np.zeros(run.time.size, dtype=bool)
+    fast[synchronous] = np.abs(run.velocity[synchronous]) >= LEAST_SPEED
     if not fast.any():
         raise UndeterminedError("inertia and friction", f"no sample is faster than {LEAST_SPEED:g} rad/s", least)
-    columns = (run.time[synchronous], run.velocity[synchronous], acceleration, run.torque[synchronous])
-    return FastSamples(*(column[fast] for column in columns))
+    return in_step(run).at(fast)
 
 
-def lateness(run: Run, late: int = 0) -> float:
+def lateness(run: LabRun, late: int = 0) -> float:
     """By how much alpha_filt, `late` samples later than on t_sync, comes after the speed's own derivative - samples.
 
     Both are smoothed by one filter that is even in time, so noise and smoothing are alike in them. What is late by tau
@@ -89,73 +77,63 @@ def lateness(run: Run, late: int = 0) -> float:
     return float(behind @ bend / (bend @ bend) / run.sample_period)
 
 
-def task(run: Run) -> Task:
+def task(recordings: LabRecordings) -> DoneTask:
     """Draw the remaining samples over the original ones, and alpha_filt over alpha."""
+    run = recordings.with_friction
     kept = fast_samples(run)
-    acceleration, synchronous = filtered_acceleration(run)
+    acceleration, _ = filtered_acceleration(run)
     # thousandths of a sample are rounding
-    in_step, as_it_comes = (round(lateness(run, late), 3) + 0.0 for late in (0, DELAY))
-    scatter = [float(np.std(np.diff(signal))) for signal in (run.acceleration, acceleration)]
-    return Task(
-        KEY,
-        TITLE,
-        (
-            f"alpha_filt is the mean of {WIDTH} backward differences. It is {DELAY} samples late, half a sample of "
-            "that from the difference itself; t_sync takes that back. Below 20 rad/s the sign of the speed is left "
-            "out, as friction is no constant there.",
-            f"Verified against the speed's own derivative, both smoothed by a filter that is even in time: on t_sync "
-            f"alpha_filt comes {in_step:+.2f} samples after it, as the filter delivers it {as_it_comes:+.2f}. "
-            "α itself is "
-            "half a sample late, as the graph of one edge shows.",
-        ),
-        (
-            Number("samples remaining", float(kept.time.size), "1"),
-            Number("samples removed", float(run.time.size - kept.time.size), "1"),
-            Number("alpha_filt late, on t_sync", in_step, "samples"),
-            Number("alpha_filt late, as it comes", as_it_comes, "samples"),
-            Number("step to step scatter of alpha", scatter[0], "rad/s²"),
-            Number("step to step scatter of alpha_filt", scatter[1], "rad/s²"),
-        ),
-        (_remaining_chart(run, kept, acceleration, synchronous), _edge_chart(run, acceleration, synchronous)),
+    on_t_sync, as_it_comes = (round(lateness(run, late), 3) + 0.0 for late in (0, DELAY))
+    scatter, scatter_filtered = (float(np.std(np.diff(signal))) for signal in (run.acceleration, acceleration))
+    findings = (
+        f"alpha_filt is the mean of {WIDTH} backward differences. It is {DELAY} samples late, half a sample of "
+        "that from the difference itself; t_sync takes that back. Below 20 rad/s the sign of the speed is left "
+        "out, as friction is no constant there.",
+        f"Verified against the speed's own derivative, both smoothed by a filter that is even in time: on t_sync "
+        f"alpha_filt comes {on_t_sync:+.2f} samples after it, as the filter delivers it {as_it_comes:+.2f}. "
+        "α itself is half a sample late, as the graph of one edge shows.",
     )
+    numbers = (
+        Number("samples remaining", float(kept.time.size), "1"),
+        Number("samples removed", float(run.time.size - kept.time.size), "1"),
+        Number("alpha_filt late, on t_sync", on_t_sync, "samples"),
+        Number("alpha_filt late, as it comes", as_it_comes, "samples"),
+        Number("step to step scatter of alpha", scatter, "rad/s²"),
+        Number("step to step scatter of alpha_filt", scatter_filtered, "rad/s²"),
+    )
+    return DoneTask(KEY, TITLE, findings, numbers, (_remaining_chart(run, kept), _edge_chart(run)))
 
 
-def _remaining_chart(run: Run, kept: FastSamples, acceleration: Array, synchronous: slice) -> Chart:
+def _remaining_chart(run: LabRun, kept: LabRun) -> Chart:
+    mean, synchronous = filtered_acceleration(run)
+    signals = {
+        "speed ω / (rad/s)": (run.time, run.velocity, kept.velocity),
+        "filtered acceleration α / (rad/s²)": (run.time[synchronous], mean, kept.acceleration),
+        "torque M / (N·m)": (run.time, run.torque, kept.torque),
+    }
     panels = (
-        ("speed ω / (rad/s)", run.time, run.velocity, kept.velocity),
-        ("filtered acceleration α / (rad/s²)", run.time[synchronous], acceleration, kept.acceleration),
-        ("torque M / (N·m)", run.time, run.torque, kept.torque),
+        panel("t_sync / s", label, Curve(time, all_, "original", "wide"), Curve(kept.time, rest, "remaining", "dots"))
+        for label, (time, all_, rest) in signals.items()
     )
-    return Chart(
-        "Task 8: remaining samples over the original ones",
-        tuple(
-            Panel(
-                "t_sync / s",
-                label,
-                (Curve(time, all_, "original", "wide"), Curve(kept.time, rest, "remaining", "dots")),
-            )
-            for label, time, all_, rest in panels
-        ),
-    )
+    return chart("Task 8: remaining samples over the original ones", *panels)
 
 
-def _edge_chart(run: Run, acceleration: Array, synchronous: slice) -> Chart:
+def _edge_chart(run: LabRun) -> Chart:
     """alpha and alpha_filt, all of them, and around the steepest change of the torque."""
-    edge = int(np.argmax(np.abs(np.diff(acceleration)))) + DELAY
+    mean, synchronous = filtered_acceleration(run)
+    t_sync = run.time[synchronous]
+    edge = int(np.argmax(np.abs(np.diff(mean)))) + DELAY
     near = slice(max(edge - EDGE, DELAY), min(edge + EDGE, run.time.size - DELAY))
     within = slice(near.start - DELAY, near.stop - DELAY)
-    late = run.time[synchronous] + DELAY * run.sample_period
-    whole = (
-        Curve(run.time, run.acceleration, "α", "wide"),
-        Curve(run.time[synchronous], acceleration, "α_filt on t_sync"),
-    )
+    late = t_sync + DELAY * run.sample_period
+    whole = Curve(run.time, run.acceleration, "α", "wide"), Curve(t_sync, mean, "α_filt on t_sync")
     close = (
         Curve(run.time[near], run.acceleration[near], "α, original", "wide"),
-        Curve(run.time[near], acceleration[within], "α_filt on t_sync", "bold dots"),
-        Curve(late[within], acceleration[within], "α_filt as it comes", "dashes"),
+        Curve(run.time[near], mean[within], "α_filt on t_sync", "bold dots"),
+        Curve(late[within], mean[within], "α_filt as it comes", "dashes"),
     )
-    panels = (
-        Panel("t_sync / s", "acceleration α / (rad/s²)", whole),
-        Panel("t_sync / s, one edge", "acceleration α / (rad/s²)", close),
+    return chart(
+        "Task 8: filtered acceleration over the original one",
+        panel("t_sync / s", "acceleration α / (rad/s²)", *whole),
+        panel("t_sync / s, one edge", "acceleration α / (rad/s²)", *close),
     )
-    return Chart("Task 8: filtered acceleration over the original one", panels)

@@ -8,22 +8,21 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB
-from bench.course.result import Chart, Curve, Number, Panel, Task
-from bench.course.run import Run
-from bench.course.sources import Sources
-from bench.course.t06_inertia import KG_CM2, load_inertia, require_positive
-from bench.course.t08_fast_samples import FastSamples, acceleration_of_all, fast_samples
-from bench.errors import UndeterminedError
+from bench.course import t06_inertia
+from bench.course.axis import KG_CM2
+from bench.course.recordings import LabRecordings, LabRun
+from bench.course.result import Curve, DoneTask, Number, chart, panel
+from bench.course.t08_fast_samples import fast_samples, in_step
+from bench.errors import BenchError, UndeterminedError
 from bench.fit.determined import RECORD
 from bench.fit.lab import least_squares
 from bench.fit.rows import ONE_WAY
-from bench.rig.rig import Rig
 
 KEY, TITLE = "9", "Moment of inertia and friction by least squares"
 
 
 @dataclass(frozen=True)
-class Friction:
+class EquationOfMotion:
     """What the course finds.
 
     Attributes:
@@ -38,13 +37,13 @@ class Friction:
     coulomb: float
     error: float
 
-    def torque(self, samples: FastSamples) -> Array:
-        """J*alpha_filt + K_fric_w*omega + K_fric_0*sgn(omega) - N*m."""
-        friction = self.viscous * samples.velocity + self.coulomb * np.sign(samples.velocity)
-        return self.inertia * samples.acceleration + friction
+    def torque(self, run: LabRun) -> Array:
+        """J*alpha + K_fric_w*omega + K_fric_0*sgn(omega) - N*m."""
+        friction = self.viscous * run.velocity + self.coulomb * np.sign(run.velocity)
+        return self.inertia * run.acceleration + friction
 
 
-def identify_friction(run: Run) -> Friction:
+def identify_friction(run: LabRun) -> EquationOfMotion:
     """The course's least squares on the fast samples of a recording.
 
     Raises:
@@ -56,42 +55,24 @@ def identify_friction(run: Run) -> Friction:
         reason = "the axis moves one way only, so a constant torque and Coulomb friction are one number"
         raise UndeterminedError("Coulomb friction", reason, RECORD[COULOMB])
     theta, _, error = least_squares(samples.acceleration, samples.velocity, samples.torque)
-    require_positive(float(theta[0]))
-    return Friction(*theta.tolist(), error=error)
+    t06_inertia.require_positive(float(theta[0]))
+    return EquationOfMotion(*theta.tolist(), error=error)
 
 
-def task(run: Run, rig: Rig, sources: Sources, load_inertia_before: Number | None) -> Task:
-    """Identify, and draw the reconstructed torque of every sample over the measured one.
-
-    Args:
-        run: with friction.
-        rig: for the rotor's inertia.
-        sources: of the rig's values.
-        load_inertia_before: J_load of task 6, if that could be done.
-    """
-    found, fitted = identify_friction(run), fast_samples(run)
-    every = FastSamples(run.time, run.velocity, acceleration_of_all(run), run.torque)
+def task(recordings: LabRecordings) -> DoneTask:
+    """Identify, and draw the reconstructed torque of every sample over the measured one."""
+    run = recordings.with_friction
+    found, fitted, every = identify_friction(run), fast_samples(run), in_step(run)
     residual = run.torque - found.torque(every)
-    left = rms(residual)
+    left, left_of_fitted = rms(residual), np.sqrt(found.error / fitted.time.size)
     true = run.true("moment_of_inertia", KG_CM2)
-    loads, _ = load_inertia(found.inertia, rig, sources, true)
-    findings = [
+    loads, _ = t06_inertia.load_inertia(found.inertia, recordings, true)
+    findings = (
         f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted.time.size} samples of task 8; the theta with the least "
         "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
         f"M_est is drawn for all {run.time.size} samples. It leaves {left:.3g} N·m RMS, "
-        f"{left / rms(run.torque):.2%} of "
-        f"the torque; over the fitted samples {np.sqrt(found.error / fitted.time.size):.3g} N·m.",
-    ]
-    if load_inertia_before is not None and loads:
-        off = loads[0].value / load_inertia_before.value - 1.0
-        findings.append(f"J_load is {off:+.2%} off the one of task 6.")
-    curves = (
-        Curve(run.time, run.torque, "measured torque M", "wide"),
-        Curve(run.time, found.torque(every), "M_est, all samples"),
-    )
-    panels = (
-        Panel("time / s", "torque / (N·m)", curves),
-        Panel("time / s", "M - M_est / (N·m)", (Curve(run.time, residual),)),
+        f"{left / rms(run.torque):.2%} of the torque; over the fitted samples {left_of_fitted:.3g} N·m.",
+        *_beside_task_6(loads, recordings),
     )
     numbers = (
         Number("J", found.inertia * KG_CM2, "kg·cm²", true),
@@ -102,6 +83,21 @@ def task(run: Run, rig: Rig, sources: Sources, load_inertia_before: Number | Non
         Number("samples of M_est", float(every.time.size), "1"),
         Number("RMS of M - M_est, all samples", left, "N·m"),
     )
-    return Task(
-        KEY, TITLE, tuple(findings), numbers, (Chart("Task 9: reconstructed torque over the measured one", panels),)
+    measured = Curve(run.time, run.torque, "measured torque M", "wide")
+    drawn = chart(
+        "Task 9: reconstructed torque over the measured one",
+        panel("time / s", "torque / (N·m)", measured, Curve(run.time, found.torque(every), "M_est, all samples")),
+        panel("time / s", "M - M_est / (N·m)", Curve(run.time, residual)),
     )
+    return DoneTask(KEY, TITLE, findings, numbers, (drawn,))
+
+
+def _beside_task_6(loads: list[Number], recordings: LabRecordings) -> tuple[str, ...]:
+    """How far J_load is off that of task 6; nothing where that could not be done, which its own place says."""
+    try:
+        before = t06_inertia.task(recordings)
+    except BenchError:
+        return ()
+    if not loads:
+        return ()
+    return (f"J_load is {loads[0].value / before['J_load'].value - 1.0:+.2%} off the one of task 6.",)

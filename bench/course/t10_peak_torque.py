@@ -5,20 +5,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.arrays import Array
+from bench.course.axis import MAINS, RPM
 from bench.course.corner import STILL_RISING, Decline, decline
-from bench.course.result import Chart, Curve, Number, Panel, Task
-from bench.course.run import Run
-from bench.course.sources import Sources
+from bench.course.recordings import LabRecordings, LabRun
+from bench.course.result import Curve, DoneTask, Number, chart, panel
 from bench.errors import UndeterminedError
 from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig
 
 KEY, TITLE = "10", "Peak torque over speed"
 
-RPM = 60.0 / (2.0 * math.pi)
 #: The course drops samples of less torque - N*m - and starts at the first above 3.0 N*m, this share of the lab
 #: motor's peak.
 LEAST_TORQUE, FULL_SHARE = 0.2, 3.0 / 3.5
@@ -26,110 +24,103 @@ LEAST_TORQUE, FULL_SHARE = 0.2, 3.0 / 3.5
 SPEEDS, HALF_BIN = (1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0), 5.0
 
 
-def run_up(run: Run, rig: Rig) -> tuple[Array, Array, Array]:
-    """Speed - rad/s, torque - N*m - and current - A - from the first full torque on, samples with M < 0.2 N*m dropped.
+def start(run: LabRun, rig: Rig) -> int:
+    """First sample of full torque, more than 3.0 N*m with the lab's motor.
 
     Raises:
         UndeterminedError: the torque never comes near its peak.
     """
-    kept = run.torque >= LEAST_TORQUE
-    kept[: int(np.argmax(_full(run, rig)))] = False
-    return run.velocity[kept], run.torque[kept], run.current[kept]
-
-
-def _full(run: Run, rig: Rig) -> NDArray[np.bool_]:
-    """Samples of full torque, more than 3.0 N*m with the lab's motor."""
     least = FULL_SHARE * (rig.motor.peak_torque or 0.0)
     full = run.torque > least
     if not full.any():
         reason = f"the torque never exceeds {least:.3g} N*m, it reaches {float(run.torque.max()):.3g} N*m"
         raise UndeterminedError("peak torque over speed", reason, "a run-up with the motor's full torque, forward")
-    return full
+    return int(np.argmax(full))
 
 
-def datasheet_curve(rig: Rig, mains: float) -> tuple[Array, Array]:
-    """Corners of the peak curve at a mains voltage - V: speed - rad/s, torque - N*m."""
-    curve = peak_curve(rig.motor, mains, rig.source)
-    speed = np.array([0.0, curve.corner_speed, curve.no_load_speed])
-    return speed, (rig.motor.peak_torque or 0.0) * curve.share(speed)
+def run_up(run: LabRun, rig: Rig) -> LabRun:
+    """Samples from the first full torque on, those with M < 0.2 N*m dropped; raises as `start`."""
+    return run.at((run.torque >= LEAST_TORQUE) & (np.arange(run.torque.size) >= start(run, rig)))
 
 
-def fall(run: Run, rig: Rig) -> Decline:
+def fall(run: LabRun, rig: Rig) -> Decline:
     """Corner of the run-up and how the current falls beyond it.
 
     Raises:
         UndeterminedError: the torque never comes near its peak, or the current does not fall to half.
     """
-    start = int(np.argmax(_full(run, rig)))
-    return decline(run.velocity[start:], run.current[start:], run.sample_period)
+    first = start(run, rig)
+    return decline(run.velocity[first:], run.current[first:], run.sample_period)
 
 
-def table(velocity: Array, torque: Array, corners: Array) -> list[tuple[float, float, float]]:
-    """Speed - rad/s, M_max measured - N*m - and that of the datasheet at SPEEDS.
+def datasheet_curve(rig: Rig) -> tuple[Array, Array]:
+    """Corners of the peak curve at MAINS: speed - rad/s, torque - N*m."""
+    curve = peak_curve(rig.motor, MAINS, rig.source)
+    speed = np.array([0.0, curve.corner_speed, curve.no_load_speed])
+    return speed, (rig.motor.peak_torque or 0.0) * curve.share(speed)
 
-    The measured one is the median of the samples within HALF_BIN of the speed, on the way up; NaN where there is none.
+
+def measured_at_speeds(velocity: Array, torque: Array) -> Array:
+    """M_max at SPEEDS - N*m, the median of the samples within HALF_BIN on the way up; NaN where there is none.
 
     Args:
-        velocity, torque: (n,) of the run-up.
-        corners: (2, 3) speeds and torques of the datasheet's curve.
+        velocity, torque: (n,) of the run-up - rad/s, N*m.
     """
     up = slice(0, int(np.argmax(velocity)) + 1)
-    rows = []
-    for speed in np.array(SPEEDS) / RPM:
-        near = np.abs(velocity[up] - speed) <= HALF_BIN
-        measured = float(np.median(torque[up][near])) if near.any() else math.nan
-        rows.append((float(speed), measured, float(np.interp(speed, *corners))))
-    return rows
+    near = (np.abs(velocity[up] - speed / RPM) <= HALF_BIN for speed in SPEEDS)
+    return np.array([np.median(torque[up][samples]) if samples.any() else math.nan for samples in near])
 
 
-def task(run: Run, rig: Rig, sources: Sources, mains: float = 230.0) -> Task:
+def task(recordings: LabRecordings) -> DoneTask:
     """Draw the measured torque over the speed beside the datasheet's curve, and tell both at seven speeds."""
-    velocity, torque, _ = run_up(run, rig)
-    limit, allowed = datasheet_curve(rig, mains)
+    run, rig, sources = recordings.fastest, recordings.rig, recordings.sources
+    kept = run_up(run, rig)
+    speed, torque = kept.velocity * RPM, kept.torque
+    limit, allowed = datasheet_curve(rig)
     found = fall(run, rig)
-    rows = table(velocity, torque, np.stack([limit, allowed]))
-    curves = (
-        Curve(velocity * RPM, torque, "measured", "dots"),
-        Curve(limit * RPM, allowed, f"datasheet, {mains:g} V", "dashes"),
-        Curve(np.array([found.corner]) * RPM, np.interp([found.corner], velocity, torque), "corner", "bold dots"),
-    )
-    peak = sources("motor", "peak_torque")
+    corner, corner_of_datasheet = found.corner * RPM, float(limit[1]) * RPM
+    measured = measured_at_speeds(kept.velocity, torque)
     numbers = [
         Number("peak torque", float(torque.max()), "N·m", rig.motor.peak_torque if run.truth else None),
-        Number("measured corner", found.corner * RPM, "rpm", run.true("corner_speed", RPM)),
-        Number("datasheet's corner", float(limit[1]) * RPM, "rpm", source=sources("motor", "peak_curves")),
+        Number("measured corner", corner, "rpm", run.true("corner_speed", RPM)),
+        Number("datasheet's corner", corner_of_datasheet, "rpm", source=sources("motor", "peak_curves")),
     ]
-    for speed, measured, sheet in rows:
-        name = f"M_max at {speed * RPM:.0f} rpm"
-        if math.isfinite(measured):
-            numbers.append(Number(name, measured, "N·m"))
-        numbers.append(Number(f"{name}, datasheet", sheet, "N·m", source=peak))
+    for at, value, sheet in zip(SPEEDS, measured, np.interp(SPEEDS, limit * RPM, allowed), strict=True):
+        name = f"M_max at {at:.0f} rpm"
+        if math.isfinite(value):
+            numbers.append(Number(name, float(value), "N·m"))
+        numbers.append(Number(f"{name}, datasheet", float(sheet), "N·m", source=sources("motor", "peak_torque")))
     findings = (
-        f"The torque starts to decline at {found.corner * RPM:.0f} rpm, {(found.corner - limit[1]) * RPM:+.0f} "
-        "rpm from "
+        f"The torque starts to decline at {corner:.0f} rpm, {corner - corner_of_datasheet:+.0f} rpm from "
         "the datasheet's corner; task 11 says why. The corner is found by least squares on the current from its top to "
         "half of it: constant, then falling in proportion to speed with a lag, as the motor's circuit has it.",
-        *_tail_findings(velocity, torque, found),
-        *_missing_findings(rows),
+        *_tail_findings(kept, found),
+        *_missing_findings(measured),
     )
-    chart = Chart("Task 10: peak torque", (Panel("speed n / rpm", "torque M / (N·m)", curves),))
-    return Task(KEY, TITLE, findings, tuple(numbers), (chart,))
+    axes = panel(
+        "speed n / rpm",
+        "torque M / (N·m)",
+        Curve(speed, torque, "measured", "dots"),
+        Curve(limit * RPM, allowed, f"datasheet, {MAINS:g} V", "dashes"),
+        Curve(np.array([corner]), np.interp([corner], speed, torque), "corner", "bold dots"),
+    )
+    return DoneTask(KEY, TITLE, findings, tuple(numbers), (chart("Task 10: peak torque", axes),))
 
 
-def _tail_findings(velocity: Array, torque: Array, found: Decline) -> tuple[str, ...]:
+def _tail_findings(kept: LabRun, found: Decline) -> tuple[str, ...]:
     """What ends the run before the no-load speed: the drive's set speed, which the axis then keeps."""
-    top = float(velocity.max())
+    top = float(kept.velocity.max())
     if top > 0.99 * found.no_load:
         return ()
-    tail = velocity > STILL_RISING * top
+    tail = kept.velocity > STILL_RISING * top
     return (
         f"The tail above {STILL_RISING * top * RPM:.0f} rpm is not the motor's limit. The drive was set to about "
         f"{top * RPM:.0f} rpm: as the axis gets there its speed control takes the torque back, to "
-        f"{float(torque[tail].min()):.2g} N·m, where the winding would still give it up to "
+        f"{float(kept.torque[tail].min()):.2g} N·m, where the winding would still give it up to "
         f"{found.no_load * RPM:.0f} rpm.",
     )
 
 
-def _missing_findings(rows: list[tuple[float, float, float]]) -> tuple[str, ...]:
-    missing = [f"{speed * RPM:.0f}" for speed, measured, _ in rows if not math.isfinite(measured)]
+def _missing_findings(measured: Array) -> tuple[str, ...]:
+    missing = [f"{speed:.0f}" for speed, value in zip(SPEEDS, measured, strict=True) if not math.isfinite(value)]
     return (f"At {', '.join(missing)} rpm there is no sample: the run-up does not get there.",) if missing else ()

@@ -30,7 +30,7 @@ CURRENT_LOOP = 0.4e-3
 
 
 @dataclass(frozen=True)
-class Winding:
+class WindingModel:
     """What the current has to pass.
 
     Attributes:
@@ -79,7 +79,7 @@ class WindingRun:
     warming: float
 
 
-def run_winding(winding: Winding, axis: AxisParameters, demand: Array, velocity_gain: float) -> WindingRun:
+def run_winding(winding: WindingModel, axis: AxisParameters, demand: Array, velocity_gain: float) -> WindingRun:
     """Let an axis follow a speed through its motor's winding.
 
     Args:
@@ -115,7 +115,7 @@ def run_winding(winding: Winding, axis: AxisParameters, demand: Array, velocity_
     return WindingRun(time, velocity, current, voltage, constant.torque(current), float(data.act[0]))
 
 
-def _model(winding: Winding, axis: AxisParameters) -> mujoco.MjModel:
+def _model(winding: WindingModel, axis: AxisParameters) -> mujoco.MjModel:
     """The axis with a dcmotor for its drive. Activations: warming - K, and with inductance the current - A."""
     circuit = winding.circuit
     spec = build_spec(axis, STEP)

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from bench.course.result import Task
-from bench.report import course
+from bench.course import report as course_report
+from bench.course.result import DoneTask
 from tests.command import bench
 
 
@@ -25,13 +25,13 @@ def lab(tmp_path_factory):
     """`bench lab --out here` on the synthetic recordings."""
     folder, reports = tmp_path_factory.mktemp("lab"), []
 
-    def kept(*arguments, report=course.report_course):
+    def kept(*arguments, report=course_report.report_course):
         reports.append(report(*arguments))
         return reports[-1]
 
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        patch.setattr(course, "report_course", kept)
+        patch.setattr(course_report, "report_course", kept)
         ended = bench("lab", "--out", "here")
     return Lab(folder, ended.status, ended.out, [*reports[0].results])
 
@@ -39,6 +39,6 @@ def lab(tmp_path_factory):
 @pytest.fixture(scope="session")
 def done(lab):
     """Tasks of the course on the synthetic recordings by their key."""
-    missed = [task for task in lab.results if not isinstance(task, Task)]
+    missed = [task for task in lab.results if not isinstance(task, DoneTask)]
     assert not missed, [f"{task.key}: {task.reason}" for task in missed]
     return {task.key: task for task in lab.results}

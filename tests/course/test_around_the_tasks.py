@@ -3,8 +3,7 @@
 import pytest
 
 from bench.course import tracking
-from bench.course.rig import lab_rig
-from bench.course.sources import Sources
+from bench.course.axis import Sources, lab_rig
 from bench.plant.model import AxisParameters
 from tests.course.test_tasks import near
 
@@ -63,7 +62,7 @@ def test_tracking_moves_the_axis_of_the_recording():
     """An axis of 30 kg*cm**2: what is identified from it tracks better than the theory of another disk."""
     rig, true = lab_rig(), 30e-4
     axis = AxisParameters(true, 1.1e-3, 0.085, motor_inertia=2.5e-5)
-    task = tracking.task(rig, Sources.of(None), axis, true - rig.motor.rotor_inertia, known=False)
+    task = tracking.track(rig, Sources.of(None), axis, true - rig.motor.rotor_inertia, known=False)
     rms = [task[f"RMS deviation, J_load {name}"].value for name in ("= 0", "theoretical", "identified")]
     assert rms[2] < 0.2 * rms[1] < 0.2 * rms[0]
     assert "30 kg·cm²" in task.findings[0]

@@ -3,12 +3,14 @@
 import csv
 import json
 import re
+from dataclasses import dataclass
+from pathlib import Path
 from time import process_time
 
 import numpy as np
 import pytest
 
-from bench.course.answers import ASKED
+from bench.course.answers import QUESTIONS
 from bench.course.students import SCHEMA, seal
 from bench.trace.read import read
 from tests.command import bench
@@ -88,18 +90,27 @@ RIGHT = (
 )
 WRONG = {
     "degrees for radians": ({"radian": 1.0},),
-    "milliamperes for amperes": ({"ampere": 1.0},),
-    "no kT(Iq)": ({"constant": "stall"}, {"constant": "peak"}),
-    "half-sample lag": ({"width": 5, "set_back": 2},),
-    "filter not synchronised": ({"set_back": 0}, {"width": 5, "set_back": 0}),
+    "milliamperes for amperes": (
+        {"ampere": 1.0},
+        {"ampere": 1.0, "constant": "stall"},
+        {"ampere": 1.0, "constant": "zero"},
+    ),
+    "no kT(Iq)": ({"constant": "stall"}, {"constant": "peak"}, {"constant": "zero"}),
+    "half-sample lag": (
+        {"width": 3, "set_back": 1},
+        {"width": 5, "set_back": 2},
+        {"width": 7, "set_back": 3},
+        {"set_back": 1},
+    ),
+    "filter not synchronised": ({"set_back": 0}, *({"width": width, "set_back": 0} for width in (3, 5, 7))),
     "backward difference": ({"width": 1, "set_back": 0},),
-    "2π": ({"rpm": 60.0}, {"radian": 1.0 / 360.0}),
+    "2π": ({"rpm": 60.0}, {"radian": 1.0 / 360.0}, {"radian": 2.0 * np.pi * DEG}),
 }
 
 
 def fill(folder, number, answers, random):
     """The form with five digits, some of it in other units, or as JSON, or with decimal commas."""
-    units = {asked.name: asked.unit for asked in ASKED}
+    units = {question.name: question.unit for question in QUESTIONS}
     rows = {name: (float(value), units[name]) for name, value in answers.items()}
     if number % 4 == 1:
         rows["J"] = rows["J"][0] * 1e-4, "kg*m^2"
@@ -119,101 +130,117 @@ def fill(folder, number, answers, random):
     (own / "answers.csv").write_text(text.replace(",", ";").replace(".", ",") if comma else text, encoding="utf-8")
 
 
-def graded_class(folder, students, wrong):
-    """Record, fill in, grade; returns rows of grades.csv by student. `wrong`: mistake and keywords by student."""
+@dataclass(frozen=True)
+class Class:
+    """Recorded students, by number, the folder of them all, and how long it took - s of CPU."""
+
+    folder: Path
+    students: dict[int, Student]
+    took: float
+
+
+def recorded(folder, count):
+    """A class that the command recorded; all of one seed, so that the first students are the same of any count."""
     start = process_time()
-    status, out, _ = bench("lab", "--record", folder / "class", "--students", students, "--seed", 7)
+    status, out, _ = bench("lab", "--record", folder / "class", "--students", count, "--seed", 7)
     took = process_time() - start
     assert status == 0
-    assert out.count("wrote") == students + 1
+    assert out.count("wrote") == count + 1
+    students = {number: Student(folder / "class" / f"student-{number:02}") for number in range(1, count + 1)}
+    return Class(folder, students, took)
+
+
+def graded(of, ways, out):
+    """Fill in every student's form in a way, and grade; returns rows of grades.csv by student.
+
+    Args:
+        of: the class.
+        ways: how each student works, by number, and the mistake in it, if there is one.
+        out: folder of the forms and grades.
+    """
     random = np.random.default_rng(1)
-    for number in range(1, students + 1):
-        student = Student(folder / "class" / f"student-{number:02}")
-        _, how = wrong.get(number, ("", RIGHT[number % len(RIGHT)]))
-        constants = {"stall": student.stall, "peak": student.peak}
-        if how.get("constant") in constants:
-            torque, current = constants[how["constant"]]
-            how = {**how, "constant": torque / current}
-        fill(folder / "handed in", number, student.answers(**how), random)
-    status, out, err = bench(
-        "lab", "--grade", folder / "handed in", "--truth", folder / "class.truth.json", "--out", folder / "grades"
-    )
+    for number, (_, how) in ways.items():
+        student = of.students[number]
+        constants = {"stall": student.stall[0] / student.stall[1], "peak": student.peak[0] / student.peak[1]}
+        if "constant" in how:
+            how = {**how, "constant": {**constants, "zero": student.c}[how["constant"]]}
+        fill(out / "handed in", number, student.answers(**how), random)
+    forms, truth = out / "handed in", of.folder / "class.truth.json"
+    status, _, err = bench("lab", "--grade", forms, "--truth", truth, "--out", out / "grades")
     assert (status, err) == (0, "")
-    with (folder / "grades" / "grades.csv").open(encoding="utf-8") as file:
+    with (out / "grades" / "grades.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    return took, {n: [row for row in rows if int(row["student"]) == n] for n in range(1, students + 1)}
+    return {number: [row for row in rows if int(row["student"]) == number] for number in ways}
 
 
-def check(graded, wrong, folder):
-    for number, rows in graded.items():
-        verdicts = {row["quantity"]: row["verdict"] for row in rows}
-        mistakes = {row["mistake"] for row in rows} - {""}
+def check(of, ways, out):
+    """Every mistake is named, with nothing left wrong that it does not explain; what is right is marked so."""
+    for number, rows in graded(of, ways, out).items():
+        mistake, how = ways[number]
         off = {row["quantity"]: (row["given"], row["expected"]) for row in rows if row["verdict"] == "wrong"}
-        page = (folder / "grades" / "students" / f"student-{number:02}.html").read_text(encoding="utf-8")
-        if number in wrong:
-            name, _ = wrong[number]
-            assert mistakes == {name}, (number, off)
-            assert all(row["mistake"] for row in rows if row["verdict"] == "wrong"), (number, name, off)
-            assert name in page
+        page = (out / "grades" / "students" / f"student-{number:02}.html").read_text(encoding="utf-8")
+        assert {row["mistake"] for row in rows} - {""} == ({mistake} if mistake else set()), (number, how, off)
+        if mistake:
+            assert all(row["mistake"] for row in rows if row["verdict"] == "wrong"), (number, how, off)
+            assert mistake in page
         else:
-            assert set(verdicts.values()) == {"right", "not judged"}, (number, off)
-            assert mistakes == set()
+            assert {row["verdict"] for row in rows} == {"right", "not judged"}, (number, how, off)
             assert 'class="wrong"' not in page
 
 
-def drawn(first):
-    """Every mistake once, in each of its ways, from a student on."""
-    ways = [(name, how) for name, hows in WRONG.items() for how in hows]
-    return {first + k: way for k, way in enumerate(ways)}
+#: Right ways, and every mistake in each of its ways.
+ALL_RIGHT = [("", how) for how in RIGHT]
+ALL_WRONG = [(mistake, how) for mistake, hows in WRONG.items() for how in hows]
 
 
-def test_every_mistake_is_named_and_no_right_one_marked_down(tmp_path):
-    wrong = drawn(5)
-    _, graded = graded_class(tmp_path, 14, wrong)
-    check(graded, wrong, tmp_path)
+@pytest.fixture(scope="module")
+def four(tmp_path_factory):
+    return recorded(tmp_path_factory.mktemp("four"), 4)
+
+
+def test_every_mistake_is_named_and_no_right_one_marked_down(four, tmp_path):
+    """Each way by one of four students on recordings of an own axis, as many rounds of forms as it takes."""
+    ways = [*ALL_RIGHT, *ALL_WRONG]
+    for start in range(0, len(ways), len(four.students)):
+        check(four, dict(enumerate(ways[start : start + len(four.students)], 1)), tmp_path / str(start))
 
 
 @pytest.mark.slow
 def test_forty_students(tmp_path):
-    """Ten of forty with a mistake; recorded in CPU time that is below five minutes on one core."""
-    wrong = drawn(21)
-    assert len(wrong) == 10
-    took, graded = graded_class(tmp_path, 40, wrong)
-    print(f"40 students recorded in {took:.0f} s of CPU")
-    assert took < 300.0
-    check(graded, wrong, tmp_path)
+    """Half of forty with a mistake; recorded in CPU time that is below five minutes on one core."""
+    of = recorded(tmp_path, 40)
+    print(f"40 students recorded in {of.took:.0f} s of CPU")
+    assert of.took < 300.0
+    right = [ALL_RIGHT[number % len(RIGHT)] for number in range(40 - len(ALL_WRONG))]
+    check(of, dict(enumerate([*right, *ALL_WRONG], 1)), tmp_path / "out")
 
 
-def test_students_folders_hold_no_truth(tmp_path):
-    status, _, _ = bench("lab", "--record", tmp_path / "class", "--students", 2, "--seed", 3)
-    assert status == 0
-    folders = sorted((tmp_path / "class").iterdir())
-    assert [folder.name for folder in folders] == ["student-01", "student-02"]
-    assert not list((tmp_path / "class").rglob("*truth*"))
-    first, second = ((folder / "rig.toml").read_text() for folder in folders)
-    assert first != second
-    for text in (first, second):
+def test_students_folders_hold_no_truth(four, tmp_path):
+    folders = sorted((four.folder / "class").iterdir())
+    assert [folder.name for folder in folders] == [f"student-{number:02}" for number in four.students]
+    assert not list((four.folder / "class").rglob("*truth*"))
+    texts = [(folder / "rig.toml").read_text(encoding="utf-8") for folder in folders]
+    assert len(set(texts)) == len(texts)
+    for text in texts:
         assert "simulation" not in text
         assert "inertia_feedforward" not in text
-    truth = tmp_path / "class.truth.json"
+    truth = four.folder / "class.truth.json"
     assert truth.stat().st_mode & 0o077 == 0
-    content = json.loads(truth.read_text())
-    known = content["students"]["01"]
-    for name, true in known["truth"].items():
-        assert known["expected"][name] == pytest.approx(true, rel=0.03), name
-    disk = 19.0
-    assert known["truth"]["J_load"] > 0.5 * disk
-    again = tmp_path / "again"
-    bench("lab", "--record", again, "--students", 1, "--seed", 3)
-    assert (again / "student-01" / "rig.toml").read_text() == first
-    status, _, err = bench("lab", "--record", tmp_path / "class", "--students", 2)
+    for known in json.loads(truth.read_text())["students"].values():
+        for name, true in known["truth"].items():
+            assert known["expected"][name] == pytest.approx(true, rel=0.03), name
+        disk = 19.0
+        assert known["truth"]["J_load"] > 0.5 * disk
+    again = recorded(tmp_path, 1)
+    assert (again.folder / "class" / "student-01" / "rig.toml").read_text(encoding="utf-8") == texts[0]
+    status, _, err = bench("lab", "--record", four.folder / "class", "--students", 2)
     assert (status, err.count("\n")) == (2, 1)
     assert "not empty" in err
 
 
 @pytest.fixture(scope="module")
 def known():
-    expected = {asked.name: 1.0 for asked in ASKED}
+    expected = {question.name: 1.0 for question in QUESTIONS}
     return {"07": {"expected": expected, "truth": {}, "mistakes": {}}}
 
 

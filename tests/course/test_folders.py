@@ -9,11 +9,10 @@ import scipy.io
 
 from bench.assets import asset
 from bench.course import course as course_module
+from bench.course import report
+from bench.course.axis import Sources, lab_rig
 from bench.course.flights import read_flights
-from bench.course.recordings import Recordings
-from bench.course.rig import lab_rig
-from bench.course.sources import Sources
-from bench.report import lab as report
+from bench.course.recordings import LabRecordings
 from bench.trace.read import read
 from tests.command import bench
 
@@ -216,9 +215,8 @@ SLOW = {"estimators", "equation", "emulation", "11"}
 
 @pytest.fixture
 def quick(monkeypatch):
-    """The command without what only simulates, but for task 11 where a rig file may stop it."""
-    whole = course_module._Course.steps
-    monkeypatch.setattr(course_module._Course, "steps", lambda self: [s for s in whole(self) if s[0] not in SLOW])
+    """The command without what only simulates."""
+    monkeypatch.setattr(course_module, "TASKS", [task for task in course_module.TASKS if task.KEY not in SLOW])
     # drawing takes seconds a folder, and test_report.py looks at what it draws
     monkeypatch.setattr(report, "_charts", lambda result: ())
 
@@ -279,11 +277,11 @@ def test_a_rig_without_simulation_loses_no_section(tmp_path):
     for path in asset("data", "traces").glob("*.trace"):
         shutil.copy(path, tmp_path)
     a_full_rig(tmp_path)
-    assert Recordings.in_folder(tmp_path).example == lab_rig()
-    assert Recordings.in_folder(tmp_path).rig.motor.rotor_inertia == pytest.approx(0.3e-4)
+    assert LabRecordings.in_folder(tmp_path).example == lab_rig()
+    assert LabRecordings.in_folder(tmp_path).rig.motor.rotor_inertia == pytest.approx(0.3e-4)
     text = asset("data", "rigs", "lab.toml").read_text(encoding="utf-8").replace("22.5 kg*cm**2", "30 kg*cm**2")
     (tmp_path / "rig.toml").write_text(text)
-    assert Recordings.in_folder(tmp_path).example.simulation.moment_of_inertia == pytest.approx(30e-4)
+    assert LabRecordings.in_folder(tmp_path).example.simulation.moment_of_inertia == pytest.approx(30e-4)
 
 
 def test_every_value_tells_its_source(tmp_path):

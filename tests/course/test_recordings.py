@@ -12,7 +12,7 @@ from bench.assets import asset
 from bench.course.course import course
 from bench.course.flights import find_flights, read_flights
 from bench.course.record import record
-from bench.course.recordings import Recordings
+from bench.course.recordings import LabRecordings
 from bench.course.result import NotDone
 from bench.errors import InputError
 from bench.trace.read import read
@@ -41,7 +41,7 @@ READING = {"1", "2", "3", "4"}.union(*OF_THE_RECORDING.values())
 
 
 def results(folder):
-    done = course(Recordings.in_folder(folder), keys=READING)
+    done = course(LabRecordings.in_folder(folder), keys=READING)
     missed = {result.key: str(result.reason) for result in done if isinstance(result, NotDone)}
     return {result.key: result for result in done if not isinstance(result, NotDone)}, missed
 
@@ -158,7 +158,7 @@ def test_other_files_beside_the_recordings_are_passed_over_and_linear_axes_refus
 
 def test_progress_is_reported_after_every_task():
     shares = []
-    course(Recordings.in_folder(None), shares.append, keys=READING)
+    course(LabRecordings.in_folder(None), shares.append, keys=READING)
     assert shares == sorted(shares)
     assert len(shares) == len(READING)
     assert shares[-1] == 1.0
@@ -166,7 +166,7 @@ def test_progress_is_reported_after_every_task():
 
 def test_no_folder_is_an_error(tmp_path):
     with pytest.raises(InputError, match="no such folder"):
-        Recordings.in_folder(tmp_path / "nowhere")
+        LabRecordings.in_folder(tmp_path / "nowhere")
 
 
 def test_catapult_from_a_zip_with_german_tables_in_other_units(tmp_path):

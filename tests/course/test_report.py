@@ -8,14 +8,13 @@ import sys
 import pytest
 
 from bench.assets import asset
-from bench.course.cover import Cover
+from bench.course import pdf
+from bench.course.charts import chart_figure
+from bench.course.handin import Cover
+from bench.course.report import course_table, lab_html, write_lab_report
 from bench.course.result import NotDone
+from bench.course.section import section
 from bench.errors import InputError
-from bench.report import pdf
-from bench.report.charts import chart_figure
-from bench.report.course import course_table
-from bench.report.lab import lab_html, write_lab_report
-from bench.report.section import section
 from bench.report.terminal import console
 from tests import command
 

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from bench.course.axis import lab_rig
 from bench.course.catapult import FLIGHTS, fly
 from bench.course.corner import decline, extrapolated_corner
-from bench.course.recordings import Recordings
-from bench.course.rig import lab_rig
-from bench.course.run import Run
+from bench.course.recordings import LabRecordings, LabRun
 from bench.course.t01_catapult import by_normal_equations, by_orthogonal_solver, columns
 from bench.course.t04_torque_constant_curve import coefficients
 from bench.course.t08_fast_samples import WIDTH, fast_samples, filtered_acceleration, lateness
@@ -77,7 +76,7 @@ def test_3_and_4_torque_constant_is_exact(done):
     assert done["3"]["kT from stall"].value == pytest.approx(1.4 / 1.8, rel=1e-15)
     assert done["3"]["kT from peak"].value == pytest.approx(3.5 / 5.7, rel=1e-15)
     rig = lab_rig()
-    a, b, c = coefficients(rig.motor, rig.source)
+    a, b, c = coefficients(rig)
     assert b == pytest.approx(0.0, abs=1e-15)
     assert a * 1.8**2 + c == pytest.approx(1.4 / 1.8, rel=1e-14)
     assert a * 5.7**2 + c == pytest.approx(3.5 / 5.7, rel=1e-14)
@@ -122,7 +121,7 @@ def test_6_inertia_within_half_a_percent(done):
 
 
 def test_8_filtered_acceleration_is_in_step_and_slow_samples_are_gone():
-    run = Recordings.in_folder(None).run("JLoadAndFriction")
+    run = LabRecordings.in_folder(None).run("JLoadAndFriction")
     acceleration, synchronous = filtered_acceleration(run)
     u = run.velocity
     assert acceleration == pytest.approx((u[WIDTH:] - u[:-WIDTH]) / (WIDTH * run.sample_period))
@@ -163,7 +162,7 @@ def test_8_lateness_of_a_known_shift():
     period = 1e-3
     time = period * np.arange(4000)
     speed = 100.0 * np.sin(7.0 * time) + 0.02 * random.standard_normal(time.size)
-    run = Run(time, speed, 0.0 * time, backward_difference(speed, period), 0.0 * time, 0.0 * time, period)
+    run = LabRun(time, speed, 0.0 * time, backward_difference(speed, period), 0.0 * time, 0.0 * time, period)
     for late in (0, 1, 2):
         assert lateness(run, late) == pytest.approx(late, abs=0.01)
 
@@ -179,7 +178,7 @@ def test_10_peak_torque_and_corner(done):
 
 
 def test_10_a_run_that_never_reaches_full_torque_is_refused():
-    run = Recordings.in_folder(None).run("JLoadAndFriction")
+    run = LabRecordings.in_folder(None).run("JLoadAndFriction")
     with pytest.raises(UndeterminedError, match="3 N"):
         run_up(run, lab_rig())
 

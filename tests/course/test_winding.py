@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from bench.course.axis import lab_rig, torque_constant
 from bench.course.corner import extrapolated_corner
-from bench.course.rig import lab_rig, torque_constant
 from bench.course.t11_corner import TIME_CONSTANTS, VELOCITY_GAIN, cross_voltage
-from bench.course.winding import CURRENT_LOOP, STEP, Winding, run_winding
+from bench.course.winding import CURRENT_LOOP, STEP, WindingModel, run_winding
 from bench.plant.model import AxisParameters
 from bench.rig.circuit import COLD, HOT, Circuit
 
@@ -62,7 +62,7 @@ def independent(winding, axis, demand, duration):
 def test_run_through_the_winding_agrees_with_an_independent_integrator(circuit):
     rig = lab_rig()
     axis = AxisParameters.from_rig(rig)
-    winding = Winding(circuit, torque_constant(rig), 5.7, COLD, True)
+    winding = WindingModel(circuit, torque_constant(rig), 5.7, COLD, True)
     top, duration = 5000.0 / RPM, 0.6
     run = run_winding(winding, axis, np.full(round(duration / STEP), top), VELOCITY_GAIN)
     every = slice(None, None, round(1e-3 / STEP))
@@ -114,7 +114,7 @@ def test_11_without_warming_the_hot_corner_is_the_datasheets(circuit):
     rig = lab_rig()
     axis = AxisParameters.from_rig(rig)
     slow = replace(circuit, thermal_time_constant=1e9)
-    winding = Winding(slow, torque_constant(rig), 5.7, HOT, False)
+    winding = WindingModel(slow, torque_constant(rig), 5.7, HOT, False)
     run = run_winding(winding, axis, np.full(round(0.6 / STEP), 5000.0 / RPM), VELOCITY_GAIN)
     assert extrapolated_corner(run.velocity, run.current) * RPM == pytest.approx(2100.0, abs=0.5)
 

@@ -10,11 +10,11 @@ from pathlib import Path
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure, SubFigure
 
-from bench.course.cover import Cover
+from bench.course.charts import chart_height, draw_chart
+from bench.course.handin import Cover
 from bench.course.result import Chart
+from bench.course.section import Row, Section
 from bench.names import plain
-from bench.report.charts import chart_height, draw_chart
-from bench.report.section import Row, Section
 
 #: A4 upright, and its margin all around - inch; height of a line - inch; characters in a line, and in one of a table.
 PAGE, MARGIN, LINE, CHARACTERS = (8.27, 11.69), 0.45, 0.18, 116
@@ -43,7 +43,7 @@ class Placed:
     height: float
 
 
-def write_documents(
+def write_pages(
     path: Path,
     title: str,
     cover: Cover,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bench.course.result import NotDone, Number, Task
+from bench.course.result import DoneTask, NotDone, Number
 
 
 @dataclass(frozen=True)
@@ -35,10 +35,10 @@ class Section:
         return any(row.truth for row in self.rows)
 
 
-def section(result: Task | NotDone) -> Section:
+def section(result: DoneTask | NotDone) -> Section:
     """A task as it is printed."""
     heading = f"Task {result.key}: {result.title}" if result.key.isdigit() else result.title
-    if isinstance(result, Task) and result.example:
+    if isinstance(result, DoneTask) and result.example:
         heading = f"{heading} (embedded example)"
     if isinstance(result, NotDone):
         return Section(result.key, heading, str(result.reason), (), ())

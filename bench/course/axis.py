@@ -1,0 +1,133 @@
+"""The axis of the lab: its rig file, what the tasks take from it, and where each of its values comes from."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bench.assets import asset
+from bench.errors import InputError
+from bench.rig.catalogue import motor_sources
+from bench.rig.circuit import Circuit
+from bench.rig.limits import peak_curve
+from bench.rig.motor import TorqueConstant
+from bench.rig.rig import Rig, load_rig
+from bench.structured import read_toml
+
+#: Rig of the simulated lab axis.
+LAB = asset("data", "rigs", "lab.toml")
+#: Mains voltage of the lab - V.
+MAINS = 230.0
+#: rpm in one rad/s, kg*cm**2 in one kg*m**2.
+RPM, KG_CM2 = 30.0 / math.pi, 1e4
+#: Where a value comes from.
+RIG_FILE, DATASHEET, ASSUMED, COURSE, EMBEDDED = "rig file", "datasheet", "assumed", "course", "embedded rig"
+#: Words that a source in the motor catalogue begins with, and what they are called in a report.
+_CATALOGUE = (("assumed", ASSUMED), ("datasheet", DATASHEET), ("the course", COURSE))
+
+
+def lab_rig() -> Rig:
+    """Rig of the simulated lab axis, `data/rigs/lab.toml`."""
+    return load_rig(LAB)
+
+
+def embedded() -> dict[str, Any]:
+    """The same as tables, as TOML has them."""
+    return tomllib.loads(LAB.read_text(encoding="utf-8"))
+
+
+def simulated_with(rig: Rig, **truth: float | str) -> Rig:
+    """The same axis with other true values, names as in `[simulation]`, SI.
+
+    Raises:
+        InputError: the rig cannot be simulated.
+    """
+    if rig.simulation is None:
+        raise InputError(f"{rig.source}: simulation", "missing", "a simulated axis needs a table [simulation]")
+    return rig.model_copy(update={"simulation": rig.simulation.model_copy(update=truth)})
+
+
+def without_friction(rig: Rig) -> Rig:
+    """The same simulated axis with neither viscous nor Coulomb friction."""
+    return simulated_with(rig, viscous_friction_coefficient=0.0, coulomb_friction=0.0)
+
+
+def torque_constant(rig: Rig) -> TorqueConstant:
+    """kT(Iq) of a rig.
+
+    Raises:
+        InputError: the rig gives none.
+    """
+    constant = rig.motor.torque_per_ampere
+    if constant is None:
+        raise InputError(f"{rig.source}: motor", "found no torque constant", "give the four datasheet values")
+    return constant
+
+
+def rotor_inertia(rig: Rig) -> float:
+    """J_motor - kg*m**2.
+
+    Raises:
+        InputError: the rig does not give it.
+    """
+    if rig.motor.rotor_inertia is None:
+        raise InputError(f"{rig.source}: motor.rotor_inertia", "missing", "J_load = J - J_motor needs it")
+    return rig.motor.rotor_inertia
+
+
+def peak_current(rig: Rig) -> float:
+    """Imax - A.
+
+    Raises:
+        InputError: the rig does not give it.
+    """
+    if rig.motor.peak_current is None:
+        raise InputError(f"{rig.source}: motor.peak_current", "missing", "the run-up is limited by it")
+    return rig.motor.peak_current
+
+
+def circuit(rig: Rig) -> Circuit:
+    """The motor's winding as its peak curve at MAINS has it.
+
+    Raises:
+        InputError: the motor lacks that curve, or what its circuit needs.
+    """
+    return Circuit.from_motor(rig.motor, peak_curve(rig.motor, MAINS, rig.source), rig.source)
+
+
+@dataclass(frozen=True)
+class Sources:
+    """Whence every value of an axis is.
+
+    Attributes:
+        given: tables of the rig file as TOML has them; empty where there is none.
+        model: of the motor in the catalogue, for values that the rig file does not give.
+    """
+
+    given: Mapping[str, Any]
+    model: str | None
+
+    @classmethod
+    def of(cls, path: Path | None) -> Sources:
+        """Of a rig file that was read before, or of the embedded rig alone."""
+        given = {} if path is None else read_toml(path, "a rig file")
+        return cls(given, given.get("motor", embedded()["motor"]).get("model"))
+
+    def __call__(self, table: str, key: str) -> str:
+        """Source of `[table] key`."""
+        if key in self.given.get(table, {}):
+            return RIG_FILE
+        entry = motor_sources(self.model) if table == "motor" and self.model is not None else {}
+        if key in entry:
+            text = entry[key][1]
+            return next((word for start, word in _CATALOGUE if text.startswith(start)), "motor catalogue")
+        return EMBEDDED
+
+
+def joined(*sources: str) -> str:
+    """Several sources of one number, each once."""
+    return ", ".join(dict.fromkeys(sources))
