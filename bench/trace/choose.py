@@ -11,11 +11,11 @@ from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.reading_options import ReadingOptions
 from bench.trace.signal_names import is_index, plain_name, scale_in, signal_of, unit_of
 from bench.trace.signals import SI_UNITS
-from bench.units.text import Scale
+from bench.units.text import UnitScale
 
 #: Signals of which one that can be read is enough: the others are then left out where they cannot.
 ENOUGH = (("velocity", "position"), ("torque", "force", "current"))
-_INDEX = Scale("samples", 1.0)
+_INDEX = UnitScale("samples", 1.0)
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class SignalColumn:
     """
 
     channel: Channel
-    scale: Scale
+    scale: UnitScale
     sign: float = 1.0
 
 
@@ -138,7 +138,7 @@ def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes
     return SignalColumn(channel, scale, sign)
 
 
-def _scale(recording: Recording, signal: str, channel: Channel, given: str | None, notes: list[str]) -> Scale:
+def _scale(recording: Recording, signal: str, channel: Channel, given: str | None, notes: list[str]) -> UnitScale:
     if channel.moments:
         return scale_in(signal, channel.unit or "s", channel.place())
     unit = unit_of(given or channel.unit)
@@ -159,12 +159,12 @@ def _scale(recording: Recording, signal: str, channel: Channel, given: str | Non
         raise InputError(error.where, error.found, error.allowed + line) from error
 
 
-def _own_scale(signal: str, channel: Channel) -> Scale | None:
+def _own_scale(signal: str, channel: Channel) -> UnitScale | None:
     unit = unit_of(channel.unit)
     try:
         return None if unit is None else scale_in(signal, unit, "")
     except InputError:
-        return Scale(unit or "", 0.0)  # what the file says is no unit of it: the rig's is another
+        return UnitScale(unit or "", 0.0)  # what the file says is no unit of it: the rig's is another
 
 
 def _named(recording: Recording, signal: str, name: str) -> Channel | None:

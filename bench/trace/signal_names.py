@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from bench.errors import InputError
 from bench.trace.signals import RELATIVE_TORQUE, SI_UNITS
-from bench.units.text import Scale, UnitError, scale_of
+from bench.units.text import UnitError, UnitScale, scale_of
 
 #: Other names of signals; compared in lower case, with `_` as a space, after the last dot of a PLC path.
 ALIASES: dict[str, tuple[str, ...]] = {
@@ -93,7 +93,7 @@ def wanted_units(signal: str) -> tuple[str, ...]:
     return (*dict.fromkeys(SI_UNITS[signal]), *relative)
 
 
-def scale_in(signal: str, unit: str, place: str) -> Scale:
+def scale_in(signal: str, unit: str, place: str) -> UnitScale:
     """How a signal (or `time`) recorded in `unit` becomes SI.
 
     Raises:

@@ -1,43 +1,198 @@
-"""Limits on a unit's text before pint sees it: length, depth of brackets, size of exponents.
+"""The grammar of units: a product of numbers and names, each with an exponent, read from left to right.
 
-pint evaluates any arithmetic in a text: `m**9**9**9` never ends, each bracket is a recursion, and a name of thousands
-of letters is compared with every prefix and suffix.
+`*`, `/`, a blank, or a hyphen or point between names separates them: `kg*m**2`, `rad s-1`, `oz-in`, `turn/4096/s`,
+`N*m*(s/rad)**0.5`. Numbers become a factor. Length, powers and brackets are limited: nothing here takes long, whatever
+a file holds.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
-#: Characters of a unit and depth of its brackets; `kg*m**2/s**3/A**2` has 17 and none.
-LONGEST, DEEPEST = 120, 6
-#: The largest exponent, and the largest product of all; that of `kg*m**2/s**3/A**2` is 12.
-STEEPEST, STEEPEST_OF_ALL = 12.0, 1000.0
-_EXPONENT = re.compile(
-    r"(?:\*\*|\^)\s*(?P<open>\(\s*)?[+-]?\s*(?P<plain>\d{1,3}(?:\.\d{0,6})?|\.\d{1,6})(?![\w.])\s*"
-    r"(?(open)(?:/\s*\d{1,3}\s*)?\))|(?P<raised>[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]{1,3})"
+from bench.units.names import ALIASES, COMPOUNDS, COUNTS, ELECTRICAL, TRANSLATED, WHOLE
+
+#: Characters of a unit; no recorder writes a longer one, nor higher powers. `kg*m**2/s**3/A**2` has 17.
+LONGEST, _HIGHEST, _LARGEST_POWER, _DEEPEST = 80, 9, 64, 6
+
+_POWER = r"\s*(?:\^|\*\*)\s*(?:\(\s*(?P<{0}>[+-]?\d+(?:[./]\d+)?)\s*\)|(?P<{0}_bare>[+-]?\d+(?:\.\d+)?)(?![\d.,]))"
+_TOKEN = re.compile(
+    r"\s*(?:"
+    r"(?P<root>sqrt\s*\(\s*(?P<radicand>\d+(?:\.\d+)?)\s*\))"
+    rf"|(?P<number>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)(?:{_POWER.format('raised')})?"
+    rf"|(?P<name>[^\W\d]+|%)(?:{_POWER.format('power')}|\((?P<inside>[+-]?\d)\)|(?P<exponent>[+-]?\d)(?![\d.,]))?"
+    rf"|(?P<close>\))(?:{_POWER.format('outer')})?"
+    r"|(?P<operator>[*/(])"
+    r"|(?P<joint>(?<=[^\W\d])[-.](?=[^\W\d]))"
+    r")"
 )
-_DIGITS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", "⁺⁻")
-_RAISED = "\0"
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-")
+_RAISED = re.compile("[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+")
+#: An effective current, however it is written.
+EFFECTIVE = re.compile(r"(?<![^\W_])([munk]?A|[mk]?Amps?)[\s_.-]*\(?(rms|eff|effektiv|effective)\)?(?![^\W_])", re.I)
+_PEAK = re.compile(r"(?<![^\W_])([munk]?A)[\s_.-]*\(?(0-pk|pk|peak|p)\)?(?![^\W_])", re.I)
+_NEWTON_METRES = re.compile(r"(da|[unmcdkM]?)N([cmk]?m)")
+_PEAK_TO_PEAK = re.compile(r"(?<![^\W_])([munk]?A)[\s_.-]*\(?(pp|pk-pk|p-p|pkpk)\)?(?![^\W_])", re.I)
+_COMMENT = re.compile(r"(?<=[^\s*/])\s*\((?!.*(?:eff|rms|peak|pk|el))[^()\d]{3,}\)\s*$", re.I)
 
 
-def require_unit(text: str) -> None:
-    """Raise ValueError with the reason if a text exceeds a limit."""
+class UnitError(ValueError):
+    """A text that is no unit, or not plainly one: `found` says what it is, `allowed` what would be."""
+
+    def __init__(self, found: str, allowed: str) -> None:
+        self.found, self.allowed = found, allowed
+        super().__init__(f"{found}; {allowed}")
+
+
+@dataclass
+class UnitProduct:
+    """A factor times powers of names.
+
+    Attributes:
+        factor: of it.
+        powers: exponent by name, in the order of their appearance.
+        sign: +1, or -1 behind a `/`: of the exponent of what comes next.
+    """
+
+    factor: float = 1.0
+    powers: dict[str, float] = field(default_factory=dict)
+    sign: int = 1
+
+    def take(self, factor: float, powers: Mapping[str, float], exponent: float) -> None:
+        """Multiply by, or behind a `/` divide by, a power of another product.
+
+        Raises:
+            ArithmeticError: no number holds the factor.
+            ValueError: a power that no unit has.
+        """
+        exponent *= self.sign
+        self.factor, self.sign = self.factor * factor**exponent, 1
+        for name, power in powers.items():
+            raised = self.powers.pop(name, 0.0) + power * exponent
+            if abs(power * exponent) > _HIGHEST:
+                raise ValueError(f"{name} to the power of {raised:g}")
+            if raised:
+                self.powers[name] = raised
+
+    def __str__(self) -> str:
+        """As SI writes it and pint reads it, without its factor, e.g. `rad/s**2`."""
+        raised = {name: f"{name}**{abs(power):g}" if abs(power) != 1 else name for name, power in self.powers.items()}
+        above = "*".join(raised[name] for name, power in self.powers.items() if power > 0)
+        below = "".join(f"/{raised[name]}" for name, power in self.powers.items() if power < 0)
+        return (above or "1") + below if self.powers else "dimensionless"
+
+
+def allowed(wanted: tuple[str, ...]) -> str:
+    """What may stand where units of some dimensions are wanted, for messages."""
+    shown = [unit for unit in wanted if unit != "dimensionless"]
+    return f"allowed: a unit of the dimension of {' or '.join(dict.fromkeys(shown))}"
+
+
+def parse_unit(text: str, wanted: tuple[str, ...] = ()) -> UnitProduct:
+    """A unit as people and recorders write it, its names as SI and pint have them.
+
+    Args:
+        text: as written.
+        wanted: SI units of the dimensions that it should have, for messages.
+
+    Raises:
+        UnitError: no unit, or one that only the user knows.
+    """
+    refusal = UnitError(f"found '{text[:LONGEST]}', which is not a unit", allowed(wanted))
     if len(text) > LONGEST:
-        raise ValueError(f"a unit of {len(text)} characters; allowed: {LONGEST}")
-    if not text.isprintable():
-        raise ValueError("a unit with control characters")
-    depth = deepest = 0
-    for character in text:
-        depth += (character == "(") - (character == ")")
-        deepest = max(deepest, depth)
-    if deepest > DEEPEST:
-        raise ValueError(f"{deepest} brackets in one another; allowed: {DEEPEST}")
-    exponents = [
-        float(match["plain"] or (match["raised"] or "").translate(_DIGITS)) for match in _EXPONENT.finditer(text)
-    ]
-    rest = _EXPONENT.sub(_RAISED, text)
-    if "**" in rest or "^" in rest or re.search(rf"{_RAISED}\s*{_RAISED}", rest):
-        raise ValueError("a power of something else than a number, or of a power")
-    if max(exponents, default=0.0) > STEEPEST or math.prod(max(e, 1.0) for e in exponents) > STEEPEST_OF_ALL:
-        raise ValueError(f"exponents beyond {STEEPEST:g}")
+        raise refusal
+    plain = _normalised(text)
+    if not plain.replace("\t", " ").isprintable():
+        raise refusal
+    plain = WHOLE.get(plain.lower().replace(" ", ""), plain)
+    groups, at, open_ended = [UnitProduct()], 0, True
+    while at < len(plain):
+        match = _TOKEN.match(plain, at)
+        if match is None or (match["operator"] in ("*", "/") and plain[:at].rstrip()[-1:] in ("*", "/")):
+            raise refusal  # among others a power of what is no number, or of a power
+        at, open_ended = match.end(), match["operator"] is not None
+        try:
+            _add(match, groups, text, wanted)
+        except (ArithmeticError, LookupError) as error:  # 1e200**2, 1/sqrt(0); a bracket that was not opened
+            raise refusal from error
+        except UnitError:
+            raise
+        except ValueError as error:
+            raise refusal from error
+    found = groups[-1]
+    if len(groups) > 1 or open_ended or not (math.isfinite(found.factor) and found.factor > 0.0):
+        raise refusal
+    return found
+
+
+def _add(match: re.Match[str], groups: list[UnitProduct], text: str, wanted: tuple[str, ...]) -> None:
+    """Take one token into the innermost group."""
+    if match["operator"] == "(":
+        groups.append(UnitProduct())
+        if len(groups) > _DEEPEST:
+            raise ValueError("brackets in one another")
+    elif match["close"]:
+        inner = groups.pop()
+        groups[-1].take(inner.factor, inner.powers, _exponent(match["outer"] or match["outer_bare"]))
+    elif match["operator"] or match["joint"]:
+        groups[-1].sign = -1 if match["operator"] == "/" else 1
+    elif match["name"]:
+        factor, powers = _named(match["name"], text, wanted)
+        exponent = _exponent(match["power"] or match["power_bare"] or match["inside"] or match["exponent"])
+        if len(powers) > 1 and abs(exponent) > 1:
+            raise ValueError(f"of which of {', '.join(powers)} it is the power")
+        groups[-1].take(factor, powers, exponent)
+    elif match["root"]:
+        groups[-1].take(math.sqrt(float(match["radicand"])), {}, 1.0)
+    else:
+        number, power = float(match["number"].replace(",", ".")), _exponent(match["raised"] or match["raised_bare"])
+        if abs(power) > _LARGEST_POWER or number == 0.0:
+            raise ValueError("a number that is none")
+        groups[-1].take(number, {}, power)
+
+
+def _exponent(text: str | None) -> float:
+    above, _, below = (text or "1").partition("/")
+    return float(above) / float(below or 1)
+
+
+def _named(name: str, text: str, wanted: tuple[str, ...]) -> tuple[float, Mapping[str, float]]:
+    """Factor and units of one name."""
+    if name in COUNTS or name.lower() in COUNTS:
+        example = "turn/4096/s" if any("/s" in si for si in wanted) else "turn/4096"
+        found = f"found unit '{text}', counts of which the file does not tell what one is worth"
+        told = f"{allowed(wanted)}, e.g. '{example}' for an encoder of 4096 counts a turn, or '2.69 mA'"
+        raise UnitError(found, told)
+    if name.lower() in ELECTRICAL:
+        mechanical = "allowed: the mechanical one, e.g. 'rpm/7' for 7 pairs of poles"
+        raise UnitError(f"found '{text}', which is electrical", mechanical)
+    match = _NEWTON_METRES.fullmatch(name)
+    if match:
+        return 1.0, {f"{match[1]}N": 1, match[2]: 1}
+    if name == "peak_to_peak":
+        raise UnitError(f"found '{text}', peak to peak", "allowed: A (peak) or Arms (effective)")
+    if name == "grad":
+        raise UnitError(f"found '{text}', which may mean degrees or gon", "allowed: 'deg' or 'gon'")
+    for key in (name, name.lower()) if len(name) > 1 and (name.isupper() or name.istitle()) else (name,):
+        if key in COMPOUNDS:
+            return COMPOUNDS[key]
+        if key in ALIASES:
+            return 1.0, {ALIASES[key]: 1}
+    return 1.0, {name: 1}
+
+
+def _normalised(text: str) -> str:
+    plain = _RAISED.sub(lambda match: f"^{match[0].translate(_SUPERSCRIPTS)}", text.strip())
+    for written, meant in TRANSLATED.items():
+        plain = plain.replace(written, meant)
+    plain = _PEAK_TO_PEAK.sub(lambda match: f"{match[1]}*peak_to_peak", plain)
+    plain = EFFECTIVE.sub(lambda match: f"{match[1][0] if match[1][0] in 'munk' else ''}Arms", plain)
+    plain = _COMMENT.sub("", _PEAK.sub(lambda match: match[1], plain))
+    plain = re.sub(r"(?<=[^\W\d])\.(?=\s*(?:[/*]|$))", "", plain)  # of an abbreviation
+    plain = re.sub(r"\bper\b", "/", plain)
+    plain = re.sub(r"(?<![^\W\d/])[xX](?=\s*\d)|(?<=\d)\s*[xX](?=\s)", "*", plain).strip().lstrip("*").strip()
+    if plain.startswith("(") and plain.endswith(")") and plain.count("(") == 1:
+        plain = plain[1:-1]
+    return plain.rstrip(".").strip()

@@ -7,8 +7,8 @@ import re
 
 from bench.errors import InputError
 from bench.names import short
-from bench.units.grammar import LONGEST
-from bench.units.text import EFFECTIVE, UnitError, scale_of
+from bench.units.grammar import EFFECTIVE, LONGEST
+from bench.units.text import UnitError, scale_of
 
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _VALUE = re.compile(rf"([+-]?{_NUMBER})\s*(.*)")

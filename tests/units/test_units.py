@@ -1,14 +1,16 @@
 import math
 
 import numpy as np
+import pint
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bench.errors import InputError
 from bench.names import nearest
-from bench.units import base_units, convert, dimensionality, parse, registry
-from bench.units.usual import USUAL_UNITS
+from bench.units import convert, dimensionality, parse
+from bench.units.grammar import UnitError
+from bench.units.text import scale_of
 
 
 @pytest.mark.parametrize(
@@ -67,12 +69,50 @@ def test_a_mistyped_name_gets_its_neighbour():
     assert nearest("xyz", ["torque_constant"]) == ""
 
 
-@pytest.mark.parametrize("unit", USUAL_UNITS)
-def test_a_usual_unit_is_what_pint_says_it_is(unit):
-    assert dimensionality(unit) == registry.dimensionality(unit)
-    assert base_units(unit) == registry.base_units(unit)
-    for to, wanted in USUAL_UNITS.items():
-        if wanted.dimensionality == USUAL_UNITS[unit].dimensionality:
-            factor, offset = registry.affine(unit, to)
-            assert offset == 0.0
-            assert convert(np.ones(1), unit, to)[0] == factor
+USUAL = (
+    "s m rad A V K N N*m kg kg*m**2 kg/m**3 1/s ohm H rad/s m/s rad/s**2 m/s**2 V*s/rad V*s/m N*m/A N/A N*m/V N/V "
+    "N*m*s/rad N*s/m N*m/rad N/m ms us min mm cm um deg mdeg mrad turn deg/s deg/s**2 rpm mm/s mm/s**2 mA mV mN*m N*cm "
+    "mN g mH kg*cm**2 kg*mm**2 g*cm**2 g/cm**3 kg/dm**3 mN*m/A mN*m*s/rad dimensionless hour Hz kHz W kW percent "
+    "permille degC N*m*s**2/rad**2 krpm A**2*ohm"
+)
+
+
+@pytest.fixture(scope="module")
+def registry():
+    registry = pint.UnitRegistry(cache_folder=None)
+    registry.define("rpm = revolution / minute")
+    registry.define("krpm = 1000 * rpm")
+    return registry
+
+
+@pytest.mark.parametrize("unit", USUAL.split())
+def test_a_usual_unit_is_what_pint_says_it_is(unit, registry):
+    one, zero = (registry.Quantity(value, registry.Unit(unit)) for value in (1.0, 0.0))
+    found = dimensionality(unit)
+    assert (found == "dimensionless") == one.dimensionless
+    assert found == "dimensionless" or dict(registry.get_dimensionality(found)) == dict(one.dimensionality)
+    si = str(one.to_base_units().units)
+    factor = one.to_base_units().magnitude - zero.to_base_units().magnitude
+    assert convert(np.array([1.0, 0.0]), unit, si) == pytest.approx(
+        [factor + zero.to_base_units().magnitude, zero.to_base_units().magnitude], rel=1e-14
+    )
+
+
+@pytest.mark.parametrize(
+    ("unit", "to", "factor"),
+    [("horsepower", "W", 745.69987), ("lbf", "N", 4.4482216), ("acre", "m**2", 4046.8726)],
+)
+def test_a_unit_that_is_not_usual_is_what_pint_says(unit, to, factor):
+    assert convert(np.ones(1), unit, to)[0] == pytest.approx(factor, rel=1e-6)
+
+
+def test_units_of_different_dimensions_are_not_converted():
+    with pytest.raises(ValueError, match="'m' is not a unit of the dimension of s"):
+        convert(np.ones(1), "m", "s")
+
+
+def test_a_temperature_has_its_own_zero_and_no_factor():
+    assert parse("20 degC", "K", "x") == pytest.approx(293.15)
+    assert parse("68 °F", "K", "x") == pytest.approx(293.15)
+    with pytest.raises(UnitError, match=r"found '0\.1 degC'; allowed: degC without a factor, or K"):
+        scale_of("0.1 degC", ("K",))
