@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -11,12 +11,6 @@ from bench.cli.common import RigOption, list_files, printed, say
 from bench.errors import InputError
 from bench.files import held, write_text
 from bench.plant.profile_names import DEFAULT, NAMES
-
-if TYPE_CHECKING:
-    from rich.table import Table
-
-    from bench.axis_kind import AxisKind
-    from bench.export.feedforward import Tracking
 
 
 def compensate(
@@ -33,6 +27,7 @@ def compensate(
     from bench.plant.drive import Cascade
     from bench.plant.model_file import load_model
     from bench.plant.profiles import MotionLimits, plan
+    from bench.report.drive import tracking_table
     from bench.report.terminal import progress
     from bench.rig.rig import load_rig
 
@@ -52,20 +47,7 @@ def compensate(
     with held(out):
         for name, text in files.items():
             write_text(out / name, text)
-    printed(_table(f"{axis.name}: {profile}", before, after, kind))
+    printed(tracking_table(f"{axis.name}: {profile}", before, after, kind))
     if found.left:
         say(f"left to the drive's feedback: {', '.join(found.left)}")
     list_files(out / name for name in files)
-
-
-def _table(title: str, before: Tracking, after: Tracking, kind: AxisKind) -> Table:
-    from rich import box
-    from rich.table import Table
-
-    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
-    for name in ("RMS tracking error", "as the rig's drive is", "with the tables", "times less", "unit"):
-        table.add_column(name, justify="left" if name in ("RMS tracking error", "unit") else "right")
-    for name, unit in (("position", kind.length_unit), ("velocity", kind.speed_unit)):
-        was, now = getattr(before, name), getattr(after, name)
-        table.add_row(name, f"{was:.4g}", f"{now:.4g}", f"{was / now:.3g}" if now > 0.0 else "", unit)
-    return table

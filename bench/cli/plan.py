@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from bench.cli.common import RigOption, list_files, printed, say
 from bench.files import write_text
-from bench.names import words
-
-if TYPE_CHECKING:
-    from rich.table import Table
-
-    from bench.export.plan import PlannedMotion
 
 
 def plan(
@@ -29,6 +23,7 @@ def plan(
     from bench.effects.present import parse_effect
     from bench.export.drive_units import DriveUnits
     from bench.export.plan import motions
+    from bench.report.drive import others_line, plan_table
     from bench.report.terminal import progress
     from bench.rig.rig import load_rig
     from bench.rig.suffices import require
@@ -42,25 +37,6 @@ def plan(
     best = found[0]
     counted = ((unit.text, unit.factor) for unit in (units.position, units.velocity))
     write_text(out, best.motion.csv(period * 1e-3, *counted))
-    printed(_table(best))
-    say(_others(found))
+    printed(plan_table(best))
+    say(others_line(found))
     list_files([out])
-
-
-def _table(best: PlannedMotion) -> Table:
-    from rich import box
-    from rich.table import Table
-
-    title = f"{best.profile}, {best.motion.time[-1]:.3g} s: what it will tell, and how well"
-    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
-    for name in ("quantity", "expected", "standard error", "unit"):
-        table.add_column(name, justify="left" if name in ("quantity", "unit") else "right")
-    for name, found in best.expected.items():
-        table.add_row(words(name), f"{found.value:.4g}", f"{found.std_error:.2g}", found.unit)
-    return table
-
-
-def _others(found: list[PlannedMotion]) -> str:
-    """How well the other profiles tell the same, in a line."""
-    others = [f"{each.profile} {each.worst:.2%}" if not each.reason else f"{each.profile} nothing" for each in found]
-    return f"largest standard error over its value: {', '.join(others)}"

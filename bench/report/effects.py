@@ -5,13 +5,11 @@ from __future__ import annotations
 import inspect
 import math
 
-from rich import box
-from rich.table import Table
-
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
 from bench.effects.kinds import Electronics, Mechanism, Sensing
 from bench.effects.present import named
+from bench.report.document import Table, table
 from bench.units import Quantity
 
 #: What hooks do, in the words of a page.
@@ -36,11 +34,11 @@ HOOKS = {
 
 def effects_table() -> Table:
     """Every effect with its quantities, and where it acts."""
-    table = Table("effect", "what it is", "quantities", "simulated", box=box.SIMPLE_HEAD)
-    for name, effect in sorted(catalogue().items()):
-        quantities = ", ".join(f"{q.name} [{unit_of(q)}]" for q in effect.quantities)
-        table.add_row(name, effect.summary, quantities, _where(effect))
-    return table
+    rows = (
+        (name, effect.summary, ", ".join(f"{q.name} [{unit_of(q)}]" for q in effect.quantities), _where(effect))
+        for name, effect in sorted(catalogue().items())
+    )
+    return table("", ("effect", "what it is~", "quantities~", "simulated"), rows)
 
 
 def effect_page(name: str) -> str:
