@@ -21,7 +21,7 @@ TESTS = [name for name in BLOCKS if name.startswith("tests/test_")]
 #: Entry points by group, of all the page's blocks for `pyproject.toml`.
 TOML = "\n".join(re.findall(r"^```toml\n# pyproject\.toml.*?\n(.*?)^```$", PAGE, flags=re.MULTILINE | re.DOTALL))
 GROUPS = tomllib.loads(TOML)["project"]["entry-points"]
-EFFECTS, READERS = (sorted(GROUPS[f"servobench.{kind}"]) for kind in ("effects", "readers"))
+EFFECTS, READERS, COMMANDS = (sorted(GROUPS[f"servobench.{kind}"]) for kind in ("effects", "readers", "commands"))
 METADATA = "Metadata-Version: 2.1\nName: servobench-extras\nVersion: 1.0\n"
 
 
@@ -51,8 +51,12 @@ def run(home, *arguments):
 
 def test_each_example_is_one_file_and_one_test():
     examples = sorted(Path(name).stem for name in BLOCKS if name.startswith("servobench_extras/"))
-    assert examples == sorted(Path(name).stem.removeprefix("test_") for name in TESTS) == sorted([*EFFECTS, *READERS])
-    assert (len(EFFECTS), len(READERS)) == (3, 1)
+    assert (
+        examples
+        == sorted(Path(name).stem.removeprefix("test_") for name in TESTS)
+        == sorted([*EFFECTS, *READERS, *COMMANDS])
+    )
+    assert (len(EFFECTS), len(READERS), len(COMMANDS)) == (3, 1, 1)
 
 
 def test_the_examples_pass_their_tests(extras):

@@ -2,6 +2,11 @@
 
 A command imports what it works with when it runs: MuJoCo, scipy, matplotlib and pint together cost 1.8 s of CPU. Of
 that `bench --help` needs nothing and `bench identify` a tenth; `bench --version` is answered without this module.
+
+Another package offers commands as entry points of the group `servobench.commands`, each a function as those here:
+
+    [project.entry-points."servobench.commands"]
+    duty = "their_package.duty:duty"
 """
 
 from __future__ import annotations
@@ -10,6 +15,7 @@ import io
 import os
 import sys
 import traceback
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Annotated
 
@@ -37,7 +43,7 @@ from bench.cli.rigs import rigs
 from bench.cli.simulate import simulate
 from bench.cli.validate import validate
 from bench.cli.view import view
-from bench.errors import BenchError
+from bench.errors import BenchError, InputError
 from bench.names import plain, short
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
@@ -79,6 +85,8 @@ COMMANDS = (
 for command in COMMANDS:
     app.command()(guarded(command))
 
+#: Group of entry points of other packages' commands.
+GROUP = "servobench.commands"
 
 #: Characters of a line that says what is wrong; a path may have 4096.
 LONGEST = 6000
@@ -88,6 +96,7 @@ def main() -> None:
     """Entry point of `bench`: errors become one line on standard error and an exit status."""
     _encode_everything()
     try:
+        _add_offered()
         status = app(standalone_mode=False)
         sys.stdout.flush()
     except BenchError as error:
@@ -102,6 +111,22 @@ def main() -> None:
     except Exception as fault:
         sys.exit(_failed(_fault(fault), 70))
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _add_offered() -> None:
+    """Add the commands of other packages.
+
+    Raises:
+        InputError: what one offers is no function, or has the name of a command of the bench.
+    """
+    own = {command.__name__ for command in COMMANDS}
+    for entry in entry_points(group=GROUP):
+        offered = entry.load()
+        if not callable(offered) or entry.name in own:
+            found = "found a name that the bench has" if entry.name in own else f"found {offered!r}"
+            raise InputError(f"{GROUP}: {entry.value}", found, "allowed: a function under a name of its own")
+        if entry.name not in {known.name for known in app.registered_commands}:
+            app.command(entry.name)(guarded(offered))
 
 
 def _encode_everything() -> None:

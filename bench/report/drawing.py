@@ -76,7 +76,7 @@ class Drawn:
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedPanel:
     """A panel in the drawing: ticks of its axes, the place of zero where its scale holds it, and what is drawn."""
 
     panel: Panel
@@ -87,7 +87,7 @@ class Placed:
     marks: Sequence[Drawn]
 
 
-def drawn(chart: Chart) -> list[Placed]:
+def drawn(chart: Chart) -> list[PlacedPanel]:
     """All panels: on one scale, or one above the other on a scale each."""
     groups = [[panel] for panel in chart.panels] if chart.stacked else [chart.panels]
     width = ALONE if chart.stacked or len(chart.panels) == 1 else WIDTH
@@ -100,11 +100,11 @@ def _down(panels: Sequence[Panel]) -> Ruler:
     return Ruler.around(heights, HEIGHT - BOTTOM, TOP, panels[0].log)
 
 
-def _placed(panel: Panel, down: Ruler, width: float) -> Placed:
+def _placed(panel: Panel, down: Ruler, width: float) -> PlacedPanel:
     across = Ruler.around((value for one in panel.series for value in one.x), LEFT, width - RIGHT, panel.log)
     zero = down(0.0) if down.low < 0.0 < down.high else None
     marks = [_drawn(one, across, down) for one in panel.series]
-    return Placed(panel, width, across.ticks(), down.ticks(), zero, marks)
+    return PlacedPanel(panel, width, across.ticks(), down.ticks(), zero, marks)
 
 
 def _drawn(series: Series, across: Ruler, down: Ruler) -> Drawn:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from bench.axis_kind import AxisKind
 from bench.export.feedforward import Tracking
-from bench.export.plan import Planned
+from bench.export.plan import PlannedMotion
 from bench.names import words
 from bench.report.document import Table, table
 from bench.report.numbers import number, unit_text
 
 
-def plan_table(best: Planned) -> Table:
+def plan_table(best: PlannedMotion) -> Table:
     """What a motion will tell, and how well."""
     title = f"{best.profile}, {best.motion.time[-1]:.3g} s: what it will tell, and how well"
     rows = (
@@ -20,7 +20,7 @@ def plan_table(best: Planned) -> Table:
     return table(title, ("quantity", "expected>", "standard error>", "unit"), rows)
 
 
-def others_line(found: list[Planned]) -> str:
+def others_line(found: list[PlannedMotion]) -> str:
     """How well all profiles tell the same, in a line."""
     others = [f"{each.profile} {each.worst:.2%}" if not each.reason else f"{each.profile} nothing" for each in found]
     return f"largest standard error over its value: {', '.join(others)}"
