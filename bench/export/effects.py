@@ -13,7 +13,7 @@ position, velocity, time and the torque of its actuators, as they do in the benc
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,11 +23,12 @@ from mujoco.batch import Batch
 from numpy.typing import NDArray
 
 from bench.arrays import Array
+from bench.effects.kinds import Number
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.errors import InputError
-from bench.plant.joints import BatchJoints, SimulationJoint
+from bench.plant.joints import BatchJoints, Joints, SimulationJoint
 from bench.plant.model_file import StoredModel, load_model
-from bench.plant.stepped_effects import SteppedEffects
+from bench.plant.stepped_effects import SteppedEffects, per_axis
 
 #: Integrators whose step is one evaluation; a Runge-Kutta step has four, between which effects would have to act.
 ONE_STAGE = (
@@ -61,9 +62,9 @@ class Effects:
         """
         running = self._run(model, data)
         if self.stored.model.stepped:
-            if running.drive.needs_forces:
+            if running.needs_forces:
                 mujoco.mj_forward(model, data)
-            running.prepare()
+            running.prepare(data.time)
         mujoco.mj_step(model, data)
 
     def install(self) -> None:
@@ -79,9 +80,9 @@ class Effects:
         running = self._run(model, data)
         if running.time == data.time:
             return  # mj_forward calls it too
-        if running.drive.needs_forces:
+        if running.needs_forces:
             mujoco.mj_fwdActuation(model, data)
-        running.prepare()
+        running.prepare(data.time)
         dof = model.joint(self.joint).dofadr[0]
         rows = (data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)) & (data.efc_id == dof)
         data.efc_frictionloss[rows] = model.dof_frictionloss[dof]  # constraints are made before the callback,
@@ -114,6 +115,9 @@ class Copies:
         batch: of copies.
         models: one for each.
         joint: of all.
+
+    Raises:
+        InputError: not a model for each, gears that differ, no such joint, or a Runge-Kutta integrator.
     """
 
     def __init__(self, batch: Batch, models: Sequence[StoredModel], joint: str) -> None:
@@ -123,24 +127,55 @@ class Copies:
         ratios = {stored.mounting.gear_ratio for stored in models}
         if len(ratios) > 1:
             raise InputError("models", f"found gear ratios of {sorted(ratios)}", "allowed: copies of one joint")
-        self._batch, self._ratio = batch, ratios.pop()
-        joints, here = BatchJoints(batch, joint, self._ratio, _bristles(batch.model, joint)), batch.model.joint(joint)
-        self._position = batch.bind("qpos")[:, here.qposadr[0]]
-        self._velocity = batch.bind("qvel")[:, here.dofadr[0]]
-        self._drive = Actuators.of(batch.model, joint, self._ratio)
-        self._control, self._force = batch.bind("ctrl"), batch.bind("actuator_force")
-        self._time, self._joints = batch.bind("time"), joints
-        self._ticked = SteppedEffects(joints, [each.model for each in models], self._ratio * self._velocity)
+        self._batch, self._time = batch, batch.bind("time")
+        joints = BatchJoints(batch, joint, ratios.pop(), _bristles(batch.model, joint))
+        self._effects = _AtJoint(joints, batch.model, joint, models, batch.bind)
 
     def step(self) -> None:
         """Advance all copies by one step with the effects."""
-        if self._drive.needs_forces:
+        if self._effects.needs_forces:
             self._batch.forward()
-        demand = self._drive.torque(self._control, self._force)
-        time = np.asarray(self._time).reshape(-1)
-        _, torque = self._ticked.act(time, self._ratio * self._position, self._ratio * self._velocity, demand)
-        self._joints.add_torque(torque - demand)
+        self._effects.prepare(np.asarray(self._time).reshape(-1))
         self._batch.step()
+
+
+class _AtJoint:
+    """The effects at a joint of simulations side by side, of which `state` gives a field to be read, (copies, ...)."""
+
+    def __init__(
+        self,
+        joints: Joints,
+        model: mujoco.MjModel,
+        joint: str,
+        models: Sequence[StoredModel],
+        state: Callable[[str], Array],
+    ) -> None:
+        here, self._ratio, self._joints = model.joint(joint), models[0].mounting.gear_ratio, joints
+        self.time: Number = -np.inf
+        self._position, self._velocity = state("qpos")[:, here.qposadr[0]], state("qvel")[:, here.dofadr[0]]
+        self._actuators = Actuators.of(model, joint, self._ratio)
+        self._control, self._force = state("ctrl"), state("actuator_force")
+        self.needs_forces = self._actuators.needs_forces
+        axes = [stored.model for stored in models]
+        self._effects = SteppedEffects(joints, axes, self._ratio * per_axis(self._velocity))
+
+    def prepare(self, time: Number) -> None:
+        """Set the effects for the step that comes, at a time - s."""
+        self.time = time
+        position, velocity = (self._ratio * per_axis(each) for each in (self._position, self._velocity))
+        demand = per_axis(self._actuators.torque(self._control, self._force))
+        _, torque = self._effects.act(time, position, velocity, demand)
+        self._joints.add_torque(torque - demand)
+
+
+class _Running(_AtJoint):
+    """The effects on one simulation, with what they remember of it."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, stored: StoredModel, joint: str) -> None:
+        _check(model, joint)
+        self.model, self.data = model, data
+        self.joint = SimulationJoint(model, data, joint, stored.mounting.gear_ratio, _bristles(model, joint))
+        super().__init__(self.joint, model, joint, [stored], lambda name: getattr(data, name)[None])
 
 
 @dataclass(frozen=True)
@@ -190,28 +225,6 @@ class Actuators:
         low, high, weakest, strongest = self.limits.T
         made = np.clip(np.clip(control[:, self.controls], low, high) * self.gains, weakest, strongest)
         return np.where(np.isnan(self.gains), force[:, self.actuators], made) @ self.gears
-
-
-class _Running:
-    """The effects on one simulation, with what they remember of it."""
-
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, stored: StoredModel, joint: str) -> None:
-        _check(model, joint)
-        self.model, self.data, self.time = model, data, -np.inf
-        self._ratio, here = stored.mounting.gear_ratio, model.joint(joint)
-        self._qpos, self._dof = int(here.qposadr[0]), int(here.dofadr[0])
-        self.drive = Actuators.of(model, joint, self._ratio)
-        self.joint = SimulationJoint(model, data, joint, self._ratio, _bristles(model, joint))
-        velocity = self._ratio * float(data.qvel[self._dof])
-        self._ticked = SteppedEffects(self.joint, [stored.model], velocity)
-
-    def prepare(self) -> None:
-        """Set the effects for the step that comes."""
-        data, self.time = self.data, self.data.time
-        position, velocity = (self._ratio * float(each) for each in (data.qpos[self._qpos], data.qvel[self._dof]))
-        demand = float(self.drive.torque(data.ctrl[None], data.actuator_force[None])[0])
-        _, torque = self._ticked.act(data.time, position, velocity, demand)
-        self.joint.add_torque(torque - demand)
 
 
 def _bristles(model: mujoco.MjModel, joint: str) -> str:
