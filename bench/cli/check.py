@@ -14,14 +14,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench.cli.common import (
+    STDOUT,
     AxisOption,
     JsonOption,
     ReportOption,
     list_files,
-    printed,
     refusal_as_json,
+    tell,
     warn,
     write_json,
+    write_page,
 )
 from bench.errors import InputError
 from bench.files import keeping, require_writable, write_text
@@ -74,7 +76,7 @@ def check(
     _require_consistent(asked, update, without_names, [path for path in (junit, json, report) if path is not None])
     with keeping(asked.inputs if update else [*asked.inputs, baseline]):
         for path in (junit, json, report, baseline if update else None):
-            if path is not None and path != Path("-"):
+            if path is not None and path != STDOUT:
                 require_writable(path)
         if update:
             _update(asked, not without_names)
@@ -191,32 +193,27 @@ def _update(asked: Asked, names: bool) -> None:
 
 
 def _write(
-    checked: Checked, asked: Asked, junit: Path | None, json: Path | None, report: Path | None, form: Format
+    checked: Checked, asked: Asked, xml: Path | None, json: Path | None, report: Path | None, form: Format
 ) -> None:
     """Every result where it is asked for."""
-    from bench.report.annotations import github_lines, gitlab_report, summary
-    from bench.report.check import check_json, check_table
-    from bench.report.junit import check_junit
+    from bench.report.check import check_document, check_json, findings, headline
+    from bench.report.continuous_integration import github_lines, github_summary, gitlab_report, junit
 
-    if junit is not None:
-        write_text(junit, check_junit(checked, asked.title))
+    document, found, says = check_document(checked, asked.title), findings(checked), headline(checked)
+    if xml is not None:
+        write_text(xml, junit(found, says, asked.title))
     if json is not None:
-        write_json(json, check_json(checked, checked.now.provenance))
-    if report is not None:
-        from bench.report.pages.check import check_page
-        from bench.report.publish import write_html
-
-        write_html(report, check_page(checked, asked.title))
+        write_json(json, check_json(checked))
+    write_page(report, document)
     if form is Format.GITLAB:
-        typer.echo(gitlab_report(checked, asked.baseline))
-    elif json != Path("-"):
+        typer.echo(gitlab_report(found, asked.baseline))
+    elif json != STDOUT:
         with _no_commands(form):
-            printed(check_table(checked, asked.title))
-            list_files([path for path in (junit, json, report) if path is not None])
+            tell(document, (xml, json, report))
     if form is Format.GITHUB:
-        for line in github_lines(checked, asked.baseline):
+        for line in github_lines(found, asked.baseline):
             typer.echo(line)
-        _append_summary(summary(checked, asked.title))
+        _append_summary(github_summary(found, says, asked.title))
 
 
 @contextmanager

@@ -1,31 +1,53 @@
-"""A check as JSON (contract `bench.check/1`) and as a table for a person."""
+"""A check: whether an axis has changed, what did, by how many margins, and how sure that is.
+
+In sentences, as the contract's JSON (`bench.check/1`), as a document, and as findings for a server that runs checks.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from rich import box
-from rich.table import Table
-
 from bench.baseline.check import Checked
-from bench.baseline.state import NamedHere, RemainingGap, State
-from bench.baseline.wording import DISPLAYED, described, formatted, headline
-from bench.comparison.difference import SAME, Comparison, Measured
-from bench.structured import json_text
+from bench.baseline.model import RESPONSE_TORQUE
+from bench.baseline.state import GAPS, NamedHere, RemainingGap, State
+from bench.comparison.difference import CHANGED, SAME, UNDECIDED, Comparison, Measured
+from bench.names import short, words
+from bench.report.continuous_integration import Finding
+from bench.report.document import (
+    AnyPart,
+    Colour,
+    Document,
+    Intervals,
+    Paragraph,
+    Points,
+    Section,
+    Span,
+    Table,
+    Tone,
+    table,
+)
+from bench.report.numbers import effort_word, number, sentence, share, unit_text
+from bench.report.serial import known, picked, serialised
 
 SCHEMA = "bench.check/1"
+#: Units shown in another one, with the factor.
+DISPLAYED = {"rad": ("deg", 180.0 / math.pi)}
+#: Quantities that change as a consequence of others.
+FOLLOWING = frozenset({*GAPS, RESPONSE_TORQUE})
+COLOURS: dict[str, Colour] = {CHANGED: "model", UNDECIDED: "ink", SAME: "left"}
+TONES: dict[str, Tone] = {SAME: "sure", UNDECIDED: "open", CHANGED: "refused"}
+#: Margins to which the chart reaches at least, so that one is seen, and at most, so that small differences are.
+LEAST, MOST = 2.0, 8.0
+#: Characters of what a state rests on, and of a title made of file names.
+LONG = 600
 
 
-def check_json(checked: Checked, provenance: Mapping[str, Any]) -> str:
-    """The check as the contract's JSON.
-
-    Args:
-        checked: what was found.
-        provenance: of the state now; the baseline's stands beside it.
-    """
-    return json_text(
+def check_json(checked: Checked) -> str:
+    """The check as the contract's JSON."""
+    baseline, now = checked.baseline, checked.now
+    return serialised(
         {
             "schema": SCHEMA,
             "result": checked.result,
@@ -37,105 +59,312 @@ def check_json(checked: Checked, provenance: Mapping[str, Any]) -> str:
                 "appeared": [_effect(*pair) for pair in checked.appeared],
                 "gone": [_effect(*pair) for pair in checked.gone],
             },
-            "verdict": {"baseline": checked.baseline.verdict or None, "now": checked.now.verdict or None},
-            "gap": _gaps(checked.baseline, checked.now),
-            "rig": list(checked.rig),
-            "conditions": list(checked.conditions),
-            "provenance": {**provenance, "baseline": dict(checked.baseline.provenance)},
+            "verdict": {"baseline": baseline.verdict or None, "now": now.verdict or None},
+            "gap": {
+                name: {"unit": unit, "baseline": _gap(was), "now": _gap(left)}
+                for name, unit, was, left in _gaps(baseline, now)
+            },
+            "rig": checked.rig,
+            "conditions": checked.conditions,
+            "provenance": {**now.provenance, "baseline": baseline.provenance},
         }
     )
 
 
 def _comparison(one: Comparison) -> dict[str, Any]:
-    bounds, difference = one.difference95, one.difference
     return {
-        "name": one.name,
-        "unit": one.unit,
-        "baseline": one.baseline,
-        "now": one.now,
-        "difference95": None if bounds is None else list(bounds),
-        "std_error": None if difference is None else difference.std_error,
-        "margin": one.margin,
-        "chance": one.chance,
-        "result": one.result,
+        **picked(one, "name", "unit", "baseline", "now", "difference95"),
+        "std_error": None if one.difference is None else one.difference.std_error,
+        **picked(one, "margin", "chance", "result"),
         "because": one.held_back or None,
     }
 
 
 def _effect(effect: NamedHere, one: Comparison) -> dict[str, Any]:
     """An effect that came or went; how sure that is: its torque against what the other state would have shown."""
-    torque = {"unit": one.unit, "baseline": one.baseline, "now": one.now, "margin": one.margin}
     return {
         "name": effect.name,
-        "parameters": {key: _measured(found) for key, found in effect.quantities.items()},
-        "ambiguous_with": list(effect.ambiguous_with),
+        "parameters": {
+            key: {**picked(found, "value", "unit"), "std_error": known(found.std_error)}
+            for key, found in effect.quantities.items()
+        },
+        "ambiguous_with": effect.ambiguous_with,
         "result": one.result,
         "because": one.held_back or None,
         "evidence": {
-            "torque": torque if one.unit else None,
+            "torque": picked(one, "unit", "baseline", "now", "margin") if one.unit else None,
             "chance": one.chance,
-            "gain": effect.gain if math.isfinite(effect.gain) else None,
+            "gain": known(effect.gain),
         },
     }
 
 
-def _measured(found: Measured) -> dict[str, Any]:
-    error = found.std_error if math.isfinite(found.std_error) else None
-    return {"value": found.value, "unit": found.unit, "std_error": error}
+def _gap(gap: RemainingGap | None) -> dict[str, Any] | None:
+    return None if gap is None else picked(gap, "after", "noise_floor")
 
 
-def _gaps(baseline: State, now: State) -> dict[str, Any]:
-    def gap_json(gap: RemainingGap | None) -> dict[str, float] | None:
-        return None if gap is None else {"after": gap.after, "noise_floor": gap.noise_floor}
+def _gaps(baseline: State, now: State) -> Iterator[tuple[str, str, RemainingGap | None, RemainingGap | None]]:
+    """Name and unit of each gap, then and now."""
+    for name in dict.fromkeys([*baseline.gaps, *now.gaps]):
+        unit = (now.gaps.get(name) or baseline.gaps[name]).unit
+        yield name, unit, baseline.gaps.get(name), now.gaps.get(name)
 
-    names = dict.fromkeys([*baseline.gaps, *now.gaps])
+
+def headline(checked: Checked) -> str:
+    """What changed, in one line; or that nothing did, or why it is undecided."""
+    if checked.result == CHANGED:
+        return _sentence(_changes(checked))
+    if checked.result == SAME:
+        return "The same: no quantity differs by more than its margin"
+    if checked.rig:
+        return f"Undecided, as the rig differs: {'; '.join(checked.rig)}"
+    open_ = [described(one, checked) for one in checked.comparisons if one.result != SAME]
+    if checked.baseline.verdict != checked.now.verdict:
+        verdicts = (words(one) for one in (checked.baseline.verdict, checked.now.verdict))
+        open_.append(f"the verdict is {' -> '.join(verdicts)}")
+    motion = [f"motion or sampling differ ({', '.join(checked.conditions)})"] if checked.conditions else []
+    return f"Undecided: {'; '.join([*motion, *open_])}"
+
+
+def _changes(checked: Checked) -> list[str]:
+    """What changed: names, then parameters; gaps only if nothing else did."""
+    changed = [one for one in checked.comparisons if one.result == CHANGED]
+    changed.sort(key=lambda one: not one.effect)
+    parts = [one for one in changed if one.name not in FOLLOWING] or changed
+    return [described(one, checked) for one in parts]
+
+
+def _sentence(parts: list[str]) -> str:
+    joined = parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])}, and {parts[-1]}"
+    return f"{joined[:1].upper()}{joined[1:]}"
+
+
+def described(one: Comparison, checked: Checked) -> str:
+    """One comparison in words."""
+    label = words(one.name).replace(".", " ")
+    effect = next((effect for effect, found in (*checked.appeared, *checked.gone) if found is one), None)
+    if effect is not None:
+        return f"{label} {_came_or_went(one)}: {_values(effect)}{_why(one)}"
+    if one.baseline is None or one.now is None:
+        return f"{label} cannot be compared{_why(one)}"
+    before, after = formatted(one.baseline, one.unit), formatted(one.now, one.unit)
+    unit = displayed_unit(one.unit)
+    share = f" ({100.0 * (one.now / one.baseline - 1.0):+.3g} %)" if one.baseline else ""
+    if one.result == CHANGED:
+        verb = "rose" if one.now > one.baseline else "fell"
+        return f"{label} {verb} from {before} to {after}{unit}{share}"
+    how = "is the same:" if one.result == SAME else "may have changed:"
+    return f"{label} {how} {before} and now {after}{unit}{share}{_why(one)}"
+
+
+def _came_or_went(one: Comparison) -> str:
+    if one.effect == "appeared":
+        return "appeared" if one.result == CHANGED else "is named now"
+    return "is gone, which had" if one.result == CHANGED else "is named no more, which had"
+
+
+def _why(one: Comparison) -> str:
+    """Why a comparison is undecided, or how certain it is that an effect appeared."""
+    unit = displayed_unit(one.unit)
+    if one.held_back:
+        return f", but {one.held_back}"
+    if one.effect == "appeared" and one.differences:
+        makes, least = formatted(one.now or 0.0, one.unit), formatted(one.margin, one.unit)
+        seen = "would have shown" if one.result == CHANGED else "may have hidden"
+        return f" ({makes}{unit} RMS, where the baseline {seen} {least}{unit})"
+    bounds = one.difference95
+    if one.result != CHANGED and one.result != SAME and bounds is not None:
+        reach, margin = (formatted(value, one.unit) for value in (0.5 * (bounds[1] - bounds[0]), one.margin))
+        return f", known to ± {reach}{unit} against a margin of {margin}{unit}"
+    return ""
+
+
+def _values(effect: NamedHere) -> str:
+    """Quantities of an effect, without angles, whose zero is arbitrary, and without those in its label."""
+    counted = {slot.quantity.name for slot, _ in effect.whole}
+    names = [q.name for q in effect.effect.quantities if not q.angle and q.name not in counted]
+    return ", ".join(f"{name.replace('_', ' ')} {with_unit(effect.quantities[name])}" for name in names)
+
+
+def with_unit(found: Measured) -> str:
+    """A value with its unit, for display."""
+    return f"{formatted(found.value, found.unit)}{displayed_unit(found.unit)}"
+
+
+def displayed_unit(unit: str) -> str:
+    """The unit behind a number, for display; empty for a dimensionless one."""
+    return "" if unit == "dimensionless" else f" {DISPLAYED[unit][0] if unit in DISPLAYED else unit}"
+
+
+def formatted(value: float, unit: str) -> str:
+    """A number in the unit for display."""
+    return f"{value * (DISPLAYED[unit][1] if unit in DISPLAYED else 1.0):.4g}"
+
+
+def findings(checked: Checked) -> list[Finding]:
+    """Every comparison with its sentence, worst first."""
+    return [
+        Finding(one.name, one.result, described(one, checked), (one.baseline, one.now, one.margin), one.unit)
+        for one in checked.comparisons
+    ]
+
+
+def check_document(checked: Checked, title: str) -> Document:
+    """The document of a check.
+
+    Args:
+        checked: what was found.
+        title: names of what is compared.
+    """
+    alike, differing = not (checked.rig or checked.conditions), (_unlike(checked),)
+    sections = [
+        Section(key="comparisons", heading="What was compared", blocks=tuple(_compared(checked))),
+        Section(key="conditions", heading="Like with like", blocks=differing, detail=alike),
+    ]
+    if checked.baseline.gaps or checked.now.gaps:
+        gaps = (_gaps_table(checked),)
+        sections.append(Section(key="gaps", heading="What the models leave", blocks=gaps, detail=True))
+    return Document(
+        title=f"{short(title)}: check",
+        subject=short(title, LONG),
+        verdict=_verdict(checked),
+        tone=TONES[checked.result],
+        answers=_answers(checked),
+        sections=tuple(sections),
+        origin=(_basis("now", checked.now.provenance), _basis("baseline", checked.baseline.provenance)),
+    )
+
+
+def _verdict(checked: Checked) -> str:
+    line = unit_text(headline(checked))
+    return f"Changed: {line[:1].lower()}{line[1:]}." if checked.result == CHANGED else f"{line}."
+
+
+def _answers(checked: Checked) -> dict[str, str]:
+    results = [one.result for one in checked.comparisons]
+    count = ", ".join(f"{results.count(result)} {result}" for result in TONES if result in results)
     return {
-        name: {
-            "unit": (now.gaps.get(name) or baseline.gaps[name]).unit,
-            "baseline": gap_json(baseline.gaps.get(name)),
-            "now": gap_json(now.gaps.get(name)),
-        }
-        for name in names
+        "What came or went?": _came_and_went(checked),
+        "How many differ?": f"{count} of {len(results)} comparisons." if results else "Nothing could be compared.",
+        "How sure?": _sure(checked),
+        "What next?": _next(checked),
     }
 
 
-def check_table(checked: Checked, title: str) -> Table:
-    """Every comparison with its answer, worst first."""
-    caption = [headline(checked)]
-    caption += [f"rig: {line}" for line in checked.rig]
-    caption += [f"not as in the baseline: {line}" for line in checked.conditions]
-    if checked.false_alarm_rate:
-        caption.append(
-            f"{checked.family} comparisons; of axes that differ by no margin at most {checked.false_alarm_rate:.2%} "
-            "are called changed"
-        )
-    table = Table(
-        title=title, caption="\n".join(caption), title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD
+def _came_and_went(checked: Checked) -> str:
+    pairs = [*checked.appeared, *checked.gone]
+    if pairs:
+        return unit_text(sentence("; ".join(described(one, checked) for _, one in pairs))) + "."
+    if not (checked.baseline.names and checked.now.names):
+        return "Not asked: the baseline has parameters alone."
+    kept = ", ".join(words(effect.label) for effect in checked.now.effects)
+    return f"No effect; {kept} as in the baseline." if kept else "No effect: none is named in either state."
+
+
+def _sure(checked: Checked) -> str:
+    if not checked.false_alarm_rate:
+        return "Two models are compared by what they say, without noise."
+    return (
+        f"Of axes that differ by no margin at most {share(checked.false_alarm_rate)} are called changed, all "
+        f"{checked.family} comparisons together."
     )
-    table.add_column("quantity")
-    for heading in ("baseline", "now", "difference (95 %)", "margin"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
-    table.add_column("", no_wrap=True)
+
+
+def _next(checked: Checked) -> str:
+    if checked.result == SAME:
+        return "Nothing."
+    if checked.result == CHANGED:
+        return "Look at what changed; where the new state is right, accept it with --update."
+    if checked.rig:
+        return "Make the baseline anew: --update with recordings of the old state and the rig file of now."
+    if checked.conditions:
+        return "Record the motion of the baseline at its sampling, and check again."
+    return "Record again, several times: a difference near its margin needs more than one recording to decide."
+
+
+def _compared(checked: Checked) -> Iterator[AnyPart]:
+    """The chart, and the table behind it, worst first."""
+    spans = tuple(_spans(checked))
+    if spans:
+        reach = max(abs(end) for span in spans for end in (span.low, span.high))
+        reach = min(max(reach, LEAST), MOST)
+        yield Intervals(
+            title="Differences over their margins.",
+            alternative="Now less baseline with its interval of 95 %, as a multiple of the margin: within the band "
+            f"it does not matter. A ring at the end of the scale lies beyond {number(reach, digits=2)} margins.",
+            label="difference over margin",
+            right=(-1.0, 1.0),
+            limits=(-reach, reach),
+            spans=spans,
+        )
+    because = any(one.held_back for one in checked.comparisons)
+    headings = ("quantity", "baseline>", "now>", "difference (95 %)>", "margin>", "unit", "result")
+    rows = ((*_cells(one), *([one.held_back] if because else [])) for one in checked.comparisons)
+    marked = (k for k, one in enumerate(checked.comparisons) if one.result == CHANGED)
+    yield table("Worst first", (*headings, *(["because~"] if because else [])), rows, marked)
+
+
+def _spans(checked: Checked) -> Iterator[Span]:
     for one in checked.comparisons:
-        table.add_row(*cells(one))
-    return table
+        bounds, difference = one.difference95, one.difference
+        if bounds is not None and difference is not None and one.margin > 0.0:
+            low, value, high = (each / one.margin for each in (bounds[0], difference.value, bounds[1]))
+            yield Span(name=_label(one), colour=COLOURS[one.result], value=value, low=low, high=high)
 
 
-def cells(one: Comparison) -> list[str]:
+def _label(one: Comparison) -> str:
+    return words(one.name).replace(".", ": ") + (f", {one.effect}" if one.effect else "")
+
+
+def _cells(one: Comparison) -> tuple[str, ...]:
     """A comparison as a row: quantity, baseline, now, difference, margin, unit, result."""
 
-    def number(value: float | None) -> str:
-        return "-" if value is None else formatted(value, one.unit)
+    def text(value: float | None) -> str:
+        return "−" if value is None else formatted(value, one.unit).replace("-", "−")
 
     bounds = one.difference95
-    difference = "-" if bounds is None else f"{number(bounds[0])} to {number(bounds[1])}"
-    unit = DISPLAYED[one.unit][0] if one.unit in DISPLAYED else one.unit.replace("dimensionless", "")
-    label = f"{one.name.replace('_', ' ')}{f' ({one.effect})' if one.effect else ''}"
-    margin = number(one.margin) if bounds is not None else "-"
-    return [label, number(one.baseline), number(one.now), difference, margin, unit, one.result]
+    difference = "−" if bounds is None else f"{text(bounds[0])} to {text(bounds[1])}"
+    margin = text(None if bounds is None else one.margin)
+    unit = unit_text(displayed_unit(one.unit).strip())
+    return _label(one), text(one.baseline), text(one.now), difference, margin, unit, one.result
 
 
-def sentences(checked: Checked) -> list[tuple[Comparison, str]]:
-    """A sentence for each comparison that is not the same, worst first."""
-    return [(one, described(one, checked)) for one in checked.comparisons if one.result != SAME]
+def _unlike(checked: Checked) -> Points | Paragraph:
+    """In what the two states are not recorded alike."""
+    lines = [f"rig: {line}" for line in checked.rig] + [
+        f"not as in the baseline: {line}" for line in checked.conditions
+    ]
+    if lines:
+        return Points(items=tuple(lines))
+    if not checked.now.conditions:
+        return Paragraph(text="Nothing beside the models differs: neither rests on a recording here.")
+    return Paragraph(text="The rig, the motion and the sampling are those of the baseline.")
+
+
+def _gaps_table(checked: Checked) -> Table:
+    """What is left in both states, and their verdicts."""
+    verdicts = [words(state.verdict) or "not asked" for state in (checked.baseline, checked.now)]
+    rows: list[tuple[str, ...]] = [("verdict", *verdicts, "")]
+    for name, unit, *gaps in _gaps(checked.baseline, checked.now):
+        what = effort_word(unit) if name == "torque" else words(name)
+        for of, value in (("left", "after"), ("noise alone", "noise_floor")):
+            both = ("–" if gap is None else number(getattr(gap, value), digits=3) for gap in gaps)
+            rows.append((f"{what}, {of} (RMS)", *both, unit_text(unit)))
+    caption = "Verdicts, and what inertia, friction and effects do not explain"
+    return table(caption, ("of", "baseline>", "now>", "unit"), rows)
+
+
+def _basis(label: str, provenance: Mapping[str, Any]) -> str:
+    """What a state rests on, whatever its baseline file says of it."""
+    return short(f"{label}: {', '.join(_leaves('', provenance))}", LONG)
+
+
+def _leaves(name: str, value: object) -> Iterator[str]:
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield from _leaves(str(key), inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from _leaves(name, inner)
+    elif value is not None:
+        yield f"{words(name)} {value}"

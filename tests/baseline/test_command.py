@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 from bench.cli.common import WRITTEN
 from bench.names import plain
-from bench.report.annotations import MOST, command
-from bench.report.junit import text
+from bench.report.continuous_integration import MOST, command, xml_text
 from bench.trace.write import write
 from tests.fit.motions import Truth, recording
 from tests.hostile import room_for
@@ -71,7 +70,7 @@ def test_an_axis_that_has_changed(axis):
     status, printed, _ = axis(*BASE, "now.csv", "--json", "c.json", "--junit", "j.xml")
     found = json.loads(Path("c.json").read_text(encoding="utf-8"))
     assert status == 3
-    assert "Coulomb friction torque rose from 0.0" in printed
+    assert "Changed: coulomb friction torque rose from 0.0" in printed
     assert (found["schema"], found["result"], found["false_alarm_rate"]) == ("bench.check/1", "changed", 0.01)
     (friction,) = (one for one in found["quantities"] if one["name"] == "coulomb_friction_torque")
     assert friction["result"] == "changed"
@@ -182,7 +181,7 @@ def test_gitlab_gets_a_code_quality_report(axis):
 
 def test_xml_holds_any_text():
     element = ElementTree.Element("a")
-    element.text = text("\x00\x1b<&]]>\ud800\ufffe\u202e")
+    element.text = xml_text("\x00\x1b<&]]>\ud800\ufffe\u202e")
     assert ElementTree.fromstring(ElementTree.tostring(element, encoding="utf-8")).text
 
 
@@ -206,7 +205,7 @@ def test_models_are_held_against_each_other(bench):
     Path("c.toml").write_text(heavier, encoding="utf-8")
     status, printed, _ = bench("check", "--simulated", "c.toml", "--baseline", "a/model.toml")
     assert status == 3
-    assert "Viscous friction coefficient rose" in printed
+    assert "Changed: viscous friction coefficient rose" in printed
 
 
 def test_a_simulator_that_moves_otherwise_is_a_change(bench):
@@ -225,8 +224,8 @@ def test_a_simulator_that_moves_otherwise_is_a_change(bench):
 @given(st.text())
 def test_any_text_comes_back_from_junit(said):
     """But for the two characters that XML has not, and such as are written out."""
-    element = ElementTree.Element("failure", {"message": text(said)})
-    element.text = text(said)
+    element = ElementTree.Element("failure", {"message": xml_text(said)})
+    element.text = xml_text(said)
     again = ElementTree.fromstring(ElementTree.tostring(element, encoding="unicode").encode())
     expected = re.sub("[\ufffe\uffff]", "", plain(said))
     assert (again.text or "", again.get("message")) == (expected, expected)

@@ -8,10 +8,10 @@ from scipy.stats import norm
 
 from bench.baseline.allowed import Allowed
 from bench.baseline.check import compare
-from bench.baseline.wording import headline
 from bench.comparison.difference import Measured
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError
+from bench.report.check import headline
 from bench.rig.rig import Rig
 from tests.baseline.states import VALUES, GivenObserved, named, state
 

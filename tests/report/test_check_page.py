@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from bench.report.check import check_document
 from bench.report.document import Intervals, Paragraph, Points, Table
 from bench.report.html import html
-from bench.report.pages.check import check_page
 from bench.trace.write import write
 from tests.baseline.states import named, state
 from tests.baseline.test_command import again
@@ -37,14 +37,14 @@ def blocks(page, kind):
     ],
 )
 def test_the_verdict_comes_first(now, verdict, tone):
-    page = check_page(checked(state(), now), "now against before")
+    page = check_document(checked(state(), now), "now against before")
     assert page.verdict.startswith(verdict)
     assert page.tone == tone
 
 
 def test_comparisons_stand_worst_first_and_the_chart_counts_in_margins():
     found = checked(state(), state({"moment_of_inertia": 0.98}))
-    page = check_page(found, "x")
+    page = check_document(found, "x")
     (chart,), table = blocks(page, Intervals), blocks(page, Table)[0]
     assert (table.rows[0][0], table.rows[0][-1], table.marked) == ("moment of inertia", "changed", (0,))
     assert len(table.rows) == len(found.comparisons)
@@ -55,16 +55,18 @@ def test_comparisons_stand_worst_first_and_the_chart_counts_in_margins():
 
 
 def test_what_lies_far_beyond_its_margin_does_not_hide_the_rest():
-    page = check_page(checked(state(), state({"moment_of_inertia": 3.0})), "x")
+    page = check_document(checked(state(), state({"moment_of_inertia": 3.0})), "x")
     (chart,) = blocks(page, Intervals)
     assert chart.spans[0].value > chart.limits[1]
     assert html(page).count('class="hole"') == 1
 
 
 def test_what_differs_beside_the_axis_is_reported():
-    same = check_page(checked(state(), state()), "x")
-    other = check_page(checked(state(), state(duration=3.0)), "x")
-    rig = check_page(checked(state(), replace(state(), rig={"kind": "rotary", "motor.torque_constant": "0.9"})), "x")
+    same = check_document(checked(state(), state()), "x")
+    other = check_document(checked(state(), state(duration=3.0)), "x")
+    rig = check_document(
+        checked(state(), replace(state(), rig={"kind": "rotary", "motor.torque_constant": "0.9"})), "x"
+    )
     assert any("are those of the baseline" in one.text for one in blocks(same, Paragraph))
     assert any("duration" in item for one in blocks(other, Points) for item in one.items)
     assert any("torque_constant" in item for one in blocks(rig, Points) for item in one.items)
@@ -73,7 +75,7 @@ def test_what_differs_beside_the_axis_is_reported():
 
 def test_text_of_a_baseline_is_text():
     before = replace(state(), provenance={HOSTILE: [HOSTILE, {"file": HOSTILE, "sha256": None}]}, verdict=HOSTILE)
-    made = html(check_page(checked(before, state()), HOSTILE))
+    made = html(check_document(checked(before, state()), HOSTILE))
     assert "<script" not in made
     assert re.search("baseline: .*&lt;script&gt;", made)
 
@@ -95,7 +97,7 @@ def test_the_command_writes_it(bench):
 def test_models_are_reported_without_recordings():
     found = checked(state(), state())
     model = replace(found.now, gaps={}, conditions={}, source="model")
-    page = check_page(replace(found, baseline=model, now=model, false_alarm_rate=0.0), "x")
+    page = check_document(replace(found, baseline=model, now=model, false_alarm_rate=0.0), "x")
     assert [section.key for section in page.sections] == ["comparisons", "conditions"]
     assert any("neither rests on a recording" in one.text for one in blocks(page, Paragraph))
     assert "without noise" in list(page.answers.values())[2]

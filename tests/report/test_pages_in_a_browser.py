@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.report.pages.check import check_page
+from bench.report.check import check_document
 from bench.report.publish import write_html
 from tests.baseline.states import state
 from tests.baseline.test_compare import checked
@@ -10,7 +10,7 @@ from tests.report import test_fleet_page, test_validation_page
 from tests.report.test_page import HOSTILE
 
 PAGES = {
-    "check": lambda: check_page(checked(state(), state({"moment_of_inertia": 3.0}, duration=3.0)), HOSTILE),
+    "check": lambda: check_document(checked(state(), state({"moment_of_inertia": 3.0}, duration=3.0)), HOSTILE),
     "fleet": lambda: test_fleet_page.page_of(
         test_fleet_page.fleet_of(
             test_fleet_page.stepped(3, 10, [1]), {0: test_fleet_page.refused(HOSTILE)}, HOSTILE.replace("{", "(") + "{}"

@@ -1,0 +1,158 @@
+"""Findings for servers that run checks: JUnit XML, GitHub's annotations and summary, GitLab's code quality report.
+
+JUnit: a test case for each finding, which every CI server reads; `changed` is a failure, `undecided` is skipped with
+the reason, `same` passes. GitHub: workflow commands on standard output
+(https://docs.github.com/actions/reference/workflow-commands-for-github-actions), at most ten of them, and a table of
+all in the step's summary. GitLab: JSON (https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format).
+Text from files stays text in all of them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import html
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+from bench.comparison.difference import CHANGED, SAME, UNDECIDED
+from bench.files import read_text
+from bench.names import plain
+
+#: Characters that XML 1.0 does not have at all, escaped or not.
+_NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+#: Annotations of a step that GitHub shows.
+MOST = 10
+#: Characters of Markdown markup and mentions, other than in HTML entities.
+_MARKUP = re.compile(r"[\\`*_\[\]|~@!#](?!#?\w+;)")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was found of one quantity.
+
+    Attributes:
+        name: of the quantity.
+        result: `same`, `changed` or `undecided`.
+        sentence: the same in words.
+        values: in the baseline, now, and the margin; None where there is none - unit.
+        unit: of these.
+    """
+
+    name: str
+    result: str
+    sentence: str
+    values: tuple[float | None, ...]
+    unit: str
+
+
+def junit(found: Sequence[Finding], headline: str, title: str) -> str:
+    """Findings as JUnit XML.
+
+    Args:
+        found: of every quantity.
+        headline: all of it in a sentence.
+        title: of the suite.
+    """
+    counts = {result: sum(one.result == result for one in found) for result in (CHANGED, UNDECIDED)}
+    numbers = {
+        "tests": str(len(found)),
+        "failures": str(counts[CHANGED]),
+        "errors": "0",
+        "skipped": str(counts[UNDECIDED]),
+    }
+    suites = ElementTree.Element("testsuites", {"name": "bench check", **numbers})
+    suite = ElementTree.SubElement(suites, "testsuite", {"name": xml_text(title), **numbers})
+    for one in found:
+        case = ElementTree.SubElement(suite, "testcase", {"classname": "bench.check", "name": xml_text(one.name)})
+        sentence = xml_text(one.sentence)
+        if one.result == CHANGED:
+            ElementTree.SubElement(case, "failure", {"message": sentence, "type": "changed"}).text = sentence
+        elif one.result == UNDECIDED:
+            ElementTree.SubElement(case, "skipped", {"message": sentence})
+    ElementTree.SubElement(suite, "system-out").text = xml_text(headline)
+    ElementTree.indent(suites)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(suites, encoding="unicode") + "\n"
+
+
+def xml_text(given: str) -> str:
+    """Text that XML can hold: control characters written out."""
+    return _NO_XML.sub("", plain(given))
+
+
+def github_lines(found: Sequence[Finding], baseline: Path) -> list[str]:
+    """Workflow commands for what is not the same, worst first, at the baseline's lines."""
+    lines = _lines(baseline)
+    return [
+        command(
+            "error" if one.result == CHANGED else "warning",
+            one.sentence,
+            {"file": str(baseline), "line": str(_line(one, lines))},
+        )
+        for one in _not_same(found)[:MOST]
+    ]
+
+
+def command(level: str, message: str, properties: Mapping[str, str]) -> str:
+    """A workflow command, escaped as GitHub's own toolkit does (`@actions/core`, command.ts)."""
+    fields = ",".join(f"{key}={_property(value)}" for key, value in {**properties, "title": "bench check"}.items())
+    return f"::{level} {fields}::{_data(message)}"
+
+
+def _data(text: str) -> str:
+    return plain(text).replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")
+
+
+def github_summary(found: Sequence[Finding], headline: str, title: str) -> str:
+    """Markdown of all findings for the step's summary."""
+    rows = ["| quantity | baseline | now | margin | unit | |", "|---|---|---|---|---|---|"]
+    for one in found:
+        numbers = ("-" if value is None else f"{value:.4g}" for value in one.values)
+        rows.append(f"| {' | '.join(map(_cell, [one.name, *numbers, one.unit, one.result]))} |")
+    items = [f"- {_cell(one.sentence)}" for one in _not_same(found)]
+    return "\n".join([f"### bench check: {_cell(title)}", "", _cell(headline), "", *rows, "", *items, ""])
+
+
+def _cell(text: str) -> str:
+    """Text in a cell of a table: no markup, no end of the cell or of the line."""
+    flat = html.escape(" ".join(plain(text).split()))
+    return _MARKUP.sub(lambda match: f"&#{ord(match[0])};", flat)
+
+
+def gitlab_report(found: Sequence[Finding], baseline: Path) -> str:
+    """Code quality report: an issue for each finding that is not the same."""
+    lines = _lines(baseline)
+    return json.dumps(
+        [
+            {
+                "description": plain(one.sentence),
+                "check_name": f"bench check: {plain(one.name)}",
+                "fingerprint": hashlib.sha256(f"{baseline}:{one.name}".encode("utf-8", "backslashreplace")).hexdigest(),
+                "severity": "major" if one.result == CHANGED else "info",
+                "location": {"path": plain(str(baseline)), "lines": {"begin": _line(one, lines)}},
+            }
+            for one in _not_same(found)
+        ],
+        indent=2,
+    )
+
+
+def _not_same(found: Sequence[Finding]) -> list[Finding]:
+    return [one for one in found if one.result != SAME]
+
+
+def _lines(baseline: Path) -> dict[str, int]:
+    """Number of the line at which each table of the baseline begins, by the table's head."""
+    lines = read_text(baseline, "a baseline").splitlines()
+    return {line: number for number, line in reversed(list(enumerate(lines, start=1))) if line.startswith("[")}
+
+
+def _line(one: Finding, lines: Mapping[str, int]) -> int:
+    return lines.get(f"[quantities.{one.name}]", 1)
