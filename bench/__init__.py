@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from bench.baseline.check import Checked, check
     from bench.diagnosis.diagnosis import diagnose
     from bench.diagnosis.replay import replay
-    from bench.diagnosis.show.show import Diagnosis
+    from bench.diagnosis.show import Diagnosis
     from bench.export.effects import Effects
     from bench.fit.estimate import Estimate
     from bench.fit.identify import identify
@@ -45,7 +45,7 @@ __version__ = "0.1.0"
 #: Module of each name; a test compares it with the imports above, which type checkers read.
 _MODULES = {
     "Checked": "bench.baseline.check",
-    "Diagnosis": "bench.diagnosis.show.show",
+    "Diagnosis": "bench.diagnosis.show",
     "Effects": "bench.export.effects",
     "Estimate": "bench.fit.estimate",
     "Rig": "bench.rig.rig",

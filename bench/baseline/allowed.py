@@ -32,7 +32,7 @@ OF_EFFECTS, BETWEEN_OF_EFFECTS = 0.25, 0.05
 #: Share of the effort of a motion below which the contribution of a parameter does not matter.
 LEAST = 1e-3
 #: Factor on these standard deviations for recordings of different motion or sampling. For two recordings at 95 % it
-#: gives what `bench.diagnosis.add.same_axis` allows (1 % of inertia, 30 % of viscous and 10 % of Coulomb friction).
+#: gives what `bench.diagnosis.same_axis` allows (1 % of inertia, 30 % of viscous and 10 % of Coulomb friction).
 OTHER_MOTION = 5.0
 #: The quantity of a motion that a parameter's torque is proportional to.
 _MADE_OF = {INERTIA: "rms_acceleration", VISCOUS: "rms_speed"}

@@ -10,9 +10,11 @@ import numpy as np
 from bench.baseline.conditions import conditions, rig_values
 from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, NamedHere, RemainingGap, Shows, State
 from bench.comparison.difference import Measured
-from bench.diagnosis.diagnosis import POLICY, Diagnosis, diagnose
-from bench.diagnosis.found import NamedEffect
+from bench.diagnosis.diagnosis import diagnose
+from bench.diagnosis.name import NamedEffect
+from bench.diagnosis.policy import POLICY
 from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.show import Diagnosis
 from bench.fit.estimate import Alone
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
@@ -137,7 +139,7 @@ def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda sha
     found = diagnose(traces, rig, progress=progress)
     traces = [passed(trace, rig).trace for trace in traces]
     recordings = Recordings.of(traces, rig, None)
-    fitted = balance(recordings.seen, rig, replace(found.balance.hypothesis, hum=()))
+    fitted = balance(recordings.corrected, rig, replace(found.balance.hypothesis, hum=()))
     count = len(fitted.terms)
     effects = [_named(effect, fitted, index, recordings.unit) for index, effect in enumerate(found.effects[:count])]
     effects += [NamedHere(e.effect, _measured(e.parameters)) for e in found.effects[count:]]
@@ -213,9 +215,9 @@ def _torque_gap(fitted: Fit, unit: str) -> Measured:
 
 
 def _shows(fitted: Fit) -> Shows:
-    """Torque that is significant in a recording, and that its residual may hide: up to `Remainder.chi` it is noise."""
-    significant = POLICY.significant.threshold(fitted, 1) / fitted.count
-    hidden = max(fitted.chi, POLICY.remainder.chi) ** 2 - 1.0
+    """Torque that is significant in a recording, and that its residual may hide as noise, up to `Policy.remainder`."""
+    significant = POLICY.by_chance(fitted, 1) / fitted.count
+    hidden = max(fitted.chi, POLICY.remainder) ** 2 - 1.0
     return Shows(float(np.sqrt(significant)), float(fitted.floor * np.sqrt(hidden)))
 
 

@@ -1,4 +1,4 @@
-"""Diagnosis in five steps: gap, where, name, add, show."""
+"""Diagnosis in five steps: fit, where, name, add, show."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from bench.axis_kind import INERTIA
-from bench.diagnosis.add.add import add
-from bench.diagnosis.gap.gap import gap
-from bench.diagnosis.name.name import name
-from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.add import add
+from bench.diagnosis.decidable import fit_bare
+from bench.diagnosis.doubts import DOUBTS, Doubt
+from bench.diagnosis.name import name
+from bench.diagnosis.policy import POLICY, Policy
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.show.show import Diagnosis, show
-from bench.diagnosis.show.suspicions import suspicions
-from bench.diagnosis.where.where import where
+from bench.diagnosis.show import Diagnosis, show
+from bench.diagnosis.warnings import suspicions
+from bench.diagnosis.where import where
 from bench.fit.determined import require_masses, require_significant
 from bench.fit.fit import Fit
 from bench.fit.load_inertia import load_inertia
@@ -23,8 +24,6 @@ from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
 Progress = Callable[[float], None]
-#: Default policy of naming.
-POLICY = Policy()
 
 
 def diagnose(
@@ -34,6 +33,7 @@ def diagnose(
     excluded: frozenset[str] = frozenset(),
     progress: Progress = lambda share: None,
     policy: Policy = POLICY,
+    doubts: Sequence[Doubt] = DOUBTS,
 ) -> Diagnosis:
     """Find what is missing, name it, add it, and show the gap shrink.
 
@@ -43,7 +43,8 @@ def diagnose(
         holdout: another recording of it, not used to fit.
         excluded: effects that are not tried.
         progress: called with the share done.
-        policy: rules that decide on names.
+        policy: numbers that decide on names.
+        doubts: raised of the names that a search finds, in this order.
 
     Raises:
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
@@ -52,9 +53,9 @@ def diagnose(
     gated = [passed(each, rig) for each in ([trace] if isinstance(trace, Trace) else trace)]
     unseen = passed(holdout, rig).trace if holdout is not None else None
     recordings = Recordings.of([each.trace for each in gated], rig, unseen)
-    bare = gap(recordings.rows)
+    bare = fit_bare(recordings.rows)
     located = where(bare, rig.axis_kind, recordings.unit, recordings.current)
-    suspects = name(recordings, bare, excluded, policy)
+    suspects = name(recordings, bare, excluded, policy, doubts)
     require_weight(recordings, suspects.searched.last)
     progress(0.6)
     added = add(recordings, suspects)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from bench.arrays import Array
-from bench.diagnosis.gap.decidable import require_another, require_decidable, require_samples
+from bench.diagnosis.decidable import require_another, require_decidable, require_samples
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect
 from bench.fit.fit import Fit, fit
@@ -23,18 +23,18 @@ class Recordings:
     Attributes:
         rig: of the axis.
         trace: the recording, or several joined.
-        seen: the same with faults of its sensors corrected, as it is fitted.
+        corrected: the same with faults of its sensors corrected, as it is fitted.
         holdout: another recording, not fitted; None without one.
-        rows, other: rows of both.
+        rows, holdout_rows: rows of both, without those faults.
         detected: effects outside the torque balance that the signals show directly.
     """
 
     rig: Rig
     trace: Trace
-    seen: Trace
+    corrected: Trace
     holdout: Trace | None
     rows: Rows
-    other: Rows | None
+    holdout_rows: Rows | None
     detected: Mapping[Effect, Detected]
 
     @classmethod
@@ -57,19 +57,17 @@ class Recordings:
         width = rows.conditioning.filter.width
         found = {effect: effect.detect(trace, rig, width) for effect in catalogue().values()}
         detected = {effect: those for effect, those in found.items() if those is not None}
-        seen, unseen = trace, holdout
+        corrected, unseen = trace, holdout
         for effect, those in detected.items():
             if effect.faulty_signal == rows.conditioning.source:
-                seen = _mended(seen, rig, effect, those)
-                unseen = None if unseen is None else _mended(unseen, rig, effect, those)
-        if seen is not trace:
-            rows = Rows.of(seen, rig)
-            require_decidable(seen, rig, rows)
-        other = None
-        if unseen is not None:
-            width, peak = rows.conditioning.filter.width, rows.scope.peak_effort
-            other = Rows.of(unseen, rig, width=width, peak_effort=peak)
-        return cls(rig, trace, seen, holdout, rows, other, detected)
+                corrected = _corrected(corrected, rig, effect, those)
+                unseen = None if unseen is None else _corrected(unseen, rig, effect, those)
+        if corrected is not trace:
+            rows = Rows.of(corrected, rig)
+            require_decidable(corrected, rig, rows)
+        width, peak = rows.conditioning.filter.width, rows.scope.peak_effort
+        holdout_rows = None if unseen is None else Rows.of(unseen, rig, width=width, peak_effort=peak)
+        return cls(rig, trace, corrected, holdout, rows, holdout_rows, detected)
 
     def within_tolerance(self, fitted: Fit) -> list[Fit]:
         """A balance of the whole recording, refitted with each of the rig's values at the end of its tolerance."""
@@ -77,7 +75,7 @@ class Recordings:
             return []
         same = self.rows.conditioning
         rigs = self.rig.within_tolerance()
-        return [fit(Rows.of(self.seen, rig, conditioning=same), fitted.hypothesis) for rig in rigs]
+        return [fit(Rows.of(self.corrected, rig, conditioning=same), fitted.hypothesis) for rig in rigs]
 
     @property
     def unit(self) -> str:
@@ -87,7 +85,7 @@ class Recordings:
     @property
     def current(self) -> Array | None:
         """Recorded current at the rows - A - (m,); None if another effort was recorded."""
-        return self.seen["current"][self.rows.samples()] if "current" in self.seen else None
+        return self.corrected["current"][self.rows.samples()] if "current" in self.corrected else None
 
     @property
     def base_units(self) -> dict[str, str]:
@@ -95,7 +93,7 @@ class Recordings:
         return self.rig.axis_kind.base_parameters(self.unit)
 
 
-def _mended(trace: Trace, rig: Rig, effect: Effect, found: Detected) -> Trace:
+def _corrected(trace: Trace, rig: Rig, effect: Effect, found: Detected) -> Trace:
     """A recording with a fault of its sensor corrected; without the faulty signal if that cannot be corrected."""
     if found.mends or rig.needs_speed(trace):
         return effect.corrected(trace, found.values)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.diagnosis.add.model import holding_bandwidth, without_events
+from bench.diagnosis.model import holding_bandwidth, without_events
 from bench.errors import InputError, UndeterminedError
 from bench.fit.layout import lay_out
 from bench.fit.rows import Rows

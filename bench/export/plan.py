@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.diagnosis.name.candidates import candidates
-from bench.diagnosis.show.next_experiment import LONG_ENOUGH
+from bench.diagnosis.next_experiment import LONG_ENOUGH
+from bench.diagnosis.search import candidates
 from bench.effects.effect import Effect
 from bench.effects.present import Present
 from bench.errors import InputError, UndeterminedError

@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from bench.axis_kind import INERTIA, KINDS, AxisKind
-from bench.diagnosis.add.refine import NULL
-from bench.diagnosis.add.same_axis import SameAxis
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.found import Course, Gap, NamedEffect, Profile, Shrunk
-from bench.diagnosis.where.where import Where
+from bench.diagnosis.gaps import Course, Gap, Profile, Shrunk
+from bench.diagnosis.name import NamedEffect
+from bench.diagnosis.refine import NULL
+from bench.diagnosis.same_axis import SameAxis
+from bench.diagnosis.where import Where
 from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.diagnosis.add.refine import NULL
+from bench.diagnosis.refine import NULL
 from bench.diagnosis.replay import LEFT, Replay
 from bench.report.document import Document, Downloads, File, Points, Section
 from bench.report.numbers import effort_word, number, share

@@ -10,7 +10,7 @@ import numpy as np
 
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.found import NamedEffect
+from bench.diagnosis.name import NamedEffect
 from bench.effects.effect import Effect
 from bench.fit.parameter import Parameter
 from bench.validation.case import Case

@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 
 import bench
 from bench.arrays import Array, rms
-from bench.diagnosis.gap.gap import gap
-from bench.diagnosis.name.candidates import candidates
-from bench.diagnosis.where.where import LEAST, bins_of, coordinates, means_in, where
+from bench.diagnosis.decidable import fit_bare
+from bench.diagnosis.search import candidates
+from bench.diagnosis.where import LEAST, bins_of, coordinates, means_in, where
 from bench.effects.catalogue import catalogue, rivals
 from bench.effects.effect import Effect
 from bench.effects.present import Present, parse_effect
@@ -82,7 +82,7 @@ def signature(effect: Effect) -> Signature:
     text = f"{effect.name}:{values}"
     present = parse_effect(text)
     told = {name: recorded(name, present) for name in NAMES}
-    bare = {name: gap(Rows.of(trace, rig())) for name, trace in told.items()}
+    bare = {name: fit_bare(Rows.of(trace, rig())) for name, trace in told.items()}
     motions = {name: rms(fitted.left) / fitted.floor for name, fitted in bare.items()}
     width = {name: fitted.rows.conditioning.filter.width for name, fitted in bare.items()}
     detected = frozenset(name for name in NAMES if effect.detect(told[name], rig(), width[name]) is not None)

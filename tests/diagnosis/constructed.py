@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.diagnosis.gap.gap import gap
-from bench.diagnosis.name.doubts import Evidence, doubted
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.search import search
+from bench.diagnosis.decidable import fit_bare
+from bench.diagnosis.doubts import DOUBTS, Doubt, Evidence, doubted
+from bench.diagnosis.policy import Policy
+from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import Fit
 from bench.fit.rows import Rows
@@ -81,7 +81,7 @@ def recorded(motion: Motion, *more: Torque, seed: int = 0, noise: float = 1.0, p
 
 def bare(trace: Trace, rig: Rig = RIG) -> Fit:
     """What inertia and friction leave."""
-    return gap(Rows.of(trace, rig))
+    return fit_bare(Rows.of(trace, rig))
 
 
 def wave(amplitude: float, number: float, phase: float = 0.0) -> Torque:
@@ -104,11 +104,17 @@ def offset(torque: float) -> Torque:
     return lambda motion: np.full_like(motion.time, torque)
 
 
-def names(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace | None = None) -> tuple[str, ...]:
-    """Names that a policy leaves, of effects that it may try."""
+def names(
+    policy: Policy,
+    trace: Trace,
+    effects: Sequence[str],
+    holdout: Trace | None = None,
+    doubts: Sequence[Doubt] = DOUBTS,
+) -> tuple[str, ...]:
+    """Names that a policy and doubts leave, of effects that it may try."""
     without_effect = bare(trace)
     found = search(without_effect, [catalogue()[name] for name in effects], policy)
     width = without_effect.rows.conditioning.filter.width
     other = None if holdout is None else Rows.of(holdout, RIG, width=width)
     evidence = Evidence(without_effect, other, frozenset(catalogue()) - set(effects), policy)
-    return doubted(found, evidence, policy.doubts).last.hypothesis.names
+    return doubted(found, evidence, doubts).last.hypothesis.names

@@ -5,7 +5,7 @@ import pytest
 import scipy.signal
 from scipy.interpolate import CubicSpline
 
-from bench.diagnosis.where.where import Coordinate, _account
+from bench.diagnosis.where import Coordinate, _account
 from bench.effects.backlash.dead_zone import load_positions
 from bench.effects.catalogue import catalogue
 from bench.effects.first_order import lagged

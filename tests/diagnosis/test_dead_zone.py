@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.diagnosis.gap.gap import gap
+from bench.diagnosis.decidable import fit_bare
 from bench.effects.backlash.likeliest import likeliest_shape
 from bench.fit.rows import Rows
 from bench.rig.rig import load_rig
@@ -40,7 +40,7 @@ def recorded(tmp_path_factory):
 @pytest.mark.parametrize("wide", GAPS)
 def test_a_gap_is_found(recorded, wide):
     rig, traces = recorded
-    bare = gap(Rows.of(traces[wide], rig))
+    bare = fit_bare(Rows.of(traces[wide], rig))
     way = bare.scope.rms_speed * bare.scope.width
     found = likeliest_shape(bare)
     print(f"gap of {wide / way:.2g} ways: {found[0] / wide - 1.0:+.1%}, contact {found[1] / 2 / np.pi:.0f} Hz")

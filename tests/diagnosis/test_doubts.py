@@ -7,23 +7,23 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from bench.diagnosis.name.doubts import (
-    Contested,
+from bench.diagnosis.doubts import (
     Evidence,
-    NotCredible,
-    NotInHoldout,
-    OneForMany,
-    Simpler,
-    TwoForOne,
-    Unbelievable,
-    WrongForm,
+    contested,
+    not_credible,
+    not_in_holdout,
+    one_for_many,
+    simpler,
+    two_for_one,
+    unbelievable,
+    wrong_form,
 )
-from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.policy import Policy
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Term
 from tests.diagnosis.constructed import SINES, bare, moved, names, offset, only_during, recorded, vibration, wave
-from tests.diagnosis.off import without
+from tests.diagnosis.off import undoubted
 
 POLICY = Policy()
 MOTION = moved(4.0)
@@ -51,14 +51,14 @@ def test_what_happens_in_the_holdout_at_any_time_is_no_event():
     trace = recorded(MOTION, only_during(0.08, 1.0, 1.5))
     holdout = recorded(OTHER, only_during(0.08, 2.5, 3.0), seed=1)
     assert names(POLICY, trace, EVENT, holdout) == ()
-    assert names(without(NotInHoldout), trace, EVENT, holdout) == EVENT
+    assert names(POLICY, trace, EVENT, holdout, doubts=undoubted(not_in_holdout)) == EVENT
 
 
 @pytest.mark.parametrize(("damping", "stays"), [(0.1, True), (0.6, False)])
 def test_a_coupling_that_hardly_rings_is_none(damping, stays):
     plain = bare(recorded(MOTION))
     fitted = fit(plain.rows, plain.hypothesis.plus(Term(catalogue()["elastic_coupling"], (200.0, damping))))
-    left = NotCredible().left(fitted, Evidence(plain, None, frozenset(), POLICY))
+    left = not_credible(fitted, Evidence(plain, None, frozenset(), POLICY))
     assert left.hypothesis.names == (("elastic_coupling",) if stays else ())
 
 
@@ -66,7 +66,7 @@ def test_a_vibration_in_step_with_the_motion_is_no_spring():
     """Position swings at 0.43 Hz, and so does the torque: over ten periods a spring explains nine tenths of it."""
     trace = recorded(moved(), vibration(0.05, 0.43))
     assert names(POLICY, trace, RIGID) == ()
-    assert names(without(Contested), trace, RIGID) == ("torsion_spring",)
+    assert names(POLICY, trace, RIGID, doubts=undoubted(contested)) == ("torsion_spring",)
 
 
 def test_a_name_that_explains_another_part_is_not_contested():
@@ -79,14 +79,17 @@ def test_a_wave_of_acceleration_is_no_ripple():
     """Three cycles a revolution it has, but goes with acceleration: an inertia's, which may not be named here."""
     trace = recorded(moved(), lambda motion: 2e-4 * motion.acceleration * np.sin(3.0 * motion.position))
     assert names(POLICY, trace, but("position_dependent_inertia")) == ()
-    assert names(without(WrongForm), trace, but("position_dependent_inertia")) == ("torque_ripple",)
+    assert names(POLICY, trace, but("position_dependent_inertia"), doubts=undoubted(wrong_form)) == ("torque_ripple",)
 
 
 def test_one_wave_is_not_called_two():
     """A wave that goes with the square of speed is the half of what inertia and ripple make together."""
     trace = recorded(MOTION, lambda motion: 5e-5 * motion.velocity**2 * np.sin(2.0 * motion.position + 0.7))
     assert names(POLICY, trace, RIGID) == ()
-    assert set(names(without(TwoForOne), trace, RIGID)) == {"position_dependent_inertia", "torque_ripple"}
+    assert set(names(POLICY, trace, RIGID, doubts=undoubted(two_for_one))) == {
+        "position_dependent_inertia",
+        "torque_ripple",
+    }
 
 
 def test_two_waves_of_one_period_stay_where_no_single_one_replaces_them():
@@ -101,7 +104,7 @@ def test_two_waves_of_one_period_stay_where_no_single_one_replaces_them():
 def test_a_bump_at_one_angle_is_no_series_of_waves():
     trace = recorded(moved(), lambda motion: 0.06 * np.exp(-0.5 * (np.angle(np.exp(1j * motion.position)) / 0.5) ** 2))
     assert names(POLICY, trace, RIGID) == ()
-    assert "cogging_torque" in names(without(OneForMany), trace, RIGID)
+    assert "cogging_torque" in names(POLICY, trace, RIGID, doubts=undoubted(one_for_many))
 
 
 def test_waves_of_several_numbers_are_a_series():
@@ -112,7 +115,7 @@ def test_waves_of_several_numbers_are_a_series():
 def test_friction_that_differs_by_a_constant_is_an_offset():
     trace = recorded(MOTION, offset(0.05))
     assert names(POLICY, trace, RIGID) == ("torque_offset",)
-    assert names(without(Simpler), trace, RIGID) == ("direction_dependent_friction",)
+    assert names(POLICY, trace, RIGID, doubts=undoubted(simpler)) == ("direction_dependent_friction",)
 
 
 def test_friction_that_differs_by_more_is_no_offset():
@@ -131,12 +134,12 @@ def test_a_torque_that_wanders_is_no_event(seed):
     """Half of what wanders may pass for an event; what stays beside it says that it is none."""
     trace = recorded(MOTION, wandering(seed, 0.1))
     assert names(POLICY, trace, RIGID) == ()
-    assert "load_torque_event" in names(without(Unbelievable), trace, RIGID)
+    assert "load_torque_event" in names(POLICY, trace, RIGID, doubts=undoubted(unbelievable))
 
 
 def test_of_names_beside_a_large_remainder_an_event_goes_first():
     """Most of the torque is cogging; what wanders beside it speaks against an event, and not against cogging."""
     trace = recorded(MOTION, wandering(7, 0.06), wave(0.3, 6.0))
-    kept, all_of_them = names(POLICY, trace, RIGID), names(without(Unbelievable), trace, RIGID)
+    kept, all_of_them = names(POLICY, trace, RIGID), names(POLICY, trace, RIGID, doubts=undoubted(unbelievable))
     assert "cogging_torque" in kept
     assert set(all_of_them) - set(kept) == {"load_torque_event"}

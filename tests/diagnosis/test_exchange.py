@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.search import exchanged
+from bench.diagnosis.policy import Policy
+from bench.diagnosis.search import exchanged
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from bench.diagnosis.gap.gap import gap
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.search import search
+from bench.diagnosis.decidable import fit_bare
+from bench.diagnosis.policy import Policy
+from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.effects.presliding_friction import bristles, sliding_level
 from bench.fit.rows import Rows
@@ -67,7 +67,7 @@ def test_bristles_slide_at_the_level_of_the_other_frictions():
 @pytest.mark.parametrize("name", BESIDE)
 def test_bristles_are_named_beside_other_frictions(recorded, name):
     rig, traces = recorded
-    fitted = search(gap(Rows.of(traces[name], rig)), list(catalogue().values()), Policy()).last
+    fitted = search(fit_bare(Rows.of(traces[name], rig)), list(catalogue().values()), Policy()).last
     hidden = (BRISTLES, *BESIDE[name])
     assert sorted(fitted.hypothesis.names) == sorted(effect.name for effect in hidden)
     assert fitted.chi < 1.1

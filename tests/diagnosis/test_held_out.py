@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.diagnosis.add.held_out import HeldOut
 from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.tracking import HeldOut
 from tests.diagnosis.constructed import RIG, moved, recorded
 
 RECORDING, OTHER = recorded(moved(3.0)), recorded(moved(2.5), seed=1)
@@ -17,7 +17,7 @@ def recordings():
 
 def test_a_trusted_holdout_judges_what_the_whole_recording_fits(recordings):
     held_out = HeldOut.of(recordings, True, True)
-    assert (held_out.fitted, held_out.judge) == (recordings.rows, recordings.other)
+    assert (held_out.fitted, held_out.judge) == (recordings.rows, recordings.holdout_rows)
     assert (held_out.recorded.trace, held_out.seen.trace) == (OTHER, RECORDING)
 
 

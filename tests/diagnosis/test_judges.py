@@ -2,12 +2,12 @@
 
 import pytest
 
-from bench.diagnosis.add.add import add, unlimited
-from bench.diagnosis.add.extension import Extension
-from bench.diagnosis.name.name import Suspects
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.search import Searched, Step
+from bench.diagnosis.add import add, unlimited
+from bench.diagnosis.model import Extension
+from bench.diagnosis.name import Suspects
+from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.search import Searched, Step
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected
 from bench.effects.present import Present

@@ -9,11 +9,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bench.diagnosis.name import doubts
-from bench.diagnosis.name.candidates import Candidate
-from bench.diagnosis.name.doubts import Contested, Evidence, NotInHoldout, Simpler, Unbelievable, WrongForm
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.rules import only_damps
+from bench.diagnosis import doubts, search
+from bench.diagnosis.doubts import Evidence, contested, not_in_holdout, simpler, unbelievable, wrong_form
+from bench.diagnosis.policy import Policy
+from bench.diagnosis.search import Candidate
 from bench.effects.catalogue import rivals
 from bench.fit.hypothesis import Hypothesis, Term
 from tests.diagnosis.hand_made import level, made, term
@@ -23,31 +22,27 @@ SPRING, OFFSET, EVENT = term("torsion_spring"), term("torque_offset"), term("loa
 
 
 def threshold(fitted, numbers=1):
-    return POLICY.significant.threshold(fitted, numbers)
+    return POLICY.by_chance(fitted, numbers)
 
 
 def explains(before, after):
-    return POLICY.explains.holds(before, after, POLICY.significant)
+    return POLICY.accepts(before, after)
 
 
 def promising(current, tried):
-    return POLICY.promising.of(current, tried, POLICY.significant)
-
-
-def exchangeable(less, tried, taken):
-    return POLICY.exchangeable.of(less, tried, taken)
+    return [each for each in tried if POLICY.promises(current, each.gain)]
 
 
 def no_longer_needed(fitted, less, index=0):
-    return POLICY.no_longer_needed.holds(fitted, less, index, POLICY.significant)
+    return not POLICY.needs(fitted, less, index)
 
 
 def replaces(before, after):
-    return POLICY.replaces.holds(before, after)
+    return POLICY.replaces_by(before, after)
 
 
 def remains(fitted):
-    return POLICY.remainder.holds(fitted)
+    return POLICY.remains(fitted)
 
 
 def evidence(without, holdout=None):
@@ -109,18 +104,29 @@ def test_noise_that_an_effect_damps_is_not_explained(saved, named):
 )
 def test_what_leaves_more_over_its_own_noise_only_damps_unless_it_was_no_noise(before, after, white, damps):
     """Residual over white noise: at 3 and more it is no noise that is damped."""
-    assert only_damps(made(level(before)), made(level(after), SPRING, floor=white)) is damps
+    assert POLICY.only_damps(made(level(before)), made(level(after), SPRING, floor=white)) is damps
 
 
 def test_a_tenth_of_what_stands_above_the_floor_promises_something():
     assert [c.gain for c in promising(made(level(1400.0)), tried(131.0, 129.0))] == [131.0]
     assert [c.gain for c in promising(made(level(200.0)), tried(81.0, 79.0))] == [81.0]
-    assert len(promising(made(level(1400.0)), tried(*([200.0] * 9)))) == 4
 
 
-def test_what_takes_nine_tenths_may_stand_in_another_s_place():
-    assert [c.gain for c in exchangeable(made(level(1400.0)), tried(91.0, 89.0), 100.0)] == [91.0]
-    assert len(exchangeable(made(level(1400.0)), tried(*([99.0] * 9)), 100.0)) == 2
+@pytest.mark.parametrize(("gains", "asked"), [((91.0, 89.0), 1), ((99.0,) * 9, 2)])
+def test_what_takes_nine_tenths_may_stand_in_another_s_place(monkeypatch, gains, asked):
+    """A spring takes 100 squares beside an offset; of what takes 90 in its place two shapes at most are searched."""
+    searched = []
+    monkeypatch.setattr(search, "fit", lambda rows, hypothesis: made(level(1100.0), OFFSET))
+    monkeypatch.setattr(search, "candidates", lambda less, effects: tried(*gains))
+    monkeypatch.setattr(search, "refined", lambda less, wave: searched.append(wave) or made(level(1000.0), OFFSET))
+    assert search.exchanged(made(level(1000.0), SPRING, OFFSET), [], POLICY) is None
+    assert len(searched) == asked
+
+
+@pytest.mark.parametrize(("saved", "exchanged"), [(79.0, False), (81.0, True)])
+def test_what_is_exchanged_leaves_less_by_more_than_chance(saved, exchanged):
+    before, after = made(level(1000.0), SPRING, OFFSET), made(level(1000.0 - saved), OFFSET, term("quadratic_drag"))
+    assert POLICY.exchanges_for(before, after) is exchanged
 
 
 @pytest.mark.parametrize(
@@ -166,7 +172,7 @@ def test_twelve_hundredths_above_the_floor_are_a_remainder():
 def test_names_that_leave_a_fifth_are_believed_below_three_floors(before, after, believed):
     """Squares above the floor; 800 of them on 100 rows are three floors."""
     without, fitted = made(level(100.0 + before)), made(level(100.0 + after), SPRING)
-    assert Unbelievable().left(fitted, evidence(without)) is (fitted if believed else without)
+    assert unbelievable(fitted, evidence(without)) is (fitted if believed else without)
 
 
 class Table:
@@ -198,17 +204,17 @@ def test_a_rival_contests_by_a_quarter_where_half_the_worth_is_gone(monkeypatch,
     name, beside = ("torsion_spring",), ("outside_slow_memory", "torsion_spring")
     squares = {name: 1100.0, (): 1500.0, beside[:1]: 1100.0 - saved, beside: 1100.0 - saved - keeps}
     table = Table(monkeypatch, squares, [RIVAL])
-    left = Contested().left(table.fit(None, Hypothesis((SPRING,))), evidence(made(level(1500.0))))
+    left = contested(table.fit(None, Hypothesis((SPRING,))), evidence(made(level(1500.0))))
     assert left.hypothesis.names == (name if stays else ())
 
 
-@pytest.mark.parametrize(("lost", "simpler"), [(79.0, True), (81.0, False)])
-def test_a_simpler_form_takes_the_place_of_what_saves_no_more_than_chance(monkeypatch, lost, simpler):
+@pytest.mark.parametrize(("lost", "goes"), [(79.0, True), (81.0, False)])
+def test_a_simpler_form_takes_the_place_of_what_saves_no_more_than_chance(monkeypatch, lost, goes):
     asymmetric = term("direction_dependent_friction")
     names = asymmetric.effect.simpler_forms()
     table = Table(monkeypatch, {(asymmetric.effect.name,): 100.0, names: 100.0 + lost})
-    left = Simpler().left(table.fit(None, Hypothesis((asymmetric,))), evidence(made(level(500.0))))
-    assert left.hypothesis.names == (names if simpler else (asymmetric.effect.name,))
+    left = simpler(table.fit(None, Hypothesis((asymmetric,))), evidence(made(level(500.0))))
+    assert left.hypothesis.names == (names if goes else (asymmetric.effect.name,))
 
 
 @pytest.mark.parametrize(
@@ -217,7 +223,7 @@ def test_a_simpler_form_takes_the_place_of_what_saves_no_more_than_chance(monkey
 def test_a_holdout_a_quarter_further_above_its_noise_lacks_what_an_event_stood_for(monkeypatch, chi, there, stays):
     Table(monkeypatch, {(): 100.0 * there**2})
     fitted = made(level(100.0 * chi**2), EVENT)
-    left = NotInHoldout().left(fitted, evidence(made(level(1000.0)), SimpleNamespace()))
+    left = not_in_holdout(fitted, evidence(made(level(1000.0)), SimpleNamespace()))
     assert left.hypothesis.names == (("load_torque_event",) if stays else ())
 
 
@@ -227,7 +233,7 @@ def test_a_holdout_a_quarter_further_above_its_noise_lacks_what_an_event_stood_f
 def test_an_event_of_both_recordings_overlaps_by_half(monkeypatch, start, stop, stays):
     """The recording's lasts from 1 to 1.5 s."""
     Table(monkeypatch, {(): 400.0, ("load_torque_event",): 100.0}, [term("load_torque_event", start, stop)])
-    left = NotInHoldout().left(made(level(100.0), EVENT), evidence(made(level(1000.0)), SimpleNamespace()))
+    left = not_in_holdout(made(level(100.0), EVENT), evidence(made(level(1000.0)), SimpleNamespace()))
     assert left.hypothesis.names == (("load_torque_event",) if stays else ())
 
 
@@ -250,5 +256,5 @@ def test_a_wave_whose_relatives_explain_half_the_remainder_and_leave_noise_is_of
     fitted = made(level(10000.0 + excess, 10000), *terms)
     fitted.__dict__.update({"seen": lambda *_, **__: np.zeros((10000, 10)), "gains": lambda *_: np.array([saved])})
     Table(monkeypatch, {(): 40000.0})
-    left = WrongForm().left(fitted, evidence(made(level(40000.0, 10000))))
+    left = wrong_form(fitted, evidence(made(level(40000.0, 10000))))
     assert left.terms == (terms if stays else ())

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.diagnosis import diagnose
+from bench.diagnosis.next_experiment import motions
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.show.next_experiment import motions
 from bench.plant.references import References
 from bench.rig.rig import load_rig
 from bench.validation.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig

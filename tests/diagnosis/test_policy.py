@@ -3,21 +3,11 @@
 import numpy as np
 import pytest
 
+from bench.diagnosis import policy as rules
+from bench.diagnosis import search as searching
 from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.name import rules
-from bench.diagnosis.name import search as searching
-from bench.diagnosis.name.candidates import candidates
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.rules import (
-    Explains,
-    NoLongerNeeded,
-    Physical,
-    Promising,
-    Remainder,
-    ReplacesClearly,
-    Significant,
-)
-from bench.diagnosis.name.search import LIMIT, search
+from bench.diagnosis.policy import Policy
+from bench.diagnosis.search import LIMIT, candidates, search
 from bench.effects.catalogue import catalogue
 from bench.trace.trace import Trace
 from tests.diagnosis.constructed import (
@@ -54,14 +44,14 @@ def test_no_shape_is_searched_where_the_grid_promises_nothing(monkeypatch):
     null, few = bare(recorded(MOTION)), [catalogue()[name] for name in WAVES]
     assert search(null, few, POLICY).last is null
     assert asked == []
-    search(null, few, without(Promising))
+    search(null, few, without("promises", finalists=99))
     assert len(asked) == len(few)
 
 
 def test_a_significant_part_of_something_else_is_not_named():
     trace = recorded(MOTION, vibration(0.05, 3.3))
     assert searched(POLICY, trace, WAVES[:3]) == ()
-    assert searched(without(Explains), trace, WAVES[:3]) != ()
+    assert searched(without("accepts"), trace, WAVES[:3]) != ()
 
 
 @pytest.mark.parametrize("seed", [3, 11])
@@ -69,7 +59,7 @@ def test_noise_that_takes_its_share_by_chance_is_not_named(seed):
     """Where no effect is, a quarter of almost nothing above the floor is soon explained."""
     trace = recorded(moved(3.0), seed=seed)
     assert names(POLICY, trace, WAVES) == ()
-    assert names(without(Significant), trace, WAVES) == ("torque_ripple",)
+    assert names(without("by_chance"), trace, WAVES) == ("torque_ripple",)
 
 
 @pytest.mark.parametrize("seed", [0, 1])
@@ -88,7 +78,7 @@ def test_a_torque_that_drives_the_axis_is_no_drag():
     """A torque along the motion, growing with the square of speed: a drag of negative strength fits it."""
     trace = recorded(MOTION, lambda motion: -5e-5 * motion.velocity * np.abs(motion.velocity))
     assert names(POLICY, trace, ["quadratic_drag"]) == ()
-    assert names(without(Physical), trace, ["quadratic_drag"]) == ("quadratic_drag",)
+    assert names(without("physical"), trace, ["quadratic_drag"]) == ("quadratic_drag",)
 
 
 def test_a_name_that_later_ones_make_good_goes():
@@ -97,7 +87,7 @@ def test_a_name_that_later_ones_make_good_goes():
     effects = ["torsion_spring", "unbalance", "cogging_torque", "torque_offset"]
     hidden = {"torsion_spring", "cogging_torque", "torque_offset"}
     assert set(names(POLICY, trace, effects)) == hidden
-    assert set(names(without(NoLongerNeeded), trace, effects)) == {*hidden, "unbalance"}
+    assert set(names(without("needs"), trace, effects)) == {*hidden, "unbalance"}
 
 
 def coupled(share, antiresonance, damping):
@@ -120,14 +110,14 @@ def test_a_coupling_beside_something_else_is_no_gap():
     """Where the coupling leaves a remainder a dead zone is tried in its place, and explains less."""
     trace, effects = recorded(MOTION, coupled(0.6, 70.0, 0.04), vibration(0.02, 11.0)), ["elastic_coupling", "backlash"]
     assert searched(POLICY, trace, effects) == ("elastic_coupling",)
-    assert searched(without(ReplacesClearly), trace, effects) == ("backlash",)
+    assert searched(without("replaces_by"), trace, effects) == ("backlash",)
 
 
 def test_what_no_effect_explains_is_reported():
     trace = recorded(MOTION, vibration(0.01, 3.3))
     others = frozenset(catalogue()) - {"unbalance"}
     assert diagnose(trace, RIG, excluded=others).verdict == "unexplained_remainder"
-    assert diagnose(trace, RIG, excluded=others, policy=without(Remainder)).verdict == "nothing_missing"
+    assert diagnose(trace, RIG, excluded=others, policy=without("remains")).verdict == "nothing_missing"
 
 
 def test_noise_alone_is_no_remainder():
@@ -137,12 +127,15 @@ def test_noise_alone_is_no_remainder():
     ] * 6
 
 
-def test_few_finalists_are_searched_and_the_best_of_them():
+def test_few_finalists_are_searched_and_the_best_of_them(monkeypatch):
     current = bare(recorded(MOTION, wave(0.05, 6.0), offset(0.05)))
     tried = candidates(current, catalogue().values())
-    kept = POLICY.promising.of(current, tried, POLICY.significant)
-    assert kept == tried[: len(kept)]
-    assert 1 <= len(kept) <= POLICY.promising.finalists < len(tried)
+    promising = [candidate.term for candidate in tried if POLICY.promises(current, candidate.gain)]
+    asked, refined = [], searching.refined
+    monkeypatch.setattr(searching, "refined", lambda fitted, term: asked.append(term) or refined(fitted, term))
+    search(current, list(catalogue().values()), Policy(most=0))
+    assert asked == promising[:4]
+    assert 4 < len(promising) < len(tried)
 
 
 def test_a_search_that_its_limit_ends_says_so():
@@ -164,18 +157,18 @@ def test_a_family_of_harmonics_is_one_effect():
     assert cut.stopped == LIMIT
 
 
-class OneAtATime(NoLongerNeeded):
+class OneAtATime(Policy):
     """Lets go of the first effect as soon as there is a second one."""
 
-    def holds(self, fitted, less, index, significant):
-        return index == 0
+    def needs(self, fitted, less, index):
+        return index != 0
 
 
 def test_what_is_taken_up_and_let_go_in_turn_ends():
     """Each of two effects is worth taking up beside the other, and the other is let go for it."""
     trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
     effects = [catalogue()[name] for name in ("torque_offset", "cogging_torque")]
-    found = search(bare(trace), effects, Policy(no_longer_needed=OneAtATime()))
+    found = search(bare(trace), effects, OneAtATime())
     assert [len(step.fitted.terms) for step in found.steps] == [0, 1, 1]
     assert found.stopped is None
 
@@ -183,5 +176,5 @@ def test_what_is_taken_up_and_let_go_in_turn_ends():
 def test_what_the_limit_cut_off_is_a_remainder():
     trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
     others = frozenset(catalogue()) - {"torque_offset", "cogging_torque"}
-    cut = diagnose(trace, RIG, excluded=others, policy=Policy(most=1, doubts=()))
+    cut = diagnose(trace, RIG, excluded=others, policy=Policy(most=1), doubts=())
     assert (cut.verdict, cut.stopped) == ("unexplained_remainder", LIMIT)

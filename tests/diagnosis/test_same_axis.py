@@ -8,7 +8,7 @@ import pytest
 
 import bench
 from bench.arrays import rms
-from bench.diagnosis.add.same_axis import same_axis
+from bench.diagnosis.same_axis import same_axis
 from bench.fit.rows import Rows
 from bench.report.diagnosis import diagnosis_json
 from bench.trace.write import write

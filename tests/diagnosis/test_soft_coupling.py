@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from bench.diagnosis.gap.gap import gap
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.search import search
+from bench.diagnosis.decidable import fit_bare
+from bench.diagnosis.policy import Policy
+from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
@@ -82,7 +82,7 @@ def test_a_soft_coupling_leaves_noise_alone(recorded):
 
 def test_bristles_are_named_with_their_damping(recorded):
     (rig, traces), effect = recorded, BRISTLES
-    fitted = search(gap(Rows.of(traces[effect.name], rig)), list(catalogue().values()), Policy()).last
+    fitted = search(fit_bare(Rows.of(traces[effect.name], rig)), list(catalogue().values()), Policy()).last
     assert fitted.hypothesis.names == ("presliding_friction",)
     assert fitted.chi < 1.1
     values = fitted.terms[0].effect.report(fitted.strengths(0), fitted.terms[0].shape, fitted.base)

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from bench.comparison.spread import Excess, between, excess
-from bench.diagnosis.show.apart import widened
+from bench.diagnosis.apart import widened
 from bench.fit.parameter import Parameter
 from bench.statistics import NORMAL95
 

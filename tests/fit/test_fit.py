@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from bench.diagnosis.decidable import fit_bare
 from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.gap.gap import gap
-from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.policy import Policy
 from bench.effects.catalogue import catalogue
 from bench.fit.identify import identify
 from bench.fit.rows import Rows
@@ -89,4 +89,4 @@ def test_a_clean_recording_in_one_direction_leaves_noise_alone(duration, period)
     }
     trace = Trace(motion.time, signals, {"position": "rad", "current": "A"}, "one way")
     narrowest = 1.0 / period
-    assert gap(Rows.of(trace, RIG, cutoff=narrowest)).chi < 1.12
+    assert fit_bare(Rows.of(trace, RIG, cutoff=narrowest)).chi < 1.12

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bench.arrays import rms
-from bench.diagnosis.add.extension import Extension
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.search import search
+from bench.diagnosis.model import Extension
+from bench.diagnosis.policy import Policy
+from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.found import NamedEffect
+from bench.diagnosis.name import NamedEffect
 from bench.effects.catalogue import catalogue
 from bench.report.diagnosis import diagnosis, verdict_sentence
 from bench.report.document import Chart, Table, TimeGraph

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from bench.diagnosis.found import NamedEffect
+from bench.diagnosis.name import NamedEffect
 from bench.effects.catalogue import catalogue
 from bench.fit.parameter import Parameter
 from bench.validation.coverage import LEVELS, Coverage, Group, Share, coverage

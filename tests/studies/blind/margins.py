@@ -1,9 +1,9 @@
 """How far the search's thresholds stand from what the blind set shows: `python -m tests.studies.blind.margins`.
 
-Of nulls: the most that any candidate would save, over noise power, per number and independent row (`Significant`), and
-residual over noise floor (`Remainder`). Of singles named rightly: the share of what stands above the noise floor that
-the hidden effect explains when it is taken up (`Explains`), and residual over noise floor with it. Of all that is
-explained: the torque gap of the holdout over that of the recording, noise at least (`HoldoutApart`).
+Of nulls: the most that any candidate would save, over noise power, per number and independent row (`Policy.chance`),
+and residual over noise floor (`remainder`). Of singles named rightly: the share of what stands above the noise floor
+that the hidden effect explains when it is taken up (`accepts`), and residual over noise floor with it. Of all that is
+explained: the torque gap of the holdout over that of the recording, noise at least (`holdout_gap`).
 """
 
 from __future__ import annotations
@@ -17,11 +17,9 @@ import typer
 from rich.console import Console
 from rich.progress import track
 
-from bench.diagnosis.gap.gap import gap
-from bench.diagnosis.name.candidates import candidates
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.rules import worth
-from bench.diagnosis.name.search import search
+from bench.diagnosis.decidable import fit_bare
+from bench.diagnosis.policy import POLICY, worth
+from bench.diagnosis.search import candidates, search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import Fit
 from bench.fit.rows import Rows
@@ -32,13 +30,13 @@ from tests.studies.blind.record import home, truth_of
 from tests.studies.blind.run import diagnosis_of
 from tests.studies.blind.score import same
 
-REMAINS = Policy().remainder.chi
+REMAINS = POLICY.remainder
 
 
 def bare(folder: Path) -> Fit:
     """The fit without an effect of a case's first recording."""
     rig = load_rig(folder / "rig.toml")
-    return gap(Rows.of(read(folder / "run1.csv.gz", rig.trace.columns), rig))
+    return fit_bare(Rows.of(read(folder / "run1.csv.gz", rig.trace.columns), rig))
 
 
 def of_nulls(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[float]]:
@@ -57,7 +55,7 @@ def of_singles(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[
     """Share explained by the hidden effect when taken up, and residual over noise floor, where it alone is named."""
     shares, chi = [], []
     for case in track(cases, "singles", console=Console(stderr=True)):
-        steps = search(bare(folder / case.name), list(catalogue().values()), Policy()).steps
+        steps = search(bare(folder / case.name), list(catalogue().values()), POLICY).steps
         if len(steps) == 2 and same(steps[1].fitted.hypothesis.names) == same(truth_of(folder, case.name)["effects"]):
             before, after = steps[0].fitted, steps[1].fitted
             shares.append(worth(before, after) / before.excess if before.excess else 1.0)

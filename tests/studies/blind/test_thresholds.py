@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.diagnosis.name.policy import Policy
+from bench.diagnosis.policy import Policy
 from bench.effects import effect
 from tests.studies.blind.thresholds import AS_IS, Named, Tally, key, markdown, sample
 from tests.studies.blind.variants import FACTORS, switched_off, thresholds
@@ -12,7 +12,7 @@ TRUTHS = [{"group": "single", "effects": ["unbalance"]}, {"group": "null", "effe
 
 def test_every_threshold_says_what_it_decides():
     found = thresholds()
-    assert {"Significant.least", "Contested.kept", "Policy.most"} <= {f"{each.owner}.{each.name}" for each in found}
+    assert {"chance", "keeps.share", "wrong_form.leaves", "most"} <= {each.name for each in found}
     assert all(each.decides for each in found)
 
 
@@ -20,11 +20,9 @@ def test_every_threshold_says_what_it_decides():
 def test_one_threshold_changes_and_comes_back(threshold):
     before = thresholds()
     with threshold.times(2.0) as policy:
-        if "." in threshold.owner:
-            assert [each.value for each in thresholds()] != [each.value for each in before]
-        else:
-            assert policy != Policy()
-            assert (policy.doubts == Policy().doubts) is not threshold.of_doubts
+        changed = [each.value for each in thresholds()] != [each.value for each in before]
+        assert changed is not (policy != Policy())
+        assert changed is (threshold.owner != "Policy")
     assert thresholds() == before
     assert effect.SHARE == 0.25
 
@@ -45,11 +43,11 @@ def test_right_and_wrong_names_are_counted():
 def test_a_threshold_that_changes_nothing_is_marked():
     keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in FACTORS), *switched_off()]
     same = [dict.fromkeys(keys, Named(("unbalance",))), dict.fromkeys(keys, Named())]
-    same[0]["Significant.least half"] = Named(("unbalance", "backlash"))
+    same[0]["Policy.chance half"] = Named(("unbalance", "backlash"))
     rows = markdown(TRUTHS, same, "command").splitlines()
     idle = [row for row in rows if "changes nothing here" in row]
     assert len(idle) == len(thresholds()) - 1
-    assert next(row for row in rows if row.startswith("| Significant.least")).split("|")[4:6] == [
+    assert next(row for row in rows if row.startswith("| Policy.chance")).split("|")[4:6] == [
         " 0 0 1 0, 1 ",
         " 1 0 1 0, 0 ",
     ]

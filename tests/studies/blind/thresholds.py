@@ -16,11 +16,11 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-from bench.diagnosis.gap.gap import gap
-from bench.diagnosis.name.doubts import Evidence, doubted
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.search import Searched, search
+from bench.diagnosis.decidable import fit_bare
+from bench.diagnosis.doubts import DOUBTS, Doubt, Evidence, doubted
+from bench.diagnosis.policy import POLICY, Policy
 from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.search import Searched, search
 from bench.effects.catalogue import catalogue
 from bench.errors import BenchError
 from bench.fit.fit import Fit
@@ -55,15 +55,16 @@ def variants_of(folder: Path) -> dict[str, Named]:
         recordings = Recordings.of(runs[0], rig, runs[1])
     except BenchError:
         return dict.fromkeys(keys, Named(refused=True))
-    bare = gap(recordings.rows)
-    as_is = search(bare, [*catalogue().values()], Policy())
-    found = {AS_IS: named(recordings, bare, Policy(), as_is)}
+    bare = fit_bare(recordings.rows)
+    as_is = search(bare, [*catalogue().values()], POLICY)
+    found = {AS_IS: named(recordings, bare, POLICY, DOUBTS, as_is)}
     for each in thresholds():
         for label, factor in FACTORS.items():
             with each.times(factor) as policy:
-                found[key(each, label)] = named(recordings, bare, policy, as_is if each.of_doubts else None)
-    for rule, policy in switched_off().items():
-        found[rule] = named(recordings, bare, policy, as_is if policy.doubts != Policy().doubts else None)
+                known = as_is if each.of_doubts else None
+                found[key(each, label)] = named(recordings, bare, policy, DOUBTS, known)
+    for rule, (policy, doubts) in switched_off().items():
+        found[rule] = named(recordings, bare, policy, doubts, as_is if doubts != DOUBTS else None)
     return found
 
 
@@ -72,12 +73,14 @@ def key(threshold: Threshold, factor: str) -> str:
     return f"{threshold.owner}.{threshold.name} {factor}"
 
 
-def named(recordings: Recordings, bare: Fit, policy: Policy, searched: Searched | None) -> Named:
+def named(
+    recordings: Recordings, bare: Fit, policy: Policy, doubts: Sequence[Doubt], searched: Searched | None
+) -> Named:
     """Names under a policy; `searched` where its search is known, as doubts alone differ."""
     searched = searched or search(bare, [*catalogue().values()], policy)
-    last = doubted(searched, Evidence(bare, recordings.other, frozenset(), policy), policy.doubts).last
+    last = doubted(searched, Evidence(bare, recordings.holdout_rows, frozenset(), policy), doubts).last
     names = (*last.hypothesis.names, *(effect.name for effect in recordings.detected))
-    return Named(names, policy.remainder.holds(last) or searched.stopped is not None)
+    return Named(names, policy.remains(last) or searched.stopped is not None)
 
 
 @dataclass(frozen=True)

@@ -1,17 +1,18 @@
-"""The policy with one threshold halved or doubled, or one rule off; thresholds are read from the rules themselves."""
+"""The policy with one number halved or doubled, or one rule or doubt off; numbers are read from the policy itself."""
 
 from __future__ import annotations
 
 import importlib
 import inspect
+import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any
+from dataclasses import dataclass, fields, replace
 
-from bench.diagnosis.name.policy import Policy
-from tests.diagnosis.off import OFF, without
+from bench.diagnosis.doubts import DOUBTS, Doubt
+from bench.diagnosis.policy import POLICY, Margin, Policy
+from tests.diagnosis.off import undoubted, without
 
 #: Shares and bounds that effects state of themselves: where each stands, and what it decides.
 OF_EFFECTS = (
@@ -23,8 +24,10 @@ OF_EFFECTS = (
     ("bench.effects.load_torque_event", "LONGEST", "share of the recording that events last together at most"),
 )
 FACTORS = {"half": 0.5, "double": 2.0}
-#: Rules without which a search ends all the same.
-SWITCHED = tuple(kind for kind, (method, _) in OFF.items() if method == "left" or kind.__name__ in ("NoLongerNeeded",))
+#: Numbers of the policy that only doubts ask, so that a search finds the same.
+OF_DOUBTS = frozenset(
+    {"holdout_apart", "overlap", "contested", "keeps", "wrong_form", "one_for_several", "believable", "holdout_gap"}
+)
 
 
 @dataclass(frozen=True)
@@ -32,7 +35,7 @@ class Threshold:
     """A number that decides on names.
 
     Attributes:
-        owner, name: rule or module that it stands in, and what it is called there.
+        owner, name: policy or module that it stands in, and what it is called there; of a margin `name.part`.
         value: as is.
         decides: what, in the words of its documentation.
     """
@@ -45,56 +48,52 @@ class Threshold:
     @property
     def of_doubts(self) -> bool:
         """Whether only doubts ask it, so that a search finds the same."""
-        return self.owner in {type(doubt).__name__ for doubt in Policy().doubts}
+        return self.name.partition(".")[0] in OF_DOUBTS
 
     @contextmanager
     def times(self, factor: float) -> Iterator[Policy]:
         """The policy with the threshold so many times what it is; a whole number stays one."""
         value = type(self.value)(self.value * factor)
-        if "." not in self.owner:
-            yield _with(Policy(), self.owner, self.name, value)
+        if self.owner == "Policy":
+            name, _, part = self.name.partition(".")
+            yield replace(POLICY, **{name: replace(getattr(POLICY, name), **{part: value}) if part else value})
             return
         module = importlib.import_module(self.owner)
         setattr(module, self.name, value)
         try:
-            yield Policy()
+            yield POLICY
         finally:
             setattr(module, self.name, self.value)
 
 
 def thresholds() -> list[Threshold]:
     """Those of the policy in its order, then those of effects."""
-    policy = Policy()
-    parts = [getattr(policy, field.name) for field in fields(policy) if field.name != "doubts"]
-    found = [
-        Threshold(type(part).__name__, field.name, getattr(part, field.name), _told(part, field.name))
-        for part in (*parts, *policy.doubts)
-        if is_dataclass(part)
-        for field in fields(part)
+    found = []
+    for field in fields(POLICY):
+        value, decides = getattr(POLICY, field.name), _documented(field.name)
+        if not isinstance(value, Margin):
+            found.append(Threshold("Policy", field.name, value, decides))
+            continue
+        parts = {part.name: getattr(value, part.name) for part in fields(value)}
+        found += [
+            Threshold("Policy", f"{field.name}.{part}", number, decides)
+            for part, number in parts.items()
+            if number not in (0.0, math.inf)
+        ]
+    return found + [
+        Threshold(module, name, getattr(importlib.import_module(module), name), decides)
+        for module, name, decides in OF_EFFECTS
     ]
-    found.append(Threshold("Policy", "most", policy.most, "effects at most; a family of harmonics is one of them"))
-    stated = [(name, key, getattr(importlib.import_module(name), key), told) for name, key, told in OF_EFFECTS]
-    return found + [Threshold(*each) for each in stated]
 
 
-def switched_off() -> dict[str, Policy]:
-    """The policy with each of the rules off that can be."""
-    return {kind.__name__: without(kind) for kind in SWITCHED}
+def switched_off() -> dict[str, tuple[Policy, tuple[Doubt, ...]]]:
+    """The policy and doubts without each of the rules and doubts without which a search ends all the same."""
+    doubts = {doubt.__name__: (POLICY, undoubted(doubt)) for doubt in DOUBTS}
+    return {"needs": (without("needs"), DOUBTS), **doubts}
 
 
-def _with(policy: Policy, owner: str, name: str, value: float) -> Policy:
-    if owner == "Policy":
-        return replace(policy, **{name: value})
-
-    def changed(part: Any) -> Any:
-        return replace(part, **{name: value}) if type(part).__name__ == owner else part
-
-    rules = {field.name: changed(getattr(policy, field.name)) for field in fields(policy) if field.name != "doubts"}
-    return replace(policy, doubts=tuple(map(changed, policy.doubts)), **rules)
-
-
-def _told(part: object, name: str) -> str:
-    """What the documentation of a rule says of one of its numbers, the first sentence of it."""
-    text = inspect.cleandoc(type(part).__doc__ or "")
+def _documented(name: str) -> str:
+    """What the policy's documentation says of one of its numbers, the first sentence of it."""
+    text = inspect.cleandoc(Policy.__doc__ or "")
     found = re.search(rf"^    {name}: (.*(?:\n     +.*)*)", text, re.MULTILINE)
     return " ".join(found.group(1).split()).split(". ")[0].rstrip(".") if found else ""

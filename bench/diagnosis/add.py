@@ -13,20 +13,32 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.diagnosis.add.closed_loop import closed_loop_gap, under_drive
-from bench.diagnosis.add.extension import Extension, Stage
-from bench.diagnosis.add.held_out import HOLDOUT, RECORDING, HeldOut
-from bench.diagnosis.add.model import BANDWIDTH, holding_bandwidth
-from bench.diagnosis.add.refine import NULL, Numbers, Refined, refined, refined_model
-from bench.diagnosis.add.same_axis import SameAxis, same_axis
-from bench.diagnosis.add.tracking import Recorded, VelocityGaps
-from bench.diagnosis.found import Rejected
-from bench.diagnosis.name.name import Suspects, named
+from bench.arrays import rms
+from bench.diagnosis.model import BANDWIDTH, Extension, Stage, holding_bandwidth
+from bench.diagnosis.name import Suspects, named
 from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.refine import NULL, Numbers, Refined, refined, refined_model
+from bench.diagnosis.same_axis import SameAxis, same_axis
+from bench.diagnosis.tracking import HOLDOUT, RECORDING, HeldOut, Recorded, VelocityGaps
+from bench.errors import BenchError
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
+from bench.plant.follow import follow_references
 from bench.plant.measured_motion import measured_velocity
 from bench.trace.noise import white_noise
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A name that was not kept.
+
+    Attributes:
+        name: of the effect.
+        reason: why.
+    """
+
+    name: str
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -62,13 +74,13 @@ class Added:
 def add(recordings: Recordings, suspects: Suspects) -> Added:
     """Try every effect, keep those that held-out motion confirms, and refine their model."""
     found = suspects.searched.last
-    compared = same_axis(found, recordings.other, recordings.base_units)
-    repeats = everywhere(Balance.of(found), recordings.other)
+    compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
+    repeats = everywhere(Balance.of(found), recordings.holdout_rows)
     held_out = HeldOut.of(recordings, compared.same is not False, repeats)
     recorded = [Recorded.of(RECORDING, recordings.trace, recordings.rig)]
     if recordings.holdout is not None:
         recorded.append(Recorded.of(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
-    extension = Extension(recordings.rows, RECORDING, found.hypothesis, suspects.beside, recordings.rig)
+    extension = Extension(recordings.rows, RECORDING, found.hypothesis, suspects.outside, recordings.rig)
     closed_loop = closed_loop_gap(recordings, extension)
     rejected: list[Rejected] = []
     while True:
@@ -124,7 +136,7 @@ class Trial:
         """The effects of an extension, refitted without the held-out motion."""
         judged = replace(extension, recording=held_out.fitted, rows=held_out.rows)
         laid_out_for = extension.whole if extension.whole.model is not None else extension.stages[0]
-        gaps = VelocityGaps(bandwidth(extension, recordings), float(laid_out_for.fitted.theta[0]))
+        gaps = VelocityGaps(bandwidth(extension, recordings), laid_out_for.fitted.base.inertia)
         without = tuple(judged.less(index) for index in range(len(extension.names)))
         return cls(recordings, suspects, held_out, gaps, judged, without)
 
@@ -162,7 +174,43 @@ def _comes_closer(trial: Trial, allowed: float) -> bool:
         return True
     numbers = Numbers.of(*named(trial.recordings, whole.fitted, whole.detected(trial.suspects)))
     found = refined_model(whole.model, numbers, trial.held_out, trial.gaps)
-    return found is not None and found.gap is not None and found.gap[1] <= allowed
+    return found is not None and found[2] <= allowed
+
+
+def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float, float] | None:
+    """Velocity gap under the drive of the rig, without and with the effect that is visible only there - rad/s (m/s).
+
+    A prediction from the references of a recording, without tracking. Feedback hides most effects here - the drive
+    makes good what the model lacks - but for what happens in the drive itself it is the only place to look: a voltage
+    limit acts before the recorded current, with which the held model is fed.
+
+    None where there is no such effect, the rig describes no drive, the recording holds no references, or the simulation
+    diverges.
+    """
+    index = under_drive(extension)
+    if index is None or "velocity_reference" not in recordings.trace:
+        return None
+    without, whole = extension.less(index).whole, extension.whole
+    if without.model is None or whole.model is None:
+        return None
+    (shown,) = (present for present in whole.outside if present.effect.shows_under_drive)
+    trace = shown.effect.shown_in(recordings.trace, recordings.rig, dict(shown.values))
+    velocity = measured_velocity(trace)
+    try:
+        followed = [
+            follow_references(stored.model, trace, recordings.rig).velocity for stored in (without.model, whole.model)
+        ]
+    except BenchError:
+        return None
+    before, after = (rms(simulated - velocity) for simulated in followed)
+    return before, after
+
+
+def under_drive(extension: Extension) -> int | None:
+    """Index of the effect that is visible only under the drive of the rig; None without one."""
+    own = len(extension.hypothesis.terms)
+    shown = [own + k for k, present in enumerate(extension.outside) if present.effect.shows_under_drive]
+    return shown[0] if shown else None
 
 
 def unlimited(extension: Extension, closed_loop: tuple[float, float] | None) -> tuple[int, str] | None:

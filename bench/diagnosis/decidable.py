@@ -1,17 +1,19 @@
-"""Whether a recording is sufficient for a diagnosis: in length, motion and signal-to-noise ratio."""
+"""The bare fit - inertia, viscous and Coulomb friction - and whether a recording suffices to see what it lacks."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from bench.arrays import rms
-from bench.axis_kind import COULOMB, OFFSET, AxisKind
-from bench.diagnosis.name.rules import Rules
+from bench.arrays import Array, rms
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS, AxisKind
+from bench.diagnosis.policy import POLICY
 from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import require_friction, require_inertia
 from bench.fit.fit import Fit, fit
+from bench.fit.hum import with_hum
 from bench.fit.last_digit import plain
 from bench.fit.layout import lay_out
 from bench.fit.rows import Rows, clear_motion
@@ -30,6 +32,11 @@ SMALL = 10.0
 NOISY = 0.1
 
 WHAT = "whether the model lacks an effect"
+
+
+def fit_bare(rows: Rows) -> Fit:
+    """The fit of no effect, beside the hum of the mains: what it leaves is the gap."""
+    return with_hum(fit(rows, plain(rows)))
 
 
 def require_samples(trace: Trace) -> None:
@@ -66,32 +73,8 @@ def require_decidable(trace: Trace, rig: Rig, rows: Rows) -> Fit:
     require_inertia(equations, rig.axis_kind)
     require_friction(equations, rig.axis_kind)
     bare = fit(rows, plain(rows))
-    require_audible(bare, rig.net_effort(trace)[1], rig.axis_kind)
+    _require_audible(bare, rig.net_effort(trace)[1], rig.axis_kind)
     return bare
-
-
-def left_open(rows: Rows, kind: AxisKind) -> list[str]:
-    """A warning of what motion in one direction does not determine."""
-    if not rows.scope.one_way:
-        return []
-    offset, friction = kind.parameter(OFFSET), kind.parameter(COULOMB)
-    forward = float(np.mean(rows.values(lambda s: s.sign))) > 0.0
-    return [
-        f"the axis moves {'forward' if forward else 'backward'} only: {friction} holds any "
-        f"{offset} too, and no effect on friction was sought; record both directions for that"
-    ]
-
-
-def impacts(fitted: Fit, unit: str) -> list[str]:
-    """A warning if rows that depend on the instants of impacts were excluded from the verdict."""
-    share = 1.0 - float(fitted.determined.mean())
-    if share == 0.0:
-        return []
-    return [
-        f"{100.0 * share:.0f} % of the rows follow impacts so closely that their torque hangs on instants which the "
-        f"recording does not tell: the verdict is by the others, on which {fitted.rms:.3g} {unit} are left; the torque "
-        "gap counts all"
-    ]
 
 
 def _require_length(trace: Trace, rows: Rows) -> None:
@@ -110,12 +93,7 @@ def _require_length(trace: Trace, rows: Rows) -> None:
     )
 
 
-def smallest_visible(fitted: Fit, rules: Rules) -> float:
-    """RMS torque of the smallest effect that could be found above noise - N*m (N)."""
-    return math.sqrt(rules.significant.threshold(fitted, 1) / fitted.effort.size)
-
-
-def require_audible(base: Fit, unit: str, kind: AxisKind) -> None:
+def _require_audible(base: Fit, unit: str, kind: AxisKind) -> None:
     """Raise UndeterminedError if noise would hide an effect as large as friction, or as a tenth of the torque.
 
     Args:
@@ -135,9 +113,9 @@ def require_audible(base: Fit, unit: str, kind: AxisKind) -> None:
             if noise > 0.0
             else "the signal that the motor's torque follows: this one never changes",
         )
-    friction = rms(base.columns[:, 1:3] @ base.theta[1:3])
-    torque = rms(base.columns[:, :3] @ base.theta[:3])
-    least, loud = smallest_visible(base, Rules()), max(friction, torque / SMALL)
+    friction, torque = (rms(_torque(base, terms)) for terms in ((VISCOUS, COULOMB), (INERTIA, VISCOUS, COULOMB)))
+    least = math.sqrt(POLICY.by_chance(base, 1) / base.effort.size)
+    loud = max(friction, torque / SMALL)
     if least > loud:
         raise UndeterminedError(
             WHAT,
@@ -147,9 +125,15 @@ def require_audible(base: Fit, unit: str, kind: AxisKind) -> None:
         )
 
 
+def _torque(base: Fit, terms: Sequence[str]) -> Array:
+    """Modelled torque of some terms - N*m (N) - (m,)."""
+    places = np.isin(base.owners, terms)
+    return base.columns[:, places] @ base.theta[places]
+
+
 def _require_acceleration(base: Fit, kind: AxisKind) -> None:
     conditioning = base.rows.conditioning
-    noise, moved = conditioning.acceleration_noise, rms(base.columns[:, 0])
+    noise, moved = conditioning.acceleration_noise, rms(base.columns[:, base.owners == INERTIA])
     if noise**2 <= NOISY * moved**2:
         return
     unit = kind.acceleration_unit

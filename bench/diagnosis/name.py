@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
-from bench.diagnosis.found import NamedEffect
-from bench.diagnosis.name.doubts import Evidence, doubted
-from bench.diagnosis.name.policy import Policy
-from bench.diagnosis.name.search import Searched, search
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.diagnosis.doubts import DOUBTS, Doubt, Evidence, doubted
+from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.search import Searched, search
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect
 from bench.effects.present import Present
@@ -20,6 +21,33 @@ from bench.fit.quantities import uncertain
 from bench.fit.shapes import unbiased
 from bench.fit.systematic import hint
 from bench.statistics import NORMAL95
+
+
+@dataclass(frozen=True)
+class NamedEffect:
+    """An effect that the recording shows.
+
+    Attributes:
+        effect: of the catalogue.
+        parameters: its quantities with intervals.
+        ambiguous_with: names of effects that this recording cannot distinguish from it.
+        evidence: figures that support it, by name.
+    """
+
+    effect: Effect
+    parameters: dict[str, Parameter]
+    ambiguous_with: tuple[str, ...]
+    evidence: Mapping[str, float]
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.effect.name
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Values of its quantities - SI."""
+        return {key: parameter.value for key, parameter in self.parameters.items()}
 
 
 @dataclass(frozen=True)
@@ -41,12 +69,14 @@ class Suspects:
     excluded: frozenset[str] = frozenset()
 
     @property
-    def beside(self) -> tuple[Present, ...]:
-        """Effects that the torque balance does not hold."""
+    def outside(self) -> tuple[Present, ...]:
+        """Effects outside the torque balance."""
         return tuple(Present.of(effect.name, found.values) for effect, found in self.detected.items())
 
 
-def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Policy) -> Suspects:
+def name(
+    recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Policy, doubts: Sequence[Doubt] = DOUBTS
+) -> Suspects:
     """Suspects of a recording.
 
     Args:
@@ -54,10 +84,11 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
         bare: the fit without an effect.
         excluded: effects that are not tried.
         policy: that decides.
+        doubts: raised of what a search finds, in this order.
     """
     effects = [effect for name, effect in catalogue().items() if name not in excluded]
     searched = search(bare, effects, policy)
-    searched = doubted(searched, Evidence(bare, recordings.other, excluded, policy), policy.doubts)
+    searched = doubted(searched, Evidence(bare, recordings.holdout_rows, excluded, policy), doubts)
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
     return Suspects(searched, kept, len(kept) < len(recordings.detected), policy, excluded)
 
@@ -65,22 +96,22 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
 def named(
     recordings: Recordings, fitted: Fit, detected: Mapping[Effect, Detected]
 ) -> tuple[list[NamedEffect], dict[str, Parameter]]:
-    """Effects of a fitted balance and those beside it with their quantities, and J, K_w, K_0 beside them."""
-    rig, unit = recordings.rig, recordings.unit
+    """Effects with their quantities, and J, K_w, K_0 beside them.
+
+    Args:
+        recordings: that were fitted.
+        fitted: the torque balance with its effects.
+        detected: effects outside the torque balance.
+    """
     numbers, others = uncertain(fitted), recordings.within_tolerance(fitted)
     hinted, over_noise = hint(fitted, catalogue().values()) or fitted, unbiased(fitted)
     parameters = {
-        name: found.widened(*(float(other.theta[k] - fitted.theta[k]) for other in others)).reaching(
-            float(hinted.theta[k])
+        name: found.widened(*(other.value(term) - found.value for other in others)).reaching(hinted.value(term))
+        for term, (name, found) in zip(
+            (INERTIA, VISCOUS, COULOMB), numbers.base(recordings.base_units).items(), strict=True
         )
-        for k, (name, found) in enumerate(numbers.base(recordings.base_units).items())
     }
-    parameters |= load_inertia(parameters, rig)
-
-    def unit_of(effect: Effect, name: str) -> str:
-        known = (*effect.quantities, *effect.derived, *(shape.quantity for shape in effect.shapes))
-        return rig.axis_kind.unit(next(quantity for quantity in known if quantity.name == name), unit)
-
+    parameters |= load_inertia(parameters, recordings.rig)
     effects = []
     for index, term in enumerate(fitted.terms):
         less = fit(fitted.rows, fitted.hypothesis.without(index))
@@ -92,18 +123,23 @@ def named(
             key: value.widened(*(report[key] - value.value for report in reports))
             .reaching(by_hint[key])
             .reaching(by_noise[key])
-            for key, value in numbers.quantities(index, unit_of).items()
+            for key, value in numbers.quantities(index, partial(_unit, recordings)).items()
         }
         effects.append(NamedEffect(term.effect, found, term.effect.ambiguous(fitted.scope), evidence))
-    for effect, found in detected.items():
-        values = {
-            key: Parameter(
-                value,
-                unit_of(effect, key),
-                found.errors[key] / NORMAL95,
-                (value - found.errors[key], value + found.errors[key]),
-            )
-            for key, value in found.values.items()
-        }
-        effects.append(NamedEffect(effect, values, effect.ambiguous(fitted.scope), found.evidence))
-    return effects, parameters
+    return [*effects, *(_read(recordings, effect, found) for effect, found in detected.items())], parameters
+
+
+def _read(recordings: Recordings, effect: Effect, found: Detected) -> NamedEffect:
+    """An effect outside the torque balance with its quantities."""
+    values = {}
+    for key, value in found.values.items():
+        half = found.errors[key]
+        values[key] = Parameter(value, _unit(recordings, effect, key), half / NORMAL95, (value - half, value + half))
+    return NamedEffect(effect, values, effect.ambiguous(recordings.rows.scope), found.evidence)
+
+
+def _unit(recordings: Recordings, effect: Effect, name: str) -> str:
+    """Unit of an effect's quantity."""
+    known = (*effect.quantities, *effect.derived, *(shape.quantity for shape in effect.shapes))
+    quantity = next(quantity for quantity in known if quantity.name == name)
+    return recordings.rig.axis_kind.unit(quantity, recordings.unit)

@@ -19,9 +19,9 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from bench.arrays import rms
-from bench.diagnosis.add.add import Added
-from bench.diagnosis.add.model import stored_model
-from bench.diagnosis.name.name import Suspects
+from bench.diagnosis.add import Added
+from bench.diagnosis.model import stored_model
+from bench.diagnosis.name import Suspects
 from bench.diagnosis.recordings import Recordings
 from bench.effects.catalogue import catalogue
 from bench.effects.present import Present
@@ -77,7 +77,7 @@ class NextExperiment:
 
 
 @dataclass(frozen=True)
-class Rival:
+class Alternatives:
     """Two explanations, as models."""
 
     names: tuple[str, str]
@@ -91,10 +91,10 @@ def propose(recordings: Recordings, suspects: Suspects, added: Added) -> NextExp
     if stored is None or recordings.rig.drive is None:
         return None
     width, floor = recordings.rows.conditioning.filter.width, added.extension.whole.fitted.floor
-    for rival in rivals(recordings, suspects, added, stored.model):
+    for pair in alternatives(recordings, suspects, added, stored.model):
         try:
             found = [
-                (separation(recordings, rival.models, references, width) / floor, name, references)
+                (separation(recordings, pair.models, references, width) / floor, name, references)
                 for name, references in motions(recordings, stored.model)
             ]
         except BenchError:
@@ -105,11 +105,11 @@ def propose(recordings: Recordings, suspects: Suspects, added: Added) -> NextExp
             duration = float(references.time[-1])
             again = int(np.ceil(LONG_ENOUGH / duration))
             motion = references.repeated(again)
-            return NextExperiment(name, speed, acceleration, duration, again, rival.names, best, rival.reason, motion)
+            return NextExperiment(name, speed, acceleration, duration, again, pair.names, best, pair.reason, motion)
     return None
 
 
-def rivals(recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel) -> Iterator[Rival]:
+def alternatives(recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel) -> Iterator[Alternatives]:
     """Other explanations that remain, as models."""
     for effect in added.refined.effects:
         for other in effect.ambiguous_with:
@@ -118,13 +118,15 @@ def rivals(recordings: Recordings, suspects: Suspects, added: Added, model: Axis
             if like is not None:
                 kept = [present for present in model.effects if present.effect is not effect.effect]
                 models = model, model.with_effects([*kept, like])
-                yield Rival((effect.name, other), models, "this recording cannot tell them apart")
+                yield Alternatives((effect.name, other), models, "this recording cannot tell them apart")
     yield from nearly_as_good(recordings, suspects, added, model)
     if recordings.rows.scope.one_way:
         yield from one_direction(recordings, added.extension.whole.fitted.base.coulomb, model)
 
 
-def nearly_as_good(recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel) -> Iterator[Rival]:
+def nearly_as_good(
+    recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel
+) -> Iterator[Alternatives]:
     """Candidates that, instead of the effect accepted last, leave hardly more of the torque."""
     whole, searched = added.extension.whole.fitted, suspects.searched
     if not whole.terms or whole.hypothesis != searched.last.hypothesis:
@@ -139,13 +141,13 @@ def nearly_as_good(recordings: Recordings, suspects: Suspects, added: Added, mod
         if other.rms < NEARLY * whole.rms:
             reason = f"{rival.name} leaves but {other.rms / whole.rms - 1.0:.0%} more of the torque unexplained"
             try:
-                instead = stored_model(other, added.extension.beside, recordings.rig).model
+                instead = stored_model(other, added.extension.outside, recordings.rig).model
             except InputError:
                 continue
-            yield Rival((named.name, rival.name), (model, instead), reason)
+            yield Alternatives((named.name, rival.name), (model, instead), reason)
 
 
-def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Iterator[Rival]:
+def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Iterator[Alternatives]:
     """Dry friction against effects that look like it in one direction, `dry` in total - N*m (N)."""
     direction = 1.0 if float(np.mean(measured_velocity(recordings.trace))) > 0.0 else -1.0
     for effect in catalogue().values():
@@ -155,7 +157,7 @@ def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Itera
             nothing = replace(model.parameters, coulomb_friction=0.0)
             instead = replace(model, parameters=nothing, effects=(*model.effects, Present.of(effect.name, values)))
             models = replace(model, parameters=friction), instead
-            yield Rival(("coulomb_friction", effect.name), models, "the axis moved in one direction only")
+            yield Alternatives(("coulomb_friction", effect.name), models, "the axis moved in one direction only")
 
 
 def motions(recordings: Recordings, model: AxisModel) -> list[tuple[str, References]]:

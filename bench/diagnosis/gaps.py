@@ -4,32 +4,112 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.axis_kind import AxisKind
-from bench.diagnosis.add.add import Added
-from bench.diagnosis.found import Course, Gap, Profile, Shrunk
+from bench.diagnosis.add import Added
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.where.where import LEAST, bins_of, coordinates, means_in, where
+from bench.diagnosis.where import LEAST, bins_of, coordinates, means_in, where
 from bench.fit.fit import Fit
 from bench.fit.stored import Balance
 from bench.plant.measured_motion import measured_velocity
 from bench.trace.noise import white_noise
 
 
+@dataclass(frozen=True)
+class Gap:
+    """RMS gap before and after the effects were added, on both recordings, against the noise floor.
+
+    Attributes:
+        unit: of all numbers.
+        noise_floor: expected RMS from sensor noise alone.
+        identify, holdout: (before, after) over all rows; None if not available.
+        judged: share of the rows that the verdict is based on, and the gap on them; None if it is all rows.
+    """
+
+    unit: str
+    noise_floor: float
+    identify: tuple[float, float] | None
+    holdout: tuple[float, float] | None
+    judged: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Shrunk:
+    """Gaps after one addition to the model.
+
+    Attributes:
+        effect: added last; empty for the bare axis.
+        torque: of the recording, and of the holdout where there is one - N*m (N).
+        velocity: the same - rad/s (m/s); nan if not available.
+    """
+
+    effect: str
+    torque: tuple[float, ...]
+    velocity: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Course:
+    """One recording over time, with the residuals of the model after each addition.
+
+    Attributes:
+        name: `recording` or `holdout`.
+        origin: of it.
+        time: s - (n,).
+        velocity: as measured - rad/s (m/s) - (n,).
+        velocity_left: measured less simulated, for each step (n,), nan outside the model; None without a model, or
+            if it diverged.
+        rows: index into the samples of each row of the torque balance (m,).
+        torque: as measured, filtered - N*m (N) - (m,).
+        torque_left: measured less modelled, for each step (m,).
+    """
+
+    name: str
+    origin: str
+    time: Array
+    velocity: Array
+    velocity_left: tuple[NDArray[np.float32] | None, ...]
+    rows: NDArray[np.int64]
+    torque: Array
+    torque_left: tuple[Array, ...]
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The gap over one coordinate, before anything was added and after.
+
+    Attributes:
+        coordinate: of `bench.diagnosis.where`.
+        unit: of it.
+        share: of the first gap's variance that it explains.
+        centres: of its bins - unit - (b,).
+        before, after: mean of measured less modelled torque in each bin - N*m (N) - (b,), without and with the added
+            effects.
+    """
+
+    coordinate: str
+    unit: str
+    share: float
+    centres: Array
+    before: Array
+    after: Array
+
+
 def courses(recordings: Recordings, added: Added) -> tuple[Course, ...]:
     """The recording, and the holdout where there is one, beside the bare axis and the model after each addition."""
-    laid_out = [rows for rows in (recordings.rows, recordings.other) if rows is not None]
+    laid_out = [rows for rows in (recordings.rows, recordings.holdout_rows) if rows is not None]
     balances = [Balance.of(stage.fitted).repeating(added.repeats) for stage in added.extension.stages]
     found = []
     for rows, recorded in zip(laid_out, added.recorded, strict=True):
-        velocity = [added.gaps.left(stage, recorded) for stage in added.extension.stages]
+        velocity = [added.gaps.residual(stage, recorded) for stage in added.extension.stages]
         if added.refined.gap is not None and added.refined.model is not None:
             (simulated,) = added.gaps.velocities([added.refined.model], [recorded])
-            velocity[-1] = None if simulated is None else recorded.left(simulated)
+            velocity[-1] = None if simulated is None else recorded.residual(simulated)
         torque = tuple(balance.left(rows) for balance in balances)
         measured = measured_velocity(recorded.trace)
         along = recorded.name, recorded.trace.origin, recorded.trace.time, measured, tuple(velocity)

@@ -6,19 +6,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bench.comparison.spread import Between
-from bench.diagnosis.add.add import Added
-from bench.diagnosis.add.same_axis import SameAxis
-from bench.diagnosis.found import Considered, Course, Gap, NamedEffect, Profile, Rejected, Shrunk
-from bench.diagnosis.gap.decidable import impacts, left_open
-from bench.diagnosis.name.name import Suspects
+from bench.diagnosis.add import Added, Rejected
+from bench.diagnosis.apart import apart
+from bench.diagnosis.considered import Considered, considered
+from bench.diagnosis.gaps import Course, Gap, Profile, Shrunk, courses, profiles, shrinking, torque_gap, velocity_gap
+from bench.diagnosis.name import NamedEffect, Suspects
+from bench.diagnosis.next_experiment import NextExperiment, propose
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.show.apart import apart
-from bench.diagnosis.show.considered import considered
-from bench.diagnosis.show.gaps import courses, profiles, shrinking, torque_gap, velocity_gap
-from bench.diagnosis.show.next_experiment import NextExperiment, propose
-from bench.diagnosis.show.suspicions import suspicions
-from bench.diagnosis.show.verdict import Shown, verdict
-from bench.diagnosis.where.where import Where, where
+from bench.diagnosis.same_axis import SameAxis
+from bench.diagnosis.verdict import Shown, verdict
+from bench.diagnosis.warnings import impacts, left_open, suspicions
+from bench.diagnosis.where import Where, where
 from bench.fit.estimate import Alone
 from bench.fit.fit import Fit
 from bench.fit.parameter import Parameter

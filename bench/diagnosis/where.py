@@ -9,7 +9,7 @@ import scipy.signal
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.axis_kind import AxisKind
+from bench.axis_kind import INERTIA, AxisKind
 from bench.fit.fit import Fit
 
 #: Number of bins of a coordinate, and least number of rows in a bin.
@@ -76,7 +76,7 @@ def coordinates(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | 
     return [
         Coordinate("position", turn, kind.length_unit),
         Coordinate("velocity", rows.values(lambda s: s.velocity), kind.speed_unit),
-        Coordinate("acceleration", fitted.columns[:, 0], kind.acceleration_unit),
+        Coordinate("acceleration", fitted.columns[:, fitted.owners == INERTIA][:, 0], kind.acceleration_unit),
         Coordinate("current", fitted.effort, effort_unit if current is None else "A", current),
         Coordinate("time", time, "s"),
         Coordinate("direction", sign, "dimensionless"),

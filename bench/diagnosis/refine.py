@@ -14,13 +14,10 @@ import numpy as np
 import scipy.optimize
 
 from bench.arrays import Array
-from bench.diagnosis.add.extension import Stage
-from bench.diagnosis.add.held_out import HeldOut
-from bench.diagnosis.add.model import present_of
-from bench.diagnosis.add.tracking import Recorded, VelocityGaps
-from bench.diagnosis.found import NamedEffect
-from bench.diagnosis.name.name import Suspects, named
+from bench.diagnosis.model import Stage, present_of
+from bench.diagnosis.name import NamedEffect, Suspects, named
 from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.tracking import HeldOut, Recorded, VelocityGaps
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.fit.parameter import Parameter
@@ -63,19 +60,27 @@ def refined(recordings: Recordings, stage: Stage, suspects: Suspects, held_out: 
     """
     effects, parameters = named(recordings, stage.fitted, stage.detected(suspects))
     plain = Refined(stage.model, effects, parameters, None)
-    if stage.model is None or not effects or suspects.policy.remainder.holds(stage.fitted):
+    if stage.model is None or not effects or suspects.policy.remains(stage.fitted):
         return plain
     before = gaps.of(stage, held_out.recorded)
     if not before > NULL * white_noise(measured_velocity(recordings.trace)):
         return plain
-    found = refined_model(stage.model, Numbers.of(effects, parameters), held_out, gaps)
-    if found is None or not found.gap or not found.gap[1] < (1.0 - WON) * before:
+    numbers = Numbers.of(effects, parameters)
+    found = refined_model(stage.model, numbers, held_out, gaps)
+    if found is None or not found[2] < (1.0 - WON) * before:
         return plain
-    return replace(found, gap=(before, found.gap[1]))
+    model, values, after = found
+    return Refined(model, *numbers.named(values), gap=(before, after))
 
 
-def refined_model(stored: StoredModel, numbers: Numbers, held_out: HeldOut, gaps: VelocityGaps) -> Refined | None:
-    """The model refined on the motion that is not held out; None if that fails."""
+def refined_model(
+    stored: StoredModel, numbers: Numbers, held_out: HeldOut, gaps: VelocityGaps
+) -> tuple[StoredModel, Array, float] | None:
+    """The model refined on the motion that is not held out; None if that fails.
+
+    Returns:
+        The model, its values (p,), and its velocity gap in the motion held out - rad/s (m/s).
+    """
     values = stepped(stored, numbers, held_out.seen, gaps)
     if values is None:
         return None
@@ -83,8 +88,8 @@ def refined_model(stored: StoredModel, numbers: Numbers, held_out: HeldOut, gaps
         model = numbers.model(stored, values)
     except InputError:
         return None
-    after = gaps.of_models([model], [held_out.recorded])[0]
-    return Refined(model, *numbers.named(values), gap=(float("nan"), after))
+    (velocity,) = gaps.velocities([model], [held_out.recorded])
+    return model, values, held_out.recorded.gap(velocity)
 
 
 @dataclass(frozen=True)

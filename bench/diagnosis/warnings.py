@@ -1,4 +1,4 @@
-"""What a recording or its result looks like when a unit, a range or a sensor is wrong, found as warnings."""
+"""Warnings: a unit, a range or a sensor that looks wrong, and what the recording does not determine."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from bench.axis_kind import COULOMB, OFFSET, AxisKind
+from bench.fit.fit import Fit
 from bench.fit.parameter import Parameter
+from bench.fit.rows import Rows
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -19,6 +22,30 @@ AT_LIMIT = 0.02
 def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> list[str]:
     """Warnings: less inertia than the rotor alone has, or a signal that stands at the end of its range."""
     return [*_less_than_the_rotor(rig, parameters), *_clipped(trace, rig)]
+
+
+def left_open(rows: Rows, kind: AxisKind) -> list[str]:
+    """A warning of what motion in one direction does not determine."""
+    if not rows.scope.one_way:
+        return []
+    offset, friction = kind.parameter(OFFSET), kind.parameter(COULOMB)
+    forward = float(np.mean(rows.values(lambda s: s.sign))) > 0.0
+    return [
+        f"the axis moves {'forward' if forward else 'backward'} only: {friction} holds any "
+        f"{offset} too, and no effect on friction was sought; record both directions for that"
+    ]
+
+
+def impacts(fitted: Fit, unit: str) -> list[str]:
+    """A warning if rows that depend on the instants of impacts were excluded from the verdict."""
+    share = 1.0 - float(fitted.determined.mean())
+    if share == 0.0:
+        return []
+    return [
+        f"{100.0 * share:.0f} % of the rows follow impacts so closely that their torque hangs on instants which the "
+        f"recording does not tell: the verdict is by the others, on which {fitted.rms:.3g} {unit} are left; the torque "
+        "gap counts all"
+    ]
 
 
 def _less_than_the_rotor(rig: Rig, parameters: Mapping[str, Parameter]) -> list[str]:

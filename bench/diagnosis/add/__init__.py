@@ -1,1 +1,0 @@
-"""Add what was named to the MuJoCo model, and keep what motion that was held out bears out."""

@@ -1,1 +1,0 @@
-"""The gap: what inertia, viscous and Coulomb friction leave of the torque, where a recording can tell."""

@@ -1,0 +1,215 @@
+"""The policy of naming: every number that decides on a name in one table, and the questions that it answers.
+
+Most of them are one question: is an explanation of some rows better than another? It is if the squares that it saves
+are more than chance saves in a search, and more than a share of the squares at stake.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.effects.effect import Effect
+from bench.fit.covariance import NOISE_ALONE
+from bench.fit.fit import Fit, explained
+from bench.fit.shapes import free_shapes
+
+
+def freedom(fitted: Fit) -> int:
+    """Numbers that were fitted: strengths and continuous shapes."""
+    return fitted.theta.size + sum(len(free_shapes(term, fitted.scope)) for term in fitted.terms)
+
+
+def worth(without: Fit, having: Fit) -> float:
+    """Squares that an effect saves, summed over rows - (N*m)**2 (N**2)."""
+    return without.squares - having.squares
+
+
+def over_noise(fitted: Fit) -> float:
+    """RMS residual over that of white sensor noise in the same balance, which effects damp or amplify - 1."""
+    return fitted.rms / fitted.noise.white
+
+
+@dataclass(frozen=True)
+class Margin:
+    """By how much one explanation must be better than another.
+
+    Attributes:
+        share: of the squares at stake that it must save.
+        leaves: residual over noise floor that it may leave at most.
+    """
+
+    share: float = 0.0
+    leaves: float = math.inf
+
+
+@dataclass(frozen=True)
+class Policy:
+    """All that decides on a name; "above noise" are squares beyond those of the noise floor.
+
+    `python -m tests.studies.blind.thresholds` halves and doubles each number over the blind set.
+
+    Attributes:
+        chance: gain over noise power, per number fitted and independent row, that is more than chance in a search over
+            some hundred candidates. Of 100 nulls the best candidate saves 6 in the middle and 116 at most per number of
+            its shape (`python -m tests.studies.blind.margins`).
+        remainder: residual over noise floor above which something is left, and the verdict says so. Nulls of the blind
+            set leave 1.095 at 95 %, 1.40 at most (the same program).
+        large: residual over noise from which on it is no noise, even if noise is louder than the signals show: encoders
+            that interpolate with an error left 1.1 to 4 without a coupling, a servo's gear behind a coarse speed 6.4 to
+            7.8. Names beside which so much is left are likelier the nearest than the right ones.
+        promising: of what is above noise: what a candidate takes even at a grid's shape, so that its own is searched;
+            less than any effect needs, as the grid is coarse.
+        finalists: candidates at most whose shapes are searched before they are compared.
+        explains: factor on the share of what is above noise that each effect states as needed of itself.
+        needed: of what is above noise without it: what a name takes beside those that came after it.
+        as_good: of what a name takes: what a candidate takes in its place, even at a grid's shape.
+        exchanges: candidates at most whose shapes are searched in the place of a name.
+        replaces: of what is above noise, on the rows that are determined: what an effect takes that is tried in the
+            place of others.
+        determined: share of rows whose torque the recording determines beside such an effect, at least.
+        holdout_apart: how much further above its noise the holdout may stand than the recording, without an event.
+        overlap: of the shorter one: how long an event of the holdout is the recording's, too.
+        contested: of what is above noise: what a rival from outside the catalogue explains beyond a name.
+        keeps: share of its worth that a name keeps beside a rival that takes nothing of it.
+        wrong_form: of what is above noise: what relatives of a wave explain only if it is of the wrong form, and what
+            they leave then. Eccentricity under another name left 0.8 to 1.1, gravity of a pendulum on a gear 2.1.
+        one_for_several: what one explanation leaves in the place of several names.
+        believable: of what was above noise without names: what may be left beside them, unless one `tolerates` more.
+        holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave. Of
+            the blind set's cases that are explained 2.5 at most, nine in ten 1.6.
+        most: effects at most; a family of harmonics is one of them.
+        members: of a family at most: more waves or events draw anything.
+    """
+
+    chance: float = 40.0
+    remainder: float = NOISE_ALONE
+    large: float = 3.0
+    promising: Margin = Margin(0.1)
+    finalists: int = 4
+    explains: float = 1.0
+    needed: Margin = Margin(0.02)
+    as_good: Margin = Margin(0.9)
+    exchanges: int = 2
+    replaces: Margin = Margin(0.5)
+    determined: float = 0.5
+    holdout_apart: float = 1.25
+    overlap: float = 0.5
+    contested: Margin = Margin(0.25)
+    keeps: Margin = Margin(0.5)
+    wrong_form: Margin = Margin(0.5, leaves=1.25)
+    one_for_several: Margin = Margin(leaves=NOISE_ALONE)
+    believable: float = 0.2
+    holdout_gap: float = 3.0
+    most: int = 12
+    members: int = 12
+
+    def better(
+        self, saved: float, by: Margin, stake: float = 0.0, chance: float = -math.inf, leaves: float = 0.0
+    ) -> bool:
+        """Whether one explanation of some rows is better than another.
+
+        Args:
+            saved: squares that it leaves less - (N*m)**2 (N**2).
+            by: the margin.
+            stake: squares of which the margin asks a share - (N*m)**2 (N**2).
+            chance: squares that chance saves - (N*m)**2 (N**2).
+            leaves: residual over noise floor that it leaves.
+        """
+        return saved > max(chance, by.share * stake) and leaves <= by.leaves
+
+    def by_chance(self, fitted: Fit, numbers: int, noise: float | None = None) -> float:
+        """Squares that so many numbers save by chance at most - (N*m)**2 (N**2).
+
+        Args:
+            fitted: whose noise it is.
+            numbers: that are added.
+            noise: its power in a row instead - (N*m)**2 (N**2).
+        """
+        return self.chance * numbers * fitted.rows.correlation * (fitted.floor**2 if noise is None else noise)
+
+    def significant(self, without: Fit, having: Fit, numbers: int, noise: Fit) -> bool:
+        """Whether a fit leaves less than another by more than chance in so many numbers, with the noise of a fit."""
+        return self.better(worth(without, having), Margin(), chance=self.by_chance(noise, numbers))
+
+    def remains(self, fitted: Fit) -> bool:
+        """Whether what is left stands clearly above noise."""
+        return fitted.chi > self.remainder
+
+    def only_damps(self, before: Fit, after: Fit) -> bool:
+        """Whether the squares that `after` saves may be noise of the motion that it damps, as a coupling does."""
+        return over_noise(before) < self.large and over_noise(before) <= over_noise(after)
+
+    def promises(self, current: Fit, gain: float) -> bool:
+        """Whether a candidate that takes so much at a grid's shape is worth the search of its shape."""
+        return self.better(gain, self.promising, current.excess, self.by_chance(current, 1))
+
+    def accepts(self, before: Fit, after: Fit) -> bool:
+        """Whether the last term of `after` explains its share of what is above noise, significantly and physically.
+
+        The nearest effect explains a part of all. Noise is what the less coloured of the two floors says: an effect
+        that never pauses, such as the cogging of a steady speed, passes for coloured noise until it is named. White
+        noise is that of the model before: an effect that filters speed or copies torque lowers its own, and what it
+        damps of noise it does not explain. It must not only damp.
+        """
+        if self.only_damps(before, after):
+            return False
+        noise = min(before.floor, after.floor * before.noise.white / after.noise.white) ** 2
+        excess = before.excess or max(before.squares - before.count * noise, 0.0)
+        term = after.terms[-1]
+        added = after.theta.size - before.theta.size + len(term.shape)
+        share = Margin(self.explains * term.effect.needed_share(term.shape, after.scope))
+        chance = self.by_chance(before, added, noise)
+        explains = share.share * excess > 0.0 and self.better(explained(before, after), share, excess, chance)
+        return explains and self.physical(after)
+
+    def physical(self, fitted: Fit) -> bool:
+        """Whether every effect keeps within what physics allows: friction resists, masses are positive."""
+        if fitted.base.inertia <= 0.0:
+            return False
+        for index, term in enumerate(fitted.terms):
+            if not term.effect.physical(fitted.strengths(index), term.shape, fitted.base):
+                return False
+        return all(_plausible(effect, fitted) for effect in {term.effect for term in fitted.terms})
+
+    def needs(self, fitted: Fit, less: Fit, index: int) -> bool:
+        """Whether a term, without which `less` is, still saves something beside those that came after it.
+
+        One that may only damp noise does not.
+        """
+        numbers = max(len(fitted.strengths(index)) + len(fitted.terms[index].shape), 1)
+        saves = self.better(worth(less, fitted), self.needed, less.excess, self.by_chance(fitted, numbers))
+        return saves and not self.only_damps(less, fitted)
+
+    def exchanges_for(self, before: Fit, after: Fit) -> bool:
+        """Whether `after`, with another effect in the place of a name, leaves less by more than chance."""
+        numbers = max(freedom(after) - freedom(before), 1)
+        return self.significant(before, after, numbers, before) and self.physical(after)
+
+    def replaces_by(self, before: Fit, after: Fit) -> bool:
+        """Whether `after`, with its last term in the place of others, leaves clearly less where it is determined.
+
+        And no more where it is not.
+        """
+        index = len(after.terms) - 1
+        if not after.terms[index].effect.physical(after.strengths(index), after.terms[index].shape, after.base):
+            return False
+        left = float(np.sum(before.residual[after.determined] ** 2))
+        excess = max(left - after.count * before.floor**2, 0.0)
+        clearly = self.better(left - after.squares, self.replaces, excess)
+        no_more = float(np.sum(after.left**2)) < before.squares
+        enough = float(after.determined.mean()) > self.determined
+        return clearly and no_more and enough and not self.only_damps(before, after)
+
+
+def _plausible(effect: Effect, fitted: Fit) -> bool:
+    """Whether the terms of an effect, several if it is repeatable, are credible together."""
+    own = [index for index, term in enumerate(fitted.terms) if term.effect is effect]
+    strengths, shapes = [fitted.strengths(index) for index in own], [fitted.terms[index].shape for index in own]
+    return effect.plausible(strengths, shapes, fitted.scope)
+
+
+#: Default policy of naming.
+POLICY = Policy()

@@ -1,0 +1,192 @@
+"""Forward selection: try every effect, keep what explains, polish it, let go of what a later one explains.
+
+Stop, accept and "unexplained" are tests against the noise floor of the recording itself (chi = 1 where only noise is
+left), so a recording in which nothing is hidden ends without a name. The rules are `bench.diagnosis.policy`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from bench.diagnosis.policy import Policy, worth
+from bench.effects.effect import Effect
+from bench.fit.fit import Fit, fit
+from bench.fit.hum import with_hum
+from bench.fit.hypothesis import Term
+from bench.fit.load_side import on_other_side, outer_loads
+from bench.fit.shapes import shaped, together
+
+#: Said of a search that its limit ended.
+LIMIT = "limit of effects reached"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect tried.
+
+    Attributes:
+        term: effect and shape.
+        gain: sum of squares it would take from the residual - (N*m)**2 (N**2).
+    """
+
+    term: Term
+    gain: float
+
+
+@dataclass(frozen=True)
+class Step:
+    """An effect taken up: its hypothesis fitted, and the candidates it was chosen from, best first."""
+
+    fitted: Fit
+    rivals: tuple[Candidate, ...] = ()
+
+
+@dataclass(frozen=True)
+class Searched:
+    """Steps of a search.
+
+    Attributes:
+        steps: the first without an effect.
+        stopped: what ended it before it was done; None if nothing did.
+        ended: the fit to which nothing more was added, and what was tried beside it; None without a search.
+    """
+
+    steps: tuple[Step, ...]
+    stopped: str | None = None
+    ended: Step | None = None
+
+    @property
+    def last(self) -> Fit:
+        """With all effects."""
+        return self.steps[-1].fitted
+
+
+def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
+    """Effects in the order in which they are taken up.
+
+    Args:
+        bare: the fit without an effect.
+        effects: to be tried.
+        policy: that decides.
+    """
+    found = forward_selection(Searched((Step(bare),)), effects, policy)
+    for _ in range(policy.most):  # each leaves less, so it ends before; what is let go in between could turn it round
+        better = exchanged(found.last, effects, policy)
+        if better is None:
+            break
+        found = forward_selection(Searched((*found.steps, Step(better))), effects, policy)
+    if policy.remains(found.last):
+        for effect in effects:
+            replaced = replacement(found.last, effect, policy) if effect.replaces else None
+            if replaced is not None:
+                steps = found.steps[:-1] if len(found.steps) > 1 else found.steps
+                found = forward_selection(Searched((*steps, Step(replaced))), effects, policy)
+    return found
+
+
+def forward_selection(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
+    """Steps with effects added until none is worthwhile, or the limit is reached."""
+    steps = found.steps
+    while True:
+        current = steps[-1].fitted
+        tried = candidates(current, effects)
+        promising = [candidate for candidate in tried if policy.promises(current, candidate.gain)]
+        finalists = [refined(current, candidate.term) for candidate in promising[: policy.finalists]]
+        better = [after for after in finalists if policy.accepts(current, after)]
+        if not better:
+            return Searched(steps, ended=Step(current, tuple(tried)))
+        best = min(better, key=lambda after: after.squares)
+        names = Counter(best.hypothesis.names)
+        if len(names) > policy.most or max(names.values()) > policy.members:
+            return Searched(steps, LIMIT, Step(current, tuple(tried)))
+        chosen = with_hum(backward_elimination(on_its_side(polished(best, policy), policy), policy))
+        if _repeats_a_step(chosen, steps, policy):
+            return Searched(steps, ended=Step(current, tuple(tried)))
+        steps = (*steps, Step(chosen, tuple(tried)))
+
+
+def candidates(current: Fit, effects: Iterable[Effect]) -> list[Candidate]:
+    """The best shape of every effect that may come beside what is fitted, best first."""
+    found = []
+    for effect in effects:
+        if not effect.sought(current.scope) or not current.hypothesis.admits(effect):
+            continue
+        tried = [Candidate(Term(effect, proposal.shape), proposal.gain) for proposal in effect.propose(current)]
+        tried = [candidate for candidate in tried if not any(candidate.term.same(term) for term in current.terms)]
+        if tried:
+            found.append(max(tried, key=lambda candidate: candidate.gain))
+    return sorted(found, key=lambda candidate: -candidate.gain)
+
+
+def refined(current: Fit, term: Term) -> Fit:
+    """A term added, its shape searched around where the grid found it."""
+    return shaped(current.rows, current.hypothesis.plus(term), len(current.terms))
+
+
+def polished(fitted: Fit, policy: Policy) -> Fit:
+    """Every term's shape searched again beside the others, then all of them at once."""
+    if len(fitted.terms) < 2:
+        return fitted
+    for index in range(len(fitted.terms)):
+        tried = shaped(fitted.rows, fitted.hypothesis, index)
+        fitted = tried if policy.physical(tried) else fitted
+    tried = together(fitted)
+    return tried if policy.physical(tried) else fitted
+
+
+def on_its_side(fitted: Fit, policy: Policy) -> Fit:
+    """With outer loads on the side of a coupling, motor or load, on which they explain more, if much is left."""
+    if not policy.remains(fitted) or not outer_loads(fitted.hypothesis) or fitted.hypothesis.coupling is None:
+        return fitted
+    moved = shaped(fitted.rows, on_other_side(fitted.hypothesis), fitted.hypothesis.coupling)
+    return min(fitted, moved, key=lambda found: found.squares)
+
+
+def backward_elimination(fitted: Fit, policy: Policy) -> Fit:
+    """Without the terms that no longer explain anything beside the later ones."""
+    for index in range(len(fitted.terms) - 1, -1, -1):
+        if len(fitted.terms) < 2:
+            break
+        less = fit(fitted.rows, fitted.hypothesis.without(index))
+        fitted = fitted if policy.needs(fitted, less, index) else less
+    return fitted
+
+
+def _repeats_a_step(fitted: Fit, steps: Sequence[Step], policy: Policy) -> bool:
+    """Whether an earlier step had the same effects and left no more: what is taken up and let go in turn never ends."""
+    names = Counter(fitted.hypothesis.names)
+    same = [step.fitted for step in steps if Counter(step.fitted.hypothesis.names) == names]
+    return any(not policy.significant(earlier, fitted, 1, fitted) for earlier in same)
+
+
+def exchanged(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit | None:
+    """The hypothesis with an earlier name exchanged for one that leaves less by more than chance; else None.
+
+    What was nearest when nothing stood beside it need not be so among the others (sequential replacement: A. J. Miller,
+    Journal of the Royal Statistical Society A 147, 1984, 389-425).
+    """
+    found = []
+    for index, term in enumerate(fitted.terms[:-1]):
+        less = fit(fitted.rows, fitted.hypothesis.without(index))
+        taken = worth(less, fitted)
+        tried = candidates(less, [effect for effect in effects if effect is not term.effect])
+        as_good = [candidate for candidate in tried if policy.better(candidate.gain, policy.as_good, taken)]
+        instead = [refined(less, candidate.term) for candidate in as_good[: policy.exchanges]]
+        found += [after for after in instead if policy.exchanges_for(fitted, after)]
+    if not found:
+        return None
+    return with_hum(backward_elimination(polished(min(found, key=lambda after: after.squares), policy), policy))
+
+
+def replacement(fitted: Fit, effect: Effect, policy: Policy) -> Fit | None:
+    """The hypothesis with an effect in the place of those it replaces, if that explains clearly more."""
+    kept = [term for term in fitted.terms if term.effect.name not in effect.replaces]
+    current = fit(fitted.rows, fitted.hypothesis.with_terms(kept))
+    shape = effect.in_place_of(current) if current.hypothesis.admits(effect) else None
+    if shape is None:
+        return None
+    first = fit(fitted.rows, current.hypothesis.plus(Term(effect, shape)))
+    after = shaped(first.rows, first.hypothesis, len(current.terms))  # from where levels and loads have settled
+    return backward_elimination(after, policy) if policy.replaces_by(fitted, after) else None

@@ -1,1 +1,0 @@
-"""Show the gap shrink, and what to record next."""

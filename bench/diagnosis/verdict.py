@@ -1,0 +1,142 @@
+"""The verdict, with every objection to a model that claims to explain everything.
+
+Each objection is a function that gives its reason in one line, empty if there is none.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.arrays import rms
+from bench.axis_kind import COULOMB, VISCOUS
+from bench.diagnosis.add import Added
+from bench.diagnosis.gaps import Gap
+from bench.diagnosis.name import NamedEffect, Suspects
+from bench.diagnosis.recordings import Recordings
+from bench.fit.fit import Fit
+from bench.fit.parameter import Parameter
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a diagnosis shows, as far as the verdict depends on it.
+
+    Attributes:
+        recordings, suspects, added: as found.
+        torque, velocity: gaps of the bare axis and of the model.
+    """
+
+    recordings: Recordings
+    suspects: Suspects
+    added: Added
+    torque: Gap
+    velocity: Gap
+
+    @property
+    def whole(self) -> Fit:
+        """The torque balance with all effects."""
+        return self.added.extension.whole.fitted
+
+    @property
+    def effects(self) -> list[NamedEffect]:
+        """The named effects."""
+        return self.added.refined.effects
+
+    @property
+    def friction(self) -> dict[str, tuple[Parameter, float]]:
+        """Viscous and Coulomb friction, each with its RMS torque at unit strength."""
+        kind, whole, parameters = self.recordings.rig.axis_kind, self.whole, self.added.refined.parameters
+        return {
+            kind.parameter(term): (parameters[kind.parameter(term)], rms(whole.columns[:, whole.owners == term]))
+            for term in (VISCOUS, COULOMB)
+        }
+
+
+def remains(shown: Shown) -> str:
+    """The torque residual is clearly above noise: by what multiple of the floor."""
+    if not shown.suspects.policy.remains(shown.whole):
+        return ""
+    return f"the torque gap is {shown.whole.chi:.3g} times what noise leaves"
+
+
+def unfinished(shown: Shown) -> str:
+    """The search ended at a limit, or found an effect that was excluded."""
+    stopped = shown.suspects.searched.stopped
+    return stopped or ("an effect that was not to be tried" if shown.suspects.withheld else "")
+
+
+def moves_worse(shown: Shown) -> str:
+    """The model moves worse than the bare axis, by more than noise: in the recording that shows it first."""
+    gap = shown.velocity
+    for name, pair in (("recording", gap.identify), ("holdout", gap.holdout)):
+        if shown.effects and pair is not None and pair[1] > math.hypot(pair[0], gap.noise_floor):
+            return f"simulated motion of the {name} is worse with it: {pair[0]:.3g} -> {pair[1]:.3g} {gap.unit}"
+    return ""
+
+
+def undetermined(shown: Shown) -> str:
+    """A quantity is undetermined: its interval is wider than its value.
+
+    One that is minor, as a share between dry and viscous friction, does not count. A phase is wide if it may be
+    anywhere in its turn, an instant if it may be anywhere in the recording. Friction as wide counts where the torque
+    that it leaves open is more than noise.
+    """
+    if not shown.effects:
+        return ""
+    time = shown.recordings.trace.time
+    for named in shown.effects:
+        for quantity in (each for each in named.effect.quantities if not each.minor):
+            found = named.parameters.get(quantity.name)
+            itself = np.pi if quantity.angle else float(time[-1] - time[0]) if quantity.instant else None
+            if found is not None and found.half_width > (abs(found.value) if itself is None else itself):
+                return f"{named.name}: {_with_interval(quantity.name, found)} is not determined"
+    for name, (found, torque) in shown.friction.items():
+        if found.half_width > abs(found.value) and found.half_width * torque > shown.torque.noise_floor:
+            return f"{_with_interval(name, found)} is not determined"
+    return ""
+
+
+def negative_friction(shown: Shown) -> str:
+    """Friction is negative by more than noise, so it includes something else."""
+    for name, (found, torque) in shown.friction.items():
+        if found.value < 0.0 and (found.ci95[1] < 0.0 or -found.value * torque > shown.torque.noise_floor):
+            return f"{_with_interval(name, found)} is negative"
+    return ""
+
+
+def holdout_apart(shown: Shown) -> str:
+    """The model does not hold on the holdout: how far that is off."""
+    gap = shown.torque
+    if gap.holdout is None or gap.identify is None:
+        return ""
+    least = max(gap.identify[1], gap.noise_floor)
+    if gap.holdout[1] <= shown.suspects.policy.holdout_gap * least:
+        return ""
+    return f"the holdout stands apart: {gap.holdout[1]:.3g} {gap.unit} are left there, {least:.3g} here"
+
+
+#: In the order in which they are listed.
+OBJECTIONS: tuple[Callable[[Shown], str], ...] = (
+    remains,
+    unfinished,
+    moves_worse,
+    undetermined,
+    negative_friction,
+    holdout_apart,
+)
+
+
+def verdict(shown: Shown) -> tuple[str, list[str]]:
+    """The verdict, and the objections that it rests on."""
+    against = [objected for objection in OBJECTIONS if (objected := objection(shown))]
+    if against:
+        return "unexplained_remainder", against
+    return ("explained" if shown.effects else "nothing_missing"), []
+
+
+def _with_interval(name: str, found: Parameter) -> str:
+    return f"{name.replace('_', ' ')} ({found.value:.3g} ± {found.half_width:.2g} {found.unit})"

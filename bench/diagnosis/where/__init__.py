@@ -1,1 +1,0 @@
-"""Where the gap sits, before any effect is assumed."""
