@@ -122,7 +122,7 @@ def tracking(model: AxisModel, rig: Rig, references: References, feedforward: Fe
         model: of the axis, with effects.
         rig: with `[drive]`.
         references: the motion, at the drive's ticks.
-        told: what the drive feeds forward; None: what its rig file says.
+        feedforward: what the drive feeds forward; None: what its rig file says.
 
     Raises:
         InputError: a rig without drive.

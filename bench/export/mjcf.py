@@ -33,21 +33,10 @@ from bench.plant.model_file import StoredModel
 #: The body of a file that holds the joint alone.
 BODY = "load"
 #: What makes an actuator what it is, but for its name, its joint and its gear.
-ACTUATOR = (
-    *(
-        "gaintype",
-        "biastype",
-        "dyntype",
-        "gainprm",
-        "biasprm",
-        "dynprm",
-        "actdim",
-        "actearly",
-        "actlimited",
-        "actrange",
-    ),
-    *("ctrllimited", "ctrlrange", "ctrlspec", "forcelimited", "forcerange", "nsample", "interp", "delay"),
-)
+FORCE_LAW = ("gaintype", "biastype", "dyntype", "gainprm", "biasprm", "dynprm")
+ACTIVATION = ("actdim", "actearly", "actlimited", "actrange")
+INPUT = ("ctrllimited", "ctrlrange", "ctrlspec", "forcelimited", "forcerange", "nsample", "interp", "delay")
+ACTUATOR = (*FORCE_LAW, *ACTIVATION, *INPUT)
 TRANSMISSION = mujoco.mjtTrn.mjTRN_JOINT
 #: Whether a joint of a type turns.
 TURNS = {mujoco.mjtJoint.mjJNT_HINGE: True, mujoco.mjtJoint.mjJNT_SLIDE: False}

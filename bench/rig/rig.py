@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, ValidationError, model_validator
 
@@ -15,7 +15,7 @@ from bench.names import nearest, short
 from bench.rig.catalogue import catalogue_motor
 from bench.rig.drive import Drive
 from bench.rig.load import Load
-from bench.rig.motor import Motor, PeakCurve
+from bench.rig.motor import Motor
 from bench.rig.simulation import Simulation
 from bench.rig.values import RigTable, Time, Wrap, tolerance_of
 from bench.structured import read_toml
@@ -237,16 +237,11 @@ def _input_error(path: Path, error: ValidationError) -> InputError:
 
 
 def _known_keys(keys: list[str]) -> list[str]:
+    """Keys of the table that a path of keys leads to."""
     table: type[RigTable] = Rig
-    tables: dict[str, type[RigTable]] = {
-        "motor": Motor,
-        "load": Load,
-        "drive": Drive,
-        "trace": TraceNotes,
-        "simulation": Simulation,
-        "check": CheckTable,
-        "peak_curves": PeakCurve,
-    }
     for key in keys:
-        table = tables.get(key, table)
+        if key in table.model_fields:
+            kind = table.model_fields[key].annotation
+            tables = [one for one in (kind, *get_args(kind)) if isinstance(one, type) and issubclass(one, RigTable)]
+            table = tables[0] if tables else table
     return [name for name in table.model_fields if name != "source"]

@@ -9,29 +9,24 @@ from bench.rig.rig import Rig
 def lacking(rig: Rig) -> dict[str, tuple[str, ...]]:
     """Command -> keys that it needs and the rig does not give; none where the rig suffices."""
     motor, kind = rig.motor, rig.axis_kind
-    constant = ("torque_constant", "force_constant")[not kind.turns]
-    no_constant = () if motor.torque_per_ampere is not None else (f"motor.{constant} (or the four datasheet values)",)
-    no_limit = () if motor.peak_torque is not None else ("motor.peak_current (or peak_torque)",)
-    if motor.peak_current is not None and not no_constant:
-        no_limit = ()
-    disk = rig.load is not None and rig.load.disk(kind) > 0.0
-    own = rig.simulation is not None and getattr(rig.simulation, kind.inertia) is not None
-    simulate = [
-        *(("drive (position_gain, velocity_gain)",) if rig.drive is None else ()),
-        *(
-            ("simulation (a table; friction, noise and sensors of the simulated axis)",)
-            if rig.simulation is None
-            else ()
-        ),
-        *no_constant,
-        *no_limit,
-        *(() if own or disk or motor.inertia else (f"simulation.{kind.inertia} (or motor and load that give it)",)),
-    ]
-    limits = [
-        f"motor.{name}" for name in ("peak_torque", "continuous_stall_torque") if getattr(motor, name) is None
-    ] + ([] if motor.peak_curves else ["motor.peak_curves"])
-    simulated = dict.fromkeys(("simulate", "validate", "plan"), tuple(simulate))
-    return {"identify": (), "diagnose": (), **simulated, "limits": tuple(limits)}
+    constant, limit = motor.torque_per_ampere is not None, motor.peak_torque is not None
+    inertia = rig.simulation is not None and getattr(rig.simulation, kind.inertia) is not None
+    inertia = inertia or bool(motor.inertia) or (rig.load is not None and rig.load.disk(kind) > 0.0)
+    simulate = {
+        "drive (position_gain, velocity_gain)": rig.drive is not None,
+        "simulation (a table; friction, noise and sensors of the simulated axis)": rig.simulation is not None,
+        f"motor.{'torque' if kind.turns else 'force'}_constant (or the four datasheet values)": constant,
+        "motor.peak_current (or peak_torque)": limit or (constant and motor.peak_current is not None),
+        f"simulation.{kind.inertia} (or motor and load that give it)": inertia,
+    }
+    limits = {
+        "motor.peak_torque": limit,
+        "motor.continuous_stall_torque": motor.continuous_stall_torque is not None,
+        "motor.peak_curves": bool(motor.peak_curves),
+    }
+    simulated = dict.fromkeys(("simulate", "validate", "plan"), simulate)
+    needs: dict[str, dict[str, bool]] = {"identify": {}, "diagnose": {}, **simulated, "limits": limits}
+    return {command: tuple(key for key, given in keys.items() if not given) for command, keys in needs.items()}
 
 
 def without_constant(rig: Rig) -> str | None:
