@@ -68,7 +68,7 @@ def subject(
         return Subject(known, lambda path: read(path, known.trace), robot=False)
     if joint is None:
         raise InputError("--joint", "missing", "allowed: the joint of the MJCF that the log is of")
-    from bench.plant.robot import Robot, beside_robot, read_beside
+    from bench.plant.robot import Robot, read_log, rig_within
 
     robot = Robot.of(mjcf, joint)
     alone = {"name": joint, "kind": "rotary" if robot.turns else "linear"}
@@ -76,9 +76,9 @@ def subject(
     if own.axis_kind.turns is not robot.turns:
         found = f"found a joint that {'turns' if robot.turns else 'slides'}"
         raise InputError(f"--joint {joint}", found, f"allowed: a {own.kind} one, as {own.source} says")
-    beside = beside_robot(own, robot)
+    within = rig_within(own, robot)
     stands = _positions(at or (), robot.units)
-    return Subject(beside, lambda path: read_beside(path, beside, robot, stands), robot=True)
+    return Subject(within, lambda path: read_log(path, within, robot, stands), robot=True)
 
 
 def _positions(texts: Sequence[str], units: dict[str, str]) -> dict[str, float]:

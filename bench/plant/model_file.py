@@ -106,12 +106,12 @@ def model_xml(stored: StoredModel) -> str:
     return "".join(f"<!-- {note} -->\n" for note in notes if note) + spec.to_xml()
 
 
-def model_toml(stored: StoredModel, beside: Mapping[str, Any] | None = None) -> str:
+def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) -> str:
     """The whole model as TOML, every value with its unit.
 
     Args:
         stored: the model.
-        beside: further tables of the same file, by name.
+        further: tables of the same file, by name.
     """
     model, kind = stored.model, stored.model.parameters.kind
     content: dict[str, Any] = {"name": stored.name, "misalignment": _determined(stored.misalignment, "s")}
@@ -128,7 +128,7 @@ def model_toml(stored: StoredModel, beside: Mapping[str, Any] | None = None) -> 
         content["effects"] = [_effect_table(present, kind) for present in model.effects]
     if stored.mounting.stated:
         content["mounting"] = {key: _determined(value, MOUNTED[key]) for key, value in stored.mounting.stated.items()}
-    return tables_toml(kind, {**content, **(beside or {})})
+    return tables_toml(kind, {**content, **(further or {})})
 
 
 def tables_toml(kind: AxisKind, tables: Mapping[str, Any]) -> str:

@@ -146,13 +146,13 @@ class Robot:
         return [np.array(values) for values in bound]
 
 
-def beside_robot(rig: Rig, robot: Robot) -> Rig:
+def rig_within(rig: Rig, robot: Robot) -> Rig:
     """The rig of a joint whose links the robot's model knows."""
     load = (rig.load or Load()).model_copy(update={"link_inertia": robot.inertia})
     return rig.model_copy(update={"load": load})
 
 
-def read_beside(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Trace:
+def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Trace:
     """A log of a joint with the torque that the rest of the robot asks of it.
 
     The log holds, beside the joint's own signals, `NAME.position` of every other joint and `NAME.velocity` where it is

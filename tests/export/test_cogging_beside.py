@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.fit.identify import identify
-from bench.plant.robot import Robot, beside_robot, read_beside
+from bench.plant.robot import Robot, read_log, rig_within
 from bench.rig.rig import Rig
 from tests.export.two_links import HIDDEN, MJCF, log, motion, write_log
 
@@ -14,8 +14,8 @@ def armature(folder, duration, phase):
     (folder / "robot.xml").write_text(MJCF)
     write_log(folder / "log.csv", log(duration=duration, phase=phase, seed=round(10 * phase)))
     robot = Robot.of(folder / "robot.xml", "elbow")
-    rig = beside_robot(Rig.of({"name": "elbow", "kind": "rotary"}), robot)
-    estimate = identify(read_beside(folder / "log.csv", rig, robot, {}), rig)
+    rig = rig_within(Rig.of({"name": "elbow", "kind": "rotary"}), robot)
+    estimate = identify(read_log(folder / "log.csv", rig, robot, {}), rig)
     return estimate.parameters["armature"], estimate.warnings
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import bench
 from bench.errors import InputError
-from bench.plant.robot import Robot, beside_robot, read_beside
+from bench.plant.robot import Robot, read_log, rig_within
 from bench.rig.rig import Rig
 from bench.trace.known_torque import less_known
 from tests.export.two_links import C2, HIDDEN, I2, M2, MJCF, elbow_torque, log, motion, shoulder_torque, write_log
@@ -68,8 +68,8 @@ def test_it_is_that_of_mujocos_inverse_dynamics(tmp_path, arm):
 
 def identified(path, arm, rig=ELBOW, **stated):
     robot = Robot.of(arm, "elbow")
-    beside = beside_robot(rig, robot)
-    return bench.identify(read_beside(path, beside, robot, stated), beside)
+    beside = rig_within(rig, robot)
+    return bench.identify(read_log(path, beside, robot, stated), beside)
 
 
 def test_the_joint_is_identified_among_its_links(arm, tmp_path):
@@ -106,13 +106,13 @@ def test_a_joint_that_stands_may_be_stated(arm, tmp_path):
     columns["elbow.torque [N*m]"] = elbow_torque(still + 0.3, still, still, *elbow) + HIDDEN.torque(*elbow)
     own = {name: values for name, values in columns.items() if not name.startswith("shoulder")}
     robot, path = Robot.of(arm, "elbow"), write_log(tmp_path / "log.csv", own)
-    beside = beside_robot(ELBOW, robot)
-    trace = read_beside(path, beside, robot, {"shoulder": 0.3})
+    beside = rig_within(ELBOW, robot)
+    trace = read_log(path, beside, robot, {"shoulder": 0.3})
     rest = less_known(trace, trace["torque"])
     own_torque = HIDDEN.torque(*elbow) + robot.inertia * elbow[2]
     np.testing.assert_allclose(rest[1:-1], own_torque[1:-1], atol=1e-4)
     with pytest.raises(InputError, match="joint 'shoulder': is neither in the log nor stated"):
-        read_beside(path, beside, robot, {})
+        read_log(path, beside, robot, {})
 
 
 SWIMS = MJCF.replace('<joint name="shoulder" axis="0 1 0"/>', '<freejoint name="shoulder"/>')
