@@ -7,10 +7,10 @@ count is worth, only the user knows.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
-from bench.units.conversion import kinds_of, powers_of, to_si
+from bench.units.conversion import kinds_of, named_unit, powers_of, to_si
 from bench.units.grammar import UnitError, UnitProduct, allowed, parse_unit
 
 #: Efforts and accelerations told by the mass that weighs so much: N*m in kg*cm, m/s**2 in g. ISO 80000-3: g_n.
@@ -47,8 +47,10 @@ def scale_of(text: str, wanted: tuple[str, ...]) -> UnitScale:
         turning = "rad" in si and si.count("/") <= 1
         if powers_of(parse_unit(si)) == powers and not (turning and kinds & {"share", "count"}):
             factor, offset = to_si(unit)
-            if unit.factor != 1.0 and to_si(replace(unit, factor=1.0))[1]:
+            if len(unit.powers) + (unit.factor != 1.0) > 1 and any(named_unit(name).offset for name in unit.powers):
                 raise UnitError(f"found '{unit.factor:g} {unit}'", f"allowed: {unit} without a factor, or {si}")
+            if not math.isfinite(factor):
+                break  # a logarithm, which has no factor
             if turning and "angle" not in kinds:
                 factor *= _turning(text, si, unit)
             return UnitScale(si, factor, offset)
