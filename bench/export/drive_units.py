@@ -11,8 +11,7 @@ from bench.arrays import Array
 from bench.export.feedforward import Feedforward, TorqueTable
 from bench.rig.rig import Rig
 from bench.trace.channel import split_label
-from bench.trace.signal_names import scale_in
-from bench.trace.signals import unit_on
+from bench.trace.signals import scale_in, unit_on
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from bench.errors import InputError
 from bench.trace.channel import Channel
 from bench.trace.choose import SignalColumn
 from bench.trace.reading_options import ReadingOptions
-from bench.trace.signal_names import scale_in
+from bench.trace.signals import scale_in
 
 #: Share of cells that may be empty as lost samples; a column with more of them is sampled by a clock of its own.
 FEW = 0.05

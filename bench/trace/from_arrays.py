@@ -15,8 +15,7 @@ from bench.errors import InputError
 from bench.names import nearest
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.columns import channel_of
-from bench.trace.signal_names import signal_of
-from bench.trace.signals import SI_UNITS
+from bench.trace.signals import SI_UNITS, signal_of
 from bench.units import parse
 
 FORMAT = "arrays"

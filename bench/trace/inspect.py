@@ -16,10 +16,10 @@ from bench.structured import json_text
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import SignalColumn, axes_of, choose, of_axis
 from bench.trace.in_si import InSI, in_si
-from bench.trace.likely import Likely, likely_signals
+from bench.trace.likely import Guess, likely_signals
 from bench.trace.read import read_recording
 from bench.trace.reading_options import ReadingOptions, reading_options
-from bench.trace.signal_names import scale_in
+from bench.trace.signals import scale_in
 from bench.trace.trace import Trace, on_time_base, unused
 
 SCHEMA = "bench.inspect/1"
@@ -219,7 +219,7 @@ def _columns(
     )
 
 
-def _column(channel: Channel, read: str | None, guess: Likely | None, known: set[str]) -> ColumnSummary:
+def _column(channel: Channel, read: str | None, guess: Guess | None, known: set[str]) -> ColumnSummary:
     numbers = channel.values[np.isfinite(channel.values)]
     signal, why, suggestion = read, (), None
     if read is None and guess is not None and guess.signal not in known:
@@ -240,7 +240,7 @@ def _column(channel: Channel, read: str | None, guess: Likely | None, known: set
     )
 
 
-def suggested(channel: Channel, guess: Likely) -> str:
+def suggested(channel: Channel, guess: Guess) -> str:
     """Line for `[trace.columns]`; `?` stands where only the user knows the unit."""
     unit = "" if channel.moments else f" [{guess.unit or '?'}]"
     return f"{guess.signal} = {json.dumps(channel.name + unit, ensure_ascii=False)}"

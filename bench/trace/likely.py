@@ -1,6 +1,7 @@
 """The signal that a column probably holds, judged by name, unit and values, with the reasons.
 
-Only a suggestion: the user decides and enters it in the rig's `[trace.columns]`.
+Columns of known vendors have the units of their manuals. Only a suggestion: the user decides and enters it in the rig's
+`[trace.columns]`.
 """
 
 from __future__ import annotations
@@ -13,9 +14,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.trace.channel import Channel
-from bench.trace.signal_names import is_index, signal_of, unit_of, wanted_units
-from bench.trace.signals import SI_UNITS
-from bench.trace.vendors import vendor_column
+from bench.trace.signals import SI_UNITS, is_index, signal_of, unit_of, wanted_units
 from bench.units.text import UnitError, is_unit, scale_of
 
 #: Words in column names, in the languages of drives, and letters of the field.
@@ -50,7 +49,58 @@ TIMES, AGREEMENT = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}, 
 
 
 @dataclass(frozen=True)
-class Likely:
+class VendorColumn:
+    """A column of a vendor.
+
+    Attributes:
+        signal: that it holds.
+        unit: by the manual; None if it depends on settings.
+        note: the source, and what to check.
+    """
+
+    signal: str
+    unit: str | None
+    note: str
+
+
+_DYNAMIXEL = "as Dynamixel's X series has it (control table in Robotis' e-manual); check your model's"
+_ODRIVE = "as ODrive has it (docs.odriverobotics.com, API reference)"
+_ROS = "as ROS has it (REP 103)"
+_VESC = "as VESC Tool logs it"
+_SINAMICS = "as SINAMICS has it (list manual)"
+_CIA402 = "object of CiA 402"
+
+#: Columns of drive vendors.
+COLUMNS: dict[str, VendorColumn] = {
+    "present_position": VendorColumn("position", "turn/4096", _DYNAMIXEL),
+    "present_velocity": VendorColumn("velocity", "0.229 rpm", _DYNAMIXEL),
+    "present_current": VendorColumn(
+        "current", "2.69 mA", _DYNAMIXEL + ": 2.69 mA of XM and XH, 1 mA of XL330 and XC330"
+    ),
+    "pos_estimate": VendorColumn("position", "turn", _ODRIVE),
+    "vel_estimate": VendorColumn("velocity", "turn/s", _ODRIVE),
+    "iq_measured": VendorColumn("current", "A", _ODRIVE),
+    "torque_estimate": VendorColumn("torque", "N*m", _ODRIVE),
+    "input_pos": VendorColumn("position_reference", "turn", _ODRIVE),
+    "input_vel": VendorColumn("velocity_reference", "turn/s", _ODRIVE),
+    "%time": VendorColumn("time", "ns", "as rostopic echo -p writes it"),
+    "position0": VendorColumn("position", "rad", _ROS),
+    "velocity0": VendorColumn("velocity", "rad/s", _ROS),
+    "effort0": VendorColumn("torque", "N*m", _ROS),
+    "ms_today": VendorColumn("time", "ms", _VESC),
+    "q_axis_current": VendorColumn("current", "A", _VESC),
+    "erpm": VendorColumn("velocity", None, "electrical revolutions: write rpm/P with the motor's P pairs of poles"),
+    "r63": VendorColumn("velocity", "rpm", _SINAMICS),
+    "r80": VendorColumn("torque", "N*m", _SINAMICS),
+    "r78": VendorColumn("current", "Arms", _SINAMICS),
+    "0x6064": VendorColumn("position", None, f"{_CIA402}, position actual value; its unit is a setting of the drive"),
+    "0x606c": VendorColumn("velocity", None, f"{_CIA402}, velocity actual value; its unit is a setting of the drive"),
+    "0x6077": VendorColumn("torque", "permille", f"{_CIA402}, torque actual value in permille of rated_torque"),
+}
+
+
+@dataclass(frozen=True)
+class Guess:
     """A signal that a column may hold.
 
     Attributes:
@@ -66,7 +116,7 @@ class Likely:
     weight: float
 
 
-def likely_signals(channels: Sequence[Channel]) -> dict[int, Likely]:
+def likely_signals(channels: Sequence[Channel]) -> dict[int, Guess]:
     """What each channel is likely to be, by its place in the file; no two of an axis are the same signal."""
     numeric = {
         place: channel for place, channel in enumerate(channels) if channel.defect is None and channel.values.size > 1
@@ -80,7 +130,7 @@ def likely_signals(channels: Sequence[Channel]) -> dict[int, Likely]:
         for guess in _guesses(channel, derived.get(place), place in times)
     ]
     found.sort(key=lambda pair: -pair[0].weight)
-    given: dict[int, Likely] = {}
+    given: dict[int, Guess] = {}
     taken: set[tuple[str, str | None]] = set()
     for guess, place in found:
         key = (guess.signal, channels[place].axis)
@@ -91,7 +141,7 @@ def likely_signals(channels: Sequence[Channel]) -> dict[int, Likely]:
         return _with_time_unit(given, channels)
 
 
-def _with_time_unit(given: dict[int, Likely], channels: Sequence[Channel]) -> dict[int, Likely]:
+def _with_time_unit(given: dict[int, Guess], channels: Sequence[Channel]) -> dict[int, Guess]:
     """A time without a unit takes the one in which position and velocity, both with theirs, agree."""
     of = {guess.signal: (place, guess) for place, guess in given.items()}
     if not {"time", "position", "velocity"} <= set(of):
@@ -115,7 +165,7 @@ def _with_time_unit(given: dict[int, Likely], channels: Sequence[Channel]) -> di
     return given
 
 
-def _in_si(channel: Channel, guess: Likely) -> Array | None:
+def _in_si(channel: Channel, guess: Guess) -> Array | None:
     if guess.unit is None:
         return None
     try:
@@ -124,7 +174,7 @@ def _in_si(channel: Channel, guess: Likely) -> Array | None:
         return None
 
 
-def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> list[Likely]:
+def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> list[Guess]:
     """Signals that a channel may be."""
     unit = written_unit_of(channel)
     own = signal_of(channel.name)
@@ -161,15 +211,15 @@ def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> 
     return guesses
 
 
-def _guess(signal: str, channel: Channel, unit: str | None, parts: list[str], why: list[str], weight: float) -> Likely:
+def _guess(signal: str, channel: Channel, unit: str | None, parts: list[str], why: list[str], weight: float) -> Guess:
     reference = f"{signal}_reference"
     if reference in SI_UNITS and any(_REFERENCE.fullmatch(part) for part in parts):
         why, signal, weight = [*why, "is a set-point by its name"], reference, weight - 0.25
     if unit is None and not channel.moments:
         known = vendor_column(channel.name)
         if known is not None and known.signal == signal:
-            return Likely(signal, known.unit, (*why, known.note), weight + 0.5)
-    return Likely(signal, unit, tuple(why), weight)
+            return Guess(signal, known.unit, (*why, known.note), weight + 0.5)
+    return Guess(signal, unit, tuple(why), weight)
 
 
 def written_unit_of(channel: Channel) -> str | None:
@@ -229,3 +279,12 @@ def _correlation(one: Array, other: Array) -> float:
     smooth = np.convolve(np.nan_to_num(other), np.ones(9) / 9.0, mode="same")
     spread = float(np.std(one) * np.std(smooth))
     return float(np.mean((one - one.mean()) * (smooth - smooth.mean()))) / spread if spread > 0.0 else 0.0
+
+
+def vendor_column(name: str) -> VendorColumn | None:
+    """The column of this name; None if no known vendor has one."""
+    plain = name.strip().lower()
+    for key in (plain, plain.rsplit(".", 1)[-1], plain.split("[")[0].split(":")[0].replace("r00", "r")):
+        if key in COLUMNS:
+            return COLUMNS[key]
+    return None

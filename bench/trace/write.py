@@ -14,7 +14,7 @@ from bench.arrays import Array
 from bench.errors import InputError
 from bench.files import whole
 from bench.trace.readers.codesys import LAB_UNITS, machine_expert_trace
-from bench.trace.signal_names import scale_in
+from bench.trace.signals import scale_in
 from bench.trace.trace import Trace
 from bench.units import same_dimension
 

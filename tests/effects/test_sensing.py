@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bench.effects.kinds import Sensing
-from bench.trace.signal_names import SI_UNITS
+from bench.trace.signals import SI_UNITS
 from bench.trace.trace import Trace
 from tests.effects.axes import model
 from tests.effects.recording import BASE, RECORDED, STEP, differ, every, made, reported, shape_of

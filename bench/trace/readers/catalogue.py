@@ -25,7 +25,7 @@ from bench.trace.readers.mdf import Mdf
 from bench.trace.readers.npz import Npz
 from bench.trace.readers.parquet import Parquet
 from bench.trace.readers.sinumerik import Sinumerik
-from bench.trace.readers.table import Table
+from bench.trace.readers.table import TextTable
 from bench.trace.readers.tdms import Tdms
 from bench.trace.readers.twincat import TwinCat
 from bench.trace.source import Source
@@ -77,7 +77,7 @@ OWN: tuple[Reader, ...] = (
     Epos(),
     Bam(),
 )
-TABLE = Table()
+TABLE = TextTable()
 
 
 @cache

@@ -14,36 +14,15 @@ from dataclasses import dataclass
 
 from bench.trace.channel import split_label
 from bench.trace.readers.moments import is_moment
-from bench.trace.signal_names import signal_of, unit_of
+from bench.trace.signals import signal_of, unit_of
 from bench.units.text import UnitError, is_unit, scale_of
 
 BLANKS = " "
 SEPARATORS = ("\t", ";", ",", BLANKS)
 #: Texts that stand for no number.
 EMPTY = (
-    "",
-    " ",
-    "nan",
-    "NaN",
-    "NAN",
-    "Nan",
-    "-nan",
-    "-NaN",
-    "nan(ind)",
-    "-nan(ind)",
-    "1.#QNAN",
-    "null",
-    "NULL",
-    "None",
-    "NA",
-    "N/A",
-    "#N/A",
-    "n/a",
-    "-",
-    "--",
-    "---",
-    "?",
-    "*",
+    *("", " ", "-", "--", "---", "?", "*", "null", "NULL", "None", "NA", "N/A", "#N/A", "n/a"),
+    *("nan", "NaN", "NAN", "Nan", "-nan", "-NaN", "nan(ind)", "-nan(ind)", "1.#QNAN"),
 )
 #: Characters of the head that are looked at, and lines at its end that show what samples are like.
 HEAD, SHOWN = 1 << 18, 60

@@ -66,7 +66,7 @@ class SampleLines:
         )
 
 
-class Table:
+class TextTable:
     """Tables in text, see the module."""
 
     format = "CSV table"
