@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench import __version__
-from bench.cli.common import JsonOption, list_files, printed, write_json
+from bench.cli.common import STDOUT, JsonOption, say, tell, write_json
 from bench.errors import UndeterminedError
 
 if TYPE_CHECKING:
@@ -33,8 +33,7 @@ def fleet(
     from bench.fleet.fleet import TABLE
     from bench.fleet.fleet import fleet as run_fleet
     from bench.jobs.process import Limits
-    from bench.report.fleet import fleet_json, fleet_tables
-    from bench.report.pages.fleet import fleet_page
+    from bench.report.fleet import fleet_document, fleet_json
     from bench.report.publish import write_html
     from bench.report.terminal import progress
 
@@ -45,16 +44,15 @@ def fleet(
     def write_document(found: Fleet) -> None:
         with keeping(found.manifest.inputs):
             write_text(out / SUMMARY, fleet_json(found, basis) + "\n")
-            write_html(page, fleet_page(found, SUMMARY, basis))
+            write_html(page, fleet_document(found, SUMMARY, basis))
 
     with progress(f"evaluating {manifest.name}") as done:
         found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, write_document)
     if json is not None:
         write_json(json, fleet_json(found, basis))
-    if json != Path("-"):
-        for part in fleet_tables(found):
-            printed(part)
-        list_files([out / TABLE, out / SUMMARY, page])
+    tell(fleet_document(found, SUMMARY, basis), (out / TABLE, out / SUMMARY, page), json)
+    if json != STDOUT:
+        say(f"{found.evaluated} evaluated now")
     if not found.summary.counts["done"]:
         reason = f"none of {len(found.manifest)} recordings gave a result"
         raise UndeterminedError("the fleet", reason, f"what the column `reason` of {out / TABLE} asks for")

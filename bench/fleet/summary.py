@@ -81,15 +81,15 @@ class ShownEffect:
 
     Attributes:
         axis: of the manifest.
-        effect: its name.
-        count: recordings that show it.
+        name: of the effect.
+        recordings: that show it.
         of: recordings of the axis that were diagnosed.
         since: time of the first of them, as the manifest has it.
     """
 
     axis: str
-    effect: str
-    count: int
+    name: str
+    recordings: int
     of: int
     since: str
 
@@ -101,7 +101,7 @@ class Concern:
     Attributes:
         axis: of the manifest.
         kind: one of `KINDS`.
-        count: recordings that it holds for.
+        recordings: that it holds for.
         of: recordings of the axis.
         file: the latest of them.
         reason: of that one.
@@ -109,7 +109,7 @@ class Concern:
 
     axis: str
     kind: str
-    count: int
+    recordings: int
     of: int
     file: str
     reason: str
@@ -124,7 +124,7 @@ class Summary:
         axes: how many there are.
         compared: series of a quantity over the recordings of an axis in which a change could be sought.
         changed: surest first.
-        named: effects, those shown by most recordings of their axis first.
+        shown: effects, those shown by most recordings of their axis first.
         concerns: gravest first.
     """
 
@@ -132,7 +132,7 @@ class Summary:
     axes: int
     compared: int
     changed: tuple[Changed, ...]
-    named: tuple[ShownEffect, ...]
+    shown: tuple[ShownEffect, ...]
     concerns: tuple[Concern, ...]
 
 
@@ -150,7 +150,7 @@ def summarise(manifest: Manifest, planned: Sequence[PlannedRecording], results: 
     for row in order:
         rows.setdefault(axes[row], []).append(row)
     compared, changed = _changes(manifest, planned, results, order)
-    named = [one for axis, own in rows.items() for one in _named(axis, times, results, own)]
+    shown = [one for axis, own in rows.items() for one in _shown(axis, times, results, own)]
     concerns = [one for axis, own in rows.items() for one in _concerns(axis, files, results, own)]
     counts = Counter(found["status"] for found in results)
     return Summary(
@@ -158,8 +158,8 @@ def summarise(manifest: Manifest, planned: Sequence[PlannedRecording], results: 
         axes=len(rows),
         compared=compared,
         changed=changed,
-        named=tuple(sorted(named, key=lambda one: (-one.count / one.of, one.axis, one.effect))),
-        concerns=tuple(sorted(concerns, key=lambda one: (KINDS.index(one.kind), -one.count / one.of, one.axis))),
+        shown=tuple(sorted(shown, key=lambda one: (-one.recordings / one.of, one.axis, one.name))),
+        concerns=tuple(sorted(concerns, key=lambda one: (KINDS.index(one.kind), -one.recordings / one.of, one.axis))),
     )
 
 
@@ -201,7 +201,7 @@ def _histories(
         yield History(axis, name, unit, rows, np.array(values), np.array(errors))
 
 
-def _named(axis: str, times: Sequence[str], results: Sequence[Plain], rows: Sequence[int]) -> Iterator[ShownEffect]:
+def _shown(axis: str, times: Sequence[str], results: Sequence[Plain], rows: Sequence[int]) -> Iterator[ShownEffect]:
     """Effects that recordings of one axis show, in the order of time."""
     diagnosed = {row: {one["name"] for one in results[row]["effects"]} for row in rows if "effects" in results[row]}
     for effect in sorted(set[str]().union(*diagnosed.values())):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
@@ -62,7 +63,7 @@ def _endured(folder: Path, recordings: int, deadline: float) -> list[str]:
     offer(folder / "site")
     manifest = made.write()
     began = time.monotonic()
-    printed = _run(folder, manifest, "whole", deadline).communicate()[0]
+    _run(folder, manifest, "whole", deadline).communicate()
     seconds = time.monotonic() - began
     table = (folder / "whole" / "fleet.parquet").read_bytes()
     rows = pq.read_table(folder / "whole" / "fleet.parquet").to_pylist()
@@ -70,8 +71,10 @@ def _endured(folder: Path, recordings: int, deadline: float) -> list[str]:
     sound = [row for place, row in enumerate(rows) if place not in wrong]
     kept, left = _killed_half_way(folder, manifest, deadline, recordings)
     again = _run(folder, manifest, "killed", deadline).communicate()[0]
-    evaluated = int(re.search(r"\((\d+) evaluated now\)", again)[1])
+    evaluated = int(re.search(r"(\d+) evaluated now", again)[1])
     same = (folder / "killed" / "fleet.parquet").read_bytes() == table
+    called = _called_changed(folder / "whole")
+    named = sum(axis in CHANGED for axis in called)
     risen = sum(axis < recordings // EACH for axis in CHANGED)
     told = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()))
     distinct = len({row["result"] for row in rows} - {None})  # empty files are one, what cannot be begun is none
@@ -85,7 +88,7 @@ def _endured(folder: Path, recordings: int, deadline: float) -> list[str]:
         _row("reasons", "; ".join(_reasons(rows))),
         _row(
             "axes whose friction rose by 15 %",
-            f"{_named(printed)} named of {risen}; of others {_others(printed)}",
+            f"{named} named of {risen}; of others {len(called) - named}",
         ),
         _row("whole run, two workers", f"{seconds:.0f} s"),
         _row("killed half-way (SIGKILL to all its processes)", f"{kept} results kept, {left} processes left"),
@@ -141,13 +144,10 @@ def _reasons(rows: list[dict]) -> list[str]:
     return [f"{count}x {reason[:70].replace('|', '/')}" for reason, count in told.most_common()]
 
 
-def _named(printed: str) -> int:
-    return sum(f"press {axis} " in printed.partition("need a person")[0] for axis in CHANGED)
-
-
-def _others(printed: str) -> int:
-    told = re.findall(r"^ *press (\d+) ", printed.partition("need a person")[0], re.MULTILINE)
-    return sum(int(axis) not in CHANGED for axis in told)
+def _called_changed(out: Path) -> list[int]:
+    """Numbers of the axes that a run's summary calls changed."""
+    changed = json.loads((out / "summary.json").read_text(encoding="utf-8"))["changed"]
+    return sorted({int(one["axis"].removeprefix("press ")) for one in changed})
 
 
 def _speed(folder: Path, recordings: int, duration: float) -> list[str]:

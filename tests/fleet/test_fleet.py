@@ -161,7 +161,7 @@ def test_the_axis_that_changed_is_named_with_its_day(found):
 
 
 def test_who_needs_a_person_is_reported_gravest_first(found):
-    told = [(one.axis, one.kind, one.count, one.of) for one in found[0].summary.concerns]
+    told = [(one.axis, one.kind, one.recordings, one.of) for one in found[0].summary.concerns]
     assert told == [
         ("press 2", "failed", 1, 4),
         ("press 2", "timed_out", 1, 4),
@@ -174,7 +174,8 @@ def test_the_command_prints_and_writes_what_it_found(made, found):
     out = made.parent / "out"
     status, printed, _ = bench("fleet", made, "--out", out, "--workers", 1)
     assert status == 0
-    assert "27 recordings of 3 axes: 17 done, 8 refused, 1 failed, 1 timed out (0 evaluated now)" in printed
+    for told in ("27 recordings of 3 axes", "17 done, 8 refused, 1 failed, 1 timed out", "0 evaluated now"):
+        assert told in printed
     assert "press 1" in printed
     summary = json.loads((out / "summary.json").read_text())
     assert summary["schema"] == "bench.fleet/1"
@@ -200,8 +201,8 @@ def test_effects_are_named_where_that_is_asked_for(tmp_path):
     assert heavy["gap_torque_before"] > 2.0 * heavy["gap_torque"]
     assert heavy["gap_velocity"] > 0.0
     assert heavy["explained"] < plain["explained"]
-    (named,) = found.summary.named
-    assert (named.effect, named.count, named.of, named.since) == ("unbalance", 1, 2, "2026-01-02 06:00:00")
+    (named,) = found.summary.shown
+    assert (named.name, named.recordings, named.of, named.since) == ("unbalance", 1, 2, "2026-01-02 06:00:00")
 
 
 @pytest.mark.parametrize(
@@ -251,7 +252,7 @@ def test_the_manuals_commands_run(tmp_path, cluster, monkeypatch):
         status, out, _ = bench(*words)
         assert status == 0
         printed.append(out)
-    assert any("3 recordings of 2 axes: 3 done" in out for out in printed)
+    assert any("3 recordings of 2 axes" in out and "3 done" in out for out in printed)
     columns = pq.read_table("result/fleet.parquet").column_names
     for name in re.findall(r"`(\w+)`", manual.partition("fleet.parquet`:")[2].partition("- `results`")[0]):
         assert any(name in column for column in columns), name

@@ -129,7 +129,7 @@ def test_what_was_not_done_or_has_no_error_is_not_compared():
 def test_a_person_is_called_for(more, kind, reason):
     results = [found(1.0, 0.1), found(1.0, 0.1, **more), found(1.0, 0.1)]
     (concern,) = looked_over(np.ones((1, 3)), results=results).concerns
-    assert (concern.kind, concern.count, concern.of, concern.file) == (kind, 1, 3, "1.csv")
+    assert (concern.kind, concern.recordings, concern.of, concern.file) == (kind, 1, 3, "1.csv")
     assert reason in concern.reason
 
 
@@ -137,4 +137,4 @@ def test_nobody_is_called_for_what_is_explained():
     told = {"explained": 0.5, "verdict": "explained", "effects": [{"name": "an_effect"}]}
     summary = looked_over(np.ones((1, 2)), results=[found(1.0, 0.1), found(1.0, 0.1, **told)])
     assert not summary.concerns
-    assert [(one.effect, one.count, one.of, one.since) for one in summary.named] == [("an_effect", 1, 1, "1")]
+    assert [(one.name, one.recordings, one.of, one.since) for one in summary.shown] == [("an_effect", 1, 1, "1")]

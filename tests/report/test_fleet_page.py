@@ -12,8 +12,8 @@ from bench.fleet.manifest import Manifest
 from bench.fleet.plan import PlannedRecording
 from bench.fleet.summary import summarise
 from bench.report.document import Chart, Table
+from bench.report.fleet import CHARTS, DOTS, ROWS, fleet_document
 from bench.report.html import html
-from bench.report.pages.fleet import CHARTS, DOTS, ROWS, fleet_page
 from tests.fleet.test_summary import JOB, found
 from tests.report.test_page import HOSTILE
 
@@ -45,7 +45,7 @@ def stepped(count, each, changed, step=0.3):
 
 
 def page_of(fleet):
-    return fleet_page(fleet, "summary.json", BASIS)
+    return fleet_document(fleet, "summary.json", BASIS)
 
 
 def blocks(page, kind):
