@@ -15,6 +15,7 @@ import io
 import os
 import sys
 import traceback
+from collections.abc import Callable
 from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Annotated
@@ -121,7 +122,7 @@ def _add_offered() -> None:
     """
     own = {command.__name__ for command in COMMANDS}
     for entry in entry_points(group=GROUP):
-        offered = entry.load()
+        offered: Callable[..., None] = entry.load()
         if not callable(offered) or entry.name in own:
             found = "found a name that the bench has" if entry.name in own else f"found {offered!r}"
             raise InputError(f"{GROUP}: {entry.value}", found, "allowed: a function under a name of its own")

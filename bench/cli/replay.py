@@ -9,7 +9,7 @@ import typer
 
 from bench.cli.common import AxisOption, ReportOption, list_files, say, warn, write_page
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
-from bench.files import read_text, write_text
+from bench.files import write_text
 from bench.names import readable
 
 
@@ -31,13 +31,9 @@ def replay(
     replayed = run_replay(model, of.read(trace), of.rig)
     write_text(out, replayed.csv())
     if report is not None:
-        from bench.report.document import File
         from bench.report.replay import replay as document_of
 
-        file = File(
-            name=readable(model.name), about="the model", media="application/toml", content=read_text(model, "a model")
-        )
-        write_page(report, document_of(replayed, f"{readable(model.name)} along {readable(trace.name)}", [file]))
+        write_page(report, document_of(replayed, model, readable(trace.name)))
     say(replayed.summary)
     list_files([out, report])
     warn(replayed.warnings)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.cli.common import ReportOption, list_files
+from bench.cli.common import ReportOption, list_files, write_page
 from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
@@ -41,8 +41,7 @@ def simulate(
         write(simulated.trace, out)
         truth = write_truth(out, simulated.truth)
     if report is not None:
-        from bench.report.publish import write_html
         from bench.report.simulation import simulation
 
-        write_html(report, simulation(simulated, readable(out.name)))
+        write_page(report, simulation(simulated, readable(out.name)))
     list_files([out, truth, report])

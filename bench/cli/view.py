@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.cli.common import AxisOption, list_files, warn
+from bench.cli.common import AxisOption, list_files, warn, write_page
 from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
 from bench.errors import InputError
-from bench.files import read_text
 from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
@@ -43,6 +42,8 @@ def view(
         raise InputError(
             "TRACE", "missing", "allowed: a recording, or --rig with [drive], whose profile it then follows"
         )
+    from bench.report.view import view as document_of
+
     if video is not None:
         from bench.view.video import prepare
 
@@ -57,7 +58,7 @@ def view(
 
         with progress(f"rendering {video.name}") as done:
             write_video(video, shown, Scene.of(shown, of.rig.load), slowed, done)
-    _write_page(out, shown, model, readable(profile if trace is None else trace.name), warnings)
+    write_page(out, document_of(shown, model, readable(profile if trace is None else trace.name), warnings))
     list_files([out, video])
     warn(warnings)
 
@@ -74,13 +75,3 @@ def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[
     replayed = replay(model, recording, of.rig)
     no_position = f"{trace.name} holds no position: shown is the integral of its speed, from zero after each hole"
     return along_recording(model, replayed), [*replayed.warnings, *([] if "position" in recording else [no_position])]
-
-
-def _write_page(out: Path, shown: SideBySide, model: Path, along: str, warnings: list[str]) -> None:
-    from bench.report.document import File
-    from bench.report.publish import write_html
-    from bench.report.view import view as document
-
-    name = readable(model.name)
-    file = File(name=name, about="the model", media="application/toml", content=read_text(model, "a model"))
-    write_html(out, document(shown, f"{name} along {along}", warnings, [file]))

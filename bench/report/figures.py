@@ -185,7 +185,7 @@ def _over_time(figure: Figure | SubFigure, graph: TimeGraph) -> None:
         for curve in panel.curves:
             if curve.choice in kept:
                 low, high = unpacked(curve.samples)
-                time = graph.start + graph.step * np.arange(low.size)
+                time = graph.start + graph.step * np.arange(low.size, dtype=np.float64)
                 style = ROLES["alone" if len(panel.curves) == 1 and curve.role == "measured" else curve.role]
                 faded = {"color": COLOURS["first"]} if curve.choice == 0 < last else {}
                 axes.plot(*_extent(time, low, high), label=plain(curve.name), **style | faded)

@@ -111,7 +111,7 @@ def signals_picture(recording: Recording, how: ReadingOptions) -> Picture:
             Panel(
                 x_label="sample",
                 y_label=channel.label,
-                series=(series("", "line", "ink", np.arange(channel.values.size), channel.values),),
+                series=(series("", "line", "ink", np.arange(channel.values.size, dtype=np.float64), channel.values),),
             )
             for channel in channels[:MOST]
         ) or (Panel(x_label="sample", y_label="no column changes", series=()),)

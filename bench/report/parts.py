@@ -8,11 +8,12 @@ from typing import Any
 
 from bench import __version__
 from bench.comparison.spread import Between
+from bench.files import read_text
 from bench.fit.estimate import Alone
 from bench.fit.parameter import Parameter
 from bench.gate.check import Check
-from bench.names import words
-from bench.report.document import Points, Section, Series, Table, table
+from bench.names import readable, words
+from bench.report.document import Downloads, File, Points, Section, Series, Table, table
 from bench.report.numbers import interval, number, unit_text
 
 
@@ -80,6 +81,22 @@ def checks_section(checks: Sequence[Check], warnings: Sequence[str]) -> Section:
     notes = (Points(items=tuple(warnings)),) if warnings else ()
     tables = (table(caption, headings, rows, marked),) if applicable else ()
     return Section(key="checks", heading="Checks and warnings", blocks=(*notes, *tables), detail=True)
+
+
+def model_section(model: Path) -> Section:
+    """The file of a model to take along.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    content = read_text(model, "a model")
+    file = File(name=readable(model.name), about="the model", media="application/toml", content=content)
+    return Section(key="model", heading="The model", blocks=(Downloads(files=(file,)),))
+
+
+def warnings_sections(warnings: Sequence[str]) -> list[Section]:
+    """What the user should know before believing a result; none where that is nothing."""
+    return [Section(key="warnings", heading="Warnings", blocks=(Points(items=tuple(warnings)),))] if warnings else []
 
 
 def origin(provenance: Mapping[str, Any] | None) -> tuple[str, ...]:

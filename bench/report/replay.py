@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
 from bench.arrays import Array, rms
 from bench.diagnosis.refine import NULL
 from bench.diagnosis.replay import LEFT, Replay
-from bench.report.document import Document, Downloads, File, Points, Section
+from bench.names import readable
+from bench.report.document import Document, Section
 from bench.report.numbers import effort_word, number, share
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import origin
+from bench.report.parts import model_section, origin, warnings_sections
 from bench.trace.noise import white_noise
 
 
-def replay(replayed: Replay, title: str, files: Sequence[File]) -> Document:
+def replay(replayed: Replay, model: Path, along: str) -> Document:
     """The document of a replay.
 
     Args:
         replayed: signals measured and simulated.
-        title: model and recording.
-        files: to take along: the model.
+        model: file that was run.
+        along: name of the recording.
+
+    Raises:
+        InputError: the model cannot be read.
     """
+    title = f"{readable(model.name)} along {along}"
     effort = effort_word(replayed.effort_unit)
     torque = _left(replayed.torque, replayed.torque_simulated)
     speed = _left(replayed.velocity, replayed.velocity_simulated)
@@ -45,17 +50,14 @@ def replay(replayed: Replay, title: str, files: Sequence[File]) -> Document:
     ]
     shown = f"Speed and {effort} of the recording as measured and as the model has them, and what is left of each."
     graph = time_graph("Over time.", shown, replayed.time, signals)
-    sections = [Section(key="motion", heading="Plotted and simulated", blocks=(graph,))]
-    if replayed.warnings:
-        sections.append(Section(key="warnings", heading="Warnings", blocks=(Points(items=replayed.warnings),)))
-    sections.append(Section(key="model", heading="The model", blocks=(Downloads(files=tuple(files)),)))
+    sections = [Section(key="motion", heading="Measured and simulated", blocks=(graph,))]
     return Document(
         title=title,
         subject=f"Replay: {title}",
         verdict=f"{line}.",
         tone="sure" if alike and not replayed.warnings else "open",
         answers=answers,
-        sections=tuple(sections),
+        sections=(*sections, *warnings_sections(replayed.warnings), model_section(model)),
         origin=origin(None),
     )
 

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Sequence
+from pathlib import Path
 from typing import get_args
 
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.report.document import Document, Downloads, File, Moving, Points, Section, Slowed, TimeGraph
+from bench.names import readable
+from bench.report.document import Document, Moving, Section, Slowed, TimeGraph
 from bench.report.numbers import number, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import origin
+from bench.report.parts import model_section, origin, warnings_sections
 from bench.view.side_by_side import SideBySide
 
 #: Instants that a page holds of a motion, 8 bytes each and a third more as text: 0.4 MB.
@@ -23,15 +25,19 @@ PART = 0.8
 SLOWED: tuple[Slowed, ...] = get_args(Slowed)
 
 
-def view(shown: SideBySide, title: str, warnings: Sequence[str], files: Sequence[File]) -> Document:
+def view(shown: SideBySide, model: Path, along: str, warnings: Sequence[str] = ()) -> Document:
     """The document of a motion.
 
     Args:
         shown: model and ghost.
-        title: model and recording, or profile.
+        model: file that was run.
+        along: name of the recording, or of the profile.
         warnings: what the user should know before believing it.
-        files: to take along: the model.
+
+    Raises:
+        InputError: the model cannot be read.
     """
+    title = f"{readable(model.name)} along {along}"
     kind, apart = shown.kind, shown.apart[np.isfinite(shown.apart)]
     furthest = number(float(np.abs(apart).max()), kind.length_unit, 3)
     seconds = number(float(shown.time[-1] - shown.time[0]), "s", 3)
@@ -43,16 +49,13 @@ def view(shown: SideBySide, title: str, warnings: Sequence[str], files: Sequence
         Section(key="moving", heading="Moving", blocks=(motion_of(shown),)),
         Section(key="motion", heading="Over time", blocks=(_graph(shown),)),
     ]
-    if warnings:
-        sections.append(Section(key="warnings", heading="Warnings", blocks=(Points(items=tuple(warnings)),)))
-    sections.append(Section(key="model", heading="The model", blocks=(Downloads(files=tuple(files)),)))
     return Document(
         title=title,
         subject=f"View: {title}",
         verdict=f"The simulated axis stays within {furthest} of the motion {shown.ghost_is}, over {seconds}.",
         tone="open" if warnings else "sure",
         answers=answers,
-        sections=tuple(sections),
+        sections=(*sections, *warnings_sections(warnings), model_section(model)),
         origin=origin(None),
     )
 

@@ -7,13 +7,10 @@ import numpy as np
 import pytest
 
 from bench.axis_kind import LINEAR, ROTARY
-from bench.report.document import File
 from bench.report.publish import write_html
 from bench.report.view import MOST, motion_of, view
 from tests.report.test_page import HOSTILE
 from tests.view.motions import AHEAD, SPEED, shown
-
-MODEL = File(name="model.toml", about="the model", media="application/toml", content="")
 
 
 def floats(text):
@@ -58,7 +55,8 @@ def player(opened, tmp_path):
     """Opens the page of a motion."""
 
     def play(*arguments, width=1280, scheme="light", title="model along run", **options):
-        write_html(tmp_path / "view.html", view(shown(*arguments, **options), title, [], [MODEL]))
+        (tmp_path / "model.toml").touch()
+        write_html(tmp_path / "view.html", view(shown(*arguments, **options), tmp_path / "model.toml", title))
         return opened(tmp_path / "view.html", width, color_scheme=scheme, bypass_csp=True)
 
     return play
