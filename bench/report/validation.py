@@ -121,12 +121,12 @@ def validation(found: Validation, provenance: Mapping[str, Any], command: str, o
         command: that does the same again.
         own: whether the axis is one's own: then how well the motion determines it comes first.
     """
-    first, naming = _first(found), found.naming
+    first, naming, note = _first(found), found.naming, Paragraph(text=NOTE)
     sections = [Section(key="coverage", heading="How often an interval holds the truth", blocks=tuple(_charts(found)))]
     if own:
         axis = Section(key="axis", heading="This motion on this drive", blocks=_determined(found.runs))
         sections.insert(0, axis)
-    sections.append(Section(key="numbers", heading="How far off numbers are", blocks=tuple(_numbers(found, True))))
+    sections.append(Section(key="numbers", heading="How far off numbers are", blocks=(*_numbers(found, True), note)))
     parts = tuple(_numbers(found, False))
     if parts:
         sections.append(Section(key="parts", heading="The same, by parts of these runs", blocks=parts, detail=True))
@@ -239,7 +239,7 @@ def _numbers(found: Validation, whole: bool) -> Iterator[AnyPart]:
     for by, title in TITLES.items():
         some = [one for one in found.coverage if one.by == by and one.whole is whole]
         if some:
-            yield from (_covered(some, title), Paragraph(text=NOTE))
+            yield _covered(some, title)
 
 
 def _covered(found: Sequence[Coverage], title: str) -> Table:
@@ -414,7 +414,7 @@ def write_validation(
     Raises:
         InputError: the folder cannot be written to.
     """
-    tables = [_outcomes(found.runs), *_numbers(found, True), *_numbers(found, False)]
+    tables = [_outcomes(found.runs), *_numbers(found, True), *_numbers(found, False), Paragraph(text=NOTE)]
     tables += [] if found.naming is None else _naming(found.naming)
     text = "\n\n".join([f"# Validation\n\n`{command}`", *filter(None, map(markdown, tables))])
     beside = {"validation.json": validation_json(found, provenance) + "\n", "validation.md": text + "\n"}
