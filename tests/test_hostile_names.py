@@ -8,13 +8,17 @@ from pathlib import Path
 import pytest
 
 from bench.assets import asset
-from bench.course.report import lab_html
+from bench.course.handin import Cover
+from bench.course.recordings import LabRecordings
+from bench.course.report import lab_document
+from bench.course.result import DoneTask
 from bench.files import write_text
 from bench.fit.identify import identify
 from bench.names import cell, readable
 from bench.plant.model_file import StoredModel, load_model, model_toml
 from bench.plant.plant import Plant
 from bench.report.figures import drawn, save
+from bench.report.html import html
 from bench.report.identification import Moved, identification
 from bench.report.terminal import show
 from bench.rig.rig import Rig, load_rig
@@ -99,7 +103,10 @@ def test_names_are_no_formulas_in_a_spreadsheet():
 
 
 def test_names_are_text_in_html():
-    page = lab_html([], [f"axis: {name}" for name in NAMES])
+    results = [DoneTask(f"t{place}", name, (f"axis: {name}",)) for place, name in enumerate(NAMES)]
+    page = html(
+        lab_document(results, LabRecordings.in_folder(None), Cover(NAMES[0], tuple((name, name) for name in NAMES)))
+    )
     assert "<script>" not in page and "&lt;script&gt;" in page
 
 

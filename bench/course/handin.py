@@ -67,19 +67,6 @@ class Cover:
         return self.students or (("", ""),) * BLANK_ROWS
 
     @property
-    def group_line(self) -> str:
-        """The group in one line."""
-        return f"Group: {self.group or '_' * 12}"
-
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """A line for each member, with room for the signature."""
-        return tuple(
-            f"Name: {name or '_' * 26:<28}Student number: {number or '_' * 12:<14}Signature: {'_' * 24}"
-            for name, number in self.rows
-        )
-
-    @property
     def declaration(self) -> str:
         """What the signatures stand for."""
         return "We recorded and evaluated this ourselves; the sources lie beside this report."

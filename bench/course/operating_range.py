@@ -9,8 +9,9 @@ import numpy as np
 from bench.arrays import Array
 from bench.course.axis import MAINS, RPM
 from bench.course.recordings import LabRecordings
-from bench.course.result import Curve, DoneTask, Number, chart, panel
+from bench.course.result import DoneTask, Number, chart, curve, panel
 from bench.errors import InputError
+from bench.report.document import Series
 from bench.rig.limits import OperatingRange, Reserve, reserve
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
@@ -63,7 +64,7 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> DoneTask:
         if cold is not None:
             numbers.append(Number(f"peak reserve, {volts}, cold", reserve(cold, speed, torque).peak, "N·m"))
             at = np.linspace(0.0, cold.curve.no_load_speed, 300)
-            curves.append(Curve(at * RPM, cold.peak(at), f"peak, {volts}, winding at 20 °C", "thin"))
+            curves.append(curve(at * RPM, cold.peak(at), f"peak, {volts}, winding at 20 °C", "dotted"))
     left = reserve(ranges[0], speed, torque)
     findings.append(_heat_finding(left, ranges[0]))
     if any(number.name.endswith("cold") for number in numbers):
@@ -105,26 +106,26 @@ def _heat_finding(left: Reserve, limit: OperatingRange) -> str:
     )
 
 
-def _motion(speed: Array, torque: Array, left: Reserve, limit: OperatingRange) -> list[Curve]:
+def _motion(speed: Array, torque: Array, left: Reserve, limit: OperatingRange) -> list[Series]:
     """The samples, those that brake below the axis; the point that heats as all; the least reserve to the limit."""
     effective = float(limit.torque_constant.torque(np.asarray(left.rms_current)))
-    least = np.full(2, abs(float(speed[left.at])) * RPM)
-    size, braking = abs(float(torque[left.at])), speed[left.at] * torque[left.at] < 0.0
-    reach = np.array([size, size + left.peak]) * (-1.0 if braking else 1.0)
+    least = np.abs([speed[left.at], torque[left.at]])
+    side = -1.0 if speed[left.at] * torque[left.at] < 0.0 else 1.0
+    label = f"least reserve to the peak, {left.peak:.3g} N·m"
     return [
-        Curve(np.abs(speed) * RPM, np.sign(speed * torque) * np.abs(torque), "motion, braking below 0", "dots"),
-        Curve(np.array([left.mean_speed * RPM]), np.array([effective]), "RMS current at mean speed", "bold dots"),
-        Curve(least, reach, f"least reserve to the peak, {left.peak:.3g} N·m", "reach"),
+        curve(np.abs(speed) * RPM, np.sign(speed * torque) * np.abs(torque), "motion, braking below 0", "dots"),
+        curve(np.array([left.mean_speed * RPM]), np.array([effective]), "RMS current at mean speed", "large dots"),
+        curve(least[:1] * RPM, side * least[1:], label, "large dots", reach=np.array([side * left.peak])),
     ]
 
 
-def _limit_curves(limit: OperatingRange, volts: str) -> list[Curve]:
+def _limit_curves(limit: OperatingRange, volts: str) -> list[Series]:
     speed = np.linspace(0.0, limit.curve.no_load_speed, 300)
     braking = limit.available(speed, np.full_like(speed, -1.0))
     return [
-        Curve(speed * RPM, limit.peak(speed), f"peak, {volts}"),
-        Curve(speed * RPM, limit.continuous(speed), f"continuous, {volts}", "dashes"),
-        Curve(speed * RPM, -braking, f"peak braking, {volts}", "thin"),
+        curve(speed * RPM, limit.peak(speed), f"peak, {volts}"),
+        curve(speed * RPM, limit.continuous(speed), f"continuous, {volts}", "dashes"),
+        curve(speed * RPM, -braking, f"peak braking, {volts}", "dotted"),
     ]
 
 

@@ -1,4 +1,4 @@
-"""Pages of a PDF: a cover, then sections one after the other, each its text and its charts, on upright A4."""
+"""A document as pages of a PDF, upright A4: its first section is the cover, the others follow each other."""
 
 from __future__ import annotations
 
@@ -10,14 +10,12 @@ from pathlib import Path
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure, SubFigure
 
-from bench.course.charts import chart_height, draw_chart
-from bench.course.handin import Cover
-from bench.course.result import Chart
-from bench.course.section import Row, Section
 from bench.names import plain
+from bench.report import figures
+from bench.report.document import Chart, Document, Paragraph, Section, Table
 
 #: A4 upright, and its margin all around - inch; height of a line - inch; characters in a line, and in one of a table.
-PAGE, MARGIN, LINE, CHARACTERS = (8.27, 11.69), 0.45, 0.18, 116
+PAGE, MARGIN, LINE, CHARACTERS, IN_TABLE = (8.27, 11.69), 0.45, 0.18, 116, 118
 #: A chart gives up to this share of its height to stay on a page.
 SHRUNK = 0.72
 
@@ -26,84 +24,88 @@ SHRUNK = 0.72
 class Line:
     """A line of text and how it is set."""
 
-    text: str
+    text: str = ""
     bold: bool = False
     table: bool = False
 
 
 #: What stays together on a page.
-Block = Chart | tuple[Line, ...]
+Together = Chart | tuple[Line, ...]
 
 
 @dataclass(frozen=True)
-class Placed:
-    """A block on a page, and the height it has there - inch."""
+class OnPage:
+    """What stays together, and the height it has on its page - inch."""
 
-    block: Block
+    content: Together
     height: float
 
 
-def write_pages(
-    path: Path,
-    title: str,
-    cover: Cover,
-    about: Sequence[str],
-    sections: Sequence[tuple[Section, tuple[Chart, ...]]],
-) -> None:
-    """Write a PDF.
-
-    Args:
-        path: file to write.
-        title: of the document, on its cover.
-        cover: who hands it in.
-        about: paragraphs beneath.
-        sections: text and charts of each.
-    """
-    blocks: list[Block] = [block for section, charts in sections for block in (*_text(section), *charts)]
-    with PdfPages(path, metadata={"Title": title}) as pages:
-        pages.savefig(_page([Placed(block, _height(block)) for block in _cover(title, cover, about)]))
-        for page in _paginated(blocks):
-            pages.savefig(_page(page))
+def write_pdf(path: Path, document: Document) -> None:
+    """Write a document's title, first section and answers on one page, and the other sections on the following ones."""
+    with PdfPages(path, metadata={"Title": document.title}) as pages:
+        pages.savefig(page([OnPage(lines, height(lines)) for lines in cover(document)]))
+        for content in paginated([one for section in document.sections[1:] for one in flowing(section)]):
+            pages.savefig(page(content))
 
 
-def _cover(title: str, cover: Cover, about: Sequence[str]) -> Iterator[tuple[Line, ...]]:
-    yield (Line(""), Line(""), Line(title, bold=True), Line(""))
-    yield (Line(cover.group_line, bold=True), Line(""))
-    for line in cover.lines:
-        yield (Line(""), Line(""), Line(line, table=True))
-    yield (Line(""), Line(""), Line(cover.declaration), Line(""))
-    for text in about:
-        yield (Line(""), *_paragraph(text))
+def cover(document: Document) -> Iterator[tuple[Line, ...]]:
+    """The first page: a table on it has room to sign between its rows."""
+    yield (Line(), Line(), Line(document.title, bold=True), Line())
+    for block in document.sections[0].blocks:
+        if isinstance(block, Table):
+            yield (Line(block.caption, bold=True), Line())
+            yield from ((Line(), Line(), row) for row in _rows(block))
+        elif isinstance(block, Paragraph):
+            yield (Line(), Line(), *_paragraph(block.text))
+    for text in (document.verdict, *document.answers.values()):
+        yield (Line(), *_paragraph(text))
 
 
-def _paginated(blocks: Sequence[Block]) -> Iterator[list[Placed]]:
-    """Blocks page by page; a heading stays with what follows, and a chart shrinks rather than leave half a page."""
+def flowing(section: Section) -> Iterator[Together]:
+    """A section in parts that may stand on different pages; its heading stays with what comes first."""
+    head = [Line(), Line(section.heading, bold=True)]
+    for block in section.blocks:
+        if isinstance(block, Paragraph):
+            yield (*head, *_paragraph(block.text))
+        elif isinstance(block, Table):
+            titles, *rows = _rows(block)
+            yield (*(head or [Line()]), titles, *rows[:2])
+            yield from ((row,) for row in rows[2:])
+        elif isinstance(block, Chart):
+            if head:
+                yield tuple(head)
+            yield block
+        head = []
+
+
+def paginated(contents: Sequence[Together]) -> Iterator[list[OnPage]]:
+    """Contents page by page; a heading stays with what follows, and a chart shrinks rather than leave half a page."""
     room = PAGE[1] - 2.0 * MARGIN
-    page: list[Placed] = []
+    page: list[OnPage] = []
     left = room
-    for k, block in enumerate(blocks):
-        height = _height(block)
-        after = blocks[k + 1] if k + 1 < len(blocks) else None
-        kept = _height(after) if after is not None and _is_heading(block) else 0.0
-        if isinstance(block, Chart) and SHRUNK * height <= left < height:
-            height = left
-        if page and height + (SHRUNK * kept if isinstance(after, Chart) else kept) > left:
+    for k, content in enumerate(contents):
+        needed = height(content)
+        after = contents[k + 1] if k + 1 < len(contents) else None
+        kept = height(after) if after is not None and _is_heading(content) else 0.0
+        if isinstance(content, Chart) and SHRUNK * needed <= left < needed:
+            needed = left
+        if page and needed + (SHRUNK * kept if isinstance(after, Chart) else kept) > left:
             yield page
             page, left = [], room
-        page.append(Placed(block, height))
-        left -= height
+        page.append(OnPage(content, needed))
+        left -= needed
     yield page
 
 
-def _is_heading(block: Block) -> bool:
-    return isinstance(block, tuple) and block[0].bold
+def height(content: Together) -> float:
+    """Height that it takes - inch."""
+    return figures.height(content) if isinstance(content, Chart) else LINE * len(content)
 
 
-def _height(block: Block) -> float:
-    return chart_height(block) if isinstance(block, Chart) else LINE * len(block)
-
-
-def _page(placed: Sequence[Placed]) -> Figure:
+@figures.in_style
+def page(placed: Sequence[OnPage]) -> Figure:
+    """A page with its contents one below the other."""
     figure = Figure(figsize=PAGE, layout="constrained")
     parts = list(_merged(placed))
     heights = [MARGIN, *(part.height for part in parts)]
@@ -112,26 +114,30 @@ def _page(placed: Sequence[Placed]) -> Figure:
     grid = figure.add_gridspec(len(heights) + 1, 3, height_ratios=[*heights, rest], width_ratios=widths)
     for k, part in enumerate(parts, start=1):
         subfigure = figure.add_subfigure(grid[k, 1])
-        if isinstance(part.block, Chart):
-            draw_chart(subfigure, part.block)
+        if isinstance(part.content, Chart):
+            figures.draw(subfigure, part.content)
         else:
-            _write(subfigure, part.block)
+            _write(subfigure, part.content)
     return figure
 
 
-def _merged(placed: Sequence[Placed]) -> Iterator[Placed]:
+def _is_heading(content: Together) -> bool:
+    return isinstance(content, tuple) and any(line.bold for line in content[:2])
+
+
+def _merged(placed: Sequence[OnPage]) -> Iterator[OnPage]:
     """Texts that follow each other as one."""
     lines: tuple[Line, ...] = ()
     for part in placed:
-        if isinstance(part.block, tuple):
-            lines += part.block
+        if isinstance(part.content, tuple):
+            lines += part.content
             continue
         if lines:
-            yield Placed(lines, LINE * len(lines))
+            yield OnPage(lines, height(lines))
             lines = ()
         yield part
     if lines:
-        yield Placed(lines, LINE * len(lines))
+        yield OnPage(lines, height(lines))
 
 
 def _write(part: SubFigure, lines: Sequence[Line]) -> None:
@@ -148,26 +154,19 @@ def _write(part: SubFigure, lines: Sequence[Line]) -> None:
         )
 
 
-def _text(section: Section) -> Iterator[tuple[Line, ...]]:
-    """A section's text in parts that may stand on different pages."""
-    paragraphs = [_paragraph(text) for text in section.findings]
-    if section.missing:
-        paragraphs.insert(0, _paragraph(f"Not done: {section.missing}"))
-    first = paragraphs[0] if paragraphs else []
-    yield (Line(""), Line(section.heading, bold=True), *first)
-    yield from (tuple(paragraph) for paragraph in paragraphs[1:])
-    if section.rows:
-        known = ("truth", "error") if section.has_truth else ("", "")
-        titles = _table_line(Row("quantity", "value", "unit", *known, "from"))
-        rows = [_table_line(row) for row in section.rows]
-        yield (Line(""), titles, *rows[:2])
-        yield from ((row,) for row in rows[2:])
-
-
 def _paragraph(text: str) -> list[Line]:
     return [Line(line) for line in textwrap.wrap(text, CHARACTERS)]
 
 
-def _table_line(row: Row) -> Line:
-    values = f"{row.name:<46.46}{row.value:>11}  {row.unit:<10}{row.truth:>8}{row.error:>9}"
-    return Line(f"{values}  {row.source:.29}".rstrip(), table=True)
+def _rows(table: Table) -> list[Line]:
+    """Headings and rows of a table, each cell as wide as the widest of its column."""
+    rows = [[column.heading for column in table.columns], *table.rows]
+    widths = [max(map(len, cells)) for cells in zip(*rows, strict=True)]
+    numbers = [column.number for column in table.columns]
+    return [Line(_row(row, widths, numbers), table=True) for row in rows]
+
+
+def _row(cells: Sequence[str], widths: Sequence[int], numbers: Sequence[bool]) -> str:
+    columns = zip(cells, widths, numbers, strict=True)
+    text = "  ".join(cell.rjust(width) if number else cell.ljust(width) for cell, width, number in columns)
+    return text[:IN_TABLE].rstrip()

@@ -1,29 +1,22 @@
-"""The lab course's report: one HTML file with its figures inside, the same as a PDF, and its results as JSON."""
+"""The lab course's report: one document with a section a task, as page, PDF and table, and its results as JSON."""
 
 from __future__ import annotations
 
-import io
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
-from matplotlib import rc_context
-from rich import box
-from rich.table import Table
-
 from bench import __version__
-from bench.course.charts import chart_figure
 from bench.course.course import RECORDED, Results, course
 from bench.course.handin import Cover, write_sources
-from bench.course.pdf import write_pages
+from bench.course.pdf import write_pdf
 from bench.course.recordings import LabRecordings
-from bench.course.result import Chart, DoneTask, NotDone, Number
-from bench.course.section import section
+from bench.course.result import DoneTask, NotDone, Number
 from bench.files import held, whole, write_text
+from bench.report.document import Document, Paragraph, Section, Table, table
 from bench.report.figures import quiet_about_glyphs
+from bench.report.html import html
+from bench.report.serial import known
 from bench.structured import json_text
 
 TITLE = "Industrial Drives, Part 2: Identification of Mechanical Parameters"
@@ -57,88 +50,118 @@ def report_course(data: Path | None, out: Path, progress: Callable[[float], None
     recordings, cover = LabRecordings.in_folder(data), Cover.in_folder(data)
     results = course(recordings, lambda share: progress(0.7 * share))
     with held(out):
-        about = about_recordings(recordings, results)
-        files = write_lab_report(
-            out, results, about, lambda share: progress(0.7 + 0.3 * share), cover, recordings.rig.name
-        )
+        document = lab_document(results, recordings, cover)
+        json = lab_json(results, recordings.rig.name)
+        files = write_lab_report(out, document, json, lambda share: progress(0.7 + 0.3 * share))
         sources = write_sources(out / "sources", recordings, results)
     return CourseReport(results, [*sources, *files])
 
 
-def about_recordings(recordings: LabRecordings, results: Results) -> list[str]:
-    """Where the recordings come from, a paragraph each."""
-    done = [result for result in results if isinstance(result, DoneTask)]
-    own = sum(not result.example for result in done)
-    origin = (
-        "Synthetic recordings of the rig in MuJoCo" if recordings.synthetic else f"Recordings in {recordings.folder}"
-    )
-    about = [
-        f"{origin}; axis: {recordings.rig.name}. {own} of {len(results)} sections done on them, "
-        f"{len(done) - own} on the embedded example, {len(results) - len(done)} not done.",
-        "Beside every number stands where it comes from: the recording, the rig file, the motor's datasheet, "
-        "the course, an assumption, a simulation, or the embedded example.",
-    ]
-    if recordings.synthetic:
-        about.append("Where a truth stands beside a number, it is the value that the axis was simulated with.")
-    return about
-
-
 def write_lab_report(
-    out: Path,
-    results: Results,
-    about: Sequence[str],
-    progress: Callable[[float], None] = lambda share: None,
-    cover: Cover | None = None,
-    axis: str = "",
+    out: Path, document: Document, json: str, progress: Callable[[float], None] = lambda share: None
 ) -> list[Path]:
     """Write `lab.json`, `lab.html` and `lab.pdf` into a folder.
 
     Args:
         out: folder, made if it is not there.
-        results: of the course.
-        about: where the recordings come from, a paragraph each.
+        document: of the results.
+        json: of the same.
         progress: called with the share done.
-        cover: who hands it in; a blank sheet without.
-        axis: its name.
 
     Returns:
         Paths written.
     """
-    data, html, pdf = out / "lab.json", out / "lab.html", out / "lab.pdf"
-    cover = cover or Cover()
+    paths = [out / f"lab.{ending}" for ending in ("json", "html", "pdf")]
     with held(out), quiet_about_glyphs():
-        write_text(data, lab_json(results, axis))
-        write_text(html, lab_html(results, about, cover))
+        write_text(paths[0], json)
+        write_text(paths[1], html(document))
         progress(0.5)
-        with whole(pdf) as temporary:
-            write_pages(temporary, TITLE, cover, about, [(section(result), _charts(result)) for result in results])
+        with whole(paths[2]) as temporary:
+            write_pdf(temporary, document)
     progress(1.0)
-    return [data, html, pdf]
+    return paths
 
 
-def lab_html(results: Results, about: Sequence[str], cover: Cover | None = None) -> str:
-    """The report as one HTML page that needs no other file."""
-    environment = Environment(
-        loader=PackageLoader("bench.course"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+def lab_document(results: Results, recordings: LabRecordings, cover: Cover) -> Document:
+    """The report.
+
+    Args:
+        results: of the course.
+        recordings: it was done on.
+        cover: who hands it in.
+    """
+    done = [result for result in results if isinstance(result, DoneTask)]
+    own, missing = sum(not result.example for result in done), len(results) - len(done)
+    origin = (
+        "Synthetic recordings of the rig in MuJoCo" if recordings.synthetic else f"Recordings in {recordings.folder}"
     )
-    tasks = [
-        (section(result), [_svg(c, f"{result.key}-{k}") for k, c in enumerate(_charts(result))]) for result in results
-    ]
-    page = environment.get_template("lab.html.j2")
-    return page.render(title=TITLE, about=about, tasks=tasks, cover=cover or Cover())
+    answers = {
+        "Recordings": f"{origin}; axis: {recordings.rig.name}.",
+        "Sources": "Beside every number stands where it comes from: the recording, the rig file, the motor's "
+        "datasheet, the course, an assumption, a simulation, or the embedded example.",
+    }
+    if recordings.synthetic:
+        answers["Truth"] = "Where a truth stands beside a number, it is the value that the axis was simulated with."
+    return Document(
+        title=TITLE,
+        subject=TITLE,
+        verdict=f"{own} of {len(results)} sections done on the recordings, {len(done) - own} on the embedded example, "
+        f"{missing} not done.",
+        tone="open" if missing else "sure",
+        answers=answers,
+        sections=(_cover_sheet(cover), *map(task_section, results)),
+        origin=(f"servobench {__version__}",),
+    )
 
 
-def _charts(result: DoneTask | NotDone) -> tuple[Chart, ...]:
-    return result.charts if isinstance(result, DoneTask) else ()
+def _cover_sheet(cover: Cover) -> Section:
+    rows = [(name or "_" * 26, number or "_" * 12, "_" * 24) for name, number in cover.rows]
+    group = f"Group: {cover.group or '_' * 12}"
+    signed = table(group, ("name", "student number", "signature"), rows)
+    return Section(key="cover", heading="Cover sheet", blocks=(signed, Paragraph(text=cover.declaration)))
 
 
-def _svg(chart: Chart, salt: str) -> Markup:
-    """A chart as an SVG element; `salt` keeps its ids apart from those of the others on the page."""
-    buffer = io.StringIO()
-    with rc_context({"svg.hashsalt": salt, "svg.fonttype": "none"}):
-        chart_figure(chart).savefig(buffer, format="svg", metadata={"Date": None})
-    text = buffer.getvalue()
-    return Markup(text[text.index("<svg") :])
+def task_section(result: DoneTask | NotDone) -> Section:
+    """A task, or what it is missing."""
+    key = f"task-{result.key}"
+    heading = f"Task {result.key}: {result.title}" if result.key.isdigit() else result.title
+    if isinstance(result, NotDone):
+        return Section(key=key, heading=heading, blocks=(Paragraph(text=f"Not done: {result.reason}"),))
+    if result.example:
+        heading = f"{heading} (embedded example)"
+    findings = (Paragraph(text=finding) for finding in result.findings)
+    return Section(key=key, heading=heading, blocks=(*findings, _numbers_table(result.numbers), *result.charts))
+
+
+def _numbers_table(numbers: Sequence[Number]) -> Table:
+    """Every number with its unit and source, and where any truth is known beside it."""
+    if any(number.truth is not None for number in numbers):
+        headings = ("quantity", "value>", "unit", "truth>", "error>", "from")
+        return table("Results", headings, [(*_cells(number), number.source) for number in numbers])
+    rows = [(*_cells(number)[:3], number.source) for number in numbers]
+    return table("Results", ("quantity", "value>", "unit", "from"), rows)
+
+
+def _cells(number: Number) -> tuple[str, str, str, str, str]:
+    """Name, value with five digits, unit, truth, and how far the value is from that."""
+    truth = number.truth
+    error = f"{number.value / truth - 1.0:+.3%}" if truth else ""
+    return number.name, f"{number.value:.5g}", number.unit, "" if truth is None else f"{truth:.5g}", error
+
+
+def course_table(results: Results) -> Table:
+    """Every number with its unit, beside its truth where that is known; of what was not done, what is missing."""
+    rows: list[tuple[str, ...]] = []
+    marked = []
+    for result in results:
+        if isinstance(result, NotDone):
+            marked.append(len(rows))
+            rows.append((result.key, f"not done: {result.reason}", "", "", "", ""))
+            continue
+        for place, number in enumerate(result.numbers):
+            name, value, unit, truth, error = _cells(number)
+            rows.append(("" if place else result.key, name, value, truth, error, unit))
+    return table("Lab course", ("task", "quantity", "value>", "truth>", "error>", "unit"), rows, marked)
 
 
 def lab_json(results: Results, axis: str) -> str:
@@ -161,27 +184,5 @@ def _task(result: DoneTask | NotDone) -> dict[str, object]:
         "status": "done",
         "embedded_example": result.example,
         "says": list(result.findings),
-        "numbers": [_number(number) for number in result.numbers],
+        "numbers": [{**vars(number), "value": known(number.value)} for number in result.numbers],
     }
-
-
-def _number(number: Number) -> dict[str, object]:
-    value = number.value if math.isfinite(number.value) else None
-    return {"name": number.name, "value": value, "unit": number.unit, "truth": number.truth, "source": number.source}
-
-
-def course_table(results: Results) -> Table:
-    """Every number with its unit, beside its truth where that is known; of what was not done, what is missing."""
-    table = Table(box=box.SIMPLE_HEAD, title="Lab course", title_justify="left")
-    table.add_column("task", no_wrap=True)
-    table.add_column("quantity", overflow="fold")
-    for heading in ("value", "truth", "error"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
-    for printed in map(section, results):
-        if printed.missing:
-            table.add_row(printed.key, f"not done: {printed.missing}", style="yellow")
-        for k, row in enumerate(printed.rows):
-            key = printed.key if k == 0 else ""
-            table.add_row(key, row.name, row.value, row.truth, row.error, row.unit)
-    return table

@@ -7,7 +7,10 @@ from typing import Literal
 
 from bench.arrays import Array
 from bench.errors import BenchError
+from bench.report.document import COLOURS, Chart, Panel, Series, series
 
+#: How curves of the course are drawn.
+Style = Literal["line", "dotted", "wide", "dashes", "dots", "large dots"]
 #: Where a number comes from.
 RECORDING, COMPUTED, SIMULATED, EXAMPLE = "recording", "computed", "simulated", "embedded example"
 
@@ -31,42 +34,37 @@ class Number:
     source: str = RECORDING
 
 
-@dataclass(frozen=True)
-class Curve:
-    """Points of a diagram, in the units of its panel's labels: x, y (n,); `wide` is to be drawn over."""
+def curve(x: Array, y: Array, name: str = "", style: Style = "line", reach: Array | None = None) -> Series:
+    """Points of a diagram, in the units of its panel's labels: x, y (n,); `wide` is to be drawn over.
 
-    x: Array
-    y: Array
-    label: str = ""
-    style: Literal["line", "thin", "wide", "dashes", "dots", "bold dots", "reach"] = "line"
-
-
-@dataclass(frozen=True)
-class Panel:
-    """One pair of axes, logarithmic where `log`; labels carry the unit, as `speed / (rad/s)`."""
-
-    x_label: str
-    y_label: str
-    curves: tuple[Curve, ...]
-    log: bool = False
+    Args:
+        x, y: points (n,).
+        name: for the legend.
+        style: how it is drawn; its colour is by its place in the panel.
+        reach: how far up a line goes from each point (n,), none without.
+    """
+    return series(name, style, "ink", x, y, None if reach is None else (y, y + reach))
 
 
-@dataclass(frozen=True)
-class Chart:
-    """Panels one above the other; those with the same x label share their x axis."""
+def panel(x_label: str, y_label: str, *curves: Series, log: bool = False, first: int = 0) -> Panel:
+    """Curves over one pair of axes.
 
-    title: str
-    panels: tuple[Panel, ...]
-
-
-def panel(x_label: str, y_label: str, *curves: Curve, log: bool = False) -> Panel:
-    """Curves over one pair of axes, logarithmic where `log`; labels carry the unit, as `speed / (rad/s)`."""
-    return Panel(x_label, y_label, curves, log)
+    Args:
+        x_label, y_label: of the axes with their units, as `speed / (rad/s)`.
+        curves: one over the other, each in the next colour.
+        log: whether both axes are logarithmic.
+        first: number of the first one's colour, where the curves are others' continued.
+    """
+    coloured = (
+        one.model_copy(update={"colour": COLOURS[place % len(COLOURS)]}) for place, one in enumerate(curves, first)
+    )
+    return Panel(x_label=x_label, y_label=y_label, series=tuple(coloured), log=log)
 
 
 def chart(title: str, *panels: Panel) -> Chart:
     """Panels one above the other; those with the same x label share their x axis."""
-    return Chart(title, panels)
+    shown = "; ".join(f"{panel.y_label} over {panel.x_label}" for panel in panels)
+    return Chart(title=title, alternative=f"{shown}.", panels=panels)
 
 
 @dataclass(frozen=True)

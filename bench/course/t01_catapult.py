@@ -6,8 +6,9 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.course.recordings import LabRecordings
-from bench.course.result import Chart, Curve, DoneTask, Number, chart, panel
+from bench.course.result import DoneTask, Number, chart, curve, panel
 from bench.errors import UndeterminedError
+from bench.report.document import Chart
 
 KEY, TITLE = "1", "Catapult"
 
@@ -56,8 +57,8 @@ def task(recordings: LabRecordings) -> DoneTask:
     y, z = np.concatenate(flights.points).T
     theta, error = fit_path(y, z)
     along = np.linspace(y.min(), y.max(), 300)
-    dots = [Curve(f[:, 0], f[:, 1], f"experiment {k}", "dots") for k, f in enumerate(flights.points, start=1)]
-    path = Curve(along, columns(along) @ theta, "least squares")
+    dots = [curve(f[:, 0], f[:, 1], f"experiment {k}", "dots") for k, f in enumerate(flights.points, start=1)]
+    path = curve(along, columns(along) @ theta, "least squares")
     numbers = [
         Number(name, float(value), unit, flights.truth.get(name))
         for name, value, unit in zip("abc", theta, ("1/m", "1", "m"), strict=True)
@@ -89,6 +90,6 @@ def compare_solvers(y: Array, z: Array) -> tuple[str, Chart]:
         f"A is badly conditioned, for AᵀA has its square: with y measured from {SHIFTS[worst]:g} m away "
         f"({condition[worst]:.1g}) the paths are {apart[worst]:.1g} m apart."
     )
-    measured = Curve(np.array(condition), np.maximum(apart, 1e-17), "measured", "bold dots")
+    measured = curve(np.array(condition), np.maximum(apart, 1e-17), "measured", "large dots")
     axes = panel("condition number of A", "largest difference of the paths / m", measured, log=True)
     return findings, chart("Task 1: normal equations against an orthogonal solver", axes)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from bench.course.recordings import LabRecordings
-from bench.course.result import COMPUTED, Curve, DoneTask, Number, chart, panel
+from bench.course.result import COMPUTED, DoneTask, Number, chart, curve, panel
 from bench.fit.lab import backward_difference
 from bench.trace.filter import GaussianFilter
 
@@ -40,11 +40,11 @@ def task(recordings: LabRecordings) -> DoneTask:
         Number("largest error of the backward difference", worst, "1/s", SAMPLE_PERIOD / 2.0, COMPUTED),
         Number("largest error of the bench's derivative", worst_of_bench, "1/s", WIDTH**2 / 2.0, COMPUTED),
     )
-    both = Curve(time, np.cos(time), "cos(t)", "wide"), Curve(time, backward, "backward difference")
+    both = curve(time, np.cos(time), "cos(t)", "wide"), curve(time, backward, "backward difference")
     drawn = chart(
         "Derivative of sin(t) against cos(t)",
         panel("time / s", "derivative / (1/s)", *both),
-        panel("time / s", "error, backward / (1/s)", Curve(time[1:], error)),
-        panel("time / s", "error, bench / (1/s)", Curve(time[kept], error_of_bench)),
+        panel("time / s", "error, backward / (1/s)", curve(time[1:], error)),
+        panel("time / s", "error, bench / (1/s)", curve(time[kept], error_of_bench)),
     )
     return DoneTask(KEY, TITLE, (findings,), numbers, (drawn,))

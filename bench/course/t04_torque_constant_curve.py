@@ -6,7 +6,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.course.recordings import LabRecordings
-from bench.course.result import Curve, DoneTask, Number, chart, panel
+from bench.course.result import DoneTask, Number, chart, curve, panel
 from bench.course.t03_torque_constants import datasheet, torque_constants
 from bench.rig.rig import Rig
 
@@ -38,9 +38,9 @@ def task(recordings: LabRecordings) -> DoneTask:
     a, b, c = coefficients(rig)
     points, given = currents(rig), np.array(torque_constants(rig))
     current = np.linspace(0.0, points[1], 400)
-    curve = a * current**2 + b * current + c
+    fitted = a * current**2 + b * current + c
     off = np.abs(a * points**2 + b * points + c - given)
-    falls = "falls monotonically" if np.all(np.diff(curve[1:]) < 0.0) else "does not fall everywhere"
+    falls = "falls monotonically" if np.all(np.diff(fitted[1:]) < 0.0) else "does not fall everywhere"
     findings = (
         f"Checked: slope at zero {b:g} N·m/A²; {falls} "
         f"up to {points[1]:g} A; both points of the datasheet met within {off.max():.1g} N·m/A."
@@ -52,7 +52,7 @@ def task(recordings: LabRecordings) -> DoneTask:
     axes = panel(
         "current Iq / A",
         "torque constant kT / (N·m/A)",
-        Curve(current, curve, "a·Iq² + b·Iq + c"),
-        Curve(points, given, "datasheet: stall and peak", "bold dots"),
+        curve(current, fitted, "a·Iq² + b·Iq + c"),
+        curve(points, given, "datasheet: stall and peak", "large dots"),
     )
     return DoneTask(KEY, TITLE, (findings,), numbers, (chart("kT(Iq)", axes),))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from bench.course.recordings import LabRecordings, LabRun
-from bench.course.result import Curve, DoneTask, Number, chart, panel
+from bench.course.result import DoneTask, Number, chart, curve, panel
 
 KEY, TITLE = "5", "Recording without friction"
 
@@ -34,5 +34,5 @@ def signals_of(run: LabRun, key: str, title: str) -> DoneTask:
         ("largest torque", "N·m"): run.torque,
     }
     numbers = tuple(Number(name, float(np.abs(values).max()), unit) for (name, unit), values in largest.items())
-    panels = (panel("time / s", label, Curve(run.time, values)) for label, values in signals.items())
+    panels = (panel("time / s", label, curve(run.time, values)) for label, values in signals.items())
     return DoneTask(key, title, findings, numbers, (chart(f"Task {key}: {title.lower()}", *panels),))

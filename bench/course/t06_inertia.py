@@ -7,7 +7,7 @@ import numpy as np
 from bench.arrays import rms
 from bench.course.axis import KG_CM2, joined
 from bench.course.recordings import LabRecordings
-from bench.course.result import RECORDING, Curve, DoneTask, Number, chart, panel
+from bench.course.result import RECORDING, DoneTask, Number, chart, curve, panel
 from bench.errors import UndeterminedError
 from bench.fit.lab import mean_inertia
 
@@ -78,10 +78,10 @@ def task(recordings: LabRecordings) -> DoneTask:
         *loads,
         Number("RMS of M - J·α", left, "N·m"),
     )
-    measured = Curve(run.time, run.torque, "measured torque M", "wide")
+    measured = curve(run.time, run.torque, "measured torque M", "wide")
     drawn = chart(
         "Task 6: J·α over the measured torque",
-        panel("time / s", "torque / (N·m)", measured, Curve(run.time, inertia * run.acceleration, "J·α")),
-        panel("time / s", "M - J·α / (N·m)", Curve(run.time, residual)),
+        panel("time / s", "torque / (N·m)", measured, curve(run.time, inertia * run.acceleration, "J·α")),
+        panel("time / s", "M - J·α / (N·m)", curve(run.time, residual)),
     )
     return DoneTask(KEY, TITLE, findings, numbers, (drawn,))

@@ -8,9 +8,10 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.course.recordings import LabRecordings, LabRun
-from bench.course.result import Chart, Curve, DoneTask, Number, chart, panel
+from bench.course.result import DoneTask, Number, chart, curve, panel
 from bench.errors import UndeterminedError
 from bench.fit.lab import LEAST_SPEED
+from bench.report.document import Chart
 from bench.trace.filter import GaussianFilter
 
 KEY, TITLE = "8", "Filtered acceleration, slow samples removed"
@@ -112,7 +113,7 @@ def _remaining_chart(run: LabRun, kept: LabRun) -> Chart:
         "torque M / (N·m)": (run.time, run.torque, kept.torque),
     }
     panels = (
-        panel("t_sync / s", label, Curve(time, all_, "original", "wide"), Curve(kept.time, rest, "remaining", "dots"))
+        panel("t_sync / s", label, curve(time, all_, "original", "wide"), curve(kept.time, rest, "remaining", "dots"))
         for label, (time, all_, rest) in signals.items()
     )
     return chart("Task 8: remaining samples over the original ones", *panels)
@@ -126,11 +127,11 @@ def _edge_chart(run: LabRun) -> Chart:
     near = slice(max(edge - EDGE, DELAY), min(edge + EDGE, run.time.size - DELAY))
     within = slice(near.start - DELAY, near.stop - DELAY)
     late = t_sync + DELAY * run.sample_period
-    whole = Curve(run.time, run.acceleration, "α", "wide"), Curve(t_sync, mean, "α_filt on t_sync")
+    whole = curve(run.time, run.acceleration, "α", "wide"), curve(t_sync, mean, "α_filt on t_sync")
     close = (
-        Curve(run.time[near], run.acceleration[near], "α, original", "wide"),
-        Curve(run.time[near], mean[within], "α_filt on t_sync", "bold dots"),
-        Curve(late[within], mean[within], "α_filt as it comes", "dashes"),
+        curve(run.time[near], run.acceleration[near], "α, original", "wide"),
+        curve(run.time[near], mean[within], "α_filt on t_sync", "large dots"),
+        curve(late[within], mean[within], "α_filt as it comes", "dashes"),
     )
     return chart(
         "Task 8: filtered acceleration over the original one",

@@ -11,7 +11,7 @@ from bench.axis_kind import COULOMB
 from bench.course import t06_inertia
 from bench.course.axis import KG_CM2
 from bench.course.recordings import LabRecordings, LabRun
-from bench.course.result import Curve, DoneTask, Number, chart, panel
+from bench.course.result import DoneTask, Number, chart, curve, panel
 from bench.course.t08_fast_samples import fast_samples, in_step
 from bench.errors import BenchError, UndeterminedError
 from bench.fit.determined import RECORD
@@ -83,11 +83,11 @@ def task(recordings: LabRecordings) -> DoneTask:
         Number("samples of M_est", float(every.time.size), "1"),
         Number("RMS of M - M_est, all samples", left, "N·m"),
     )
-    measured = Curve(run.time, run.torque, "measured torque M", "wide")
+    measured = curve(run.time, run.torque, "measured torque M", "wide")
     drawn = chart(
         "Task 9: reconstructed torque over the measured one",
-        panel("time / s", "torque / (N·m)", measured, Curve(run.time, found.torque(every), "M_est, all samples")),
-        panel("time / s", "M - M_est / (N·m)", Curve(run.time, residual)),
+        panel("time / s", "torque / (N·m)", measured, curve(run.time, found.torque(every), "M_est, all samples")),
+        panel("time / s", "M - M_est / (N·m)", curve(run.time, residual)),
     )
     return DoneTask(KEY, TITLE, findings, numbers, (drawn,))
 

@@ -10,7 +10,7 @@ from bench.arrays import Array
 from bench.course.axis import MAINS, RPM
 from bench.course.corner import STILL_RISING, Decline, decline
 from bench.course.recordings import LabRecordings, LabRun
-from bench.course.result import Curve, DoneTask, Number, chart, panel
+from bench.course.result import DoneTask, Number, chart, curve, panel
 from bench.errors import UndeterminedError
 from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig
@@ -100,9 +100,9 @@ def task(recordings: LabRecordings) -> DoneTask:
     axes = panel(
         "speed n / rpm",
         "torque M / (N·m)",
-        Curve(speed, torque, "measured", "dots"),
-        Curve(limit * RPM, allowed, f"datasheet, {MAINS:g} V", "dashes"),
-        Curve(np.array([corner]), np.interp([corner], speed, torque), "corner", "bold dots"),
+        curve(speed, torque, "measured", "dots"),
+        curve(limit * RPM, allowed, f"datasheet, {MAINS:g} V", "dashes"),
+        curve(np.array([corner]), np.interp([corner], speed, torque), "corner", "large dots"),
     )
     return DoneTask(KEY, TITLE, findings, tuple(numbers), (chart("Task 10: peak torque", axes),))
 

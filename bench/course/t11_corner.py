@@ -14,12 +14,13 @@ from bench.arrays import Array
 from bench.course.axis import MAINS, RPM, circuit, joined, peak_current, torque_constant
 from bench.course.corner import Decline, extrapolated_corner
 from bench.course.recordings import LabRecordings
-from bench.course.result import SIMULATED, Chart, Curve, DoneTask, Number, chart, panel
+from bench.course.result import SIMULATED, DoneTask, Number, chart, curve, panel
 from bench.course.t09_least_squares import identify_friction
 from bench.course.t10_peak_torque import datasheet_curve, fall
 from bench.course.winding import STEP, WindingModel, WindingRun, run_winding
 from bench.errors import BenchError, InputError
 from bench.plant.model import AxisParameters
+from bench.report.document import Chart
 from bench.rig.circuit import COLD, HOT, Circuit
 from bench.rig.limits import peak_curve
 from bench.rig.motor import PeakCurve
@@ -270,8 +271,8 @@ def _torque_chart(rig: Rig, found: Split) -> Chart:
         f"{COLD:g} °C, quasi-static": found.cold.run,
         f"{COLD:g} °C, with inductance": found.inductive.run,
     }
-    curves = (Curve(run.velocity[every] * RPM, run.torque[every], name) for name, run in simulated.items())
-    datasheet = Curve(speed * RPM, torque, f"datasheet, {MAINS:g} V", "dashes")
+    curves = (curve(run.velocity[every] * RPM, run.torque[every], name) for name, run in simulated.items())
+    datasheet = curve(speed * RPM, torque, f"datasheet, {MAINS:g} V", "dashes")
     return chart("Task 11: simulated peak torque", panel("speed n / rpm", "torque M / (N·m)", datasheet, *curves))
 
 
@@ -283,11 +284,14 @@ def _dependence_chart(found: Split) -> Chart:
         return (np.array(values) - cold) * RPM
 
     curves = (
-        Curve(tau * 1e3, shifts([one.corner for one in found.others], found.cold.corner), "corner", "bold dots"),
-        Curve(
-            tau * 1e3, shifts([one.line for one in found.others], found.cold.line), "line through the fall", "bold dots"
+        curve(tau * 1e3, shifts([one.corner for one in found.others], found.cold.corner), "corner", "large dots"),
+        curve(
+            tau * 1e3,
+            shifts([one.line for one in found.others], found.cold.line),
+            "line through the fall",
+            "large dots",
         ),
-        Curve(from_zero * 1e3, from_zero * found.acceleration * RPM, "α·L/R at full torque", "dashes"),
+        curve(from_zero * 1e3, from_zero * found.acceleration * RPM, "α·L/R at full torque", "dashes"),
     )
     axes = panel("electrical time constant L/R / ms", "shift by inductance / rpm", *curves)
     return chart("Task 11: inductance moves the fall, not the corner", axes)

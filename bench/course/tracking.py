@@ -9,7 +9,7 @@ import numpy as np
 from bench.arrays import Array, column_rms
 from bench.course.axis import KG_CM2, Sources, joined, rotor_inertia
 from bench.course.recordings import LabRecordings
-from bench.course.result import SIMULATED, Chart, Curve, DoneTask, Number, chart, panel
+from bench.course.result import SIMULATED, DoneTask, Number, chart, curve, panel
 from bench.course.t09_least_squares import identify_friction
 from bench.course.t11_corner import identified_axis
 from bench.errors import InputError
@@ -18,6 +18,7 @@ from bench.plant.model import AxisParameters
 from bench.plant.plant import Plant
 from bench.plant.profiles import MotionLimits, plan
 from bench.plant.run import run
+from bench.report.document import Chart
 from bench.rig.rig import Rig
 
 KEY, TITLE = "tracking", "Tracking with three load inertias in the feed-forward"
@@ -83,9 +84,9 @@ def track(rig: Rig, sources: Sources, axis: AxisParameters, identified: float, k
 def _chart(time: Array, deviation: Array, labels: list[str]) -> Chart:
     """Deviations over time - s, deg - (ticks, 3); again without the first, which hides the others."""
     every = slice(None, None, 4)
-    curves = [Curve(time[every], deviation[every, k], label) for k, label in enumerate(labels)]
+    curves = [curve(time[every], deviation[every, k], label) for k, label in enumerate(labels)]
     return chart(
         "Tracking deviation of the fast run",
         panel("time / s", "tracking deviation / deg", *curves),
-        panel("time / s", "the same, without J_load = 0 / deg", *curves[1:]),
+        panel("time / s", "the same, without J_load = 0 / deg", *curves[1:], first=1),
     )

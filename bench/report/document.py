@@ -352,9 +352,9 @@ class Downloads(Part):
 
 
 class Neighbour(Part):
-    """A file in the folder of the page, by its name; `about`: what it is."""
+    """A file in the folder of the page, or in one below it, by its name; `about`: what it is."""
 
-    name: str = Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$")
+    name: str = Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]*(/[A-Za-z0-9_][A-Za-z0-9_.-]*)?$")
     about: str
 
 

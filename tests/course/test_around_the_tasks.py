@@ -5,6 +5,7 @@ import pytest
 from bench.course import tracking
 from bench.course.axis import Sources, lab_rig
 from bench.plant.model import AxisParameters
+from tests.course.drawn import curves
 from tests.course.test_tasks import near
 
 
@@ -76,6 +77,6 @@ def test_operating_range_states_a_reserve_at_both_mains_voltages(done):
     assert "overheat" in task.findings[0]
     assert task["thermal reserve, 230 V"].unit == "A"
     assert task["RMS current"].value > 1.05 * task["RMS torque"].value / (1.4 / 1.8)
-    labels = {curve.label for curve in task.charts[0].panels[0].curves}
+    labels = {curve.name for curve in curves(task)}
     assert {"RMS current at mean speed", "peak braking, 230 V", "peak, 230 V, winding at 20 °C"} <= labels
     assert task["peak reserve, 230 V, cold"].value >= task["peak reserve, 230 V"].value

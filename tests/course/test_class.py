@@ -185,7 +185,7 @@ def check(of, ways, out):
             assert mistake in page
         else:
             assert {row["verdict"] for row in rows} == {"right", "not judged"}, (number, how, off)
-            assert 'class="wrong"' not in page
+            assert 'class="marked"' not in page
 
 
 #: Right ways, and every mistake in each of its ways.

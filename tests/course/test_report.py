@@ -9,13 +9,15 @@ import pytest
 
 from bench.assets import asset
 from bench.course import pdf
-from bench.course.charts import chart_figure
 from bench.course.handin import Cover
-from bench.course.report import course_table, lab_html, write_lab_report
+from bench.course.recordings import LabRecordings
+from bench.course.report import course_table, lab_document, task_section, write_lab_report
 from bench.course.result import NotDone
-from bench.course.section import section
 from bench.errors import InputError
-from bench.report.terminal import console
+from bench.report.document import Picture
+from bench.report.figures import drawn
+from bench.report.html import html
+from bench.report.terminal import console, rendered
 from tests import command
 
 #: Labels of axes that the course asks for.
@@ -41,15 +43,20 @@ def bench(monkeypatch, tmp_path):
     return command.bench
 
 
+def document(results, cover=None):
+    """The report of results on the synthetic recordings."""
+    return lab_document(results, LabRecordings.in_folder(None), cover or Cover())
+
+
 def test_report_has_every_task_number_and_figure(lab, done):
     text = (lab.folder / "here" / "lab.html").read_text(encoding="utf-8")
     assert re.findall(r'<section id="task-([^"]+)"', text) == list(done)
-    assert text.count("<svg") == sum(len(task.charts) for task in done.values()) == 15
+    assert text.count('<figure class="chart"') == sum(len(task.charts) for task in done.values()) == 15
     for label in LABELS:
         assert label in text, label
     for task in done.values():
         assert all(number.unit for number in task.numbers)
-        assert all(f"<td>{number.name}</td>" in text.replace("&#39;", "'") for number in task.numbers)
+        assert all(f'<th scope="row">{number.name}</th>' in text.replace("&#39;", "'") for number in task.numbers)
         assert all(number.source for number in task.numbers)
     assert not re.search(r'(?:src|href)="(?!#)', text), "the page must need no other file"
     content = (lab.folder / "here" / "lab.pdf").read_bytes()
@@ -59,9 +66,9 @@ def test_report_has_every_task_number_and_figure(lab, done):
 
 def test_what_was_not_done_says_what_is_missing(done):
     missing = NotDone("9", "Least squares", InputError("folder/<b>.trace", "no such file", "found: nothing"))
-    html = lab_html([done["2"], missing], [])
-    assert "Not done: folder/&lt;b&gt;.trace: no such file; found: nothing" in html
-    assert any("no such file" in str(cell) for cell in course_table([done["2"], missing]).columns[1].cells)
+    page = html(document([done["2"], missing]))
+    assert "Not done: folder/&lt;b&gt;.trace: no such file; found: nothing" in page
+    assert "no such file" in course_table([done["2"], missing]).rows[-1][1]
 
 
 def test_lab_runs_alone_and_ends_naming_the_report(lab):
@@ -73,7 +80,7 @@ def test_lab_runs_alone_and_ends_naming_the_report(lab):
 
 def test_progress_of_the_report_ends_at_one(done, tmp_path):
     shares = []
-    files = write_lab_report(tmp_path, [done["2"]], ["about"], shares.append)
+    files = write_lab_report(tmp_path, document([done["2"]]), "{}\n", shares.append)
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
     assert [path.name for path in files] == ["lab.json", "lab.html", "lab.pdf"]
@@ -145,9 +152,12 @@ def test_a_cover_sheet_names_the_group(tmp_path):
     path = tmp_path / "group.toml"
     path.write_text('group = "7"\n[[student]]\nname = "Ada <L>"\nnumber = "12345"\n')
     cover = Cover.in_folder(tmp_path)
-    assert "Ada &lt;L&gt;" in lab_html([], [], cover)
-    assert "12345" in lab_html([], [], cover)
-    write_lab_report(tmp_path / "out", [], ["about"], cover=cover)
+    page = html(document([], cover))
+    assert "Ada &lt;L&gt;" in page
+    assert "12345" in page
+    lines = [line.text for part in pdf.cover(document([], cover)) for line in part]
+    assert any(line.split() == ["Ada", "<L>", "12345", "_" * 24] for line in lines)
+    assert "Group: 7" in lines
     for text, word in (("group = 7 =", "TOML"), ('[[student]]\nname = "A"\n', "number"), ("team = 1\n", "team")):
         path.write_text(text)
         with pytest.raises(InputError, match=word):
@@ -156,8 +166,7 @@ def test_a_cover_sheet_names_the_group(tmp_path):
 
 def test_pages_of_the_pdf_are_full(done):
     """No page but the cover and the last leaves more than two fifths of its height empty."""
-    blocks = [block for task in done.values() for block in (*pdf._text(section(task)), *task.charts)]
-    pages = list(pdf._paginated(blocks))
+    pages = list(pdf.paginated([part for task in done.values() for part in pdf.flowing(task_section(task))]))
     room = pdf.PAGE[1] - 2.0 * pdf.MARGIN
     filled = [sum(part.height for part in page) / room for page in pages]
     print("pages filled:", *(f"{share:.0%}" for share in filled))
@@ -169,7 +178,7 @@ def test_a_legend_covers_no_data(done):
     """Every legend lies above its axes, in the drawn figure."""
     for task in done.values():
         for chart in task.charts:
-            figure = chart_figure(chart)
+            figure = drawn(Picture(name="chart", title="", rows=((chart,),)))
             figure.draw_without_rendering()
             for axes in figure.axes:
                 legend = axes.get_legend()
@@ -181,5 +190,5 @@ def test_the_advice_keeps_its_brackets_on_the_terminal():
     reason = InputError("a.csv", "holds no velocity", 'write [trace.columns] velocity = "column [unit]"')
     shown = console()
     with shown.capture() as kept:
-        shown.print(course_table([NotDone("6", "Inertia", reason)]))
+        shown.print(rendered(course_table([NotDone("6", "Inertia", reason)])))
     assert '[trace.columns]velocity="column[unit]"' in "".join(kept.get().split())

@@ -14,6 +14,7 @@ from bench.course.t08_fast_samples import WIDTH, fast_samples, filtered_accelera
 from bench.course.t10_peak_torque import run_up
 from bench.errors import InputError, UndeterminedError
 from bench.fit.lab import backward_difference
+from tests.course.drawn import curves
 
 RPM = 60.0 / (2.0 * np.pi)
 
@@ -30,12 +31,12 @@ def test_1_catapult_recovers_the_throw_within_its_scatter(done):
     task = done["1"]
     flights = np.array([fly(factor, angle).coefficients for factor, angle in ((1.015, 2.3562), (0.985, 2.3562))])
     spread = np.abs(flights[0] - flights[1]) / 2.0
-    assert len(task.charts[0].panels[0].curves) == FLIGHTS + 1
+    assert len(curves(task)) == FLIGHTS + 1
     for name, reach in zip("abc", spread, strict=True):
         number = task[name]
         # ten launches, each as far off as one standard deviation of stiffness makes it; the release scatters alike
         assert abs(number.value - number.truth) < 4.0 * reach / np.sqrt(FLIGHTS) + 0.01
-    y, z = np.concatenate([np.stack([c.x, c.y]) for c in task.charts[0].panels[0].curves[:FLIGHTS]], axis=1)
+    y, z = np.concatenate([np.stack([c.x, c.y]) for c in curves(task)[:FLIGHTS]], axis=1)
     expected = np.polyfit(y, z, 2)
     assert [task[name].value for name in "abc"] == pytest.approx(expected.tolist(), rel=1e-9)
     assert task["E"].value == pytest.approx(np.sum((z - np.polyval(expected, y)) ** 2), rel=1e-9)
@@ -62,7 +63,7 @@ def test_1_both_solvers_agree_until_the_condition_number_is_squared():
 def test_2_backward_difference_is_half_a_sample_late(done):
     near(done["2"]["largest error of the backward difference"], 1e-3)
     near(done["2"]["largest error of the bench's derivative"], 0.05)
-    time = done["2"].charts[0].panels[0].curves[0].x
+    time = curves(done["2"])[0].x
     assert (time.size, time[0], time[-1]) == (6284, 0.0, pytest.approx(6.283))
     assert backward_difference(np.array([3.0]), 1.0).tolist() == [0.0]
     assert backward_difference(np.array([]), 1.0).size == 0
@@ -82,7 +83,7 @@ def test_3_and_4_torque_constant_is_exact(done):
     assert a * 5.7**2 + c == pytest.approx(3.5 / 5.7, rel=1e-14)
     constant = rig.motor.torque_per_ampere
     assert (constant.curvature, constant.constant) == pytest.approx((a, c), rel=1e-13)
-    curve = done["4"].charts[0].panels[0].curves[0]
+    curve = curves(done["4"])[0]
     assert curve.x[0] == 0.0
     assert curve.x[-1] == 5.7
     assert np.all(np.diff(curve.y) < 0.0)
@@ -100,7 +101,7 @@ def test_5_and_7_four_signals_on_one_time_axis_in_si(done):
         assert {panel.x_label for panel in panels} == {"time / s"}
         assert 100.0 < done[key]["largest speed"].value < 200.0
         assert 2.0 < done[key]["largest torque"].value < 3.5
-        angle, speed = (panels[k].curves[0] for k in (0, 1))
+        (angle,), (speed,) = (curves(done[key], panel=k) for k in (0, 1))
         assert angle.y[-1] == pytest.approx(np.trapezoid(speed.y, speed.x), abs=1e-9)
         assert "four graphs and names three" in done[key].findings[1]
 
@@ -114,8 +115,8 @@ def test_6_inertia_within_half_a_percent(done):
     assert 0.10 < done["6"]["J_load"].value / theory - 1.0 < 0.20
     text = " ".join(done["6"].findings)
     assert "In which unit?" in text
-    measured, modelled = done["6"].charts[0].panels[0].curves
-    residual = done["6"].charts[0].panels[1].curves[0]
+    measured, modelled = curves(done["6"])
+    residual = curves(done["6"], 0, 1)[0]
     assert residual.y == pytest.approx(measured.y - modelled.y)
     assert f"{done['6']['RMS of M - J·α'].value:.3g} N·m" in text
 
@@ -141,8 +142,8 @@ def test_9_inertia_within_half_a_percent_and_friction_within_three(done):
 
 
 def test_9_the_torque_is_reconstructed_for_all_samples(done):
-    measured, estimated = done["9"].charts[0].panels[0].curves
-    assert estimated.x.size == measured.x.size == done["7"].charts[0].panels[0].curves[0].x.size
+    measured, estimated = curves(done["9"])
+    assert estimated.x.size == measured.x.size == curves(done["7"])[0].x.size
     assert done["9"]["samples of M_est"].value == measured.x.size
     assert np.isfinite(estimated.y).all()
     assert done["9"]["RMS of M - M_est, all samples"].value == pytest.approx(
@@ -153,7 +154,7 @@ def test_9_the_torque_is_reconstructed_for_all_samples(done):
 def test_8_the_filtered_acceleration_is_in_step_with_the_speed(done):
     assert done["8"]["alpha_filt late, on t_sync"].value == pytest.approx(0.0, abs=0.01)
     assert done["8"]["alpha_filt late, as it comes"].value == pytest.approx(2.0, abs=0.05)
-    names = [curve.label for curve in done["8"].charts[1].panels[0].curves]
+    names = [curve.name for curve in curves(done["8"], 1, 0)]
     assert names == ["α", "α_filt on t_sync"]
 
 
@@ -171,7 +172,7 @@ def test_10_peak_torque_and_corner(done):
     near(done["10"]["peak torque"], 0.005)
     near(done["10"]["measured corner"], 0.002)
     assert done["10"]["datasheet's corner"].value == pytest.approx(2100.0)
-    measured, sheet, _ = done["10"].charts[0].panels[0].curves
+    measured, sheet, _ = curves(done["10"])
     assert measured.y.min() >= 0.2
     assert measured.y[0] > 3.0
     assert np.stack([sheet.x, sheet.y], axis=1) == pytest.approx(np.array([[0.0, 3.5], [2100.0, 3.5], [5000.0, 0.0]]))

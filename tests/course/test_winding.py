@@ -12,6 +12,7 @@ from bench.course.t11_corner import TIME_CONSTANTS, VELOCITY_GAIN, cross_voltage
 from bench.course.winding import CURRENT_LOOP, STEP, WindingModel, run_winding
 from bench.plant.model import AxisParameters
 from bench.rig.circuit import COLD, HOT, Circuit
+from tests.course.drawn import curves
 
 RPM = 60.0 / (2.0 * np.pi)
 
@@ -104,7 +105,7 @@ def test_11_split_against_closed_forms(done, circuit):
     assert np.all(np.array(shifts) < full)
     assert np.all(np.array(shifts) > 0.8 * full)
     # drawn beside them: alpha*L/R with what friction leaves of the full torque, 3.415 N*m over 22.5 kg*cm**2
-    line, drawn, theory = done["11"].charts[1].panels[0].curves[:3]
+    line, drawn, theory = curves(done["11"], 1, 0)[:3]
     assert (line.x, drawn.y) == (pytest.approx([1.0, 2.0, 3.0, 5.0, 8.0]), pytest.approx(shifts))
     assert theory.x == pytest.approx([0.0, 1.0, 2.0, 3.0, 5.0, 8.0])
     assert theory.y[1] == pytest.approx((3.5 - 0.085) / 22.5e-4 * 1e-3 * RPM, rel=1e-3)  # axis as task 9 finds it
