@@ -7,6 +7,7 @@ import gzip
 import io
 import zlib
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from bench.bounds import read_bounded
@@ -42,7 +43,7 @@ class Source:
     content: bytes
     ending: str
 
-    @property
+    @cached_property
     def head(self) -> str:
         """First 64 KiB as text, for telling formats apart; undecodable bytes replaced."""
         return self.content[:_HEAD].decode("utf-8", errors="replace")

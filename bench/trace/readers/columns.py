@@ -55,10 +55,17 @@ def _numbers(column: pa.ChunkedArray | pa.Array) -> Array | None:
         return (
             np.where(column.is_null().to_numpy(zero_copy_only=False), np.nan, passed) if column.null_count else passed
         )
-    if pa.types.is_boolean(kind) or pa.types.is_decimal(kind):
-        column = column.cast(pa.float64())
-    elif not (pa.types.is_integer(kind) or pa.types.is_floating(kind)):
-        return None
+    number = pa.types.is_integer(kind) or pa.types.is_floating(kind)
+    return floats(column) if number or pa.types.is_boolean(kind) or pa.types.is_decimal(kind) else None
+
+
+def floats(column: pa.ChunkedArray | pa.Array) -> Array:
+    """Numbers (n,), nan for none; without a copy where they are float64, all known and in one piece.
+
+    Not by `to_numpy`, which imports pandas wherever it is installed: 0.35 s.
+    """
     array = column if isinstance(column, pa.Array) else column.combine_chunks()
     array = array.chunk(0) if isinstance(array, pa.ChunkedArray) else array
-    return array.to_numpy(zero_copy_only=False).astype(np.float64, copy=False)
+    if array.null_count or not (pa.types.is_integer(array.type) or pa.types.is_floating(array.type)):
+        array = array.cast(pa.float64(), safe=False).fill_null(np.nan)
+    return np.from_dlpack(array).astype(np.float64, copy=False)

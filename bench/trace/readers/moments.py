@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute
 
 from bench.arrays import Array
-
-#: Its functions are made when it is loaded, so that checkers of types know none.
-pc: Any = pyarrow.compute
 
 #: 2024-03-05T12:34:56.789+01:00, 05.03.2024 12:34:56,789, 12:34:56.789, 12:34:56:789, 1:34:56.7 PM, 34:56.7.
 _MOMENT = (
@@ -29,12 +26,18 @@ def is_moment(text: str) -> bool:
     return _PATTERN.match(text) is not None
 
 
+def compute() -> Any:  # noqa: ANN401
+    """Arrow's functions, which take 0.05 s to import and are made then, so that checkers of types know none."""
+    return importlib.import_module("pyarrow.compute")
+
+
 def seconds(texts: pa.ChunkedArray) -> Array | None:
     """Seconds from the first moment - (n,), nan where a cell is empty; None where one is no moment.
 
     Dates are told apart, not read: they count days in the order in which they appear, so that it does not matter which
     of their numbers is the month. A clock without a date that falls back by most of a day has passed midnight.
     """
+    pc = compute()
     column = texts.combine_chunks()
     column = column.chunk(0) if isinstance(column, pa.ChunkedArray) else column
     parts = pc.extract_regex(column, pattern=_MOMENT)
@@ -67,14 +70,15 @@ def seconds(texts: pa.ChunkedArray) -> Array | None:
 
 
 def _number(texts: pa.Array) -> Array:
+    pc = compute()
     filled = pc.if_else(pc.equal(texts.fill_null(""), ""), "0", texts.fill_null("0"))
     return pc.cast(filled, pa.float64()).to_numpy(zero_copy_only=False).copy()
 
 
 def _fraction(texts: pa.Array) -> Array:
-    return pc.cast(pc.binary_join_element_wise("0.", texts.fill_null(""), "0", ""), pa.float64()).to_numpy(
-        zero_copy_only=False
-    )
+    pc = compute()
+    digits = pc.binary_join_element_wise("0.", texts.fill_null(""), "0", "")
+    return pc.cast(digits, pa.float64()).to_numpy(zero_copy_only=False)
 
 
 def _offset(zones: pa.Array) -> Array:

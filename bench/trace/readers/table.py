@@ -6,26 +6,23 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute
 from pyarrow import csv
 
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.readers.columns import floats
 from bench.trace.readers.layout import BLANKS, EMPTY, HEAD, TableLayout, cells_of, find_layout, is_number
-from bench.trace.readers.moments import seconds
+from bench.trace.readers.moments import compute, seconds
 from bench.trace.source import Source, decode, utf8
 
 #: Columns of a table; a recorder has some hundred channels at most.
 MOST_COLUMNS = 10_000
 _COMMENT = re.compile(rb"^[ \t]*(?:#|//)")
-#: Its functions are made when it is loaded, so that checkers of types know none.
-pc: Any = pyarrow.compute
 
 #: Of the kinds of columns; `exact` are epochs in ns with more digits than a float holds, and seconds to the ns.
 TYPES = {"number": pa.float64(), "exact": pa.decimal128(30, 9), "text": pa.string()}
@@ -227,6 +224,7 @@ def _filled_rows(table: pa.Table) -> np.ndarray | None:
     filled = np.zeros(table.num_rows, dtype=bool)
     for column in table.columns:
         if pa.types.is_string(column.type):
+            pc = compute()
             blank = pc.equal(pc.utf8_trim_whitespace(column), "").to_numpy()
             filled |= ~blank.astype(bool)
         elif not column.null_count:
@@ -255,7 +253,7 @@ def channel_of_cells(label: str, column: pa.ChunkedArray, decimal: str, path: st
         return _of_text(channel, column, decimal)
     if pa.types.is_decimal(column.type):
         return replace(channel, values=_from_first(column))
-    return replace(channel, values=column.fill_null(np.nan).to_numpy() if column.null_count else column.to_numpy())
+    return replace(channel, values=floats(column))
 
 
 def _from_first(column: pa.ChunkedArray) -> Array:
@@ -263,7 +261,7 @@ def _from_first(column: pa.ChunkedArray) -> Array:
     first = column.drop_null()[0] if column.null_count < len(column) else None
     if first is None:
         return np.full(len(column), np.nan)
-    return pc.cast(pc.subtract(column, first), pa.float64()).fill_null(np.nan).to_numpy()
+    return floats(compute().subtract(column, first))
 
 
 def _of_text(channel: Channel, column: pa.ChunkedArray, decimal: str) -> Channel:
@@ -271,13 +269,14 @@ def _of_text(channel: Channel, column: pa.ChunkedArray, decimal: str) -> Channel
     moments = seconds(column)
     if moments is not None:
         return replace(channel, unit="s", values=moments, moments=True)
+    pc = compute()
     texts = pc.utf8_trim_whitespace(column)
     filled = pc.if_else(pc.is_in(texts, pa.array(EMPTY)), "nan", texts)
     lower = pc.utf8_lower(filled)
     filled = pc.if_else(pc.equal(lower, "true"), "1", pc.if_else(pc.equal(lower, "false"), "0", filled))
     plain = _without_groups(filled, decimal)
     try:
-        return replace(channel, values=pc.cast(plain, pa.float64()).to_numpy())
+        return replace(channel, values=floats(pc.cast(plain, pa.float64())))
     except pa.ArrowInvalid:
         sample = next(n for n, text in enumerate(plain.to_pylist()) if not _is_float(text))
         found = f"found {short(texts[sample].as_py())!r}"
@@ -286,6 +285,7 @@ def _of_text(channel: Channel, column: pa.ChunkedArray, decimal: str) -> Channel
 
 def _without_groups(texts: pa.ChunkedArray, decimal: str) -> pa.ChunkedArray:
     """Numbers without marks between thousands, and with a decimal point."""
+    pc = compute()
     group = r"\." if decimal == "," else ","
     grouped = pc.match_substring_regex(
         texts, rf"^[+-]?\d{{1,3}}(?:[{group}'’ \x{{00a0}}\x{{202f}}]\d{{3}})+(?:{re.escape(decimal)}\d*)?$"
