@@ -2,11 +2,25 @@
 
 from __future__ import annotations
 
+from types import ModuleType
+
+import array_api_compat
 import numpy as np
 from numpy.typing import NDArray
 
 #: Numbers of any shape; a docstring says which.
 Array = NDArray[np.float64]
+
+
+def namespace(value: object) -> ModuleType:
+    """The functions of the array API standard for a value: NumPy's for one of its numbers or arrays.
+
+    Raises:
+        TypeError: no array, nor a number of NumPy's or Python's.
+    """
+    if isinstance(value, (np.ndarray, np.generic, float)):  # asked in every step: quicker
+        return np
+    return array_api_compat.array_namespace(value)
 
 
 def rms(values: Array) -> float:

@@ -135,7 +135,7 @@ def test_knowing_an_effect_by_name_is_seen(code):
     "code",
     [
         'def f():\n    """As backlash does."""',
-        "taken = other.name in effect.not_beside",
+        "taken = other.name in effect.replaces",
         "catalogue()[name]",
         'unit = {"torque_offset_unit": 1}',
     ],

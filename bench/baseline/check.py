@@ -20,6 +20,7 @@ from bench.baseline.observe import Observed, Under, observe
 from bench.baseline.state import GAPS, TORQUE_GAP, VELOCITY_GAP, NamedHere, State
 from bench.comparison.difference import CHANGED, RESULTS, SAME, UNDECIDED, Comparison, Difference, Measured, holm
 from bench.effects.catalogue import catalogue
+from bench.effects.effect import Occasional
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -210,7 +211,7 @@ class Matched:
 
 
 def _lasting(state: State) -> list[NamedHere]:
-    return [effect for effect in state.effects if not effect.effect.occasional]
+    return [effect for effect in state.effects if not isinstance(effect.effect, Occasional)]
 
 
 def matched(baseline: State, now: State) -> Matched:

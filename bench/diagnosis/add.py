@@ -20,6 +20,8 @@ from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.refine import NULL, Numbers, Refined, refined, refined_model
 from bench.diagnosis.same_axis import SameAxis, same_axis
 from bench.diagnosis.tracking import HOLDOUT, RECORDING, HeldOut, Recorded, VelocityGaps
+from bench.effects.acting import DriveLimit
+from bench.effects.effect import Occasional
 from bench.errors import BenchError
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
@@ -100,7 +102,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
 
 def everywhere(balance: Balance, other: Rows | None) -> bool:
     """Whether events repeat in every recording: the holdout shows them at the same time after its start."""
-    if other is None or not any(term.effect.occasional for term in balance.hypothesis.terms):
+    if other is None or not any(isinstance(term.effect, Occasional) for term in balance.hypothesis.terms):
         return False
     return balance.repeating(True).gap(other) < balance.gap(other)
 
@@ -193,8 +195,8 @@ def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float
     without, whole = extension.less(index).whole, extension.whole
     if without.model is None or whole.model is None:
         return None
-    (shown,) = (present for present in whole.outside if present.effect.shows_under_drive)
-    trace = shown.effect.shown_in(recordings.trace, recordings.rig, dict(shown.values))
+    ((shown, limit),) = ((one, one.effect) for one in whole.outside if isinstance(one.effect, DriveLimit))
+    trace = limit.shown_in(recordings.trace, recordings.rig, dict(shown.values))
     velocity = measured_velocity(trace)
     try:
         followed = [
@@ -209,7 +211,7 @@ def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float
 def under_drive(extension: Extension) -> int | None:
     """Index of the effect that is visible only under the drive of the rig; None without one."""
     own = len(extension.hypothesis.terms)
-    shown = [own + k for k, present in enumerate(extension.outside) if present.effect.shows_under_drive]
+    shown = [own + k for k, present in enumerate(extension.outside) if isinstance(present.effect, DriveLimit)]
     return shown[0] if shown else None
 
 

@@ -15,8 +15,8 @@ import numpy as np
 from bench.arrays import Array
 from bench.diagnosis.policy import Policy, freedom, worth
 from bench.diagnosis.search import Searched, Step, backward_elimination, candidates, refined
-from bench.effects.catalogue import catalogue, rivals
-from bench.effects.effect import Effect
+from bench.effects.catalogue import rivals, simpler_forms
+from bench.effects.effect import Contact, Coupling, Effect, Occasional, Wave
 from bench.effects.signals import Signals
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Term
@@ -51,7 +51,7 @@ Doubt = Callable[[Fit, Evidence], Fit]
 
 def not_credible(fitted: Fit, evidence: Evidence) -> Fit:
     """An effect of a shape that a search may pass but not end with: a coupling that hardly rings."""
-    kept = [term for term in fitted.terms if term.effect.credible(term.shape)]
+    kept = [term for term in fitted.terms if not isinstance(term.effect, Coupling) or term.effect.credible(term.shape)]
     return fitted if len(kept) == len(fitted.terms) else fit(fitted.rows, fitted.hypothesis.with_terms(kept))
 
 
@@ -60,10 +60,10 @@ def not_in_holdout(fitted: Fit, evidence: Evidence) -> Fit:
 
     Unless it happens as an event there, at the same time of that recording.
     """
-    events = [term for term in fitted.terms if term.effect.occasional]
+    events = [term for term in fitted.terms if isinstance(term.effect, Occasional)]
     if evidence.holdout is None or not events:
         return fitted
-    quiet = fitted.hypothesis.with_terms(term for term in fitted.terms if not term.effect.occasional)
+    quiet = fitted.hypothesis.with_terms(term for term in fitted.terms if not isinstance(term.effect, Occasional))
     there = fit(evidence.holdout, quiet)
     most = evidence.policy.holdout_apart * max(fitted.chi, 1.0)
     for event in events:
@@ -110,7 +110,7 @@ def wrong_form(fitted: Fit, evidence: Evidence) -> Fit:
 
     What the unknown contact of a dead zone leaves, in bursts, speaks against no name.
     """
-    if any(term.effect.bursts for term in fitted.terms):
+    if any(isinstance(term.effect, Contact) for term in fitted.terms):
         return fitted
     index = len(fitted.terms) - 1
     while index >= 0 and evidence.policy.remains(fitted):
@@ -122,7 +122,7 @@ def wrong_form(fitted: Fit, evidence: Evidence) -> Fit:
 
 
 def _of_wrong_form(fitted: Fit, term: Term, policy: Policy) -> bool:
-    number = term.effect.wave_number(term.shape)
+    number = _wave_number(term)
     if number is None:
         return False
     columns = fitted.seen(lambda s: _waves(s, number), of_motion=False)
@@ -133,7 +133,7 @@ def _of_wrong_form(fitted: Fit, term: Term, policy: Policy) -> bool:
 
 def two_for_one(fitted: Fit, evidence: Evidence) -> Fit:
     """Two waves of one period where a single wave of another form, in their place, leaves only noise."""
-    numbers = [term.effect.wave_number(term.shape) for term in fitted.terms]
+    numbers = [_wave_number(term) for term in fitted.terms]
     waves = [index for index, number in enumerate(numbers) if number is not None]
     pairs = [(late, early) for late in reversed(waves) for early in waves if early < late]
     for late, early in pairs:
@@ -157,7 +157,7 @@ def one_for_many(fitted: Fit, evidence: Evidence) -> Fit:
     A series of harmonics draws any bump at one angle; where a single rival with fewer numbers does, there is no series.
     What is not needed beside the rival goes with the waves.
     """
-    kept = [term for term in fitted.terms if term.effect.wave_number(term.shape) is None]
+    kept = [term for term in fitted.terms if not isinstance(term.effect, Wave)]
     if len(fitted.terms) - len(kept) < 2:
         return fitted
     less = fit(fitted.rows, fitted.hypothesis.with_terms(kept))
@@ -174,8 +174,8 @@ def one_for_many(fitted: Fit, evidence: Evidence) -> Fit:
 def simpler(fitted: Fit, evidence: Evidence) -> Fit:
     """An effect of which a simpler form explains as much: friction differs by a constant only, which is an offset."""
     for index, term in enumerate(fitted.terms):
-        for name in term.effect.simpler_forms():
-            plain = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(catalogue()[name])))
+        for form in simpler_forms(term.effect, fitted.scope):
+            plain = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(form)))
             if not evidence.policy.significant(plain, fitted, 1, fitted):
                 return simpler(plain, evidence)
     return fitted
@@ -185,10 +185,11 @@ def unbelievable(fitted: Fit, evidence: Evidence) -> Fit:
     """Names beside which so much is left that they are likelier the nearest than the right ones; events soonest."""
     if fitted.chi < evidence.policy.large:
         return fitted
-    most = max([evidence.policy.believable, *(term.effect.tolerates or 0.0 for term in fitted.terms)])
+    contact = any(isinstance(term.effect, Contact) for term in fitted.terms)
+    most = evidence.policy.believable_contact if contact else evidence.policy.believable
     if fitted.excess > most * evidence.bare.excess:
         return evidence.bare
-    events = [index for index, term in enumerate(fitted.terms) if term.effect.occasional]
+    events = [index for index, term in enumerate(fitted.terms) if isinstance(term.effect, Occasional)]
     return fit(fitted.rows, fitted.hypothesis.without(events[0])) if events else fitted
 
 
@@ -215,6 +216,10 @@ def doubted(searched: Searched, evidence: Evidence, doubts: Sequence[Doubt] = DO
     steps = searched.steps
     kept = (*steps[:-1], Step(fitted, steps[-1].rivals)) if fitted.terms else steps[:1]
     return replace(searched, steps=kept)
+
+
+def _wave_number(term: Term) -> float | None:
+    return term.effect.wave_number(term.shape) if isinstance(term.effect, Wave) else None
 
 
 def _waves(s: Signals, number: float) -> list[Column]:

@@ -10,8 +10,9 @@ import numpy as np
 
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.diagnosis.name import Suspects
-from bench.effects.effect import Detected, Effect
-from bench.effects.kinds import Friction, Moment
+from bench.effects.acting import RaisesFriction
+from bench.effects.axis import Moment
+from bench.effects.effect import Detected, Effect, Occasional
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.fit.fit import Fit, fit
@@ -48,7 +49,7 @@ def stored_model(fitted: Fit, outside: Sequence[Present], rig: Rig) -> StoredMod
     motor = rig.motor.rotor_inertia or rig.motor.moving_mass or 0.0
     coupling = fitted.hypothesis.coupling
     if coupling is not None:
-        motor = inertia - fitted.terms[coupling].effect.load_inertia(fitted.strengths(coupling))
+        motor = inertia - fitted.strengths(coupling)[0]
     base = AxisParameters(inertia, max(viscous, 0.0), max(coulomb, 0.0), 0.0, min(motor, inertia), rig.axis_kind)
     present = [
         present_of(term.effect, term.effect.report(fitted.strengths(index), term.shape, fitted.base))
@@ -67,7 +68,7 @@ def present_of(effect: Effect, values: Mapping[str, float]) -> Present:
 
 def without_events(model: AxisModel) -> AxisModel:
     """The axis in a recording without its events."""
-    return model.with_effects([present for present in model.effects if not present.effect.occasional])
+    return model.with_effects([present for present in model.effects if not isinstance(present.effect, Occasional)])
 
 
 def holding_bandwidth(model: AxisModel, top_speed: float) -> float:
@@ -84,10 +85,8 @@ def holding_bandwidth(model: AxisModel, top_speed: float) -> float:
     speed = np.geomspace(SLOWEST, 1.0, SPEEDS) * max(top_speed, 1e-9)
     nothing = np.zeros_like(speed)
     level = model.parameters.viscous_friction_coefficient * speed
-    for present in model.of_kind(Friction):
-        assert isinstance(present.effect, Friction)
-        at = Moment(0.0, nothing, speed, nothing)
-        level = level + present.effect.friction_excess(dict(present.values), model.axis, at)
+    for effect, values in model.acting(RaisesFriction):
+        level = level + effect.friction_excess(values, model.axis, Moment(0.0, nothing, speed, nothing))
     fall = max(0.0, -float(np.min(np.diff(level) / np.diff(speed))))
     return float(np.clip(fall / model.parameters.inertia, BANDWIDTH, MOST))
 
@@ -172,7 +171,8 @@ class Extension:
 
     def occasional(self, index: int) -> bool:
         """Whether an effect may occur in one recording and not in another."""
-        return index < len(self.hypothesis.terms) and self.hypothesis.terms[index].effect.occasional
+        terms = self.hypothesis.terms
+        return index < len(terms) and isinstance(terms[index].effect, Occasional)
 
     def balance(self, events: bool) -> Balance:
         """Torque balance with all effects; `events`: whether its events occur in every recording."""

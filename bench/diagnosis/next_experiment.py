@@ -23,8 +23,11 @@ from bench.diagnosis.add import Added
 from bench.diagnosis.model import stored_model
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.recordings import Recordings
+from bench.effects.acting import ConstantTorque
 from bench.effects.catalogue import catalogue
+from bench.effects.effect import MotionLag
 from bench.effects.present import Present
+from bench.effects.signals import Base
 from bench.errors import BenchError, InputError
 from bench.fit.fit import fit
 from bench.fit.rows import SIGN_WIDTHS
@@ -112,12 +115,13 @@ def propose(recordings: Recordings, suspects: Suspects, added: Added) -> NextExp
 def alternatives(recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel) -> Iterator[Alternatives]:
     """Other explanations that remain, as models."""
     for effect in added.refined.effects:
+        if not isinstance(effect.effect, MotionLag):
+            continue
         for other in effect.ambiguous_with:
-            values = effect.effect.counterpart(other, effect.values)
-            like = None if values is None else Present.of(other, values)
-            if like is not None:
+            values = effect.effect.counterpart(catalogue()[other], effect.values)
+            if values is not None:
                 kept = [present for present in model.effects if present.effect is not effect.effect]
-                models = model, model.with_effects([*kept, like])
+                models = model, model.with_effects([*kept, Present.of(other, values)])
                 yield Alternatives((effect.name, other), models, "this recording cannot tell them apart")
     yield from nearly_as_good(recordings, suspects, added, model)
     if recordings.rows.scope.one_way:
@@ -151,8 +155,8 @@ def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Itera
     """Dry friction against effects that look like it in one direction, `dry` in total - N*m (N)."""
     direction = 1.0 if float(np.mean(measured_velocity(recordings.trace))) > 0.0 else -1.0
     for effect in catalogue().values():
-        values = effect.instead_of_dry_friction(direction * dry)
-        if values is not None:
+        if isinstance(effect, ConstantTorque):
+            values = effect.report([direction * dry], (), Base(0.0, 0.0, 0.0))
             friction = replace(model.parameters, coulomb_friction=abs(dry))
             nothing = replace(model.parameters, coulomb_friction=0.0)
             instead = replace(model, parameters=nothing, effects=(*model.effects, Present.of(effect.name, values)))

@@ -77,7 +77,8 @@ class Policy:
         wrong_form: of what is above noise: what relatives of a wave explain only if it is of the wrong form, and what
             they leave then. Eccentricity under another name left 0.8 to 1.1, gravity of a pendulum on a gear 2.1.
         one_for_several: what one explanation leaves in the place of several names.
-        believable: of what was above noise without names: what may be left beside them, unless one `tolerates` more.
+        believable: of what was above noise without names: what may be left beside them.
+        believable_contact: the same beside a contact, whose impacts leave bursts.
         holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave. Of
             the blind set's cases that are explained 2.5 at most, nine in ten 1.6.
         most: effects at most; a family of harmonics is one of them.
@@ -102,6 +103,7 @@ class Policy:
     wrong_form: Margin = Margin(0.5, leaves=1.25)
     one_for_several: Margin = Margin(leaves=NOISE_ALONE)
     believable: float = 0.2
+    believable_contact: float = 0.35
     holdout_gap: float = 3.0
     most: int = 12
     members: int = 12

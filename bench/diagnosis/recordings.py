@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from bench.arrays import Array
 from bench.diagnosis.decidable import require_another, require_decidable, require_samples
+from bench.effects.acting import FilteredSignal
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Detected, Effect
+from bench.effects.effect import Detectable, Detected, Effect
 from bench.fit.fit import Fit, fit
 from bench.fit.rows import Rows
 from bench.rig.rig import Rig
@@ -55,11 +56,12 @@ class Recordings:
         rows = Rows.of(trace, rig)
         require_decidable(trace, rig, rows)
         width = rows.conditioning.filter.width
-        found = {effect: effect.detect(trace, rig, width) for effect in catalogue().values()}
+        shown = [effect for effect in catalogue().values() if isinstance(effect, Detectable)]
+        found: dict[Effect, Detected | None] = {effect: effect.detect(trace, rig, width) for effect in shown}
         detected = {effect: those for effect, those in found.items() if those is not None}
         corrected, unseen = trace, holdout
         for effect, those in detected.items():
-            if effect.faulty_signal == rows.conditioning.source:
+            if isinstance(effect, FilteredSignal) and effect.signal == rows.conditioning.source:
                 corrected = _corrected(corrected, rig, effect, those)
                 unseen = None if unseen is None else _corrected(unseen, rig, effect, those)
         if corrected is not trace:
@@ -93,8 +95,8 @@ class Recordings:
         return self.rig.axis_kind.base_parameters(self.unit)
 
 
-def _corrected(trace: Trace, rig: Rig, effect: Effect, found: Detected) -> Trace:
+def _corrected(trace: Trace, rig: Rig, effect: FilteredSignal, found: Detected) -> Trace:
     """A recording with a fault of its sensor corrected; without the faulty signal if that cannot be corrected."""
     if found.mends or rig.needs_speed(trace):
         return effect.corrected(trace, found.values)
-    return trace.without(effect.faulty_signal)
+    return trace.without(effect.signal)

@@ -113,7 +113,7 @@ class Numbers:
         """The free values of named effects and parameters."""
         free = [((-1, name), parameters[name]) for name in list(parameters)[:3]]
         for index, effect in enumerate(effects):
-            fixed = effect.effect.fixed_in_simulation
+            fixed = {slot.quantity.name for slot in effect.effect.shapes if slot.whole or slot.quantity.instant}
             known = dict(present_of(effect.effect, effect.values).values)
             free += [((index, key), p) for key, p in effect.parameters.items() if key in known and key not in fixed]
         free = [(place, p) for place, p in free if np.isfinite(p.std_error) and p.std_error > 0.0]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from bench.arrays import rms
 from bench.comparison.difference import Difference
+from bench.effects.effect import Occasional
 from bench.fit.fit import Fit, fit
 from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
@@ -69,7 +70,7 @@ def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> Same
     """
     if other is None:
         return SameAxis(None)
-    lasting = fitted.hypothesis.with_terms(term for term in fitted.terms if not term.effect.occasional)
+    lasting = fitted.hypothesis.with_terms(term for term in fitted.terms if not isinstance(term.effect, Occasional))
     here, there = fit(fitted.rows, lasting), fit(other, lasting)
     own, others = uncertain(here).base(units), uncertain(there).base(units)
     differs, apart, vague = [], [], True

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from bench.diagnosis.policy import Policy, worth
-from bench.effects.effect import Effect
+from bench.effects.effect import Effect, Replacing
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Term
@@ -79,7 +79,7 @@ def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
         found = forward_selection(Searched((*found.steps, Step(better))), effects, policy)
     if policy.remains(found.last):
         for effect in effects:
-            replaced = replacement(found.last, effect, policy) if effect.replaces else None
+            replaced = replacement(found.last, effect, policy) if isinstance(effect, Replacing) else None
             if replaced is not None:
                 steps = found.steps[:-1] if len(found.steps) > 1 else found.steps
                 found = forward_selection(Searched((*steps, Step(replaced))), effects, policy)
@@ -180,7 +180,7 @@ def exchanged(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit | N
     return with_hum(backward_elimination(polished(min(found, key=lambda after: after.squares), policy), policy))
 
 
-def replacement(fitted: Fit, effect: Effect, policy: Policy) -> Fit | None:
+def replacement(fitted: Fit, effect: Replacing, policy: Policy) -> Fit | None:
     """The hypothesis with an effect in the place of those it replaces, if that explains clearly more."""
     kept = [term for term in fitted.terms if term.effect.name not in effect.replaces]
     current = fit(fitted.rows, fitted.hypothesis.with_terms(kept))

@@ -17,6 +17,7 @@ from types import MappingProxyType
 import bench.effects
 from bench.effects.effect import Effect
 from bench.effects.rivals import RIVALS
+from bench.effects.signals import Scope
 from bench.errors import InputError
 
 GROUP = "servobench.effects"
@@ -50,3 +51,9 @@ def catalogue() -> MappingProxyType[str, Effect]:
 def rivals() -> tuple[Effect, ...]:
     """Effects from outside the catalogue, which compete with its names."""
     return RIVALS
+
+
+def simpler_forms(effect: Effect, scope: Scope) -> list[Effect]:
+    """Effects of fewer quantities that such a recording cannot distinguish from one: it, where some of its are zero."""
+    others = [catalogue()[name] for name in effect.ambiguous(scope) if name in catalogue()]
+    return [other for other in others if len(other.quantities) < len(effect.quantities)]

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.effects.kinds import Axis, Mechanism
+from bench.effects.acting import Native
+from bench.effects.axis import Axis
+from bench.effects.effect import Repeatable, Wave
 from bench.effects.mjcf import add_periodic_torque
 from bench.effects.signals import Base, Shape, Signals
 from bench.effects.waves import amplitude_and_phase, followed
@@ -24,7 +26,7 @@ if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 
-class CoggingTorque(Mechanism):
+class CoggingTorque(Wave, Repeatable, Native):
     """See the module."""
 
     name = "cogging_torque"
@@ -35,8 +37,6 @@ class CoggingTorque(Mechanism):
         Quantity("phase", "phi", "rad", angle=True, preset=0.0),
     )
     shapes = (Shape(quantities[1], tuple(float(n) for n in range(2, 81)), whole=True),)
-    repeatable = True
-    fixed_in_simulation = frozenset({"harmonic"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """sin(n*q) and cos(n*q), nothing where the wave is faster than the samples can follow."""
@@ -47,10 +47,6 @@ class CoggingTorque(Mechanism):
         """Amplitude, harmonic and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"amplitude": amplitude, "harmonic": shape[0], "phase": phase}
-
-    def wave_number(self, shape: Sequence[float]) -> float:
-        """The harmonic."""
-        return shape[0]
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """A passive DC motor that cogs."""

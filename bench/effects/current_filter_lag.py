@@ -14,35 +14,23 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from bench.arrays import Array
-from bench.effects.current_loop_lag import LAGS
-from bench.effects.effect import Fitted, Proposal
-from bench.effects.first_order import lagged
-from bench.effects.grids import LAG
-from bench.effects.kinds import Sensing
-from bench.effects.signals import Scope, Shape, Signals
-from bench.statistics import NORMAL95
-from bench.units import Quantity
+from bench.effects.acting import FilteredSignal
+from bench.effects.effect import Distortion, EffortLag, Fitted, Proposal
+from bench.effects.first_order import lagged, unlagged
+from bench.effects.signals import Scope, Signals
 
 
-class CurrentFilterLag(Sensing):
+class CurrentFilterLag(EffortLag, Distortion, FilteredSignal):
     """See the module."""
 
     name = "current_filter_lag"
     summary = "reported current is filtered: it shows torque later than it acts"
-    quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
-    shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
-    not_beside = frozenset({"current_loop_lag", "velocity_filter_lag"})
+    signal = "current"
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """The torque that acts; what is made of it sees that."""
-        return replace(signals, torque=_unlagged(signals.torque, shape[0], signals.sample_period))
-
-    def effort_lag(self, shape: Sequence[float]) -> float:
-        """T."""
-        return shape[0]
+        return replace(signals, torque=unlagged(signals.torque, shape[0], signals.sample_period))
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """To first order, a shift of the torque beyond the one that a fit may take for how the drive latches."""
@@ -52,25 +40,17 @@ class CurrentFilterLag(Sensing):
         late = float(beyond @ fitted.residual)
         return [Proposal((late / float(beyond @ beyond),), gain)] if gain > 0.0 and late > 0.0 else []
 
-    def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
-        """By the tick within which current and speed were taken."""
-        return [scope.latched / NORMAL95]
-
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """Lags of torque and speed, of which it may be the greater, unless position tells that of the speed."""
         return () if "position" in scope.signals else ("current_loop_lag", "velocity_filter_lag")
 
-    def recorded(self, values: Mapping[str, float], effort: Array, step: float) -> Array:
+    def recorded(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
         """Exact for an effort that runs straight within the step; started where the effort is."""
-        return lagged(effort, values["time_constant"], step)
+        return lagged(samples, values["time_constant"], step)
 
-    def unrecorded(self, values: Mapping[str, float], effort: Array, step: float) -> Array:
+    def unrecorded(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
         """M + T*dM/dt by central differences: what a held model is fed with needs no more."""
-        return _unlagged(effort, values["time_constant"], step)
-
-
-def _unlagged(effort: Array, time_constant: float, step: float) -> Array:
-    return effort + time_constant * np.gradient(effort, step) if effort.size > 1 else effort
+        return unlagged(samples, values["time_constant"], step)
 
 
 EFFECT = CurrentFilterLag()

@@ -15,9 +15,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bench.arrays import Array
-from bench.effects.kinds import Axis, Number, Sensing, Values
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.acting import MisreadEffort
+from bench.effects.axis import Axis, Number, Values
+from bench.effects.effect import CopiesTorque
+from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -25,13 +26,12 @@ from bench.units import Quantity
 MOST = 0.1
 
 
-class CurrentGainAsymmetry(Sensing):
+class CurrentGainAsymmetry(CopiesTorque, MisreadEffort):
     """See the module."""
 
     name = "current_gain_asymmetry"
     summary = "amperes per reading differ between positive and negative current"
     quantities = (Quantity("gain_difference", "d", "dimensionless", lower=-1.0, upper=1.0, null=0.0),)
-    copies_torque = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """-|M|/2: what the readings of positive current lack, and those of negative have too much."""
@@ -41,11 +41,7 @@ class CurrentGainAsymmetry(Sensing):
         """No more than a sensor's tolerance."""
         return all(abs(difference) <= MOST for (difference,) in strengths)
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> dict[str, float]:
-        """The strength itself."""
-        return {"gain_difference": strengths[0]}
-
-    def acted(self, values: Values, axis: Axis, effort: Array, time: Number) -> Array:
+    def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
         """By the equation above."""
         return effort + 0.5 * values["gain_difference"] * np.abs(effort)
 

@@ -14,26 +14,18 @@ from dataclasses import replace
 import numpy as np
 
 from bench.arrays import Array
+from bench.effects.acting import TorqueLag
+from bench.effects.axis import Number, Values
+from bench.effects.effect import Distortion, MotionLag
 from bench.effects.first_order import lagged
-from bench.effects.grids import LAG
-from bench.effects.kinds import Electronics, Values
-from bench.effects.signals import Scope, Shape, Signals
-from bench.statistics import NORMAL95
-from bench.units import Quantity
-
-#: Lags that a search tries first - s.
-LAGS = (3e-4, 8e-4, 2e-3, 4e-3, 8e-3)
+from bench.effects.signals import Scope, Signals
 
 
-class CurrentLoopLag(Electronics):
+class CurrentLoopLag(MotionLag, Distortion, TorqueLag):
     """See the module."""
 
     name = "current_loop_lag"
     summary = "torque acts later than the reported current"
-    quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
-    shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
-    biased_by_noise = True
-    not_beside = frozenset({"velocity_filter_lag", "current_filter_lag"})
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """The torque that acts; what is made of it sees that."""
@@ -43,20 +35,12 @@ class CurrentLoopLag(Electronics):
         """All columns, against the reported torque."""
         return shape[0], shape[0]
 
-    def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
-        """By the tick within which current and speed were taken."""
-        return [scope.latched / NORMAL95]
-
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """A lag of the speed, unless position tells that; and, as only the difference shows, one of the current."""
         separable = scope.source == "position" or {"position", "velocity"} <= scope.signals
         return () if separable else ("velocity_filter_lag", "current_filter_lag")
 
-    def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float] | None:
-        """A lag of the speed by as much."""
-        return {"time_constant": values["time_constant"]} if name == "velocity_filter_lag" else None
-
-    def acting(self, values: Values, reported: Array, before: Array, step: float) -> tuple[Array, Array]:
+    def acting(self, values: Values, reported: Number, before: Number, step: float) -> tuple[Number, Number]:
         """Exact for a current that is held over the step."""
         half = np.exp(-0.5 * step / values["time_constant"])
         return reported + (before - reported) * half, reported + (before - reported) * half**2

@@ -14,9 +14,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from bench.arrays import Array
-from bench.effects.kinds import Axis, Number, Sensing, Values
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.acting import MisreadEffort
+from bench.effects.axis import Axis, Number, Values
+from bench.effects.effect import Columns
+from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -24,7 +25,7 @@ from bench.units import Quantity
 NEEDED = 0.8
 
 
-class CurrentOffsetDrift(Sensing):
+class CurrentOffsetDrift(Columns, MisreadEffort):
     """See the module."""
 
     name = "current_offset_drift"
@@ -43,11 +44,7 @@ class CurrentOffsetDrift(Sensing):
         """More than a constant torque gives it: of the squares of one, r*t takes (T**2/2)**2/(T**3/3)/T = 3/4."""
         return NEEDED
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> dict[str, float]:
-        """The strength itself."""
-        return {"rate": strengths[0]}
-
-    def acted(self, values: Values, axis: Axis, effort: Array, time: Number) -> Array:
+    def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
         """By the equation above."""
         return effort - values["rate"] * time
 

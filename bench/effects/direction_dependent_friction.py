@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.effects.kinds import Axis, Friction, Moment, Number, Values
+from bench.effects.acting import DirectedFriction, Native, ResistingTorque
+from bench.effects.axis import Axis, Moment, Number, Values
+from bench.effects.effect import OfSpeed
 from bench.effects.mjcf import AXIS, add_resisting_torque
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -24,7 +26,7 @@ if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 
-class DirectionDependentFriction(Friction):
+class DirectionDependentFriction(OfSpeed, DirectedFriction, Native, ResistingTorque):
     """See the module."""
 
     name = "direction_dependent_friction"
@@ -33,23 +35,11 @@ class DirectionDependentFriction(Friction):
         Quantity("coulomb_difference", "D_0", "N*m", null=0.0),
         Quantity("viscous_difference", "D_w", "N*m*s/rad", null=0.0, preset=0.0),
     )
-    of_speed_alone = True
+    dry = slice(1)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """1/2 and |omega|/2."""
         return [[(np.full_like(signals.time, 0.5), 0)], [(0.5 * signals.velocity * signals.sign, 0)]]
-
-    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> float:
-        """Half of the dry difference."""
-        return 0.5 * strengths[0]
-
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Differences forward less backward."""
-        return {"coulomb_difference": strengths[0], "viscous_difference": strengths[1]}
-
-    def simpler_forms(self) -> tuple[str, ...]:
-        """A constant torque, where viscous friction does not differ."""
-        return ("torque_offset",)
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """A constant torque, wherever the axis moves."""

@@ -17,9 +17,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.arrays import Array
-from bench.effects.effect import Fitted, Proposal
-from bench.effects.kinds import Axis, Friction, Moment, Number, Values
+from bench.effects.acting import FollowsLoad, LoadTorque
+from bench.effects.axis import Axis, Moment, Number, Values
+from bench.effects.effect import CopiesTorque, Fitted, Replacing
+from bench.effects.grids import grid_of
 from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -28,7 +29,7 @@ from bench.units import Quantity
 RATIOS = tuple(float(ratio) for ratio in np.geomspace(0.1, 10.0, 25))
 
 
-class DirectionalLoadFriction(Friction):
+class DirectionalLoadFriction(CopiesTorque, Replacing, FollowsLoad):
     """See the module."""
 
     name = "directional_load_friction"
@@ -39,26 +40,17 @@ class DirectionalLoadFriction(Friction):
     )
     derived = (Quantity("load_coefficient", "K_e", "dimensionless", lower=0.0),)
     shapes = (Shape(quantities[1], RATIOS, reach=0.3),)
-    copies_torque = True
     replaces = frozenset({"load_dependent_friction"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Magnitude of both torques, against the motion."""
         return [[(signals.sign * np.abs(signals.torque + shape[0] * signals.load), 0)]]
 
-    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array:
-        """All of it."""
-        return strengths[0] * signals.sign * np.abs(signals.torque + shape[0] * signals.load)
-
-    def propose(self, fitted: Fitted) -> list[Proposal]:
-        """None: it is only tried instead of what it replaces."""
-        return []
-
     def in_place_of(self, fitted: Fitted) -> tuple[float, ...] | None:
         """The best ratio beside a load, or none without one."""
-        if not any(term.effect.overrides("load_torque") for term in fitted.terms):
+        if not fitted.places(LoadTorque).size:
             return None
-        best = max(fitted.tried(self, self.grid(fitted.scope)), key=lambda tried: tried.gain).shape[0]
+        best = max(fitted.tried(self, grid_of(self.shapes, fitted.scope)), key=lambda tried: tried.gain).shape[0]
         step = RATIOS[1] / RATIOS[0]
         closer = [(best * step**power,) for power in np.linspace(-1.0, 1.0, 25).tolist()]
         return max(fitted.tried(self, closer), key=lambda tried: tried.gain).shape
@@ -68,9 +60,9 @@ class DirectionalLoadFriction(Friction):
         motor, ratio = strengths[0], shape[0]
         return {"motor_coefficient": motor, "load_ratio": ratio, "load_coefficient": motor * ratio}
 
-    def friction_under_load(self, values: Values, axis: Axis, at: Moment, load: Number) -> Number:
+    def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """By the equation above."""
-        return values["motor_coefficient"] * np.abs(at.effort + values["load_ratio"] * load)
+        return values["motor_coefficient"] * np.abs(at.effort + values["load_ratio"] * at.load)
 
 
 EFFECT = DirectionalLoadFriction()

@@ -1,38 +1,46 @@
-"""An effect: one piece of physics, or one fault of the measurement, with everything the bench needs to know about it.
+"""What an effect may be: one piece of physics, or one fault of the measurement, with all that the bench knows of it.
 
     motor torque = J*alpha + K_w*omega + K_0*sgn(omega) + sum over effects of strength_k * column_k(signals, shape)
 
-Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are searched. An effect overrides what is not
-neutral for it; the rest of the bench knows no effect by name. How effects act in a simulation: `bench.effects.kinds`.
+Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are searched. Every effect is an `Effect`,
+and says by the further types that it derives from what else it is; the rest of the bench asks `isinstance`, and knows
+no effect by name.
+
+    in the torque balance   Columns: CopiesTorque, OfSpeed, OuterTorque, Repeatable, Occasional, Wave, Coupling, Contact
+    in the recording        Distortion, MotionLag, EffortLag, FiltersMotion, Detectable
+    in the search           Replacing
+    in a simulation (`bench.effects.acting`)
+      of the mechanics      Native; in every step ResistingTorque, LoadTorque, ScalesTorque, VaryingInertia, or dry
+                            friction: RaisesFriction, FollowsLoad, ScalesFriction, DirectedFriction, CarriesFriction
+      of the electronics    DriveLimit, TorqueLag, TorqueLoss
+      of the sensors        MisreadMotion, MisreadEffort, FilteredSignal
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import product
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.effects.grids import is_pitch, places
+from bench.effects.axis import Axis, Values
+from bench.effects.grids import LAG, LAGS, grid_of, is_pitch
 from bench.effects.signals import Base, Scope, Shape, Shapes, Signals
 from bench.rig.rig import Rig
+from bench.statistics import NORMAL95
 from bench.trace.filter import Column
 from bench.trace.trace import Trace
 from bench.units import Quantity
 
-if TYPE_CHECKING:
-    from bench.effects.kinds import Axis, Number
-
-#: Share of the squared residual above noise that an effect must explain (see `tests.studies.blind.margins`), and
-#: that of a pitch with more than MANY half cycles in a linear axis' travel, which no smooth error imitates.
+#: Share of the squared residual above noise that an effect must explain (see `tests.studies.blind.margins`), and that
+#: of a pitch with more than MANY half cycles in a linear axis' travel, which no smooth error imitates.
 SHARE, PITCH_SHARE, MANY = 0.25, 0.1, 20.0
-
-#: An effect on the load behind a coupling: the effect, its shape, its strengths divided by the load inertia.
-Load = tuple["Effect", tuple[float, ...], tuple[float, ...]]
+#: Share of the inertia that sits behind a coupling, at least and at most.
+BEHIND = (0.02, 0.98)
 
 
 @dataclass(frozen=True)
@@ -59,26 +67,15 @@ class Detected:
     mends: bool = True
 
 
-class FittedTerm(Protocol):
-    """A term of a fitted balance: an effect of a shape."""
-
-    @property
-    def effect(self) -> Effect: ...  # noqa: D102
-    @property
-    def shape(self) -> tuple[float, ...]: ...  # noqa: D102
-
-
 class Fitted(Protocol):
     """A torque balance fitted to a recording, as far as effects may use it; see `bench.fit.fit.Fit`."""
 
     @property
-    def theta(self) -> Array: ...  # noqa: D102
-    @property
-    def owners(self) -> NDArray[np.object_]: ...  # noqa: D102
-    @property
     def scope(self) -> Scope: ...  # noqa: D102
     @property
-    def terms(self) -> Sequence[FittedTerm]: ...  # noqa: D102
+    def base(self) -> Base: ...  # noqa: D102
+    @property
+    def theta(self) -> Array: ...  # noqa: D102
     @property
     def columns(self) -> Array: ...  # noqa: D102
     @property
@@ -91,13 +88,14 @@ class Fitted(Protocol):
     def time(self) -> Array: ...  # noqa: D102
     @property
     def span(self) -> Array: ...  # noqa: D102
+    def places(self, kind: type[Effect]) -> NDArray[np.intp]: ...  # noqa: D102
     def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array: ...  # noqa: D102
     def gains(self, columns: Array, width: int) -> Array: ...  # noqa: D102
     def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]: ...  # noqa: D102
 
 
-class Effect:
-    """Base class of everything in the catalogue.
+class Effect(ABC):
+    """What every effect is: named, with quantities, searched and reported.
 
     Attributes:
         name: as in the contract.
@@ -105,26 +103,6 @@ class Effect:
         quantities: its parameters, with unit and bounds.
         derived: quantities reported too, which follow from them.
         shapes: the nonlinear quantities, in the order in which all methods take them.
-        of_motion: whether its columns are accelerations, which a lag of the reported speed delays as it does that of J.
-        copies_torque: whether its columns are computed from the measured torque, and so contain its noise.
-        scales_friction: whether it multiplies the level of dry friction, including what other effects add to it.
-        carries_friction: whether it replaces dry friction as a whole, including what other effects add and scale.
-        bounded: bounds of strengths in a fit, by their index.
-        may_load: whether it may act on the load of a coupling rather than on the motor.
-        couples: whether it joins motor and load; an axis has at most one such effect.
-        turning_only: whether it is meaningless on a linear axis.
-        of_speed_alone: whether its torque depends on speed alone.
-        repeatable: whether an axis may have several, each with another shape (harmonics, events).
-        occasional: whether it may occur in one recording and not in another.
-        bursts: whether the residual it leaves comes in bursts.
-        biased_by_noise: whether noise of the motion biases its strength or shape, and not only scatters it.
-        not_beside: effects it is not searched together with, as a recording can identify only one of them.
-        replaces: effects that it is tried instead of, once no other addition explains more.
-        faulty_signal: the signal that `corrected` repairs; empty if none.
-        shows_under_drive: whether it is visible if the drive runs the model, and hardly if the recording tracks it.
-        tolerates: share of the first gap that may remain with it, if that differs from other effects.
-        fixed_in_simulation: quantities that a fit by simulation leaves alone: whole numbers, instants between samples.
-        undiagnosed: why no recording can show it; empty if one can, which a test demonstrates.
     """
 
     name: ClassVar[str]
@@ -132,92 +110,22 @@ class Effect:
     quantities: ClassVar[tuple[Quantity, ...]]
     derived: ClassVar[tuple[Quantity, ...]] = ()
     shapes: ClassVar[tuple[Shape, ...]] = ()
-    of_motion: ClassVar[bool] = False
-    copies_torque: ClassVar[bool] = False
-    scales_friction: ClassVar[bool] = False
-    carries_friction: ClassVar[bool] = False
-    bounded: ClassVar[Mapping[int, tuple[float, float]]] = {}
-    may_load: ClassVar[bool] = False
-    couples: ClassVar[bool] = False
-    turning_only: ClassVar[bool] = False
-    of_speed_alone: ClassVar[bool] = False
-    repeatable: ClassVar[bool] = False
-    occasional: ClassVar[bool] = False
-    bursts: ClassVar[bool] = False
-    biased_by_noise: ClassVar[bool] = False
-    not_beside: ClassVar[frozenset[str]] = frozenset()
-    replaces: ClassVar[frozenset[str]] = frozenset()
-    faulty_signal: ClassVar[str] = ""
-    shows_under_drive: ClassVar[bool] = False
-    tolerates: ClassVar[float | None] = None
-    fixed_in_simulation: ClassVar[frozenset[str]] = frozenset()
-    undiagnosed: ClassVar[str] = ""
 
-    def null(self, axis: Axis) -> Mapping[str, Number]:
+    def null(self, axis: Axis) -> Values:
         """Values of some quantities at which the effect is exactly absent - SI."""
         return {quantity.name: quantity.null for quantity in self.quantities if quantity.null is not None}
 
-    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+    def defaults(self, axis: Axis) -> Values:
         """Values of quantities that may be left out - SI."""
         return {quantity.name: quantity.preset for quantity in self.quantities if quantity.preset is not None}
 
-    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
-        """The recording without this fault of its sensors."""
-        return signals
-
-    def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
-        """Lags to undo in columns of motion, and in all others, if speed comes from `source` - s."""
-        return 0.0, 0.0
-
-    def effort_lag(self, shape: Sequence[float]) -> float:
-        """Lag to undo in the reported effort - s."""
-        return 0.0
-
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Resisting torque per unit of each strength - N*m (N) per unit - (n,), unfiltered."""
-        return []
-
-    def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
-        """Columns of several shapes, one after the other; `loads` act behind the effect if it couples."""
-        return [column for shape in shapes for column in self.columns(signals, shape)]
-
-    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array | float:
-        """Signed dry friction in addition to Coulomb friction, at these strengths - the strengths' unit - (n,)."""
-        return 0.0
-
-    def stiffness(self, strengths: Sequence[float]) -> float:
-        """Stiffness with which it pulls the load back - N*m/rad (N/m)."""
-        return 0.0
-
-    def load_inertia(self, strengths: Sequence[float]) -> float:
-        """Inertia of the load, if it couples - kg*m**2 (kg)."""
-        return 0.0
-
-    def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array | NDArray[np.complex128]:
-        """Transfer from acceleration to its first column at angular frequencies - rad/s (k,) -: (k,)."""
-        return np.zeros_like(omega)
-
-    def open_torque(self, fitted: Fitted, index: int) -> Array | None:
-        """By how much its torque is undetermined, in each row - N*m (N) - (m,); None: it is not."""
-        return None
-
-    # How a search finds it.
-
     def sought(self, scope: Scope) -> bool:
         """Whether the torque balance of such a recording can show it."""
-        return scope.kind.turns or not self.turning_only
-
-    def grid(self, scope: Scope) -> list[tuple[float, ...]]:
-        """Shapes that a search tries first."""
-        return list(product(*(places(shape, scope) for shape in self.shapes)))
+        return True
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """Shapes to add to a fit, with the gain of each; by default those of the grid."""
-        return fitted.tried(self, self.grid(fitted.scope))
-
-    def in_place_of(self, fitted: Fitted) -> tuple[float, ...] | None:
-        """Its most likely shape in a fit without the effects that it replaces."""
-        return None
+        return fitted.tried(self, grid_of(self.shapes, fitted.scope))
 
     def reach(self, shape: Sequence[float], k: int) -> float:
         """First range of a search in the k-th shape quantity; see `Shape.reach`."""
@@ -233,67 +141,192 @@ class Effect:
         found = self.report(strengths, shape, base)
         return all(q.lower <= found[q.name] <= q.upper for q in self.quantities if q.name in found)
 
-    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Shapes, scope: Scope) -> bool:
+    def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
         """Whether its terms, several if it is repeatable, are credible in such a recording."""
         return True
 
-    def credible(self, shape: Sequence[float]) -> bool:
-        """Whether a search may end with this shape; it may always pass through it."""
-        return True
-
-    def wave_number(self, shape: Sequence[float]) -> float | None:
-        """Wave number of its torque over position - 1 (rad/m); None if it is no wave."""
-        return None
-
-    def simpler_forms(self) -> tuple[str, ...]:
-        """Names of the effects that it reduces to where some of its strengths are zero."""
-        return ()
-
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """The effect's quantities from fitted strengths and shape - SI."""
-        return {slot.quantity.name: value for slot, value in zip(self.shapes, shape, strict=True)}
+        """The effect's quantities from fitted strengths and shape - SI; by default these are they."""
+        searched = {slot.quantity for slot in self.shapes}
+        linear = [quantity.name for quantity in self.quantities if quantity not in searched]
+        own = dict(zip(linear, strengths, strict=False))
+        return own | {slot.quantity.name: value for slot, value in zip(self.shapes, shape, strict=True)}
 
     def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
         """Standard deviations of its shape beyond those from noise; `time` of the rows - s (m,)."""
         return [0.0] * len(self.shapes)
 
-    def spread(self, fitted: Fitted, index: int) -> Array | None:
-        """Covariance of its free shapes where the curvature of the likelihood does not give it; else None."""
-        return None
-
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """Names of the effects that such a recording cannot distinguish from it."""
         return ()
 
-    # Effects outside the torque balance.
 
+# In the torque balance.
+
+
+class Columns(Effect):
+    """Resisting torque that is linear in its strengths.
+
+    Attributes:
+        bounded: bounds of strengths in a fit, by their index.
+    """
+
+    bounded: ClassVar[Mapping[int, tuple[float, float]]] = {}
+
+    @abstractmethod
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Resisting torque per unit of each strength - N*m (N) per unit - (n,), unfiltered."""
+
+
+class CopiesTorque(Columns):
+    """Columns computed from the measured torque, which so contain its noise."""
+
+
+class OfSpeed(Columns):
+    """Torque that depends on speed alone."""
+
+
+class OuterTorque(Columns):
+    """Torque of motion and time alone, which varies: behind a coupling it may act on the load as on the motor."""
+
+
+class Repeatable(Columns):
+    """An axis may have several, each of another shape (harmonics, events)."""
+
+
+class Occasional(Repeatable):
+    """It may occur in one recording and not in another."""
+
+
+class Wave(Effect):
+    """It repeats with position: so many times a revolution as its harmonic says, or per length as its wave number."""
+
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """Wave number over position - 1 (rad/m)."""
+        return shape[0]
+
+
+class OncePerRevolution(Wave):
+    """A wave of one revolution, of which a linear axis has none."""
+
+    def sought(self, scope: Scope) -> bool:
+        """Where something turns."""
+        return super().sought(scope) and scope.kind.turns
+
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """One cycle a revolution."""
+        return 1.0
+
+
+#: An effect on the load behind a coupling: the effect, its shape, its strengths divided by the load inertia.
+Load = tuple[Columns, tuple[float, ...], tuple[float, ...]]
+
+
+class Coupling(Columns):
+    """Motor and load are joined softly; an axis has at most one. The column's first strength is the load's inertia.
+
+    Its columns are accelerations, which a lag of the reported speed delays as it does that of J.
+    """
+
+    def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
+        """Columns of several shapes, one after the other; `loads` act on the load, as far as it lets them."""
+        return [column for shape in shapes for column in self.columns(signals, shape)]
+
+    @abstractmethod
+    def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array | NDArray[np.complex128]:
+        """Transfer from acceleration to its first column at angular frequencies - rad/s (k,) -: (k,)."""
+
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+        """Part of the inertia sits behind it."""
+        return BEHIND[0] < strengths[0] / base.inertia < BEHIND[1]
+
+    def credible(self, shape: Sequence[float]) -> bool:
+        """Whether a search may end with this shape; it may always pass through it."""
+        return True
+
+
+class Contact(Columns):
+    """Parts that meet and part: what their impacts leave comes in bursts, and the instant of one hangs on the last."""
+
+    @abstractmethod
+    def open_torque(self, fitted: Fitted, shape: Sequence[float]) -> Array:
+        """By how much its torque is undetermined in each row - N*m (N) per unit of its strength - (m,)."""
+
+    @abstractmethod
+    def spread(self, fitted: Fitted, shape: Sequence[float]) -> Array:
+        """Covariance of its free shapes, which the curvature of the likelihood does not give."""
+
+
+# In the recording.
+
+
+class Distortion(Effect):
+    """What is recorded is not what acts or moves, in a way that is no column: a fit sees the recording without it."""
+
+    @abstractmethod
+    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+        """The recording without this fault."""
+
+
+class FiltersMotion(Effect):
+    """A filter of the motion: noise of the motion biases its strength or shape, and not only scatters it."""
+
+
+class Lag(Effect):
+    """A first-order lag, T*dy/dt + y = u; two at once show as their difference, so a recording tells but one."""
+
+    quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
+    shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
+
+    def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
+        """By the tick within which current and speed were taken."""
+        return [scope.latched / NORMAL95]
+
+
+class MotionLag(Lag, FiltersMotion):
+    """A lag between torque and reported motion."""
+
+    @abstractmethod
+    def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
+        """Lags to undo in columns of motion, and in all others, if speed comes from `source` - s."""
+
+    def counterpart(self, other: Effect, values: Mapping[str, float]) -> Mapping[str, float] | None:
+        """Values of another effect at which both look alike: another such lag's by as much; None of what is none."""
+        return {"time_constant": values["time_constant"]} if isinstance(other, MotionLag) else None
+
+
+class EffortLag(Lag):
+    """A lag of the reported effort."""
+
+    def effort_lag(self, shape: Sequence[float]) -> float:
+        """Lag to undo in the reported effort - s."""
+        return shape[0]
+
+
+class Detectable(Effect):
+    """Single signals show it directly, without the torque balance."""
+
+    @abstractmethod
     def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
-        """The effect read directly from signals, smoothed by a filter of this width - s; None if not visible."""
-        return None
+        """The effect read from signals, smoothed by a filter of this width - s; None if not visible."""
 
-    def corrected(self, trace: Trace, values: Mapping[str, float]) -> Trace:
-        """The recording with the faulty signal corrected."""
-        return trace
 
-    def shown_in(self, trace: Trace, rig: Rig, values: Mapping[str, float]) -> Trace:
-        """The part of a recording in which it is visible, if it `shows_under_drive`."""
-        return trace
+# In the search.
 
-    def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float] | None:
-        """Values of an effect it is `ambiguous` with at which both look alike; None if they do in every motion."""
-        return None
 
-    def instead_of_dry_friction(self, torque: float) -> Mapping[str, float] | None:
-        """Values at which it looks like dry friction of this signed torque - N*m (N) - in motion of one direction."""
-        return None
+class Replacing(Effect):
+    """Tried instead of other effects, once no other addition explains more.
 
-    @property
-    def kind(self) -> str:
-        """`physics`, or `measurement` for a fault of a sensor."""
-        return "physics"
+    Attributes:
+        replaces: their names.
+    """
 
-    @classmethod
-    def overrides(cls, hook: str) -> bool:
-        """Whether the effect overrides a hook of its base class."""
-        neutral: Any = next((vars(base)[hook] for base in cls.__mro__[::-1] if hook in vars(base)), None)
-        return getattr(cls, hook, None) is not neutral
+    replaces: ClassVar[frozenset[str]]
+
+    def propose(self, fitted: Fitted) -> list[Proposal]:
+        """Nothing: it is only tried instead of what it replaces."""
+        return []
+
+    @abstractmethod
+    def in_place_of(self, fitted: Fitted) -> tuple[float, ...] | None:
+        """Its most likely shape in a fit without the effects that it replaces; None where it can be none."""

@@ -15,8 +15,9 @@ from dataclasses import replace
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.effect import Fitted, Proposal
-from bench.effects.kinds import Sensing, Values
+from bench.effects.acting import MisreadMotion
+from bench.effects.axis import Number, Values
+from bench.effects.effect import Distortion, Fitted, OncePerRevolution, Proposal
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.effects.waves import amplitude_and_phase
 from bench.statistics import NORMAL95
@@ -27,7 +28,7 @@ from bench.units import Quantity
 STEPS = 5
 
 
-class EncoderEccentricity(Sensing):
+class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
     """See the module."""
 
     name = "encoder_eccentricity"
@@ -40,7 +41,6 @@ class EncoderEccentricity(Sensing):
         Shape(Quantity("sine", "s", "rad"), additive=True),
         Shape(Quantity("cosine", "c", "rad"), additive=True),
     )
-    turning_only = True
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """The true motion."""
@@ -56,16 +56,12 @@ class EncoderEccentricity(Sensing):
 
         columns = fitted.seen(errors, of_motion=True)
         gain = float(fitted.gains(columns, 2)[0])
-        sine, cosine = np.linalg.lstsq(columns, fitted.residual, rcond=None)[0] / -fitted.theta[0]
+        sine, cosine = np.linalg.lstsq(columns, fitted.residual, rcond=None)[0] / -fitted.base.inertia
         return [Proposal((float(sine), float(cosine)), gain)]
 
     def reach(self, shape: Sequence[float], k: int) -> float:
         """A third of the amplitude."""
         return 0.3 * max(float(np.linalg.norm(shape)), 1e-4)
-
-    def wave_number(self, shape: Sequence[float]) -> float:
-        """One cycle a revolution."""
-        return 1.0
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude and phase."""
@@ -76,7 +72,7 @@ class EncoderEccentricity(Sensing):
         """By the drift of an integrated position, and by the half tick within which it was taken."""
         return [float(np.linalg.norm(shape)) * (scope.drift + 0.5 * scope.latched * scope.rms_speed / NORMAL95)] * 2
 
-    def seen(self, values: Values, position: Array, velocity: Array) -> tuple[Array, Array]:
+    def seen(self, values: Values, position: Number, velocity: Number) -> tuple[Number, Number]:
         """By the equations above."""
         angle, amplitude = position + values["phase"], values["amplitude"]
         return position + amplitude * np.sin(angle), velocity * (1.0 + amplitude * np.cos(angle))

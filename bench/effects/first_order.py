@@ -21,3 +21,14 @@ def lagged(values: Array, time_constant: float, step: float) -> Array:
     mean = time_constant / step * (1.0 - decay)
     now, before = 1.0 - mean, mean - decay
     return np.asarray(lfilter([now, before], [1.0, -decay], values, zi=[values[0] * (1.0 - now)])[0])
+
+
+def unlagged(values: Array, time_constant: float, step: float) -> Array:
+    """What comes out behind a lag as these values (n,), by central differences: y + T*dy/dt.
+
+    Args:
+        values: (n,), any unit.
+        time_constant: T - s.
+        step: between samples - s.
+    """
+    return values + time_constant * np.gradient(values, step) if values.size > 1 else values

@@ -12,9 +12,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.effects.acting import ResistingTorque, ScalesFriction
+from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.grids import DURATION
-from bench.effects.kinds import Axis, Friction, Moment, Number, Values
 from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -23,7 +23,7 @@ from bench.units import Quantity
 ALL = 1.0
 
 
-class FrictionWarmup(Friction):
+class FrictionWarmup(ScalesFriction, ResistingTorque):
     """See the module."""
 
     name = "friction_warmup"
@@ -34,16 +34,12 @@ class FrictionWarmup(Friction):
         Quantity("viscous_share", "s", "dimensionless", lower=0.0, preset=ALL, minor=True),
     )
     shapes = (Shape(quantities[1], (0.7, 1.5, 3.0, 6.0, 12.0), measure=DURATION),)
-    scales_friction = True
+    dry = slice(1)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """exp(-t/T) of the friction level, and of speed."""
         cold = np.exp(-signals.time / shape[0])
         return [[(signals.friction * cold, 0)], [(signals.velocity * cold, 0)]]
-
-    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array:
-        """Of the dry part."""
-        return strengths[0] * signals.friction * np.exp(-signals.time / shape[0])
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude relative to the Coulomb friction of the warm axis, and the same of viscous friction over it."""

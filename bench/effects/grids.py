@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import product
+
 import numpy as np
 
 from bench.effects.signals import Measure, Scope, Shape
@@ -14,10 +17,17 @@ ANGLE = Measure(lambda scope: scope.top_speed, usual=100.0, power=-1, angular=Tr
 LAG = Measure(lambda scope: scope.width, usual=1.5e-3)
 FREQUENCY = Measure(lambda scope: scope.width, usual=1.5e-3, power=-1)
 DURATION = Measure(lambda scope: scope.duration, usual=8.0)
+#: Lags that a search tries first - s.
+LAGS = (3e-4, 8e-4, 2e-3, 4e-3, 8e-3)
 #: Angle of a cycle that the motion must cover - rad: over less, a wave is a mere curve, and a wave of torque copies it.
 PERIOD = 2.0 * np.pi
 #: Cycles over the travel of a linear axis between which pitches are sought: fewer than two are no repetition.
 COARSEST, FINEST = 2.0, 128.0
+
+
+def grid_of(shapes: Sequence[Shape], scope: Scope) -> list[tuple[float, ...]]:
+    """Shapes that a search tries first: all combinations of where each is sought."""
+    return list(product(*(places(shape, scope) for shape in shapes)))
 
 
 def is_pitch(shape: Shape, scope: Scope) -> bool:

@@ -7,13 +7,14 @@ M_e - N*m (N); t - time since the recording's start (that of the first, of sever
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.effect import Fitted, Proposal
-from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
+from bench.effects.acting import ResistingTorque
+from bench.effects.axis import Axis, Moment, Number, Values
+from bench.effects.effect import Contact, Fitted, Occasional, OuterTorque, Proposal
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.statistics import NORMAL95
 from bench.trace.filter import Column
@@ -29,7 +30,7 @@ NEEDED = 0.5
 RESOLVED = 2.355
 
 
-class LoadTorqueEvent(Mechanism):
+class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
     """See the module."""
 
     name = "load_torque_event"
@@ -40,23 +41,15 @@ class LoadTorqueEvent(Mechanism):
         Quantity("end", "t_2", "s", lower=0.0, instant=True),
     )
     shapes = tuple(Shape(instant, reach=0.05, additive=True) for instant in quantities[1:])
-    may_load = True
-    repeatable = True
-    occasional = True
-    fixed_in_simulation = frozenset({"start", "end"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """One within the stretch; its edges shared between the samples around them."""
         start, end = ((signals.began + signals.time - edge) / signals.sample_period + 0.5 for edge in shape)
         return [[(np.clip(start, 0.0, 1.0) - np.clip(end, 0.0, 1.0), 0)]]
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Torque and stretch."""
-        return {"torque": strengths[0], "start": shape[0], "end": shape[1]}
-
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """The best window of time, all of them compared through cumulative sums; none beside what leaves bursts."""
-        if any(term.effect.bursts for term in fitted.terms):
+        if fitted.places(Contact).size:
             return []
         time, basis = fitted.time, fitted.span
         edges = np.unique(np.linspace(0, time.size, EDGES + 1).astype(int))

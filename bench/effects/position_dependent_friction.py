@@ -11,15 +11,16 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.arrays import Array
-from bench.effects.kinds import Axis, Friction, Moment, Number, Values
+from bench.effects.acting import ScalesFriction
+from bench.effects.axis import Axis, Moment, Number, Values
+from bench.effects.effect import OncePerRevolution
 from bench.effects.signals import Base, Signals
 from bench.effects.waves import amplitude_and_phase
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class PositionDependentFriction(Friction):
+class PositionDependentFriction(OncePerRevolution, ScalesFriction):
     """See the module."""
 
     name = "position_dependent_friction"
@@ -28,25 +29,15 @@ class PositionDependentFriction(Friction):
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.5, null=0.0),
         Quantity("phase", "phi", "rad", angle=True, preset=0.0),
     )
-    scales_friction = True
-    turning_only = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """sin(q) and cos(q) of the friction level."""
         return [[(signals.friction * wave, 0)] for wave in (np.sin(signals.position), np.cos(signals.position))]
 
-    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array:
-        """The wave of the friction level."""
-        return signals.friction * (strengths[0] * np.sin(signals.position) + strengths[1] * np.cos(signals.position))
-
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude relative to Coulomb friction, and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"relative_amplitude": amplitude / base.coulomb, "phase": phase}
-
-    def wave_number(self, shape: Sequence[float]) -> float:
-        """One cycle a revolution."""
-        return 1.0
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Once up and down a revolution."""

@@ -12,14 +12,16 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
+from bench.effects.acting import ResistingTorque, VaryingInertia
+from bench.effects.axis import Axis, Moment, Number, Values
+from bench.effects.effect import Columns, Wave
 from bench.effects.signals import Base, Shape, Signals
 from bench.effects.waves import amplitude_and_phase
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class PositionDependentInertia(Mechanism):
+class PositionDependentInertia(Wave, Columns, VaryingInertia, ResistingTorque):
     """See the module."""
 
     name = "position_dependent_inertia"
@@ -30,7 +32,6 @@ class PositionDependentInertia(Mechanism):
         Quantity("phase", "phi", "rad", angle=True, preset=0.0),
     )
     shapes = (Shape(quantities[1], (1.0, 2.0, 3.0, 4.0), whole=True),)
-    fixed_in_simulation = frozenset({"harmonic"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Sine and cosine variation."""
@@ -45,10 +46,6 @@ class PositionDependentInertia(Mechanism):
         """Amplitude relative to the mean inertia, and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"relative_amplitude": amplitude / base.inertia, "harmonic": shape[0], "phase": phase}
-
-    def wave_number(self, shape: Sequence[float]) -> float:
-        """The harmonic."""
-        return shape[0]
 
     def added_inertia(self, values: Values, axis: Axis, at: Moment) -> Number:
         """J(q) - J."""

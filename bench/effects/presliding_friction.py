@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from bench.arrays import Array, recurrence
+from bench.effects.acting import CarriesFriction, Native
+from bench.effects.axis import Axis
 from bench.effects.grids import ANGLE
-from bench.effects.kinds import Axis, Friction
 from bench.effects.mjcf import AXIS, BRISTLES, passive_motor
 from bench.effects.signals import Base, Scope, Shape, Shapes, Signals
 from bench.trace.filter import Column
@@ -34,7 +35,7 @@ LEAST = 1e-3
 SLIDES = 10.0
 
 
-class PreslidingFriction(Friction):
+class PreslidingFriction(CarriesFriction, Native):
     """See the module."""
 
     name = "presliding_friction"
@@ -51,7 +52,6 @@ class PreslidingFriction(Friction):
         ),
     )
 
-    carries_friction = True
     # a rise of friction towards standstill that is not named yet would else make it negative, and the name impossible
     bounded: ClassVar[Mapping[int, tuple[float, float]]] = {1: (0.0, math.inf)}
 

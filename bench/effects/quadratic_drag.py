@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.effects.kinds import Axis, Mechanism
+from bench.effects.acting import Native
+from bench.effects.axis import Axis
+from bench.effects.effect import OfSpeed, OuterTorque
 from bench.effects.mjcf import AXIS
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -22,22 +24,16 @@ if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 
-class QuadraticDrag(Mechanism):
+class QuadraticDrag(OfSpeed, OuterTorque, Native):
     """See the module."""
 
     name = "quadratic_drag"
     summary = "resisting torque grows with velocity*|velocity|"
     quantities = (Quantity("quadratic_drag", "k_q", "N*m*s**2/rad**2", lower=0.0, null=0.0),)
-    may_load = True
-    of_speed_alone = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """omega*|omega|."""
         return [[(signals.velocity * np.abs(signals.velocity), 0)]]
-
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """The strength itself."""
-        return {"quadratic_drag": strengths[0]}
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Second coefficient of the joint's damping, which grows with speed."""

@@ -1,28 +1,22 @@
-"""Rivals from outside the catalogue, so that what none of its effects is does not get the name of the nearest one."""
+"""Physics that no catalogue lists: it competes with the names of a search and never gets one.
+
+So what none of the effects is does not get the name of the nearest one.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from bench.effects.effect import Effect
+from bench.effects.effect import Columns, Effect
 from bench.effects.grids import DURATION, FREQUENCY, SPEED
-from bench.effects.kinds import Axis, Number
-from bench.effects.signals import Base, Shape, Signals
+from bench.effects.signals import Scope, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class Rival(Effect):
-    """Physics that no catalogue lists: it competes with the names of a search and never gets one."""
-
-    def null(self, axis: Axis) -> Mapping[str, Number]:
-        """It is in no simulation."""
-        return {}
-
-
-class Vibration(Rival):
+class Vibration(Columns):
     """A torque periodic in time, M = A*sin(2*pi*f*t + phi)."""
 
     name = "outside_vibration"
@@ -35,12 +29,8 @@ class Vibration(Rival):
         angle = 2.0 * np.pi * shape[0] * signals.time
         return [[(np.sin(angle), 0)], [(np.cos(angle), 0)]]
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Frequency."""
-        return {"frequency": shape[0]}
 
-
-class Notch(Rival):
+class Notch(Columns):
     """A bump of torque or friction at one angle of the revolution, of Gaussian shape."""
 
     name = "outside_notch"
@@ -50,7 +40,10 @@ class Notch(Rival):
         Shape(quantities[0], tuple(float(q) for q in np.arange(36) * np.pi / 18.0), additive=True),
         Shape(quantities[1], (0.08, 0.2, 0.45)),
     )
-    turning_only = True
+
+    def sought(self, scope: Scope) -> bool:
+        """Where something turns."""
+        return scope.kind.turns
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """The bump, and the bump of friction."""
@@ -58,12 +51,8 @@ class Notch(Rival):
         bump = np.exp(-0.5 * (away / shape[1]) ** 2)
         return [[(bump, 0)], [(bump * signals.sign, 0)]]
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Angle and width."""
-        return {"angle": shape[0], "width": shape[1]}
 
-
-class SlowMemory(Rival):
+class SlowMemory(Columns):
     """Friction that grows with how fast the axis has run: level A*m, T*dm/dt = |omega| - m."""
 
     name = "outside_slow_memory"
@@ -76,12 +65,8 @@ class SlowMemory(Rival):
         keep = np.exp(-signals.sample_period / shape[0])
         return [[(signals.sign * _lowpass(np.abs(signals.velocity), keep), 0)]]
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Time constant."""
-        return {"time_constant": shape[0]}
 
-
-class FrictionalMemory(Rival):
+class FrictionalMemory(Columns):
     """Friction that follows a change of speed late: A*exp(-m/omega_s)*sgn(omega), T*dm/dt = |omega| - m.
 
     Source: D. P. Hess, A. Soom, Journal of Tribology 112(1), 1990, 147-152.
@@ -99,10 +84,6 @@ class FrictionalMemory(Rival):
         """The late rise."""
         keep = np.exp(-signals.sample_period / shape[0])
         return [[(signals.sign * np.exp(-_lowpass(np.abs(signals.velocity), keep) / shape[1]), 0)]]
-
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Time constant and speed."""
-        return {"time_constant": shape[0], "speed": shape[1]}
 
 
 def _lowpass(values: np.ndarray, keep: float) -> np.ndarray:

@@ -12,9 +12,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.effects.acting import RaisesFriction
+from bench.effects.axis import Axis, Moment, Number, Values
+from bench.effects.effect import OfSpeed
 from bench.effects.grids import SPEED
-from bench.effects.kinds import Axis, Friction, Moment, Number, Values
 from bench.effects.signals import Base, Scope, Shape, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -24,7 +25,7 @@ from bench.units import Quantity
 RISE = 0.2
 
 
-class StribeckFriction(Friction):
+class StribeckFriction(OfSpeed, RaisesFriction):
     """See the module."""
 
     name = "stribeck_friction"
@@ -34,15 +35,10 @@ class StribeckFriction(Friction):
         Quantity("stribeck_velocity", "omega_s", "rad/s", lower=0.0),
     )
     shapes = (Shape(quantities[1], (0.3, 0.6, 1.2, 2.5, 5.0, 10.0, 20.0), measure=SPEED),)
-    of_speed_alone = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """exp(-(omega/omega_s)**2) against the motion."""
         return [[(signals.sign * np.exp(-((signals.velocity / shape[0]) ** 2)), 0)]]
-
-    def level(self, signals: Signals, shape: Sequence[float], strengths: Sequence[float]) -> Array:
-        """The rise."""
-        return strengths[0] * signals.sign * np.exp(-((signals.velocity / shape[0]) ** 2))
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Static friction is Coulomb friction plus the rise."""

@@ -14,9 +14,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from bench.arrays import Array
-from bench.effects.kinds import Axis, Number, Sensing, Values
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.acting import MisreadEffort
+from bench.effects.axis import Axis, Number, Values
+from bench.effects.effect import CopiesTorque
+from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -28,13 +29,12 @@ NEEDED = 0.85
 MOST = 0.3
 
 
-class TorqueConstantDrift(Sensing):
+class TorqueConstantDrift(CopiesTorque, MisreadEffort):
     """See the module."""
 
     name = "torque_constant_drift"
     summary = "torque per ampere changes during the recording"
     quantities = (Quantity("rate", "r", "1/s", null=0.0),)
-    copies_torque = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """The motor's torque times time: what the rig's constant overstates."""
@@ -48,11 +48,7 @@ class TorqueConstantDrift(Sensing):
         """No more than magnets can lose."""
         return all(abs(rate) * scope.duration <= MOST for (rate,) in strengths)
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> dict[str, float]:
-        """The strength itself."""
-        return {"rate": strengths[0]}
-
-    def acted(self, values: Values, axis: Axis, effort: Array, time: Number) -> Array:
+    def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
         """By the equation above."""
         return effort * (1.0 + values["rate"] * time)
 

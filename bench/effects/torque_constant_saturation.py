@@ -8,31 +8,28 @@ dM/dI = kT*(1 - 3*d*(I/I_peak)**2) > 0, so d is 1/3 at most.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from bench.effects.kinds import Array, Axis, Electronics, Values
-from bench.effects.signals import Base, Signals
+from bench.effects.acting import TorqueLoss
+from bench.effects.axis import Axis, Number, Values
+from bench.effects.effect import CopiesTorque
+from bench.effects.signals import Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class TorqueConstantSaturation(Electronics):
+class TorqueConstantSaturation(CopiesTorque, TorqueLoss):
     """See the module."""
 
     name = "torque_constant_saturation"
     summary = "torque per ampere falls at high current"
     quantities = (Quantity("drop_at_peak", "d", "dimensionless", lower=0.0, upper=1.0 / 3.0, null=0.0),)
-    copies_torque = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """M*(M/M_peak)**2: what the rig's constant overstates."""
         return [[(signals.torque * (signals.torque / signals.peak_effort) ** 2, 0)]]
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """The strength itself."""
-        return {"drop_at_peak": strengths[0]}
-
-    def delivered(self, values: Values, axis: Axis, effort: Array) -> Array:
+    def delivered(self, values: Values, axis: Axis, effort: Number) -> Number:
         """What is left of the torque."""
         return effort * (1.0 - values["drop_at_peak"] * (effort / axis.peak_effort) ** 2)
 

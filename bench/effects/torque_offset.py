@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
+from bench.effects.acting import ConstantTorque, Native
+from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.mjcf import add_resisting_torque
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 
-class TorqueOffset(Mechanism):
+class TorqueOffset(ConstantTorque, Native):
     """See the module."""
 
     name = "torque_offset"
@@ -33,17 +34,9 @@ class TorqueOffset(Mechanism):
         """One."""
         return [[(np.ones_like(signals.time), 0)]]
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """The strength itself."""
-        return {"torque": strengths[0]}
-
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """Friction that differs between the directions by a constant, wherever the axis moves."""
         return ("direction_dependent_friction",)
-
-    def instead_of_dry_friction(self, torque: float) -> Mapping[str, float]:
-        """The torque itself."""
-        return {"torque": torque}
 
     def load_torque(self, values: Values, at: Moment) -> Number:
         """A weight."""

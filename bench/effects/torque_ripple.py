@@ -12,14 +12,16 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
+from bench.effects.acting import ScalesTorque
+from bench.effects.axis import Axis, Moment, Number, Values
+from bench.effects.effect import CopiesTorque, Repeatable, Wave
 from bench.effects.signals import Base, Shape, Signals
 from bench.effects.waves import amplitude_and_phase, followed
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class TorqueRipple(Mechanism):
+class TorqueRipple(Wave, CopiesTorque, Repeatable, ScalesTorque):
     """See the module."""
 
     name = "torque_ripple"
@@ -30,9 +32,6 @@ class TorqueRipple(Mechanism):
         Quantity("phase", "phi", "rad", angle=True, preset=0.0),
     )
     shapes = (Shape(quantities[1], tuple(float(n) for n in range(1, 41)), whole=True),)
-    copies_torque = True
-    repeatable = True
-    fixed_in_simulation = frozenset({"harmonic"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """M*sin(n*q) and M*cos(n*q), nothing where the wave is faster than the samples can follow."""
@@ -43,10 +42,6 @@ class TorqueRipple(Mechanism):
         """Amplitude, harmonic and phase; what resists is taken off the motor's torque, so the sign turns."""
         amplitude, phase = amplitude_and_phase(-strengths[0], -strengths[1])
         return {"relative_amplitude": amplitude, "harmonic": shape[0], "phase": phase}
-
-    def wave_number(self, shape: Sequence[float]) -> float:
-        """The harmonic."""
-        return shape[0]
 
     def torque_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Of the angle the motor is at."""

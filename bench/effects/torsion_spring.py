@@ -10,9 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
+from bench.effects.acting import Native, Spring
+from bench.effects.axis import Axis, Moment, Number, Values
+from bench.effects.effect import OuterTorque
 from bench.effects.mjcf import AXIS
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -20,25 +22,16 @@ if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 
-class TorsionSpring(Mechanism):
+class TorsionSpring(OuterTorque, Spring, Native):
     """See the module."""
 
     name = "torsion_spring"
     summary = "a torque proportional to position"
     quantities = (Quantity("stiffness", "c", "N*m/rad", lower=0.0, null=0.0),)
-    may_load = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """q."""
         return [[(signals.position, 0)]]
-
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """The strength itself."""
-        return {"stiffness": strengths[0]}
-
-    def stiffness(self, strengths: Sequence[float]) -> float:
-        """The strength itself."""
-        return strengths[0]
 
     def load_torque(self, values: Values, at: Moment) -> Number:
         """By the equation above."""

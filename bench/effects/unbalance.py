@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.effects.kinds import Axis, Mechanism, Moment, Number, Values
+from bench.effects.acting import LoadTorque, Native
+from bench.effects.axis import Axis, Moment, Number, Values
+from bench.effects.effect import OncePerRevolution, OuterTorque
 from bench.effects.mjcf import add_periodic_torque
 from bench.effects.signals import Base, Signals
 from bench.effects.waves import amplitude_and_phase
@@ -23,7 +25,7 @@ if TYPE_CHECKING:  # 0.2 s, needed only to simulate
     import mujoco
 
 
-class Unbalance(Mechanism):
+class Unbalance(OncePerRevolution, OuterTorque, LoadTorque, Native):
     """See the module."""
 
     name = "unbalance"
@@ -32,8 +34,6 @@ class Unbalance(Mechanism):
         Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0),
         Quantity("phase", "phi", "rad", angle=True, preset=0.0),
     )
-    may_load = True
-    turning_only = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """sin(q) and cos(q)."""
@@ -43,10 +43,6 @@ class Unbalance(Mechanism):
         """Amplitude and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         return {"amplitude": amplitude, "phase": phase}
-
-    def wave_number(self, shape: Sequence[float]) -> float:
-        """One cycle a revolution."""
-        return 1.0
 
     def load_torque(self, values: Values, at: Moment) -> Number:
         """By the equation above."""

@@ -15,18 +15,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.current_loop_lag import LAGS
-from bench.effects.effect import Detected
-from bench.effects.first_order import lagged
-from bench.effects.grids import LAG
-from bench.effects.kinds import Sensing
-from bench.effects.signals import Scope, Shape
+from bench.effects.acting import FilteredSignal
+from bench.effects.effect import Detectable, Detected, MotionLag
+from bench.effects.first_order import lagged, unlagged
+from bench.effects.signals import Scope
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95
 from bench.trace.filter import GaussianFilter
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
-from bench.units import Quantity
 
 #: A lag shorter than this share of the sample period is how a drive differences its encoder, not a filter.
 LEAST_SHARE = 0.6
@@ -36,16 +33,12 @@ DISAGREE, EXPLAINED = 1.5, 0.7
 MENDED = 0.1
 
 
-class VelocityFilterLag(Sensing):
+class VelocityFilterLag(MotionLag, Detectable, FilteredSignal):
     """See the module."""
 
     name = "velocity_filter_lag"
     summary = "reported velocity lags the motion"
-    quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
-    shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
-    biased_by_noise = True
-    not_beside = frozenset({"current_loop_lag", "current_filter_lag"})
-    faulty_signal = "velocity"
+    signal = "velocity"
 
     def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
         """What is made of the reported speed."""
@@ -55,17 +48,9 @@ class VelocityFilterLag(Sensing):
         """Where speed alone is recorded; beside it, position tells the lag by itself."""
         return scope.source == "velocity" and "position" not in scope.signals
 
-    def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
-        """By the tick within which current and speed were taken."""
-        return [scope.latched / NORMAL95]
-
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """A lag of the torque, unless position tells that; and, as only the difference shows, one of the current."""
         return () if "position" in scope.signals else ("current_loop_lag", "current_filter_lag")
-
-    def counterpart(self, name: str, values: Mapping[str, float]) -> Mapping[str, float] | None:
-        """A lag of the torque by as much."""
-        return {"time_constant": values["time_constant"]} if name == "current_loop_lag" else None
 
     def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
         """The lag, where both position and speed are recorded and disagree by one."""
@@ -98,20 +83,13 @@ class VelocityFilterLag(Sensing):
         errors = {"time_constant": NORMAL95 * error + 0.5 * tick}
         return Detected({"time_constant": lag}, errors, evidence, mends=after < max(DISAGREE, MENDED * before))
 
-    def corrected(self, trace: Trace, values: Mapping[str, float]) -> Trace:
-        """With the speed that the reported one lags behind, omega = v + T*dv/dt."""
-        speed = trace["velocity"].copy()
-        for part in trace.segments:
-            speed[part] = self.unfiltered(values, speed[part], trace.sample_period)
-        return trace.with_signals({"velocity": speed}, {})
-
-    def filtered(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
+    def recorded(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
         """Exact for a velocity that changes linearly within the step; started where the velocity is."""
-        return lagged(velocity, values["time_constant"], step)
+        return lagged(samples, values["time_constant"], step)
 
-    def unfiltered(self, values: Mapping[str, float], velocity: Array, step: float) -> Array:
+    def unrecorded(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
         """v + T*dv/dt by central differences: what holds a model to a recording needs no more."""
-        return velocity + values["time_constant"] * np.gradient(velocity, step) if velocity.size > 1 else velocity
+        return unlagged(samples, values["time_constant"], step)
 
 
 EFFECT = VelocityFilterLag()

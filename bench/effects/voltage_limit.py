@@ -13,8 +13,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from bench.effects.acting import DriveLimit
+from bench.effects.axis import Axis, Number, Values, Winding
 from bench.effects.effect import Detected
-from bench.effects.kinds import Array, Axis, Electronics, Number, Values, Winding
 from bench.errors import InputError
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95
@@ -36,13 +37,12 @@ NEARLY, STEADY = 0.97, 5
 LONGEST, SHORTEST = 3.0, 0.5
 
 
-class VoltageLimit(Electronics):
+class VoltageLimit(DriveLimit):
     """See the module."""
 
     name = "voltage_limit"
     summary = "the drive runs out of voltage at speed"
     quantities = (Quantity("voltage", "U_max", "V", lower=0.0, null=np.inf),)
-    shows_under_drive = True
 
     def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
         """The top of U = R*I + K_e*omega + L*dI/dt at which speed falls behind its reference.
@@ -89,8 +89,8 @@ class VoltageLimit(Electronics):
         return trace.between(start, max(start + LONGEST, float(trace.time[first]) + SHORTEST))
 
     def flowing(
-        self, values: Values, axis: Axis, velocity: Array, demand: Array, before: Array, step: float
-    ) -> tuple[Array, Array]:
+        self, values: Values, axis: Axis, velocity: Number, demand: Number, before: Number, step: float
+    ) -> tuple[Number, Number]:
         """Full voltage until the current is what is demanded, then what holds it there, if the limit allows."""
         winding = _winding(axis)
         constant = winding.torque_constant
@@ -110,7 +110,7 @@ class VoltageLimit(Electronics):
         return constant * area / step, constant * end
 
 
-def _time_to(wanted: Array, start: Array, settled: Array, tau: Number, step: float) -> Array:
+def _time_to(wanted: Number, start: Number, settled: Number, tau: Number, step: float) -> Number:
     """Time in which a current that tends to `settled` goes from `start` to `wanted`, at most a step - s."""
     ratio = (start - settled) / np.where(wanted == settled, np.inf, wanted - settled)
     return np.minimum(tau * np.log(np.maximum(ratio, 1.0)), step)

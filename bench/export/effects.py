@@ -23,7 +23,7 @@ from mujoco.batch import Batch
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.effects.kinds import Number
+from bench.effects.axis import Number
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.errors import InputError
 from bench.plant.joints import BatchJoints, Joints, SimulationJoint

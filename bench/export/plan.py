@@ -15,7 +15,7 @@ import numpy as np
 
 from bench.diagnosis.next_experiment import LONG_ENOUGH
 from bench.diagnosis.search import candidates
-from bench.effects.effect import Effect
+from bench.effects.effect import Columns, Effect
 from bench.effects.present import Present
 from bench.errors import InputError, UndeterminedError
 from bench.fit.fit import fit
@@ -74,7 +74,7 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[PlannedMotion]:
     plant = Plant.from_rig(rig, effects)
     limits = MotionLimits.from_rig(rig, plant.parameters, plant.cascade.control_period)
     effect = None if wanted is None else wanted.effect
-    if effect is not None and not (effect.overrides("columns") or effect.overrides("columns_of") or effect.shapes):
+    if effect is not None and not (isinstance(effect, Columns) or effect.shapes):
         raise InputError(f"--for {effect.name}", "is none of the torque balance", "allowed: an effect that has columns")
     found = []
     for name in PLANNED:

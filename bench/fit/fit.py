@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
-from bench.effects.effect import Effect, Proposal
+from bench.effects.effect import Columns, Contact, Coupling, Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
 from bench.fit.friction_levels import follows_load, multiply, with_friction, with_levels, with_load, with_pulls
 from bench.fit.gains import gains
@@ -151,6 +151,11 @@ class Fit:
         """What the columns are to explain (m,) - N*m (N)."""
         return self.layout.effort
 
+    def places(self, kind: type[Effect]) -> NDArray[np.intp]:
+        """Places among the columns of the strengths of effects of a kind (k,)."""
+        own = [index for index, term in enumerate(self.terms) if isinstance(term.effect, kind)]
+        return np.flatnonzero([owner in own for owner in self.owners])
+
     @property
     def time(self) -> Array:
         """Of the rows (m,) - s."""
@@ -182,7 +187,7 @@ class Fit:
 
     def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
         """Shapes of an effect with what each would take: by its columns, or fitted anew where it has none."""
-        if not (effect.overrides("columns") or effect.overrides("columns_of")):
+        if not isinstance(effect, Columns):
             return [
                 Proposal(shape, self.squares - fit(self.rows, self.hypothesis.plus(Term(effect, shape))).squares)
                 for shape in shapes
@@ -191,17 +196,13 @@ class Fit:
         parts = [shapes[k : k + few] for k in range(0, len(shapes), few)]
         return [proposal for part in parts for proposal in self._by_columns(effect, part)]
 
-    def _by_columns(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
-        lag = delays(self.rows, self.hypothesis)[0 if effect.of_motion else 1]
-
-        def made() -> Array:
-            return self.beside.table(lambda s: effect.columns_of(s, shapes), lag)
-
-        if effect.couples:  # of the motion alone, which most terms leave as it is
+    def _by_columns(self, effect: Columns, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
+        if isinstance(effect, Coupling):  # of the motion alone, which most terms leave as it is
+            lag = delays(self.rows, self.hypothesis)[0]
             key = ("tried", effect.name, tuple(shapes), lag, self.beside.motion)
-            columns = self.rows.memory.get(key, made)
+            columns = self.rows.memory.get(key, lambda: self.beside.table(lambda s: effect.columns_of(s, shapes), lag))
         else:
-            columns = made()
+            columns = self.seen(lambda s: [one for shape in shapes for one in effect.columns(s, shape)], False)
         worth = self.gains(columns, columns.shape[1] // len(shapes))
         return [Proposal(shape, float(gain)) for shape, gain in zip(shapes, worth, strict=True)]
 
@@ -233,20 +234,12 @@ def _determined(fitted: Fit) -> NDArray[np.bool_] | None:
     """Rows whose modelled torque would be the same within what the recording does not tell (m,)."""
     determined = None
     for index, term in enumerate(fitted.terms):
-        if term.effect.overrides("open_torque"):
+        if isinstance(term.effect, Contact):
             made_of = ("open", term.key, delays(fitted.rows, fitted.hypothesis), fitted.beside.motion)
-            strength = abs(fitted.strengths(index)[0]) or 1.0
-            moved = fitted.rows.memory.get(
-                made_of, lambda index=index, term=term, per=strength: _open(fitted, term, index) / per
-            )
-            sure = moved * strength < OPEN_SHARE * fitted.floor
+            moved = fitted.rows.memory.get(made_of, partial(term.effect.open_torque, fitted, term.shape))
+            sure = moved * abs(fitted.strengths(index)[0]) < OPEN_SHARE * fitted.floor
             determined = sure if determined is None else determined & sure
     return determined
-
-
-def _open(fitted: Fit, term: Term, index: int) -> Array:
-    found = term.effect.open_torque(fitted, index)
-    return np.zeros(fitted.time.size) if found is None else found
 
 
 def _alike(found: Hypothesis, before: Hypothesis) -> bool:

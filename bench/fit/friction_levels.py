@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB
+from bench.effects.acting import CarriesFriction, FollowsLoad, FrictionLevel, LoadTorque, ScalesFriction
 from bench.effects.signals import Signals
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.rows import Rows
@@ -27,16 +28,20 @@ def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
     sgn(omega) and what terms add to it, times what scales it: before the one at the index, or all where it carries it.
     """
     terms = hypothesis.terms
-    last = len(terms) if index < len(terms) and terms[index].effect.carries_friction else index
-    others = [term for k, term in enumerate(terms) if term.level and k != index]
-    acting = [term for term in others if not term.effect.scales_friction]
-    acting += [term for k, term in enumerate(terms[:last]) if term.level and k != index and term.effect.scales_friction]
+    carries = index < len(terms) and isinstance(terms[index].effect, CarriesFriction)
+    others = [
+        (term, term.effect, k < index or carries)
+        for k, term in enumerate(terms)
+        if isinstance(term.effect, FrictionLevel) and term.level and k != index
+    ]
+    acting = [(term, effect) for term, effect, _ in others if not isinstance(effect, ScalesFriction)]
+    acting += [(term, effect) for term, effect, before in others if before and isinstance(effect, ScalesFriction)]
     if not acting:
         return seen
 
     def change(signals: Signals) -> Signals:
-        for term in acting:
-            more = term.effect.level(signals, term.shape, term.level)
+        for term, effect in acting:
+            more = effect.level(signals, term.shape, term.level)
             signals = replace(signals, friction=signals.friction + more)
         return signals
 
@@ -48,7 +53,7 @@ def with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_
     coulomb = float(theta[owners == COULOMB][0])
 
     def level(index: int, term: Term) -> tuple[float, ...]:
-        if coulomb <= 0.0 or not term.effect.overrides("level"):
+        if coulomb <= 0.0 or not isinstance(term.effect, FrictionLevel):
             return ()
         return tuple((theta[owners == index] / coulomb).tolist())
 
@@ -58,21 +63,25 @@ def with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_
 def multiply(hypothesis: Hypothesis) -> bool:
     """Whether an effect scales what another adds, or carries it."""
     effects = [term.effect for term in hypothesis.terms]
-    levels = sum(effect.overrides("level") for effect in effects)
-    scaled = levels > 1 and any(effect.scales_friction for effect in effects)
-    return scaled or (levels > 0 and any(effect.carries_friction for effect in effects))
+    levels = sum(isinstance(effect, FrictionLevel) for effect in effects)
+    scaled = levels > 1 and any(isinstance(effect, ScalesFriction) for effect in effects)
+    return scaled or (levels > 0 and any(isinstance(effect, CarriesFriction) for effect in effects))
 
 
 def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows:
     """The recording with the torque that terms of some strengths make as a load; others are left out."""
-    known = [(term, strengths) for term, strengths in pulls if strengths and term.effect.overrides("load_torque")]
+    known = [
+        (term.effect, term.shape, strengths)
+        for term, strengths in pulls
+        if strengths and isinstance(term.effect, LoadTorque)
+    ]
     if not known:
         return seen
 
     def change(signals: Signals) -> Signals:
         load = np.zeros(signals.time.size)
-        for term, strengths in known:
-            for strength, ((values, _),) in zip(strengths, term.effect.columns(signals, term.shape), strict=True):
+        for effect, shape, strengths in known:
+            for strength, ((values, _),) in zip(strengths, effect.columns(signals, shape), strict=True):
                 load += strength * values
         return replace(signals, load=load)
 
@@ -85,11 +94,11 @@ def with_pulls(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]
         return hypothesis
 
     def pull(index: int, term: Term) -> tuple[float, ...]:
-        return tuple(theta[owners == index].tolist()) if term.effect.overrides("load_torque") else ()
+        return tuple(theta[owners == index].tolist()) if isinstance(term.effect, LoadTorque) else ()
 
     return hypothesis.with_terms(replace(term, pull=pull(k, term)) for k, term in enumerate(hypothesis.terms))
 
 
 def follows_load(hypothesis: Hypothesis) -> bool:
     """Whether the friction of a term follows the torque of the load."""
-    return any(term.effect.overrides("friction_under_load") for term in hypothesis.terms)
+    return any(isinstance(term.effect, FollowsLoad) for term in hypothesis.terms)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from bench.effects.effect import Effect
+from bench.effects.effect import Coupling, Effect, Lag, Repeatable
 
 
 @dataclass(frozen=True)
@@ -76,13 +76,12 @@ class Hypothesis:
         return replace(self, terms=tuple(terms))
 
     def admits(self, effect: Effect) -> bool:
-        """Whether an effect may come beside these: one coupling, one of what a recording confuses."""
+        """Whether an effect may come beside these: one coupling, one lag."""
         present = [term.effect for term in self.terms]
-        if effect in present and not effect.repeatable:
+        if effect in present and not isinstance(effect, Repeatable):
             return False
-        if effect.couples and any(other.couples for other in present):
-            return False
-        return not any(other.name in effect.not_beside for other in present)
+        alone = [kind for kind in (Coupling, Lag) if isinstance(effect, kind)]
+        return not any(isinstance(other, kind) for other in present for kind in alone)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -92,4 +91,4 @@ class Hypothesis:
     @property
     def coupling(self) -> int | None:
         """Index of the term that joins motor and load, None if they are one."""
-        return next((index for index, term in enumerate(self.terms) if term.effect.couples), None)
+        return next((index for index, term in enumerate(self.terms) if isinstance(term.effect, Coupling)), None)

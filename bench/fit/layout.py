@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
-from bench.effects.effect import Load
+from bench.effects.acting import FollowsLoad
+from bench.effects.effect import Columns, Coupling, Distortion, EffortLag, Load, MotionLag
 from bench.effects.signals import Signals
 from bench.fit.friction_levels import with_friction, with_load
 from bench.fit.hypothesis import Hypothesis, Term
@@ -55,27 +56,29 @@ class Layout:
 
 def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:
     """The recording as the hypothesis has it: without the faults of its sensors."""
-    terms = sorted((term for term in hypothesis.terms if term.effect.overrides("see")), key=lambda term: term.key)
-    if not terms:
+    terms = sorted(hypothesis.terms, key=lambda term: term.key)
+    faults = [(term.effect, term.shape) for term in terms if isinstance(term.effect, Distortion)]
+    if not faults:
         return rows
 
     def change(signals: Signals) -> Signals:
-        for term in terms:
-            signals = term.effect.see(signals, term.shape)
+        for effect, shape in faults:
+            signals = effect.see(signals, shape)
         return signals
 
-    return rows.with_signals(change, tuple(term.key for term in terms))
+    return rows.with_signals(change, tuple((effect.name, shape) for effect, shape in faults))
 
 
 def delays(rows: Rows, hypothesis: Hypothesis) -> tuple[float, float]:
     """Lag to undo on columns of motion, and on all others - s."""
-    found = [term.effect.delays(term.shape, rows.conditioning.source) for term in hypothesis.terms]
+    lags = [(term.effect, term.shape) for term in hypothesis.terms if isinstance(term.effect, MotionLag)]
+    found = [effect.delays(shape, rows.conditioning.source) for effect, shape in lags]
     return sum(moving for moving, _ in found), sum(resting for _, resting in found)
 
 
 def effort_lag(hypothesis: Hypothesis) -> float:
     """Lag to undo on the reported effort - s."""
-    return sum(term.effect.effort_lag(term.shape) for term in hypothesis.terms)
+    return sum(term.effect.effort_lag(term.shape) for term in hypothesis.terms if isinstance(term.effect, EffortLag))
 
 
 def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
@@ -109,7 +112,9 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
     for index in range(len(hypothesis.terms)):
         table = term_columns(rows, seen, hypothesis, index)
         parts.append(table)
-        bounds |= {len(owners) + place: most for place, most in hypothesis.terms[index].effect.bounded.items()}
+        effect = hypothesis.terms[index].effect
+        if isinstance(effect, Columns):
+            bounds |= {len(owners) + place: most for place, most in effect.bounded.items()}
         owners += [index] * table.shape[1]
     columns = np.concatenate(parts, axis=1)
     held_by = np.array(owners, dtype=object)
@@ -137,10 +142,11 @@ def term_columns(rows: Rows, seen: Rows, hypothesis: Hypothesis, index: int) -> 
     """Columns (m, k) of one term; none of one that only changes how the recording is seen."""
     term = hypothesis.terms[index]
     friction = with_friction(seen, hypothesis, index)
-    if term.effect.overrides("friction_under_load"):
+    if isinstance(term.effect, FollowsLoad):
         friction = with_load(friction, ((other, other.pull) for other in hypothesis.terms))
-    loads = loads_of(hypothesis) if term.effect.couples else ()
-    lag = delays(rows, hypothesis)[0 if term.effect.of_motion else 1]
+    couples = isinstance(term.effect, Coupling)
+    loads = loads_of(hypothesis) if couples else ()
+    lag = delays(rows, hypothesis)[0 if couples else 1]
     if loads or friction is not seen:
         return filtered(friction, term, loads, lag)
     return rows.memory.get((term.key, *_made_of(rows, hypothesis)), lambda: filtered(seen, term, loads, lag))
@@ -151,14 +157,17 @@ def filtered(seen: Rows, term: Term, loads: tuple[Load, ...], lag: float) -> Arr
 
     What follows the motion behind a coupling is integrated at length, and only once where nothing but a lag differs.
     """
-    if not (term.effect.overrides("columns") or term.effect.overrides("columns_of")):
+    effect = term.effect
+    if not isinstance(effect, Columns):
         return np.empty((seen.effort.size, 0))
-    if not term.effect.couples or loads:
-        return seen.table(lambda s: term.effect.columns_of(s, [term.shape], loads), lag)
+    if not isinstance(effect, Coupling):
+        return seen.table(lambda s: effect.columns(s, term.shape), lag)
+    if loads:
+        return seen.table(lambda s: effect.columns_of(s, [term.shape], loads), lag)
 
     def kept(signals: Signals) -> Sequence[Column]:
         made_of = ("raw", term.key, seen.motion, signals.began, float(signals.time[0]))
-        return seen.memory.columns(made_of, lambda: term.effect.columns_of(signals, [term.shape]))
+        return seen.memory.columns(made_of, lambda: effect.columns_of(signals, [term.shape]))
 
     return seen.table(kept, lag)
 
@@ -171,7 +180,7 @@ def _hum(signals: Signals, lines: tuple[float, ...], starts: tuple[float, ...]) 
 
 
 def _made_of(rows: Rows, hypothesis: Hypothesis) -> tuple[object, ...]:
-    seen = tuple(sorted(term.key for term in hypothesis.terms if term.effect.overrides("see")))
+    seen = tuple(sorted(term.key for term in hypothesis.terms if isinstance(term.effect, Distortion)))
     return *delays(rows, hypothesis), seen
 
 
@@ -191,7 +200,7 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], movi
     turned = (1j * omega) ** order * (1.0 + 1j * omega * moving)
     heard = {BASE.index(INERTIA): accelerated, BASE.index(VISCOUS): turned}
     for index, term in enumerate(hypothesis.terms):
-        if term.effect.of_motion:
+        if isinstance(term.effect, Coupling):
             place = int(np.flatnonzero(owners == index)[0])
             heard[place] = accelerated * term.effect.noise_of_motion(term.shape, omega)
     spectra = np.stack(list(heard.values()))

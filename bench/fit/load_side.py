@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.effects.effect import Load
+from bench.effects.effect import Load, OuterTorque
 from bench.fit.hypothesis import Hypothesis, Term
 
 
@@ -20,7 +20,7 @@ def outer_loads(hypothesis: Hypothesis) -> list[int]:
     """Indices of the terms that may act on the load of a coupling; none without one."""
     if hypothesis.coupling is None:
         return []
-    return [index for index, term in enumerate(hypothesis.terms) if term.effect.may_load]
+    return [index for index, term in enumerate(hypothesis.terms) if isinstance(term.effect, OuterTorque)]
 
 
 def on_other_side(hypothesis: Hypothesis) -> Hypothesis:
@@ -34,13 +34,14 @@ def on_other_side(hypothesis: Hypothesis) -> Hypothesis:
 
 def loads_of(hypothesis: Hypothesis) -> tuple[Load, ...]:
     """What acts on the load, as far as its strengths are known."""
-    return tuple((term.effect, term.shape, term.load) for term in hypothesis.terms if term.load)
+    outer = [(term.effect, term.shape, term.load) for term in hypothesis.terms if term.load]
+    return tuple((effect, shape, load) for effect, shape, load in outer if isinstance(effect, OuterTorque))
 
 
 def with_loads(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
     """The hypothesis with the strengths over load inertia that a fit found of what acts on the load."""
     index = hypothesis.coupling
-    inertia = 0.0 if index is None else hypothesis.terms[index].effect.load_inertia(theta[owners == index].tolist())
+    inertia = 0.0 if index is None else float(theta[owners == index][0])
 
     def moved(k: int, term: Term) -> Term:
         if term.load is None:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.axis_kind import INERTIA, MISALIGNMENT, VISCOUS
+from bench.effects.effect import CopiesTorque, Coupling
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.layout import Layout, delays, effort_lag
 from bench.fit.rows import Rows
@@ -108,7 +109,7 @@ def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
         s = 1j * omega
         kinetic = inertia * s + viscous
         for index, term in enumerate(hypothesis.terms):
-            if term.effect.of_motion:
+            if isinstance(term.effect, Coupling):
                 heard = term.effect.noise_of_motion(term.shape, omega)
                 kinetic = kinetic + theta[layout.owners == index][0] * s * heard
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
@@ -125,7 +126,11 @@ def _left_of_effort(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: A
 
     An effect that copies the torque copies its noise, and so would take all of it for explained.
     """
-    copies = [(term, theta[layout.owners == k]) for k, term in enumerate(hypothesis.terms) if term.effect.copies_torque]
+    copies = [
+        (term.effect, term.shape, theta[layout.owners == k])
+        for k, term in enumerate(hypothesis.terms)
+        if isinstance(term.effect, CopiesTorque)
+    ]
     if not copies:
         return 1.0
     total, count = 0.0, 0
@@ -133,8 +138,8 @@ def _left_of_effort(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: A
         signals = part.signals
         step = 1e-6 * signals.peak_effort
         more, slope = replace(signals, torque=signals.torque + step), np.zeros(signals.torque.size)
-        for term, strengths in copies:
-            high, low = (term.effect.columns(s, term.shape) for s in (more, signals))
+        for effect, shape, strengths in copies:
+            high, low = (effect.columns(s, shape) for s in (more, signals))
             for ((after, _),), ((before, _),), strength in zip(high, low, strengths, strict=True):
                 slope += strength * (after - before) / step
         total, count = total + float(np.sum((1.0 - slope) ** 2)), count + slope.size

@@ -13,7 +13,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
-from bench.effects.effect import Effect
+from bench.effects.effect import Contact, Effect, FiltersMotion
 from bench.effects.grids import is_pitch
 from bench.effects.signals import Base, Signals
 from bench.fit.covariance import estimated, misfit
@@ -108,9 +108,8 @@ def uncertain(fitted: Fit) -> Uncertain:
     covariance[place:, place:] += np.diag(_known(fitted, slots) ** 2)
     for index, term in enumerate(fitted.terms):
         own = [place + slot for slot, (owner, _) in enumerate(slots) if owner == index]
-        spread = term.effect.spread(fitted, index) if own else None
-        if spread is not None:
-            covariance[np.ix_(own, own)] += spread
+        if own and isinstance(term.effect, Contact):
+            covariance[np.ix_(own, own)] += term.effect.spread(fitted, term.shape)
     for moved in (*_misplaced(fitted), *_louder(fitted, slots)):
         covariance[: moved.size, : moved.size] += np.outer(moved, moved)
     shapes = np.array([fitted.terms[index].shape[k] for index, k in slots])
@@ -214,7 +213,7 @@ def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
     The column of a coupling is made of the noisy motion, so noise biases it; that of the noise itself is as large.
     J. R. Cook, L. A. Stefanski, Journal of the American Statistical Association 89, 1994, 1314-1328.
     """
-    if not any(term.effect.biased_by_noise for term in fitted.terms) or not fitted.determined.all():
+    if not any(isinstance(term.effect, FiltersMotion) for term in fitted.terms) or not fitted.determined.all():
         return
     rng, conditioning = np.random.default_rng(0), fitted.rows.conditioning
 

@@ -6,6 +6,7 @@ import numpy as np
 import scipy.optimize
 
 from bench.arrays import Array
+from bench.effects.effect import Distortion, FiltersMotion
 from bench.effects.grids import is_pitch
 from bench.effects.signals import Scope
 from bench.fit.fit import Fit, fit
@@ -35,7 +36,7 @@ def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = Fa
     free = free_shapes(term, scope)
     if not free:
         return fit(rows, hypothesis)
-    if term.effect.overrides("see") and hypothesis.coupling is not None:
+    if isinstance(term.effect, Distortion) and hypothesis.coupling is not None:
         rows_tried = rows.held  # what follows behind the coupling is kept while the motion is corrected a little
         fit(rows_tried, hypothesis)
     else:
@@ -100,7 +101,7 @@ def unbiased(fitted: Fit) -> Fit:
     but it scatters, and goes astray where the noise is not as white as it is taken for.
     """
     for index, term in enumerate(fitted.terms):
-        if term.effect.biased_by_noise:
+        if isinstance(term.effect, FiltersMotion):
             fitted = shaped(fitted.rows, fitted.hypothesis, index, over_noise=True)
     return fitted
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from bench.arrays import Array, rms
+from bench.effects.effect import Occasional
 from bench.effects.present import named
 from bench.fit.fit import Fit
 from bench.fit.hypothesis import Hypothesis, Term
@@ -54,7 +55,8 @@ class Balance:
         if self.recording != rows.origin:
             theta[layout.owners == HUM] = 0.0
         if self.recording not in (EVERY, rows.origin):
-            occasional = [index for index, term in enumerate(self.hypothesis.terms) if term.effect.occasional]
+            terms = enumerate(self.hypothesis.terms)
+            occasional = [index for index, term in terms if isinstance(term.effect, Occasional)]
             theta[np.isin(layout.owners, occasional)] = 0.0
         return layout.effort - layout.columns @ theta
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Effect
+from bench.effects.effect import Columns, Effect
 from bench.fit.fit import Fit, explained, fit
 from bench.fit.hypothesis import Term
 from bench.fit.layout import lay_out
@@ -68,7 +68,7 @@ def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
     linear = [
         effect
         for effect in effects
-        if effect.overrides("columns") and not effect.shapes
+        if isinstance(effect, Columns) and not effect.shapes
         if effect.sought(fitted.scope) and fitted.hypothesis.admits(effect)
     ]
     gains = {effect: fitted.tried(effect, [()])[0].gain for effect in linear}

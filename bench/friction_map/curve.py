@@ -10,6 +10,7 @@ import scipy.stats
 
 from bench.arrays import Array
 from bench.effects.catalogue import catalogue
+from bench.effects.effect import OfSpeed
 from bench.effects.signals import Base, Signals
 
 
@@ -67,7 +68,9 @@ def _columns(name: str, shape: tuple[float, ...], velocity: Array) -> Array:
     columns = [velocity, sign, np.ones_like(velocity)]
     if name:
         signals = Signals(zero, zero, velocity, sign, zero, zero, sign, 1.0, 1.0)
-        columns += [sum((values for values, _ in column), zero) for column in catalogue()[name].columns(signals, shape)]
+        effect = catalogue()[name]
+        assert isinstance(effect, OfSpeed)
+        columns += [sum((values for values, _ in column), zero) for column in effect.columns(signals, shape)]
     return np.column_stack(columns)
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.effects.catalogue import catalogue
+from bench.effects.effect import OfSpeed
 from bench.effects.signals import Base
 from bench.errors import InputError, UndeterminedError
 from bench.friction_map.curve import Curve, bent_curve, chance, plain_curve
@@ -88,7 +89,7 @@ def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
             "found friction that drives the axis: torque and motion have opposite signs",
             "allowed: both counted the same way (a leading - in the rig's [trace.columns] turns one)",
         )
-    names = [name for name, effect in catalogue().items() if effect.of_speed_alone]
+    names = [name for name, effect in catalogue().items() if isinstance(effect, OfSpeed)]
     tried = [bent_curve(name, velocity, effort) for name in names]
     chances = [chance(plain, one, effort.size, ROUNDING * total) for one in tried]
     least = int(np.argmin(chances))

@@ -10,8 +10,18 @@ from typing import TypeVar
 
 import mujoco
 
-from bench.effects.effect import Effect
-from bench.effects.kinds import Axis, Electronics, Mechanism, Sensing, Winding
+from bench.effects.acting import (
+    CarriesFriction,
+    Electronics,
+    Mechanism,
+    MisreadEffort,
+    MisreadMotion,
+    Native,
+    RaisesFriction,
+    ScalesFriction,
+)
+from bench.effects.axis import Axis, Winding
+from bench.effects.effect import Coupling, Effect
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.plant.model import AxisParameters, build_spec
@@ -20,10 +30,10 @@ from bench.rig.rig import Rig
 
 Kind = TypeVar("Kind", bound=Effect)
 
-#: Hooks of electronics and sensing between the effort that is asked for and the one that acts; and with what the drive
-#: sees of the motion, all that it has to do with.
-OF_TORQUE = ("flowing", "acting", "delivered", "acted")
-IN_THE_LOOP = (*OF_TORQUE, "seen")
+#: What acts between the effort that is asked for and the one that moves the axis; and with what the drive sees of the
+#: motion, all that it has to do with.
+OF_TORQUE = (Electronics, MisreadEffort)
+IN_THE_LOOP = (*OF_TORQUE, MisreadMotion)
 
 
 @dataclass(frozen=True)
@@ -49,7 +59,7 @@ class AxisModel:
         axis = self.axis
         present = [Present.of(p.name, p.resolved(axis)) for p in self.effects if not p.absent(axis)]
         object.__setattr__(self, "effects", tuple(sorted(present, key=lambda p: (p.name, p.values))))
-        couplings = [p.name for p in present if p.effect.couples]
+        couplings = [p.name for p in present if isinstance(p.effect, Coupling)]
         if len(couplings) > 1:
             raise InputError("effects", f"found {' and '.join(couplings)}", "allowed: one coupling of motor and load")
         if couplings and not 0.0 < self.parameters.motor_inertia < self.parameters.inertia:
@@ -72,8 +82,8 @@ class AxisModel:
             winding=self.winding,
         )
 
-    def of_kind(self, kind: type[Effect]) -> tuple[Present, ...]:
-        """Effects that are mechanisms, electronics or sensing."""
+    def of_kind(self, kind: type[Effect] | tuple[type[Effect], ...]) -> tuple[Present, ...]:
+        """Effects of a kind, or of one of several."""
         return tuple(present for present in self.effects if isinstance(present.effect, kind))
 
     def acting(self, kind: type[Kind]) -> list[tuple[Kind, dict[str, float]]]:
@@ -83,9 +93,9 @@ class AxisModel:
     @cached_property
     def native(self) -> tuple[Present, ...]:
         """Mechanisms that MuJoCo makes by itself."""
-        mechanisms = self.of_kind(Mechanism)
-        scaled = scales_friction(mechanisms)
-        return tuple(p for p in mechanisms if _mechanism(p).native(dict(p.values), scaled))
+        scaled = scales_friction(self.effects)
+        able = [(p, p.effect) for p in self.effects if isinstance(p.effect, Native)]
+        return tuple(p for p, effect in able if effect.native(dict(p.values), scaled))
 
     @cached_property
     def ticked(self) -> tuple[Present, ...]:
@@ -95,19 +105,17 @@ class AxisModel:
     @property
     def stepped(self) -> tuple[Present, ...]:
         """Effects that change friction, inertia or torque of the axis in every step."""
-        drive = (*self.of_kind(Electronics), *self.of_kind(Sensing))
-        return *self.ticked, *(p for p in drive if any(p.effect.overrides(hook) for hook in OF_TORQUE))
+        return *self.ticked, *self.of_kind(OF_TORQUE)
 
     @property
     def coupled(self) -> bool:
         """Whether an effect joins motor and load."""
-        return any(present.effect.couples for present in self.effects)
+        return bool(self.of_kind(Coupling))
 
     @property
     def all_native(self) -> bool:
         """Whether MuJoCo runs the whole axis and its drive by itself."""
-        in_the_loop = (*self.of_kind(Electronics), *self.of_kind(Sensing))
-        return not self.ticked and not any(p.effect.overrides(h) for p in in_the_loop for h in IN_THE_LOOP)
+        return not self.ticked and not self.of_kind(IN_THE_LOOP)
 
     @property
     def structure(self) -> tuple[str, ...]:
@@ -118,7 +126,8 @@ class AxisModel:
         """Editable MuJoCo model with all that is native in it; arguments as `build_spec`."""
         spec = build_spec(self.parameters, timestep, load)
         for count, present in enumerate(self.native):
-            _mechanism(present).add(spec, f"{present.name} {count}", dict(present.values), self.axis)
+            assert isinstance(present.effect, Native)
+            present.effect.add(spec, f"{present.name} {count}", dict(present.values), self.axis)
         return spec
 
     def with_effects(self, effects: Sequence[Present]) -> AxisModel:
@@ -128,8 +137,7 @@ class AxisModel:
 
 def scales_friction(effects: Sequence[Present]) -> bool:
     """Whether dry friction changes in every step, or is carried by what bends to its level."""
-    hooks = ("friction_factor", "friction_excess", "friction_under_load")
-    return any(p.effect.carries_friction or any(map(p.effect.overrides, hooks)) for p in effects)
+    return any(isinstance(p.effect, (ScalesFriction, RaisesFriction, CarriesFriction)) for p in effects)
 
 
 def winding_of(rig: Rig) -> Winding | None:
@@ -140,8 +148,3 @@ def winding_of(rig: Rig) -> Winding | None:
         return None
     resistance, inductance, back_emf = (float(value) for value in known if value is not None)
     return Winding(motor.torque_per_ampere.constant, resistance, inductance, back_emf)
-
-
-def _mechanism(present: Present) -> Mechanism:
-    assert isinstance(present.effect, Mechanism)
-    return present.effect

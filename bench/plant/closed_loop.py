@@ -15,7 +15,7 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.kinds import Number
+from bench.effects.axis import Number
 from bench.plant.axis_model import AxisModel
 from bench.plant.stepped_effects import per_axis
 

@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.kinds import Number
+from bench.effects.axis import Number
 from bench.effects.mjcf import DRIVE
 from bench.errors import InputError
 from bench.plant.closed_loop import ClosedLoop, Controller

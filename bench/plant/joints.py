@@ -15,7 +15,7 @@ from mujoco.batch import Batch
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.effects.kinds import Number
+from bench.effects.axis import Number
 from bench.effects.mjcf import AXIS, BRISTLES
 
 #: Places of the two friction levels among the parameters of a passive motor with bristles.

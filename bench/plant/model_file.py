@@ -24,7 +24,7 @@ import mujoco
 import tomli_w
 
 from bench.axis_kind import AxisKind, axis_kind
-from bench.effects.kinds import Winding
+from bench.effects.axis import Winding
 from bench.effects.mjcf import LOAD, MOTOR
 from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.errors import InputError

@@ -10,7 +10,8 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.kinds import Friction, Winding
+from bench.effects.acting import Friction
+from bench.effects.axis import Winding
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, winding_of

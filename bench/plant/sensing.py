@@ -8,19 +8,18 @@ from dataclasses import replace
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.kinds import Number, Sensing
+from bench.effects.acting import FilteredSignal, MisreadEffort, MisreadMotion
+from bench.effects.axis import Number
 from bench.plant.axis_model import AxisModel
 from bench.plant.closed_loop import States
-from bench.plant.stepped_effects import EffectOnAxes, on_axes
+from bench.plant.stepped_effects import on_axes
 
 
 class EncodersSideBySide:
     """Encoders of axes side by side, as their drives have them."""
 
     def __init__(self, models: Sequence[AxisModel]) -> None:
-        self._encoders: list[EffectOnAxes] = [
-            found for found in on_axes(models, Sensing) if found.effect.overrides("seen")
-        ]
+        self._encoders = on_axes(models, MisreadMotion)
 
     def seen(self, position: Number, velocity: Number) -> tuple[Number, Number]:
         """What the drives have of the axes' true motion - rad (m), rad/s (m/s) - (axes,) each."""
@@ -38,48 +37,48 @@ def reported(model: AxisModel, position: Array, velocity: Array, step: float) ->
 
 def seen(model: AxisModel, position: Array, velocity: Array) -> tuple[Array, Array]:
     """What the encoder of one axis sees of its true motion, (n,) each, instant by instant."""
-    for effect, values in model.acting(Sensing):
+    for effect, values in model.acting(MisreadMotion):
         position, velocity = effect.seen(values, position, velocity)
     return position, velocity
 
 
 def filters(model: AxisModel) -> bool:
     """Whether the velocity that is recorded depends on what came before."""
-    return any(effect.overrides("filtered") for effect, _ in model.acting(Sensing))
+    return bool(_filters(model, "velocity"))
 
 
 def filtered(model: AxisModel, velocity: Array, step: float) -> Array:
     """What is recorded of the velocity that the encoder sees, (n,) at a constant step - s."""
-    for effect, values in model.acting(Sensing):
-        velocity = effect.filtered(values, velocity, step)
+    for effect, values in _filters(model, "velocity"):
+        velocity = effect.recorded(values, velocity, step)
     return velocity
 
 
 def true_velocity(model: AxisModel, velocity: Array, step: float) -> Array:
     """Velocity that the encoder saw, from the reported one, (n,): filters undone."""
-    for effect, values in reversed(model.acting(Sensing)):
-        velocity = effect.unfiltered(values, velocity, step)
+    for effect, values in reversed(_filters(model, "velocity")):
+        velocity = effect.unrecorded(values, velocity, step)
     return velocity
 
 
 def true_motion(model: AxisModel, position: Array, velocity: Array) -> tuple[Array, Array]:
     """Motion from what the encoder saw of it, (n,) each."""
-    for effect, values in reversed(model.acting(Sensing)):
+    for effect, values in reversed(model.acting(MisreadMotion)):
         position, velocity = effect.unseen(values, position, velocity)
     return position, velocity
 
 
 def misreads_effort(model: AxisModel) -> bool:
     """Whether the effort that is recorded is not the one that acts."""
-    return any(effect.overrides(hook) for effect, _ in model.acting(Sensing) for hook in ("acted", "unrecorded"))
+    return bool(model.of_kind(MisreadEffort) or _filters(model, "current"))
 
 
 def true_effort(model: AxisModel, effort: Array, since: float, step: float) -> Array:
     """Effort of one axis that acted, from the recorded one, (n,) at a constant step - s - from an instant on - s."""
-    sensing, time = model.acting(Sensing), since + step * np.arange(effort.size, dtype=np.float64)
-    for effect, values in reversed(sensing):
+    time = since + step * np.arange(effort.size, dtype=np.float64)
+    for effect, values in reversed(_filters(model, "current")):
         effort = effect.unrecorded(values, effort, step)
-    for effect, values in sensing:
+    for effect, values in model.acting(MisreadEffort):
         effort = effect.acted(values, model.axis, effort, time)
     return effort
 
@@ -89,6 +88,10 @@ def reported_states(model: AxisModel, states: States) -> States:
     step = float(states.time[1] - states.time[0])
     position, velocity = reported(model, states.position[:, 0], states.velocity[:, 0], step)
     torque = states.torque[:, 0]
-    for effect, values in model.acting(Sensing):
+    for effect, values in _filters(model, "current"):
         torque = effect.recorded(values, torque, step)
     return replace(states, position=position[:, None], velocity=velocity[:, None], torque=torque[:, None])
+
+
+def _filters(model: AxisModel, signal: str) -> list[tuple[FilteredSignal, dict[str, float]]]:
+    return [(effect, values) for effect, values in model.acting(FilteredSignal) if effect.signal == signal]

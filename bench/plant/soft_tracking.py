@@ -21,7 +21,7 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.kinds import Electronics, Mechanism
+from bench.effects.acting import Mechanism, TorqueLag, TorqueLoss
 from bench.errors import SimulationError
 from bench.plant.axis_model import AxisModel
 from bench.plant.closed_loop import DIVERGED, ClosedLoop, PlannedInputs
@@ -189,7 +189,7 @@ class _HoldingInputs(PlannedInputs):
         self._position, self._velocity = true_motion(model, position, velocity)
         self._time, self._effort, self._held = trace.time[part], held.effort[part], held
         self._since, self._timestep = float(trace.time[part.start]) - trace.start_of(part), timestep
-        self._electronics = [(values, effect) for effect, values in model.acting(Electronics)]
+        self._losses = model.acting(TorqueLoss)
         self.ticks = (velocity.size - 1) * substeps + 1
 
     @property
@@ -204,7 +204,7 @@ class _HoldingInputs(PlannedInputs):
         # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts
         lead = np.interp(ticks, self._time, self._position) + self._timestep / 2.0 * wanted
         effort = self._recorded(start, stop) if self._acting is None else self._acting[start:stop]
-        for values, effect in self._electronics:
+        for effect, values in self._losses:
             effort = effect.delivered(values, self._held.model.axis, effort)
         return np.stack([lead, wanted, effort], axis=-1)
 
@@ -220,10 +220,10 @@ class _HoldingInputs(PlannedInputs):
     def _acting(self) -> Array | None:
         """Effort at all ticks, faults of its sensor and lags undone - N*m (N); None without any."""
         model = self._held.model
-        lags = any(effect.overrides("acting_along") for _, effect in self._electronics)
+        lags = model.acting(TorqueLag)
         if not misreads_effort(model) and not lags:
             return None
         effort = true_effort(model, self._recorded(0, self.ticks), self._since, self._timestep)
-        for values, effect in self._electronics:
+        for effect, values in lags:
             effort = effect.acting_along(values, effort, self._timestep)
         return effort

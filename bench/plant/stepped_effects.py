@@ -13,15 +13,29 @@ Values are arrays of axes side by side; of a lone axis they are numbers, of whic
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
+from bench.effects.acting import (
+    DirectedFriction,
+    DriveLimit,
+    FollowsLoad,
+    LoadTorque,
+    MisreadEffort,
+    RaisesFriction,
+    ResistingTorque,
+    ScalesFriction,
+    ScalesTorque,
+    TorqueLag,
+    TorqueLoss,
+    VaryingInertia,
+)
+from bench.effects.axis import Axis, Moment, Number, Winding
 from bench.effects.effect import Effect
-from bench.effects.kinds import Axis, Electronics, Friction, Mechanism, Moment, Number, Sensing, Winding
 from bench.plant.axis_model import AxisModel
 from bench.plant.joints import Joints
 
@@ -40,16 +54,14 @@ class SteppedEffects:
     def __init__(self, joints: Joints, models: Sequence[AxisModel], velocity: Number) -> None:
         self._joints, self._step = joints, joints.step
         self._none = per_axis([0.0] * len(models))
-        self._mechanisms = on_axes(models, Mechanism, ticked=True)
-        electronics = on_axes(models, Electronics)
-        self._flowing = _through(electronics, "flowing")
-        self._acting = _through(electronics, "acting")
-        self._delivered = _through(electronics, "delivered")
-        self._acted = _through(on_axes(models, Sensing), "acted")
+        self._flowing = on_axes(models, DriveLimit)
+        self._acting = on_axes(models, TorqueLag)
+        self._delivered = on_axes(models, TorqueLoss)
+        self._acted = on_axes(models, MisreadEffort)
         self._friction = _FrictionLevels(joints, models)
-        self._inertia = _through(self._mechanisms, "added_inertia")
-        self._resisting = _through(self._mechanisms, "resisting_torque")
-        self._factors = _through(self._mechanisms, "torque_factor")
+        self._inertia = on_axes(models, VaryingInertia, ticked=True)
+        self._resisting = on_axes(models, ResistingTorque, ticked=True)
+        self._factors = on_axes(models, ScalesTorque, ticked=True)
         self._before = velocity
 
     def act(
@@ -110,27 +122,25 @@ class _FrictionLevels:
     """The level of dry friction, where effects change it in every step."""
 
     def __init__(self, joints: Joints, models: Sequence[AxisModel]) -> None:
-        mechanisms = on_axes(models, Friction, ticked=True)
         self._coulomb = per_axis([model.parameters.coulomb_friction for model in models])
         self._none = per_axis([0.0] * len(models))
-        self._excesses = _through(mechanisms, "friction_excess")
-        self._factors = _through(mechanisms, "friction_factor")
-        self._differences = _through(mechanisms, "friction_difference")
-        self._under_load = _through(mechanisms, "friction_under_load")
-        self._loads = _through(on_axes(models, Mechanism), "load_torque") if self._under_load else []
+        self._excesses = on_axes(models, RaisesFriction, ticked=True)
+        self._factors = on_axes(models, ScalesFriction, ticked=True)
+        self._differences = on_axes(models, DirectedFriction, ticked=True)
+        self._loads = on_axes(models, LoadTorque) if on_axes(models, FollowsLoad) else []
         self._joints = joints
-        self._changes = bool(self._excesses or self._factors or self._differences or self._under_load)
+        self._changes = bool(self._excesses or self._factors or self._differences)
 
     def offset(self, at: Moment) -> Number:
         """Set the level; returns half the difference of the two directions' levels - N*m (N) - (axes,)."""
         if not self._changes:
             return 0.0
         level = self._coulomb
+        if self._loads:
+            at = replace(at, load=self._load(at))
         for rows in self._excesses:
             excess = rows.effect.friction_excess(rows.values, rows.axis, rows.moment(at))
             level = rows.with_these(level, rows.of(level) + excess)
-        if self._under_load:
-            level = self._with_load(level, at)
         half = self._none
         for rows in self._differences:
             difference = rows.effect.friction_difference(rows.values, rows.axis)
@@ -148,19 +158,12 @@ class _FrictionLevels:
         self._joints.set_friction(0.5 * (forward + backward))
         return 0.5 * (forward - backward)
 
-    def _with_load(self, level: Number, at: Moment) -> Number:
-        """The level with what the transmitted torque adds to it - N*m (N) - (axes,)."""
+    def _load(self, at: Moment) -> Number:
+        """Torque of the load that the transmission carries - N*m (N) - (axes,)."""
         load = self._none
         for rows in self._loads:
             load = rows.with_these(load, rows.of(load) + rows.effect.load_torque(rows.values, rows.moment(at)))
-        for rows in self._under_load:
-            pulled = rows.effect.friction_under_load(rows.values, rows.axis, rows.moment(at), rows.of(load))
-            level = rows.with_these(level, rows.of(level) + pulled)
-        return level
-
-
-def _through(rows: Sequence[EffectOnAxes], hook: str) -> list[EffectOnAxes]:
-    return [some for some in rows if some.effect.overrides(hook)]
+        return load
 
 
 @dataclass
@@ -185,7 +188,7 @@ class EffectOnAxes(Generic[Kind]):
         """What these axes see of a moment."""
         if self.index is None:
             return at
-        return Moment(*(self.of(each) for each in (at.time, at.position, at.velocity, at.effort, at.began)))
+        return Moment(*(self.of(each) for each in (at.time, at.position, at.velocity, at.effort, at.began, at.load)))
 
     def of(self, values: Number) -> Number:
         """Of values of all axes, or one for all, those of these axes."""

@@ -9,7 +9,7 @@ import numpy as np
 from mujoco.batch import MODEL_FIELDS, Batch
 from numpy.typing import NDArray
 
-from bench.effects.kinds import Number
+from bench.effects.axis import Number
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.plant.closed_loop import ClosedLoop, States
 from bench.plant.joints import BatchJoints

@@ -19,6 +19,7 @@ from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.refine import NULL
 from bench.diagnosis.same_axis import SameAxis
 from bench.diagnosis.where import Where
+from bench.effects.acting import Sensing
 from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml
@@ -72,7 +73,7 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
             "effects": [
                 {
                     "name": each.name,
-                    "kind": each.effect.kind,
+                    "kind": "measurement" if isinstance(each.effect, Sensing) else "physics",
                     **picked(each, "parameters", "ambiguous_with", "evidence"),
                 }
                 for each in found.effects
@@ -267,7 +268,7 @@ def _named(effect: NamedEffect) -> str:
 
 def _sensors(found: Diagnosis) -> list[str]:
     """Names of sensors' faults."""
-    return [words(effect.name) for effect in found.effects if effect.effect.kind == "measurement"]
+    return [words(effect.name) for effect in found.effects if isinstance(effect.effect, Sensing)]
 
 
 def _answers(found: Diagnosis) -> dict[str, str]:

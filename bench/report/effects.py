@@ -5,31 +5,46 @@ from __future__ import annotations
 import inspect
 import math
 
+from bench.effects.acting import (
+    DirectedFriction,
+    DriveLimit,
+    Electronics,
+    FilteredSignal,
+    Mechanism,
+    MisreadEffort,
+    MisreadMotion,
+    Native,
+    RaisesFriction,
+    ResistingTorque,
+    ScalesFriction,
+    ScalesTorque,
+    Sensing,
+    TorqueLag,
+    TorqueLoss,
+    VaryingInertia,
+)
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
-from bench.effects.kinds import Electronics, Mechanism, Sensing
 from bench.effects.present import named
 from bench.report.document import Table, table
 from bench.units import Quantity
 
-#: What hooks do, in the words of a page.
-HOOKS = {
-    "add": "in the MuJoCo model",
-    "friction_excess": "in every step, level of dry friction",
-    "friction_factor": "in every step, level of dry friction",
-    "friction_difference": "in every step, level of dry friction",
-    "friction_under_load": "in every step, level of dry friction",
-    "resisting_torque": "in every step, resisting torque",
-    "torque_factor": "in every step, motor torque",
-    "added_inertia": "in every step, inertia",
-    "flowing": "between demanded and reported current",
-    "acting": "between reported current and torque",
-    "delivered": "between reported current and torque",
-    "seen": "between motion and drive",
-    "filtered": "between drive and recording",
-    "acted": "between the current that is read and the one that flows",
-    "recorded": "between drive and recording",
-}
+#: The method by which effects of a kind act in a simulation, and where.
+PLACES: tuple[tuple[type[Effect], str, str], ...] = (
+    (Native, "add", "in the MuJoCo model"),
+    (RaisesFriction, "friction_excess", "in every step, level of dry friction"),
+    (ScalesFriction, "friction_factor", "in every step, level of dry friction"),
+    (DirectedFriction, "friction_difference", "in every step, level of dry friction"),
+    (ResistingTorque, "resisting_torque", "in every step, resisting torque"),
+    (ScalesTorque, "torque_factor", "in every step, motor torque"),
+    (VaryingInertia, "added_inertia", "in every step, inertia"),
+    (DriveLimit, "flowing", "between demanded and reported current"),
+    (TorqueLag, "acting", "between reported current and torque"),
+    (TorqueLoss, "delivered", "between reported current and torque"),
+    (MisreadMotion, "seen", "between motion and drive"),
+    (MisreadEffort, "acted", "between the current that is read and the one that flows"),
+    (FilteredSignal, "recorded", "between drive and recording"),
+)
 
 
 def effects_table() -> Table:
@@ -52,20 +67,20 @@ def effect_page(name: str) -> str:
     lines = [effect.name, "=" * len(effect.name), inspect.getdoc(module) or effect.summary, "", "Quantities"]
     lines += [f"    {q.name} ({q.symbol}) [{unit_of(q)}], {bounds(q)}" for q in effect.quantities]
     lines += ["", "Simulated"]
-    for hook, place in acting(effect).items():
-        text = inspect.getdoc(getattr(effect, hook)) or ""
+    for method, place in acting(effect).items():
+        text = inspect.getdoc(getattr(effect, method)) or ""
         lines.append(f"    {place}: {text.splitlines()[0]}")
     return "\n".join(lines)
 
 
 def acting(effect: Effect) -> dict[str, str]:
-    """Hooks through which an effect is simulated, and where each acts, in words."""
-    return {hook: place for hook, place in HOOKS.items() if effect.overrides(hook)}
+    """Methods through which an effect is simulated, and where each acts, in words."""
+    return {method: place for kind, method, place in PLACES if isinstance(effect, kind)}
 
 
 def _where(effect: Effect) -> str:
     if isinstance(effect, Mechanism):
-        return "MuJoCo model" if effect.overrides("add") else "every step"
+        return "MuJoCo model" if isinstance(effect, Native) else "every step"
     return "electronics" if isinstance(effect, Electronics) else "sensor" if isinstance(effect, Sensing) else ""
 
 

@@ -14,8 +14,8 @@ from bench.validation.independent.draw import any_effects
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.rig import Axis
 
-#: Names that can be hidden: those that the independent axis has too, and that a recording can name.
-HIDEABLE = tuple(name for name in KINDS if name in catalogue() and not catalogue()[name].undiagnosed)
+#: Names that can be hidden: those that the independent axis has too.
+HIDEABLE = tuple(name for name in KINDS if name in catalogue())
 #: Effects at most in one axis.
 MOST = 6
 COUNTS = re.compile(r"(\d+)(?:-(\d+))?")

@@ -10,9 +10,19 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from bench.axis_kind import LINEAR
-from bench.effects.catalogue import catalogue
-from bench.effects.effect import Effect
-from bench.effects.kinds import Sensing
+from bench.effects.acting import DriveLimit, ScalesFriction, Sensing
+from bench.effects.catalogue import catalogue, simpler_forms
+from bench.effects.effect import (
+    Coupling,
+    Detectable,
+    Effect,
+    Lag,
+    Occasional,
+    OncePerRevolution,
+    OuterTorque,
+    Repeatable,
+    Replacing,
+)
 from bench.effects.present import Present
 from bench.effects.signals import Scope
 from bench.names import words
@@ -23,15 +33,15 @@ from bench.report.numbers import number, share
 from bench.units import Quantity
 from signature import Signature, rig
 
-#: What an effect declares of itself, in words.
-DECLARED = {
-    "turning_only": "It has a meaning on rotary axes alone.",
-    "repeatable": "An axis may have several of it, each of another shape.",
-    "occasional": "It happens in one recording and not in another, so a holdout need not show it.",
-    "shows_under_drive": "It shows where the drive runs the axis, so the references have to be recorded.",
-    "couples": "It joins motor and load: an axis has one such effect.",
-    "may_load": "It may act on the load of a coupling rather than on the motor.",
-    "scales_friction": "It multiplies the level of dry friction, what other effects add to it included.",
+#: What an effect declares of itself by its types, in words.
+DECLARED: dict[type[Effect], str] = {
+    OncePerRevolution: "It has a meaning on rotary axes alone.",
+    Repeatable: "An axis may have several of it, each of another shape.",
+    Occasional: "It happens in one recording and not in another, so a holdout need not show it.",
+    DriveLimit: "It shows where the drive runs the axis, so the references have to be recorded.",
+    Coupling: "It joins motor and load: an axis has one such effect.",
+    OuterTorque: "It may act on the load of a coupling rather than on the motor.",
+    ScalesFriction: "It multiplies the level of dry friction, what other effects add to it included.",
 }
 #: Greek letters in equations that are written in ASCII.
 LETTERS: dict[str, str] = dict(zip(("alpha", "omega", "sigma", "phi", "mu", "tau", "pi"), "αωσφμτπ", strict=True))
@@ -49,7 +59,7 @@ def page(effect: Effect, found: Signature | None) -> str:
         found: what it does to a recording; None where the bench does not know which values suit an axis.
     """
     equations, source = said(effect)
-    kind = "a fault of the measurement" if effect.kind == "measurement" else "physics of the axis"
+    kind = "a fault of the measurement" if isinstance(effect, Sensing) else "physics of the axis"
     sections = [
         ("", f"`{effect.name}`, {kind}: {effect.summary}."),
         ("", "" if found is None else picture(effect, found)),
@@ -112,7 +122,7 @@ def parameters(effect: Effect) -> str:
     """The effect's quantities as a table."""
     lines = ["| quantity | symbol | unit | on a linear axis | values | absent at |", "|---|---|---|---|---|---|"]
     for one in effect.quantities:
-        linear = "–" if effect.turning_only else unit_cell(LINEAR.unit(one))
+        linear = "–" if isinstance(effect, OncePerRevolution) else unit_cell(LINEAR.unit(one))
         null = "" if one.null is None else f"{one.null:g}".replace("inf", "∞")
         told = (f"`{one.name}`", escaped(readable(one.symbol)), unit_cell(unit_of(one)), linear, bounds(one), null)
         lines.append(f"| {' | '.join(told)} |")
@@ -158,28 +168,35 @@ def broken(line: str) -> list[str]:
 def rivals(effect: Effect, found: Signature | None) -> str:
     """What would explain the same recording, what it cannot be told from, and beside what it is not sought."""
     others = {name: other for name, other in catalogue().items() if other is not effect}
+    lags = [name for name, other in others.items() if isinstance(other, Lag)]
     lines = [] if found is None else [*ambiguous(effect, found.bare.scope)]
     pairs = [
-        ("It is tried in the place of", effect.replaces),
-        ("In its place are tried", (name for name, other in others.items() if effect.name in other.replaces)),
-        (
-            "A recording tells but one of it and",
-            effect.not_beside.union(name for name, other in others.items() if effect.name in other.not_beside),
-        ),
-        ("Where some of it is nil, it is", effect.simpler_forms()),
-        ("It is a special case of", (n for n, other in others.items() if effect.name in other.simpler_forms())),
+        ("It is tried in the place of", replaced(effect)),
+        ("In its place are tried", (name for name, other in others.items() if effect.name in replaced(other))),
+        ("A recording tells but one of it and", lags if isinstance(effect, Lag) else ()),
     ]
     for told, names in pairs:
         linked = ", ".join(link(name) for name in sorted(names))
         lines += [f"{told}: {linked}."] if linked else []
+    if found is not None:
+        simpler = {name: [one.name for one in simpler_forms(other, found.bare.scope)] for name, other in others.items()}
+        own = [one.name for one in simpler_forms(effect, found.bare.scope)]
+        lines += [f"Where some of it is nil, it is: {', '.join(map(link, own))}."] if own else []
+        wider = sorted(name for name, forms in simpler.items() if effect.name in forms)
+        lines += [f"It is a special case of: {', '.join(map(link, wider))}."] if wider else []
     told = "\n".join(f"- {line}" for line in lines)
     return "\n\n".join(part for part in ("" if found is None else explained(effect, found), told) if part)
+
+
+def replaced(effect: Effect) -> frozenset[str]:
+    """Names of the effects in the place of which it is tried."""
+    return effect.replaces if isinstance(effect, Replacing) else frozenset()
 
 
 def explained(effect: Effect, found: Signature) -> str:
     """Shares of the gap that it and its nearest rivals would take."""
     itself = f"{words(effect.name)} by itself would take {share(found.shares.get(effect, 0.0))}"
-    if effect.overrides("detect"):
+    if isinstance(effect, Detectable):
         itself = "it takes none, as single signals show it rather than the balance"
     elif effect not in found.shares:
         itself = "it takes none by itself, as it is tried only once others are found"
@@ -223,8 +240,7 @@ def motions(effect: Effect, found: Signature) -> str:
         "It is not sought where no position is recorded.": replace(scope, signals=scope.signals - {"position"}),
     }
     told = [sentence for sentence, such in barred.items() if effect.sought(scope) and not effect.sought(such)]
-    told += [sentence for name, sentence in DECLARED.items() if getattr(effect, name)]
-    told += [effect.undiagnosed] if effect.undiagnosed else []
+    told += [sentence for kind, sentence in DECLARED.items() if isinstance(effect, kind)]
     return "\n".join([*lines, "", *(f"- {sentence}" for sentence in told)])
 
 

@@ -17,7 +17,7 @@ from bench.diagnosis.decidable import fit_bare
 from bench.diagnosis.search import candidates
 from bench.diagnosis.where import LEAST, bins_of, coordinates, means_in, where
 from bench.effects.catalogue import catalogue, rivals
-from bench.effects.effect import Effect
+from bench.effects.effect import Detectable, Effect
 from bench.effects.present import Present, parse_effect
 from bench.fit.fit import Fit
 from bench.fit.rows import Rows
@@ -85,7 +85,11 @@ def signature(effect: Effect) -> Signature:
     bare = {name: fit_bare(Rows.of(trace, rig())) for name, trace in told.items()}
     motions = {name: rms(fitted.left) / fitted.floor for name, fitted in bare.items()}
     width = {name: fitted.rows.conditioning.filter.width for name, fitted in bare.items()}
-    detected = frozenset(name for name in NAMES if effect.detect(told[name], rig(), width[name]) is not None)
+    detected = frozenset(
+        name
+        for name in NAMES
+        if isinstance(effect, Detectable) and effect.detect(told[name], rig(), width[name]) is not None
+    )
     main = bare[DEFAULT]
     tried = candidates(main, [*catalogue().values(), *rivals()])
     shares = {one.term.effect: one.gain / main.squares for one in tried}

@@ -20,6 +20,7 @@ from bench.diagnosis.doubts import (
 )
 from bench.diagnosis.policy import Policy
 from bench.effects.catalogue import catalogue
+from bench.effects.effect import Coupling
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Term
 from tests.diagnosis.constructed import SINES, bare, moved, names, offset, only_during, recorded, vibration, wave
@@ -29,7 +30,7 @@ POLICY = Policy()
 MOTION = moved(4.0)
 OTHER = moved(4.0, sines=tuple((amplitude, 1.1 * f, phase + 1.0) for amplitude, f, phase in SINES))
 EVENT = ("load_torque_event",)
-RIGID = [name for name, effect in catalogue().items() if not effect.couples]
+RIGID = [name for name, effect in catalogue().items() if not isinstance(effect, Coupling)]
 
 
 def but(*names):

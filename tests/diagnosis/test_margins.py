@@ -211,7 +211,7 @@ def test_a_rival_contests_by_a_quarter_where_half_the_worth_is_gone(monkeypatch,
 @pytest.mark.parametrize(("lost", "goes"), [(79.0, True), (81.0, False)])
 def test_a_simpler_form_takes_the_place_of_what_saves_no_more_than_chance(monkeypatch, lost, goes):
     asymmetric = term("direction_dependent_friction")
-    names = asymmetric.effect.simpler_forms()
+    names = ("torque_offset",)
     table = Table(monkeypatch, {(asymmetric.effect.name,): 100.0, names: 100.0 + lost})
     left = simpler(table.fit(None, Hypothesis((asymmetric,))), evidence(made(level(500.0))))
     assert left.hypothesis.names == (names if goes else (asymmetric.effect.name,))

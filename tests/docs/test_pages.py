@@ -8,8 +8,8 @@ from types import ModuleType
 import pytest
 
 import bench
+from bench.effects.acting import Mechanism
 from bench.effects.catalogue import catalogue
-from bench.effects.kinds import Mechanism
 from bench.trace.read import read
 from bench.units import Quantity
 from tests.diagnosis.command import started

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.signal import lsim
 
-from bench.effects.kinds import Winding
+from bench.effects.axis import Winding
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
 from bench.plant.closed_loop import States

@@ -11,8 +11,9 @@ import pytest
 
 from bench.axis_kind import LINEAR, ROTARY
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Effect
+from bench.effects.effect import Columns, Effect
 from bench.effects.signals import Base, Scope, Signals
+from bench.trace.filter import Column
 
 COUNT, STEP = 2000, 1e-3
 #: Shapes of effects that no grid finds: of the event, of the eccentricity, of the dead zone.
@@ -59,17 +60,22 @@ def scopes() -> Iterator[Scope]:
 
 def balanced() -> list[str]:
     """Names of the effects that the torque balance holds as columns."""
-    return [name for name, effect in catalogue().items() if effect.overrides("columns")]
+    return [name for name, effect in catalogue().items() if isinstance(effect, Columns)]
+
+
+def columns_of(effect: Effect, seen: Signals, shape: Sequence[float]) -> list[Column]:
+    """Columns of an effect that has some, else none."""
+    return effect.columns(seen, shape) if isinstance(effect, Columns) else []
 
 
 def raw(effect: Effect, seen: Signals) -> list[np.ndarray]:
     """Raw samples of all terms of all columns, (n,) each."""
-    return [values for column in effect.columns(seen, shape_of(effect)) for values, _ in column]
+    return [values for column in columns_of(effect, seen, shape_of(effect)) for values, _ in column]
 
 
 def plain(effect: Effect, seen: Signals) -> list[np.ndarray]:
     """Columns without derivatives (n,): those of an effect that has a term with one are left out."""
-    columns = effect.columns(seen, shape_of(effect))
+    columns = columns_of(effect, seen, shape_of(effect))
     return [sum(values for values, _ in column) for column in columns if all(order == 0 for _, order in column)]
 
 
@@ -94,7 +100,7 @@ def changed(effect: Effect, **others: np.ndarray) -> bool:
 
 def reported(effect: Effect) -> dict[str, float]:
     """Quantities of strengths that are small."""
-    strengths = [5e-4] * len(effect.columns(RECORDED, shape_of(effect)))
+    strengths = [5e-4] * len(columns_of(effect, RECORDED, shape_of(effect)))
     return dict(effect.report(strengths, shape_of(effect), BASE))
 
 

@@ -6,9 +6,19 @@ from itertools import product
 import numpy as np
 import pytest
 
+from bench.effects.acting import (
+    Friction,
+    MisreadEffort,
+    Native,
+    RaisesFriction,
+    ResistingTorque,
+    ScalesFriction,
+    ScalesTorque,
+    TorqueLoss,
+)
+from bench.effects.axis import Moment
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Effect
-from bench.effects.kinds import Electronics, Friction, Mechanism, Moment, Sensing
+from bench.effects.effect import Columns, Coupling, Effect
 from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.present import Present
 from bench.effects.signals import Base, Signals
@@ -20,9 +30,17 @@ from tests.plant.open_loop import open_loop
 
 EFFECTS = sorted(catalogue())
 SHORT = Reversals(0.4).references()
-NEUTRAL = {"friction_excess": 0.0, "friction_factor": 1.0, "resisting_torque": 0.0, "torque_factor": 1.0}
+#: What methods of a step are of null values.
+NEUTRAL = (
+    (RaisesFriction, "friction_excess", 0.0),
+    (ScalesFriction, "friction_factor", 1.0),
+    (ResistingTorque, "resisting_torque", 0.0),
+    (ScalesTorque, "torque_factor", 1.0),
+)
 #: Effects that the torque balance holds as columns of raw signals.
-BALANCED = [name for name, effect in catalogue().items() if effect.overrides("columns") and not effect.couples]
+BALANCED = [
+    name for name, effect in catalogue().items() if isinstance(effect, Columns) and not isinstance(effect, Coupling)
+]
 #: Effects that only take energy from the motion.
 DISSIPATIVE = [n for n in EFFECTS if isinstance(catalogue()[n], Friction) or n == "quadratic_drag"]
 
@@ -47,7 +65,7 @@ def test_null_values_leave_the_trajectory_as_it_is(name):
 def test_null_values_do_nothing_where_they_act(name):
     """Not only are absent effects left out: acting on null values does nothing either."""
     effect, values, axis = catalogue()[name], dict(with_null(name).values), model().axis
-    if isinstance(effect, Mechanism) and effect.overrides("add") and not effect.couples:
+    if isinstance(effect, Native) and not isinstance(effect, Coupling):
         motions = []
         for adds in (False, True):
             spec = build_spec(PARAMETERS, PERIOD)
@@ -56,13 +74,12 @@ def test_null_values_do_nothing_where_they_act(name):
             motions.append(open_loop(spec, 0.5 * np.sin(np.arange(4000) / 300.0), 0.1, 3.0))
         np.testing.assert_array_equal(motions[0].velocity, motions[1].velocity)
     at = Moment(0.1, np.array([0.3, -2.0]), np.array([5.0, -0.1]), np.array([1.0, -0.2]))
-    if isinstance(effect, Mechanism):
-        for hook, neutral in NEUTRAL.items():
-            if effect.overrides(hook):
-                np.testing.assert_array_equal(getattr(effect, hook)(values, axis, at), np.full(2, neutral))
-    if isinstance(effect, Sensing):
+    for kind, method, neutral in NEUTRAL:
+        if isinstance(effect, kind):
+            np.testing.assert_array_equal(getattr(effect, method)(values, axis, at), np.full(2, neutral))
+    if isinstance(effect, MisreadEffort):
         np.testing.assert_array_equal(effect.acted(values, axis, at.effort, at.time), at.effort)
-    if isinstance(effect, Electronics):
+    if isinstance(effect, TorqueLoss):
         np.testing.assert_array_equal(effect.delivered(values, axis, at.effort), at.effort)
 
 

@@ -8,7 +8,31 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.effects.kinds import Mechanism, Moment
+from bench.effects.acting import (
+    CarriesFriction,
+    FollowsLoad,
+    FrictionLevel,
+    LoadTorque,
+    Mechanism,
+    Native,
+    ScalesFriction,
+    Spring,
+)
+from bench.effects.axis import Moment
+from bench.effects.effect import (
+    Columns,
+    CopiesTorque,
+    Coupling,
+    Distortion,
+    FiltersMotion,
+    MotionLag,
+    Occasional,
+    OfSpeed,
+    OncePerRevolution,
+    OuterTorque,
+    Repeatable,
+    Wave,
+)
 from bench.plant.model import build_spec
 from bench.validation.independent import KINDS
 from tests.effects.axes import PARAMETERS, PERIOD, model
@@ -31,18 +55,22 @@ from tests.effects.recording import (
 AXIS = model().axis
 
 
+def without_fault(effect, seen):
+    """The recording as a fit with the effect sees it."""
+    return effect.see(seen, shape_of(effect)) if isinstance(effect, Distortion) else seen
+
+
 @every
 def test_it_copies_torque_if_its_columns_are_made_of_torque(effect):
     other = np.roll(RECORDED.torque, 300)
-    assert effect.copies_torque == (effect.overrides("columns") and changed(effect, torque=other))
+    assert isinstance(effect, CopiesTorque) == changed(effect, torque=other)
 
 
 @every
 def test_it_scales_or_carries_friction_if_its_columns_follow_the_level_others_make(effect):
     louder = changed(effect, friction=2.0 * RECORDED.friction)
-    assert effect.scales_friction == effect.overrides("friction_factor")
-    assert louder == (effect.scales_friction or effect.carries_friction)
-    if effect.scales_friction:
+    assert louder == isinstance(effect, (ScalesFriction, CarriesFriction))
+    if isinstance(effect, ScalesFriction):
         none, once, twice = (
             np.array(raw(effect, replace(RECORDED, friction=factor * RECORDED.friction))) for factor in (0.0, 1.0, 2.0)
         )
@@ -52,20 +80,19 @@ def test_it_scales_or_carries_friction_if_its_columns_follow_the_level_others_ma
 @every
 def test_it_is_of_speed_alone_if_speed_makes_all_of_its_columns_and_they_vary(effect):
     alone = False
-    if effect.overrides("columns"):
+    if isinstance(effect, Columns):
         shuffled = np.random.default_rng(0).permutation(RECORDED.time.size)
         speed = {"velocity": RECORDED.velocity[shuffled], "sign": RECORDED.sign[shuffled]}
         moved = raw(effect, replace(RECORDED, **speed))
         alone = not differ([column[shuffled] for column in raw(effect, RECORDED)], moved)
         alone = alone and changed(effect, **speed)
-    assert effect.of_speed_alone == alone
+    assert isinstance(effect, OfSpeed) == alone
 
 
 @every
 def test_columns_that_are_accelerations_hear_the_noise_of_motion(effect):
     """A vibration too small for a gap comes out of the first column as the declared noise does."""
-    assert effect.of_motion == effect.overrides("noise_of_motion")
-    if not effect.of_motion:
+    if not isinstance(effect, Coupling):
         return
     time = STEP * np.arange(4000)
     settled = np.concatenate([np.zeros(2000), np.hanning(2000)])  # deaf to a load that drifts within its gap
@@ -90,17 +117,20 @@ def test_columns_that_are_accelerations_hear_the_noise_of_motion(effect):
 @every
 def test_noise_of_motion_biases_what_filters_the_motion(effect):
     """In its own column, as a coupling does, or in all of them, as a lag: the residual is least where it is damped."""
-    heard = effect.noise_of_motion(shape_of(effect), 2.0 * np.pi * np.array([1.0, 10.0, 100.0]))
-    assert effect.biased_by_noise == (np.ptp(np.abs(heard)) > 0.0 or effect.overrides("delays"))
+    filters = isinstance(effect, MotionLag)
+    if isinstance(effect, Coupling):
+        heard = effect.noise_of_motion(shape_of(effect), 2.0 * np.pi * np.array([1.0, 10.0, 100.0]))
+        filters = np.ptp(np.abs(heard)) > 0.0
+    assert isinstance(effect, FiltersMotion) == filters
 
 
 @every
 def test_a_wave_repeats_with_its_number_and_what_repeats_is_a_wave(effect):
-    number = effect.wave_number(shape_of(effect))
+    number = effect.wave_number(shape_of(effect)) if isinstance(effect, Wave) else None
     position = RECORDED.position
 
     def shifted(by):
-        seen = effect.see(replace(RECORDED, position=position + by), shape_of(effect))
+        seen = without_fault(effect, replace(RECORDED, position=position + by))
         return [seen.position - by, seen.velocity, *raw(effect, replace(RECORDED, position=position + by))]
 
     at_home, once_more, elsewhere = (shifted(by) for by in (0.0, 2.0 * np.pi, 0.7))
@@ -113,28 +143,27 @@ def test_a_wave_repeats_with_its_number_and_what_repeats_is_a_wave(effect):
 @every
 def test_it_turns_only_if_it_is_a_wave_of_a_revolution(effect):
     """A linear axis has none; a harmonic is a pitch there."""
-    wave = effect.wave_number(shape_of(effect)) is not None
-    assert effect.turning_only == (wave and not any(slot.whole for slot in effect.shapes))
-    assert not (effect.turning_only and effect.name in KINDS and KINDS[effect.name].on_linear_axis)
+    once = isinstance(effect, OncePerRevolution)
+    assert once == (isinstance(effect, Wave) and not any(slot.whole for slot in effect.shapes))
+    assert not (once and effect.name in KINDS and KINDS[effect.name].on_linear_axis)
     asked = [effect.sought(scope) for scope in SCOPES if not scope.kind.turns]
-    assert effect.turning_only == (not any(asked)) or not effect.overrides("columns")
+    assert once == (not any(asked)) or not isinstance(effect, Columns)
 
 
 @every
 def test_what_happens_in_one_recording_only_is_absent_for_a_while(effect):
     """A motion in which something is never felt for a while, though the axis moves as before."""
     quiet = False
-    if effect.overrides("columns"):
+    if isinstance(effect, Columns):
         stretches = [np.array_split(column, 5) for column in raw(effect, RECORDED)]
         quiet = any(not any(np.any(parts[k]) for parts in stretches) for k in range(5))
-    assert effect.occasional == quiet
+    assert isinstance(effect, Occasional) == quiet
 
 
 @every
 def test_several_of_a_repeatable_one_are_distinguished(effect):
-    if not effect.repeatable:
+    if not isinstance(effect, Repeatable):
         return
-    assert effect.overrides("columns")
     assert effect.shapes
     assert all(slot.whole or slot.additive for slot in effect.shapes)
     shape = shape_of(effect)
@@ -147,57 +176,61 @@ def test_several_of_a_repeatable_one_are_distinguished(effect):
 @every
 def test_the_level_of_friction_is_what_its_columns_make_of_dry_friction(effect):
     """Column by column: dry friction all of it, friction in proportion to speed none of it."""
-    hooks = ("friction_excess", "friction_factor", "friction_difference", "friction_under_load")
-    assert effect.overrides("level") == any(effect.overrides(hook) for hook in hooks)
+    if not isinstance(effect, FrictionLevel):
+        return
     shape, faster = shape_of(effect), replace(RECORDED, velocity=2.0 * RECORDED.velocity)
     columns, scaled = plain(effect, RECORDED), plain(effect, faster)
-    for k in range(len(columns) if effect.overrides("level") else 0):
-        level = effect.level(RECORDED, shape, [float(j == k) for j in range(len(columns))]) + 0.0 * RECORDED.time
+    for k in range(len(columns)):
+        level = effect.level(RECORDED, shape, [float(j == k) for j in range(len(columns))])
         viscous = not differ([2.0 * columns[k]], [scaled[k]]) and np.any(columns[k])
         np.testing.assert_allclose(level, 0.0 * columns[k] if viscous else columns[k], atol=1e-12)
 
 
 @with_columns
 def test_stiffness_is_the_slope_of_its_torque_over_position(effect):
-    strengths = [1.3] * len(effect.columns(RECORDED, shape_of(effect)))
     higher, lower = (plain(effect, replace(RECORDED, position=RECORDED.position + by)) for by in (0.5, -0.5))
     slopes = [a - b for a, b in zip(higher, lower, strict=True)]
     straight = slopes and all(np.ptp(slope) < 1e-9 for slope in slopes)
-    assert effect.stiffness(strengths) == pytest.approx(1.3 * sum(float(s[0]) for s in slopes) if straight else 0.0)
+    assert isinstance(effect, Spring) == bool(straight and sum(float(s[0]) for s in slopes))
+    if isinstance(effect, Spring):
+        assert [float(s[0]) for s in slopes] == pytest.approx([1.0])
 
 
 @every
 def test_a_torque_of_the_load_is_its_columns_in_a_simulation(effect):
     """What a gear transmits is the same to the balance and to MuJoCo."""
-    if isinstance(effect, Mechanism) and effect.overrides("load_torque"):
+    if isinstance(effect, LoadTorque):
         moment = Moment(RECORDED.time, RECORDED.position, RECORDED.velocity, RECORDED.effort)
         found = effect.load_torque(reported(effect), moment)
         np.testing.assert_allclose(made(effect), found * np.ones(RECORDED.time.size), atol=1e-12)
 
 
 @every
+def test_friction_follows_a_load_if_its_columns_do(effect):
+    assert isinstance(effect, FollowsLoad) == changed(effect, load=np.sin(RECORDED.time))
+
+
+@every
 def test_what_may_act_on_a_load_is_a_torque_of_motion_and_time_alone(effect):
     """A load has no motor torque, no friction here and no harmonics of a motor; a constant only twists the coupling."""
-    outer = isinstance(effect, Mechanism) and effect.overrides("columns") and not effect.of_motion
+    outer = isinstance(effect, Mechanism) and isinstance(effect, Columns) and not isinstance(effect, Coupling)
     if outer:
         shaken = np.random.default_rng(0).normal(size=RECORDED.time.size)
         alone = not changed(effect, torque=shaken, effort=shaken, friction=shaken, sign=shaken)
         varies = all(np.ptp(column) > 0.0 for column in raw(effect, RECORDED))
         torque = all([order for _, order in column] == [0] for column in effect.columns(RECORDED, shape_of(effect)))
         outer = alone and varies and torque and not any(slot.whole for slot in effect.shapes)
-    assert effect.may_load == outer
+    assert isinstance(effect, OuterTorque) == outer
 
 
 @every
 def test_a_coupling_gives_the_axis_a_second_degree_of_freedom(effect):
     joints = 1
-    if isinstance(effect, Mechanism) and effect.overrides("add"):
+    if isinstance(effect, Native):
         spec = build_spec(PARAMETERS, PERIOD)
         effect.add(spec, effect.name, {**effect.defaults(AXIS), **reported(effect)}, AXIS)
         joints = spec.compile().nv
-    assert effect.couples == (joints == 2) == effect.overrides("load_inertia")
-    if effect.couples:
-        assert effect.of_motion
-        assert effect.load_inertia([7e-4]) == 7e-4
+    assert isinstance(effect, Coupling) == (joints == 2)
+    if isinstance(effect, Coupling):
         assert effect.physical([0.5 * BASE.inertia], shape_of(effect), BASE)
         assert not effect.physical([BASE.inertia], shape_of(effect), BASE)

@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.effects.kinds import Sensing
+from bench.effects.acting import FilteredSignal, MisreadEffort, MisreadMotion, Sensing, TorqueLag
+from bench.effects.effect import Columns, Distortion, EffortLag, MotionLag
 from bench.trace.signals import SI_UNITS
 from bench.trace.trace import Trace
 from tests.effects.axes import model
-from tests.effects.recording import BASE, RECORDED, STEP, differ, every, made, reported, shape_of
+from tests.effects.recording import BASE, RECORDED, STEP, every, made, reported, shape_of
 
 AXIS = model().axis
 #: A sine that passes a lag: time - s -, and its angular frequency - rad/s.
@@ -32,7 +33,7 @@ def assert_lags(late, time_constant):
 @every
 def test_what_it_sees_is_what_a_simulated_sensor_or_drive_does_undone(effect):
     shape = shape_of(effect)
-    if isinstance(effect, Sensing) and effect.overrides("seen"):
+    if isinstance(effect, MisreadMotion):
         values = effect.report([], shape, BASE)
         position, velocity = effect.seen(values, RECORDED.position, RECORDED.velocity)
         found = effect.see(replace(RECORDED, position=position, velocity=velocity), shape)
@@ -41,41 +42,41 @@ def test_what_it_sees_is_what_a_simulated_sensor_or_drive_does_undone(effect):
         again = effect.unseen(values, position, velocity)
         np.testing.assert_allclose(again, [RECORDED.position, RECORDED.velocity], atol=1e-7)
         return
-    hooks = [hook for hook in ("acting_along", "unrecorded") if effect.overrides(hook)]
-    assert hooks or not effect.overrides("see")
-    for hook in hooks:
-        acts = getattr(effect, hook)(effect.report([], shape, BASE), RECORDED.torque, STEP)
-        np.testing.assert_allclose(effect.see(RECORDED, shape).torque, acts, atol=1e-12)
+    if not isinstance(effect, Distortion):
+        assert not isinstance(effect, TorqueLag)
+        return
+    values, found = effect.report([], shape, BASE), effect.see(RECORDED, shape)
+    if isinstance(effect, MisreadEffort):
+        acts = effect.acted(values, AXIS, RECORDED.torque, RECORDED.time)
+    else:
+        undo = effect.acting_along if isinstance(effect, TorqueLag) else effect.unrecorded
+        acts = undo(values, RECORDED.torque, STEP)
+    np.testing.assert_allclose(found.torque, acts, atol=1e-12)
 
 
 @every
 def test_a_delay_is_that_of_the_simulated_signal(effect):
-    """A sine that passes it comes out as behind a first-order lag of the declared time; without one, nothing lasts."""
+    """A sine that passes it comes out as behind a first-order lag of the declared time."""
     shape, sources = shape_of(effect), ("velocity", "position")
+    if not isinstance(effect, MotionLag):
+        return
     declared = [lag for source in sources for lag in effect.delays(shape, source)]
     twice = [lag for source in sources for lag in effect.delays([2.0 * value for value in shape], source)]
     assert twice == pytest.approx([2.0 * lag for lag in declared])
-    assert any(declared) == effect.overrides("delays")
-    hooks = [hook for hook in ("acting_along", "filtered") if effect.overrides(hook)]
-    assert hooks or not any(declared)
-    for passes in (getattr(effect, hook) for hook in hooks):
-        late = passes(reported(effect), WAVE, TICK)
-        if any(declared):
-            assert_lags(late, max(declared))
-        else:
-            assert not differ([late], [passes(reported(effect), WAVE[::-1], TICK)[::-1]])
+    assert any(declared)
+    passes = effect.acting_along if isinstance(effect, TorqueLag) else effect.recorded
+    assert_lags(passes(reported(effect), WAVE, TICK), max(declared))
 
 
 @every
 def test_a_lag_of_the_effort_is_that_of_the_recorded_one_and_is_undone(effect):
     """A sine comes out of the recorder as behind a first-order lag of the declared time, and back as it was."""
+    assert isinstance(effect, EffortLag) == (isinstance(effect, FilteredSignal) and effect.signal == "current")
+    if not isinstance(effect, EffortLag):
+        return
     shape = shape_of(effect)
     declared = effect.effort_lag(shape)
     assert effect.effort_lag([2.0 * value for value in shape]) == pytest.approx(2.0 * declared)
-    hooks = [effect.overrides(hook) for hook in ("effort_lag", "recorded", "unrecorded")]
-    assert hooks == [declared > 0.0] * 3
-    if not declared:
-        return
     values = effect.report([], shape, BASE)
     late = effect.recorded(values, WAVE, TICK)
     assert_lags(late, declared)
@@ -87,32 +88,34 @@ def test_what_a_sensor_of_the_current_misreads_is_what_its_columns_explain(effec
     """Reported less acting effort is the columns' sum, so far as it is small; nothing else of a sensor has columns."""
     if not isinstance(effect, Sensing):
         return
-    assert effect.overrides("acted") == effect.overrides("columns")
-    if effect.overrides("columns"):
+    assert isinstance(effect, MisreadEffort) == (isinstance(effect, Columns) or shows_effort(effect))
+    if isinstance(effect, Columns):
         values = reported(effect)
         acts = effect.acted(values, AXIS, RECORDED.effort, RECORDED.time)
         np.testing.assert_allclose(made(effect), RECORDED.effort - acts, atol=1e-12)
 
 
 @every
-def test_it_mends_the_signal_it_declares_faulty_and_no_other(effect):
-    assert bool(effect.faulty_signal) == effect.overrides("corrected")
-    if not effect.faulty_signal:
+def test_it_mends_the_signal_it_filters_and_no_other(effect):
+    if not isinstance(effect, FilteredSignal):
         return
-    assert effect.faulty_signal in SI_UNITS
+    assert effect.signal in SI_UNITS
     values = reported(effect)
     spoilt = {"position": RECORDED.position, "current": RECORDED.torque, "velocity": RECORDED.velocity}
-    spoilt[effect.faulty_signal] = effect.filtered(values, spoilt[effect.faulty_signal], STEP)
+    spoilt[effect.signal] = effect.recorded(values, spoilt[effect.signal], STEP)
     units = {"position": "rad", "velocity": "rad/s", "current": "A"}
     mended = effect.corrected(Trace(RECORDED.time, spoilt, units, "reversals"), values)
     for name, true in (("position", RECORDED.position), ("current", RECORDED.torque), ("velocity", RECORDED.velocity)):
         off = np.abs(mended[name] - true)[10:-10].max()
         assert off < 0.02 * np.abs(true).max()
-        assert name == effect.faulty_signal or off == 0.0
+        assert name == effect.signal or off == 0.0
 
 
 @every
-def test_kind_says_whether_a_sensor_errs(effect):
-    """Of the motion, or of the torque that the balance is to explain."""
-    wrong = effect.see(RECORDED, shape_of(effect)).effort is not RECORDED.effort
-    assert effect.kind == ("measurement" if isinstance(effect, Sensing) or wrong else "physics")
+def test_what_changes_the_torque_to_be_explained_is_a_fault_of_a_sensor(effect):
+    assert isinstance(effect, Sensing) or not shows_effort(effect)
+
+
+def shows_effort(effect):
+    """Whether a fit with it explains another torque than the reported one."""
+    return isinstance(effect, Distortion) and effect.see(RECORDED, shape_of(effect)).effort is not RECORDED.effort

@@ -8,6 +8,7 @@ import pytest
 from mujoco.batch import Batch
 
 import bench
+from bench.effects.acting import MisreadMotion
 from bench.effects.catalogue import catalogue
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
@@ -23,7 +24,7 @@ MOTION = Reversals(0.4, 40.0)
 TIME = PERIOD * np.arange(round(MOTION.duration / PERIOD) + 1)
 REFERENCES = References(TIME, *MOTION.at(TIME))
 #: What the drive sees is the drive's own matter, which here is written by hand.
-ACTING = [name for name in VALUES if not catalogue()[name].overrides("seen")]
+ACTING = [name for name in VALUES if not isinstance(catalogue()[name], MisreadMotion)]
 TOGETHER = ("stribeck_friction", "friction_warmup", "torque_ripple", "presliding_friction", "current_loop_lag")
 
 

@@ -8,6 +8,7 @@ from bench.diagnosis.decidable import fit_bare
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.policy import Policy
 from bench.effects.catalogue import catalogue
+from bench.effects.effect import Coupling
 from bench.fit.identify import identify
 from bench.fit.rows import Rows
 from bench.trace.trace import Trace
@@ -23,7 +24,7 @@ from tests.diagnosis.constructed import (
     wave,
 )
 
-RIGID = [name for name, effect in catalogue().items() if not effect.couples]
+RIGID = [name for name, effect in catalogue().items() if not isinstance(effect, Coupling)]
 
 
 def coloured(motion):

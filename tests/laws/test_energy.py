@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bench.effects.acting import Friction
 from bench.effects.catalogue import catalogue
-from bench.effects.kinds import Friction
 from bench.effects.present import Present
 from bench.plant.drive import Cascade
 from bench.plant.model import AxisParameters

@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.arrays import Array
+from bench.effects.acting import Native
+from bench.effects.axis import Axis, Number
 from bench.effects.backlash.dead_zone import dead_zone_columns
 from bench.effects.backlash.likeliest import contact_spread, likeliest_shape
-from bench.effects.effect import Fitted, Load
-from bench.effects.kinds import Axis, Mechanism, Number
+from bench.effects.effect import Contact, Coupling, Fitted, Load, Replacing
 from bench.effects.mjcf import add_coupling_joint
 from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
@@ -32,13 +33,11 @@ if TYPE_CHECKING:  # 0.2 s, needed only to simulate
 CONTACT_FREQUENCY, CONTACT_DAMPING_RATIO = 2.0 * np.pi * 200.0, 0.2
 #: Impedance of the joint's limit: constant, and so small that stiffness and damping below act unattenuated.
 IMPEDANCE = (0.01, 0.01, 1.0, 0.5, 2.0)
-#: Share of the inertia that sits behind the gap, at least and at most.
-BEHIND = (0.02, 0.98)
 #: Factors of gap, frequency and damping within which a recording does not tell a contact from another.
 INDISTINCT = (1.01, 1.1, 1.1)
 
 
-class Backlash(Mechanism):
+class Backlash(Replacing, Coupling, Contact, Native):
     """See the module."""
 
     name = "backlash"
@@ -54,11 +53,7 @@ class Backlash(Mechanism):
         Shape(Quantity("contact_damping_ratio", "D", "dimensionless", lower=0.0), reach=0.0, step=3e-2),
         Shape(Quantity("spring_rate", "c/J_l", "1/s**2", lower=0.0), reach=0.0, step=0.0),
     )
-    of_motion = True
-    couples = True
-    bursts = True
     replaces = frozenset({"elastic_coupling", "current_loop_lag"})
-    tolerates = 0.35
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Load's acceleration less the motor's."""
@@ -70,32 +65,22 @@ class Backlash(Mechanism):
         """The same; of what acts on the load, a spring's share is a shape of its own."""
         return dead_zone_columns(signals, np.array(shapes))
 
-    def load_inertia(self, strengths: Sequence[float]) -> float:
-        """The strength itself."""
-        return strengths[0]
-
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array:
         """The load does not follow it."""
         return -np.ones_like(omega)
 
-    def open_torque(self, fitted: Fitted, index: int) -> Array:
+    def open_torque(self, fitted: Fitted, shape: Sequence[float]) -> Array:
         """Rows soon after an impact: its instant hangs on how the load left the other side of the gap."""
-        shape = fitted.terms[index].shape
         shapes = np.tile(shape, (2 * len(INDISTINCT) + 1, 1))
         for k, factor in enumerate(INDISTINCT):
             shapes[2 * k + 1, k] *= factor
             shapes[2 * k + 2, k] /= factor
         columns = fitted.seen(lambda signals: dead_zone_columns(signals, shapes), of_motion=True)
-        load = abs(float(fitted.theta[fitted.owners == index][0]))
-        return load * np.abs(columns[:, 1:] - columns[:, :1]).max(axis=1)
+        return np.abs(columns[:, 1:] - columns[:, :1]).max(axis=1)
 
     def in_place_of(self, fitted: Fitted) -> tuple[float, ...]:
         """By likelihood over gaps and contacts."""
         return likeliest_shape(fitted)
-
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
-        """Part of the inertia sits behind the gap."""
-        return BEHIND[0] < strengths[0] / base.inertia < BEHIND[1]
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Gap, and what the contact's frequency and damping ratio are with the load's inertia."""
@@ -103,9 +88,9 @@ class Backlash(Mechanism):
         stiffness = strengths[0] * contact**2
         return {"gap": gap, "contact_stiffness": stiffness, "contact_damping": 2.0 * ratio * stiffness / contact}
 
-    def spread(self, fitted: Fitted, index: int) -> Array:
+    def spread(self, fitted: Fitted, shape: Sequence[float]) -> Array:
         """Of resampled recordings: along the ridge of softer contacts and wider gaps curvature tells nothing."""
-        return contact_spread(fitted, index)
+        return contact_spread(fitted, np.array(shape), int(fitted.places(Backlash)[0]))
 
     def defaults(self, axis: Axis) -> Mapping[str, Number]:
         """A contact that resonates at CONTACT_FREQUENCY; recordings of an axis hardly tell it."""

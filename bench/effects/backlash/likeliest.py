@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.arrays import Array
+from bench.effects.acting import Spring
 from bench.effects.backlash.dead_zone import dead_zone_columns
 from bench.effects.effect import Fitted
 from bench.effects.grids import FREQUENCY, extended
@@ -87,13 +88,11 @@ def likeliest_shape(fitted: Fitted) -> tuple[float, ...]:
     return tuple(float(value) for value in starts[0].shape)
 
 
-def contact_spread(fitted: Fitted, index: int) -> Array:
-    """Covariance (3, 3) of gap, frequency and damping of a fit's dead zone, the term at an index."""
-    shape = np.array(fitted.terms[index].shape)
+def contact_spread(fitted: Fitted, shape: Array, place: int) -> Array:
+    """Covariance (3, 3) of gap, frequency and damping of a fit's dead zone, of a shape (4,) and a column's place."""
     offsets = np.stack([m.ravel() for m in np.meshgrid(*AROUND, indexing="ij")], axis=1)
     shapes = np.column_stack([shape[:3] * np.exp(offsets), np.full(len(offsets), shape[3])])
     others, effort = fitted.columns.copy(), fitted.effort
-    place = int(np.flatnonzero(fitted.owners == index)[0])
     time = fitted.time
     edges = np.unique(np.searchsorted(time, np.arange(time[0], time[-1], STRETCH)))
     misfits = []
@@ -118,12 +117,12 @@ def _columns(fitted: Fitted, shapes: Array) -> Array:
 
 def _spring_rates(fitted: Fitted) -> set[float]:
     """Stiffness over load inertia of a spring on the load's side, 0 for none - 1/s**2: where a search begins."""
-    stiffness, load = _stiffness(fitted, fitted.theta), float(fitted.theta[0]) - fitted.scope.rotor_inertia
+    stiffness, load = _stiffness(fitted, fitted.theta), fitted.base.inertia - fitted.scope.rotor_inertia
     return {0.0, max(stiffness, 0.0) / load} if load > 0.0 else {0.0}
 
 
 def _stiffness(fitted: Fitted, theta: Array) -> float:
-    return sum(term.effect.stiffness(theta[fitted.owners == index].tolist()) for index, term in enumerate(fitted.terms))
+    return float(theta[fitted.places(Spring)].sum())
 
 
 def _likely(fitted: Fitted, shape: Array, column: Array) -> Likely:

@@ -17,10 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.effects.effect import Load
+from bench.effects.acting import Native
+from bench.effects.axis import Axis
+from bench.effects.effect import Coupling, FiltersMotion, Load
 from bench.effects.elastic_coupling.twist import twist_columns
 from bench.effects.grids import FREQUENCY
-from bench.effects.kinds import Axis, Mechanism
 from bench.effects.mjcf import add_coupling_joint
 from bench.effects.signals import Base, Shape, Signals
 from bench.trace.filter import Column
@@ -36,11 +37,9 @@ DAMPINGS = (0.01, 0.04, 0.12)
 #: quality 1/(2*D) is below one, so that hardly anything does; those of the blind set have 0.04 at most. On the way to
 #: another coupling a search may pass the latter.
 OVERDAMPED, DULL = 1.0, 0.5
-#: Share of the inertia that sits behind a coupling, at least and at most.
-BEHIND = (0.02, 0.98)
 
 
-class ElasticCoupling(Mechanism):
+class ElasticCoupling(Coupling, FiltersMotion, Native):
     """See the module."""
 
     name = "elastic_coupling"
@@ -54,9 +53,6 @@ class ElasticCoupling(Mechanism):
         Shape(Quantity("antiresonance", "w_a", "rad/s", lower=0.0), ANTIRESONANCES, reach=0.35, measure=FREQUENCY),
         Shape(Quantity("damping_ratio", "D", "dimensionless", lower=0.0), DAMPINGS, reach=0.35),
     )
-    of_motion = True
-    couples = True
-    biased_by_noise = True
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Load's acceleration less the motor's."""
@@ -68,10 +64,6 @@ class ElasticCoupling(Mechanism):
         """Load's acceleration less the motor's, with what acts on the load."""
         return twist_columns(signals, shapes, loads)
 
-    def load_inertia(self, strengths: Sequence[float]) -> float:
-        """The strength itself."""
-        return strengths[0]
-
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> NDArray[np.complex128]:
         """Load's acceleration over the motor's, less one: (1 + 2*D*s/w_a)/(1 + 2*D*s/w_a + (s/w_a)**2) - 1."""
         s = 1j * omega / shape[0]
@@ -79,7 +71,7 @@ class ElasticCoupling(Mechanism):
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """It rings, and part of the inertia sits behind it."""
-        return shape[1] < OVERDAMPED and BEHIND[0] < strengths[0] / base.inertia < BEHIND[1]
+        return shape[1] < OVERDAMPED and super().physical(strengths, shape, base)
 
     def credible(self, shape: Sequence[float]) -> bool:
         """It rings well enough to be told from a lag."""

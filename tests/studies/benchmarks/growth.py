@@ -13,6 +13,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from bench.effects.catalogue import catalogue
+from bench.effects.effect import Coupling
 from bench.fit.estimate import Estimate
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.identify import identify
@@ -128,9 +129,9 @@ def one_coupling() -> list[str]:
     """Names of effects that one axis can have together, as they stand in the tests' table."""
     found, kinds, coupled = [], catalogue(), False
     for name in VALUES:
-        if not (kinds[name].couples and coupled):
+        if not (isinstance(kinds[name], Coupling) and coupled):
             found.append(name)
-            coupled = coupled or kinds[name].couples
+            coupled = coupled or isinstance(kinds[name], Coupling)
     return found
 
 
