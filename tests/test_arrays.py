@@ -2,9 +2,10 @@ import math
 
 import numpy as np
 import pytest
+import scipy.signal
 import scipy.special
 
-from bench.arrays import column_rms, recurrence, rms, symmetric_inverse
+from bench.arrays import column_rms, recurrence, recursive_filter, rms, symmetric_inverse
 from bench.statistics import NORMAL95
 
 
@@ -55,3 +56,18 @@ def test_a_recurrence_of_any_shares_is_what_a_step_at_a_time_gives():
         state = kept[k] * state + added[k]
         expected[k] = state
     np.testing.assert_allclose(recurrence(kept, added), expected, rtol=1e-12, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("numerator", "denominator"),
+    [([0.3, 0.1], [1.0, -0.6]), ([0.01], [1.0, -0.99]), ([0.2, 0.1, 0.05], [1.0, -1.9, 0.95])],
+)
+def test_a_recursive_filter_is_that_of_scipy(numerator, denominator):
+    values = np.random.default_rng(2).normal(size=4000)
+    expected = scipy.signal.lfilter(numerator, denominator, values)
+    np.testing.assert_allclose(recursive_filter(numerator, denominator, values), expected, rtol=1e-10, atol=1e-11)
+
+
+def test_a_first_order_filter_keeps_what_it_held():
+    """y[t] = 0.5*y[t - 1]: of 8 held before, 4, 2, 1 are left."""
+    np.testing.assert_allclose(recursive_filter([1.0], [1.0, -0.5], np.zeros(3), held=4.0), [4.0, 2.0, 1.0])

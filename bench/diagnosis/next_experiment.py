@@ -16,7 +16,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from bench.arrays import rms
 from bench.diagnosis.add import Added
@@ -201,6 +200,8 @@ def separation(
     missed = torque - less - parameters.inertia * (acceleration - slower_change)
     missed = missed - parameters.viscous_friction_coefficient * (speed - slower)
     sign = np.where(np.abs(speed) > CLEAR * np.abs(speed).max(), np.sign(speed), 0.0)
+    from scipy.ndimage import uniform_filter1d  # 0.1 s, which only an open question has to pay
+
     reach = 2 * round(SIGN_WIDTHS * smooth.width / references.period) + 1
     clear = np.abs(uniform_filter1d(sign, reach)) > 1.0 - 1e-9
     if np.count_nonzero(clear) < LEAST:

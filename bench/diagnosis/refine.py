@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.optimize
 
 from bench.arrays import Array
 from bench.diagnosis.model import Stage, present_of
@@ -162,5 +161,7 @@ def stepped(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: Vel
     if len(differences) < len(models):
         return None
     jacobian = np.stack([other - differences[0] for other in differences[1:]], axis=1) / STEP
-    found = scipy.optimize.lsq_linear(jacobian, -differences[0], bounds=(-NORMAL95, NORMAL95))
+    from scipy.optimize import lsq_linear  # 0.2 s, which only a named effect has to pay
+
+    found = lsq_linear(jacobian, -differences[0], bounds=(-NORMAL95, NORMAL95))
     return numbers.values + numbers.errors * found.x

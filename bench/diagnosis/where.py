@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.signal
 from numpy.typing import NDArray
 
 from bench.arrays import Array
@@ -122,10 +121,29 @@ def _frequency(fitted: Fit) -> Where:
     smooth = fitted.rows.conditioning.filter
     rate = 1.0 / (smooth.sample_period * smooth.stride)
     length = min(1024, fitted.residual.size)
-    frequency, power = scipy.signal.welch(fitted.residual, rate, nperseg=length)
+    frequency, power = _welch(fitted.residual, rate, length)
     shape = np.exp(-((2.0 * np.pi * frequency * smooth.width) ** 2))
     best = int(np.argmax(power[1:])) + 1
     band = slice(max(best - 2, 1), best + 3)
     share = float(np.sum(power[band]) / np.sum(power) - np.sum(shape[band]) / np.sum(shape))
     region = (float(frequency[band][0]), float(frequency[band][-1]))
     return Where("frequency", region, "Hz", max(share, 0.0), frequency, np.sqrt(power))
+
+
+def _welch(values: Array, rate: float, length: int) -> tuple[Array, Array]:
+    """Frequencies - Hz - and power density there of values (m,) - their unit squared over Hz.
+
+    Mean of the periodograms of windows that overlap by half, each less its mean, under Hann's window (P. D. Welch, IEEE
+    Transactions on Audio and Electroacoustics 15(2), 1967, 70-73); `scipy.signal` takes 0.6 s to import.
+
+    Args:
+        values: evenly sampled.
+        rate: of the samples - Hz.
+        length: of a window, in samples.
+    """
+    windows = np.lib.stride_tricks.sliding_window_view(values, length)[:: length - length // 2]
+    hann = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(length) / length)
+    power = np.abs(np.fft.rfft((windows - windows.mean(axis=1, keepdims=True)) * hann, axis=1)) ** 2
+    density = power.mean(axis=0) / (rate * np.sum(hann**2))
+    density[1 : (length + 1) // 2] *= 2.0
+    return np.fft.rfftfreq(length, 1.0 / rate), density

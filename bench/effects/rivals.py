@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bench.arrays import Array, recursive_filter
 from bench.effects.effect import Columns, Effect
 from bench.effects.grids import DURATION, FREQUENCY, SPEED
 from bench.effects.signals import Scope, Shape, Signals
@@ -86,10 +87,8 @@ class FrictionalMemory(Columns):
         return [[(signals.sign * np.exp(-_lowpass(np.abs(signals.velocity), keep) / shape[1]), 0)]]
 
 
-def _lowpass(values: np.ndarray, keep: float) -> np.ndarray:
-    from scipy.signal import lfilter  # 0.9 s, which only a search has to pay
-
-    return np.asarray(lfilter([1.0 - keep], [1.0, -keep], values))
+def _lowpass(values: Array, keep: float) -> Array:
+    return recursive_filter([1.0 - keep], [1.0, -keep], values)
 
 
 RIVALS: tuple[Effect, ...] = (Vibration(), Notch(), SlowMemory(), FrictionalMemory())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.optimize
 
 from bench.arrays import Array
 from bench.effects.effect import Distortion, FiltersMotion
@@ -32,6 +31,8 @@ def free_shapes(term: Term, scope: Scope) -> list[int]:
 
 def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = False) -> Fit:
     """Search one term's shape for the least residual, the others held; `over_noise`: the least over its noise."""
+    from scipy.optimize import fminbound, minimize  # 0.2 s, which only a named effect has to pay
+
     term, scope = hypothesis.terms[index], rows.scope
     free = free_shapes(term, scope)
     if not free:
@@ -50,10 +51,10 @@ def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = Fa
         return float(np.log(max(tried.squares / tried.noise.white**2 if over_noise else tried.squares, 1e-300)))
 
     if len(free) == 1:
-        best = np.atleast_1d(scipy.optimize.fminbound(lambda x: misfit(np.array([x])), -1.0, 1.0, xtol=4e-3))
+        best = np.atleast_1d(fminbound(lambda x: misfit(np.array([x])), -1.0, 1.0, xtol=4e-3))
         return fit(rows, at(np.asarray(best, dtype=np.float64)))
     simplex = np.vstack([np.zeros(len(free)), 0.5 * np.eye(len(free))])
-    best = scipy.optimize.minimize(
+    best = minimize(
         misfit,
         np.zeros(len(free)),
         method="Nelder-Mead",
@@ -69,6 +70,8 @@ def together(fitted: Fit) -> Fit:
     Gauss and Newton's steps over the shapes, strengths solved for at each (G. H. Golub, V. Pereyra, SIAM Journal on
     Numerical Analysis 10, 1973, 413-432). Shapes without a derivative, as of an instant between two rows, are held.
     """
+    from scipy.optimize import least_squares  # 0.2 s, which only several named effects have to pay
+
     scope, terms = fitted.scope, fitted.terms
     free = [[k for k in free_shapes(term, scope) if term.effect.shapes[k].step] for term in terms]
     ends = np.cumsum([len(places) for places in free])
@@ -81,7 +84,7 @@ def together(fitted: Fit) -> Fit:
             moved = moved.reshaped(index, _moved(term, places, own, scope))
         return fit(fitted.rows, moved)
 
-    best = scipy.optimize.least_squares(
+    best = least_squares(
         lambda offset: at(offset).residual / fitted.floor,
         np.zeros(int(ends[-1])),
         diff_step=JOINT_STEP,

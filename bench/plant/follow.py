@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from bench.arrays import Array
 from bench.errors import InputError
@@ -73,6 +72,8 @@ def references_of(trace: Trace, period: float, stride: int) -> References:
     Raises:
         InputError: the recording holds none.
     """
+    from scipy.interpolate import CubicSpline  # 0.1 s, which only the drive's own loop has to pay
+
     ticks: Array = period * np.arange((len(trace) - 1) * stride + 1, dtype=np.float64)
     samples = ticks[::stride]
     if "velocity_reference" in trace:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from bench.arrays import Array
 from bench.axis_kind import ROTARY, AxisKind
@@ -103,6 +102,8 @@ class Sensors:
 
     def _effort(self, states: States, time: Array) -> Array:
         """Current (torque) of one axis at some times - (n,)."""
+        from scipy.interpolate import PchipInterpolator  # 0.1 s, which only a simulated recording has to pay
+
         torque = states.torque[:, 0]
         held = torque if self.torque_constant is None else self.torque_constant.current(torque)
         middles = states.time + (states.time[1] - states.time[0]) / 2.0

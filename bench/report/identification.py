@@ -308,7 +308,7 @@ def _rest(estimate: Estimate, motions: Sequence[Moved]) -> Chart:
 
 
 def _over(name: str, unit: str, values: Array, left: Array, floor: float) -> Panel:
-    from bench.diagnosis.where import LEAST, bins_of, means_in  # scipy.signal: 0.6 s, which numbers alone spare
+    from bench.diagnosis.where import LEAST, bins_of, means_in
 
     known = np.isfinite(left)
     index = bins_of(values[known])

@@ -7,11 +7,13 @@ from typing import Annotated
 
 import numpy as np
 from pydantic import Field, model_validator
-from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.rig.values import Angle, Density, Inertia, Length, Mass, RigTable
+
+#: Standard acceleration of free fall - m/s**2. ISO 80000-3: g_n.
+STANDARD_GRAVITY = 9.80665
 
 
 class Load(RigTable):

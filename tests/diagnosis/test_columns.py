@@ -5,7 +5,7 @@ import pytest
 import scipy.signal
 from scipy.interpolate import CubicSpline
 
-from bench.diagnosis.where import Coordinate, _account
+from bench.diagnosis.where import Coordinate, _account, _welch
 from bench.effects.backlash.dead_zone import load_positions
 from bench.effects.catalogue import catalogue
 from bench.effects.first_order import lagged
@@ -111,3 +111,12 @@ def test_a_gap_of_two_directions_belongs_to_direction():
     account = _account(Coordinate("direction", sign, "dimensionless"), 3.0 + 0.5 * sign + 0.1 * rng.normal(size=4000))
     assert account.centres == pytest.approx([-1.0, 1.0])
     assert account.share == pytest.approx(0.25 / 0.26, abs=0.01)
+
+
+@pytest.mark.parametrize(("size", "length"), [(5000, 1024), (700, 700), (701, 701)])
+def test_the_gap_s_spectrum_is_welch_s(size, length):
+    values = np.random.default_rng(3).normal(size=size) + 2.0
+    for found, expected in zip(
+        _welch(values, 40.0, length), scipy.signal.welch(values, 40.0, nperseg=length), strict=True
+    ):
+        assert found == pytest.approx(expected, rel=1e-9, abs=1e-15)

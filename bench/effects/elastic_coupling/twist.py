@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.linalg
 
-from bench.arrays import Array
+from bench.arrays import Array, recursive_filter
 from bench.effects.effect import Load
 from bench.effects.signals import Signals
 from bench.trace.filter import Column
@@ -110,9 +110,7 @@ class _Driven:
 
     def __call__(self, values: Array, every: int) -> tuple[Array, Array]:
         """Both states at every so many of the values."""
-        import scipy.signal  # 0.9 s, which only a coupling has to pay
-
-        moved = [np.asarray(scipy.signal.lfilter(row, self.denominator, values))[::every] for row in self.numerators]
+        moved = [recursive_filter(row, self.denominator, values)[::every] for row in self.numerators]
         return moved[0], moved[1]
 
 
