@@ -1,6 +1,6 @@
 """What a fleet's table says: which axes changed and since when, what was named, and who needs a person and why.
 
-An axis changed where what its recordings tell of inertia or friction steps at some time (`bench.comparison.step`).
+An axis changed where what its recordings tell of inertia or friction steps (`bench.comparison.change_point`).
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
+from bench.comparison.change_point import ChangePoint, change_point
 from bench.comparison.difference import holm
-from bench.comparison.step import Step, largest_step
 from bench.fleet.evaluate import Plain
 from bench.fleet.manifest import Manifest
 from bench.fleet.plan import PlannedRecording
@@ -64,7 +64,7 @@ class Changed:
     """
 
     history: History
-    step: Step
+    step: ChangePoint
     since: str
     file: str
     chance: float
@@ -168,7 +168,7 @@ def _changes(
 ) -> tuple[int, tuple[Changed, ...]]:
     """How many histories could be compared, and the steps that stand out of all of them together, surest first."""
     histories = _histories(manifest, planned, results, order)
-    steps = [(one, found) for one in histories if (found := largest_step(one.values, one.errors)) is not None]
+    steps = [(one, found) for one in histories if (found := change_point(one.values, one.errors)) is not None]
     files, times = manifest.text("file"), manifest.text("time")
     chances = holm(np.array([step.chance for _, step in steps])).tolist()
     by_chance = sorted(zip(steps, chances, strict=True), key=lambda each: each[0][1].chance)

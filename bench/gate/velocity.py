@@ -45,7 +45,7 @@ def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class SpeedAgainstPosition:
     """Speed against position.
 
     Attributes:
@@ -59,7 +59,7 @@ class Comparison:
     remainder: float
 
 
-def compared(trace: Trace) -> Comparison | None:
+def compared(trace: Trace) -> SpeedAgainstPosition | None:
     """Speed and position of a recording compared; None where it is too short or hardly moves."""
     spans = [_spans(trace, part) for part in stretches(trace, 2 * SPAN)]
     if not spans:
@@ -71,10 +71,10 @@ def compared(trace: Trace) -> Comparison | None:
     scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     theta = np.linalg.lstsq(columns / scale, claimed, rcond=1e-9)[0] / scale
     left = rms(claimed - columns @ theta)
-    return Comparison(float(theta[0]), -float(theta[1]), left / max(rms(claimed), 1e-300))
+    return SpeedAgainstPosition(float(theta[0]), -float(theta[1]), left / max(rms(claimed), 1e-300))
 
 
-def judged(both: Comparison) -> Check:
+def judged(both: SpeedAgainstPosition) -> Check:
     """What a comparison of speed and position says."""
     ratio, lag, remainder = both.ratio, both.lag, both.remainder
     units = "check the units (and signs) of both columns and of the time, or leave one of the two columns out"

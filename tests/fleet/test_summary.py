@@ -8,7 +8,7 @@ import pytest
 from scipy import stats
 
 from bench.bounds import bounds
-from bench.comparison.step import largest_step
+from bench.comparison.change_point import change_point
 from bench.fleet.evaluate import Job
 from bench.fleet.manifest import Manifest
 from bench.fleet.plan import PlannedRecording
@@ -96,7 +96,7 @@ def test_an_alarm_is_held_against_one_in_a_hundred_of_all_axes_together():
     """Of axes that are alike the chance of each is its own times how many there are that are no surer."""
     step = np.array([1.0, 1.1, 0.9, 1.0, 1.05, 0.95, 1.4, 1.35, 1.45])
     still = np.tile([1.0, 1.1, 0.9], 3)
-    alone = largest_step(step, np.full(9, 1e-3)).chance
+    alone = change_point(step, np.full(9, 1e-3)).chance
     (changed,) = looked_over(np.array([step, *[still] * 9])).changed
     assert changed.chance == pytest.approx(10.0 * alone)
     both = looked_over(np.array([step, step, *[still] * 8])).changed

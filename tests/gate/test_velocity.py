@@ -61,7 +61,7 @@ def test_a_standstill_compares_nothing(sound, rig):
     ],
 )
 def test_ratio_and_remainder_are_judged_by_their_borders(ratio, remainder, status):
-    found = velocity.judged(velocity.Comparison(ratio, 0.0, remainder))
+    found = velocity.judged(velocity.SpeedAgainstPosition(ratio, 0.0, remainder))
     assert found.status == status
     assert ("not the same motion" in found.found) == (remainder > 0.4)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from bench.comparison.step import expected
+from bench.comparison.change_point import expected
 from bench.fleet.fleet import Fleet
 from bench.fleet.manifest import Manifest
 from bench.fleet.plan import PlannedRecording

@@ -26,7 +26,7 @@ FEWEST = 3
 
 
 @dataclass(frozen=True)
-class Step:
+class ChangePoint:
     """The step that stands out most from a series of values.
 
     Attributes:
@@ -45,7 +45,7 @@ class Step:
     chance: float
 
 
-def largest_step(values: Array, errors: Array) -> Step | None:
+def change_point(values: Array, errors: Array) -> ChangePoint | None:
     """The step that stands out most; None of fewer than three values.
 
     Args:
@@ -66,7 +66,7 @@ def largest_step(values: Array, errors: Array) -> Step | None:
     steps = means[1] - means[0]
     sizes = np.abs(steps) / np.maximum(error, 1e-150)
     best = int(np.argmax(sizes))
-    return Step(
+    return ChangePoint(
         place=best + 1,
         before=float(centre + means[0, best]),
         after=float(centre + means[1, best]),
