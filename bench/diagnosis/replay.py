@@ -16,7 +16,7 @@ from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
 from bench.plant.measured_motion import measured_position, measured_velocity
 from bench.plant.model_file import load_model, read_table
-from bench.plant.soft_tracking import Held, track
+from bench.plant.soft_tracking import SoftTracking, track
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -98,7 +98,7 @@ def replay(path: str | Path, trace: Trace, rig: Rig) -> Replay:
         happening = balance.recording in (EVERY, trace.origin)
         model = stored.model if happening else without_events(stored.model)
         bandwidth = holding_bandwidth(model, float(np.abs(measured[1]).max()))
-        tracked = track(Held(model, trace, effort, stored.misalignment), bandwidth)
+        tracked = track(SoftTracking(model, trace, effort, stored.misalignment), bandwidth)
         position, velocity = tracked.position, tracked.velocity
     warnings = []
     if str(table.get("name", rig.name)) != rig.name:

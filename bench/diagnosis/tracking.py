@@ -15,7 +15,7 @@ from bench.diagnosis.recordings import Recordings
 from bench.fit.rows import Rows
 from bench.plant.measured_motion import in_stretches, measured_velocity
 from bench.plant.model_file import StoredModel
-from bench.plant.soft_tracking import Held, track_all
+from bench.plant.soft_tracking import SoftTracking, track_all
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -77,10 +77,10 @@ class Recorded:
         """Standard deviation of the measured velocity: a larger gap means no tracking at all - rad/s (m/s)."""
         return float(np.std(measured_velocity(self.trace)[self.judged]))
 
-    def holding(self, stored: StoredModel, inertia: float) -> Held:
+    def holding(self, stored: StoredModel, inertia: float) -> SoftTracking:
         """A model that tracks it by a cascade designed for an inertia - kg*m**2 (kg)."""
         model = stored.model if self.events else without_events(stored.model)
-        return Held(model, self.trace, self.effort, stored.misalignment, inertia)
+        return SoftTracking(model, self.trace, self.effort, stored.misalignment, inertia)
 
 
 class VelocityGaps:

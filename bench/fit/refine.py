@@ -21,7 +21,7 @@ from bench.fit.load_inertia import load_inertia
 from bench.plant.axis_model import AxisModel
 from bench.plant.measured_motion import measured_velocity
 from bench.plant.model import AxisParameters
-from bench.plant.soft_tracking import BANDWIDTH, Held, track
+from bench.plant.soft_tracking import BANDWIDTH, SoftTracking, track
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -129,5 +129,7 @@ class _Tracking:
             load_torque=theta[3] if theta.size > 3 else 0.0,
             kind=self.rig.axis_kind,
         )
-        held = Held(AxisModel(axis), self.trace, self.effort, start["misalignment"].value, self._theta(start)[0])
+        held = SoftTracking(
+            AxisModel(axis), self.trace, self.effort, start["misalignment"].value, self._theta(start)[0]
+        )
         return track(held).velocity - self.velocity

@@ -60,7 +60,7 @@ class ClosedLoop:
     @property
     def native(self) -> bool:
         """Whether MuJoCo runs it all by itself."""
-        return isinstance(self.controller, PlannedInputs) and self.substeps == 1 and self.axis.all_native
+        return isinstance(self.controller, PlannedInputs) and self.axis.all_native
 
     @property
     def alike(self) -> tuple[object, ...]:

@@ -74,7 +74,7 @@ def _check_ticks(plants: Sequence[Plant], references: Sequence[References]) -> N
 
 
 def _limited(states: States, plant: Plant) -> bool:
-    return not states.diverged and bool((np.abs(states.torque) >= plant.cascade.torque_limit).any())
+    return bool((np.abs(states.torque) >= plant.cascade.torque_limit).any())
 
 
 @contextmanager

@@ -39,7 +39,7 @@ LONGEST_STEP = 0.5e-3
 
 
 @dataclass(frozen=True)
-class Held:
+class SoftTracking:
     """A model and the recording that it is to be held to.
 
     Attributes:
@@ -70,7 +70,7 @@ class Tracked:
     velocity: Array
 
 
-def track(held: Held, bandwidth: float = BANDWIDTH) -> Tracked:
+def track(held: SoftTracking, bandwidth: float = BANDWIDTH) -> Tracked:
     """Motion that a model reports, held to its recording.
 
     Each stretch without holes starts from the recording; time of effects counts from the recording's start.
@@ -88,7 +88,7 @@ def track(held: Held, bandwidth: float = BANDWIDTH) -> Tracked:
     return found
 
 
-def track_all(held: Sequence[Held], bandwidth: float = BANDWIDTH) -> list[Tracked | None]:
+def track_all(held: Sequence[SoftTracking], bandwidth: float = BANDWIDTH) -> list[Tracked | None]:
     """The same of several models, each held to its recording; None where one diverged.
 
     Raises:
@@ -138,7 +138,7 @@ class _Stretch:
     substeps: int
 
 
-def _stretches(held: Held, bandwidth: float) -> Iterator[_Stretch]:
+def _stretches(held: SoftTracking, bandwidth: float) -> Iterator[_Stretch]:
     """The stretches of a recording, each with its model in the loop that holds it."""
     model, trace = held.model, held.trace
     (timestep, substeps), velocity = step_of(trace), measured_velocity(trace)
@@ -182,7 +182,7 @@ class _HoldingInputs(PlannedInputs):
         substeps: timesteps that make a sample period.
     """
 
-    def __init__(self, held: Held, part: slice, velocity: Array, timestep: float, substeps: int) -> None:
+    def __init__(self, held: SoftTracking, part: slice, velocity: Array, timestep: float, substeps: int) -> None:
         model, trace = held.model, held.trace
         velocity = true_velocity(model, velocity, trace.sample_period)
         position = trace["position"][part] if "position" in trace else integrated(velocity, trace.sample_period)

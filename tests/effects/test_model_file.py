@@ -23,7 +23,7 @@ from bench.plant.model_file import (
     read_table,
     tables_toml,
 )
-from bench.plant.soft_tracking import Held, track
+from bench.plant.soft_tracking import SoftTracking, track
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, PERIOD, VALUES, model
 from tests.plant.open_loop import open_loop
@@ -144,5 +144,5 @@ def test_a_stored_model_runs_along_a_recording(truths, tmp_path):
     toml = written(tmp_path, StoredModel("axis", model("cogging_torque"), -PERIOD / 2.0))
     stored = load_model(toml)
     effort = AXIS.torque_constant * trace["current"]
-    simulated = track(Held(stored.model, trace, effort, stored.misalignment)).velocity
+    simulated = track(SoftTracking(stored.model, trace, effort, stored.misalignment)).velocity
     assert np.sqrt(np.mean((trace["velocity"] - simulated) ** 2)) < 0.03

@@ -7,7 +7,7 @@ import pytest
 
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
-from bench.plant.soft_tracking import Held, track, track_all
+from bench.plant.soft_tracking import SoftTracking, track, track_all
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, PERIOD, model
 from tests.effects.conftest import CASES
@@ -35,7 +35,7 @@ def recording(signals, position=True):
 
 def velocity_of(axis: AxisModel, trace: Trace, misalignment=0.0):
     """Velocity of an axis held to a recording - rad/s - (n,)."""
-    return track(Held(axis, trace, AXIS.torque_constant * trace["current"], misalignment)).velocity
+    return track(SoftTracking(axis, trace, AXIS.torque_constant * trace["current"], misalignment)).velocity
 
 
 def gap(axis: AxisModel, trace: Trace) -> float:
@@ -71,7 +71,7 @@ def test_models_side_by_side_move_as_each_alone(recordings):
         (("torque_ripple",), trace),
         (("stribeck_friction",), shorter),
     ]
-    held = [Held(model(*names), one, AXIS.torque_constant * one["current"]) for names, one in cases]
+    held = [SoftTracking(model(*names), one, AXIS.torque_constant * one["current"]) for names, one in cases]
     for one, together in zip(held, track_all(held), strict=True):
         np.testing.assert_array_equal(together.velocity, track(one).velocity)
 
@@ -88,7 +88,7 @@ def test_natively_and_step_by_step_alike(recordings):
 @pytest.mark.parametrize("case", [(), ("stribeck_friction",), ("velocity_filter_lag",), ("encoder_eccentricity",)])
 def test_position_is_told_as_the_sensor_has_it(case, recordings):
     trace = recordings[case]
-    held = Held(model(*case), trace, AXIS.torque_constant * trace["current"], -PERIOD / 2.0)
+    held = SoftTracking(model(*case), trace, AXIS.torque_constant * trace["current"], -PERIOD / 2.0)
     found, (again,) = track(held), track_all([held])
     np.testing.assert_array_equal(found.velocity, again.velocity)
     assert np.abs(found.position - trace["position"]).max() < 0.01

@@ -5,7 +5,7 @@ import pytest
 
 from bench.plant import ticked
 from bench.plant.run import run
-from bench.plant.soft_tracking import Held, track
+from bench.plant.soft_tracking import SoftTracking, track
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, Reversals, model, plant
 
@@ -46,7 +46,7 @@ def recorded(duration):
 
 
 def tracked(names, trace):
-    return track(Held(model(*names), trace, AXIS.torque_constant * trace["current"])).velocity
+    return track(SoftTracking(model(*names), trace, AXIS.torque_constant * trace["current"])).velocity
 
 
 @pytest.mark.parametrize(("names", "each"), [((), 0), (NATIVE, 0), (TICKED, STEPS), (MANY_TICKED, STEPS)], ids=str)

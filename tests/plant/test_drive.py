@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from bench.effects.present import Present
 from bench.plant.drive import Cascade, CascadeDrive, FrictionEmulation
 from bench.plant.model import AxisParameters
 from bench.plant.native import run_native
@@ -176,6 +177,17 @@ def test_substeps_leave_the_motion_as_it_is(plant):
     print(f"62.5 us against 250 us: worst {np.abs(off).max():.1e}, rms {off.std():.1e} rad/s")
     assert np.abs(off).max() < reversal_error(plant)
     assert off.std() < 0.1 * reversal_error(plant)
+
+
+def test_substeps_act_as_often_as_they_are(plant):
+    """What is reported is the mean over a tick, whose steps make one tick's motion."""
+    effect = Present.of("torque_ripple", {"relative_amplitude": 0.2, "harmonic": 3.0})
+    coarse = dataclasses.replace(plant, effects=(effect,))
+    references = reversals(duration=0.5)
+    whole, half = (run([dataclasses.replace(coarse, timestep=step)], [references]) for step in (250e-6, 125e-6))
+    assert worst(half, whole)["velocity"] < reversal_error(plant)
+    assert np.sqrt(((half.torque - whole.torque) ** 2).mean()) < 1e-3 * np.abs(whole.torque).max()
+    assert np.sqrt(((half.motor_torque - whole.motor_torque) ** 2).mean()) < 5e-3 * np.abs(whole.motor_torque).max()
 
 
 def test_axes_that_differ_run_side_by_side_as_alone(plant):
