@@ -116,9 +116,9 @@ RIPPLE = ("torque_ripple", {"relative_amplitude": 0.3, "harmonic": 3.0})
 @pytest.mark.parametrize("effects", [(), (RIPPLE,)], ids=["native", "ticked"])
 def test_blocks_move_as_the_whole(effects, monkeypatch):
     """Blocks end between samples, friction has the solver start from where it was."""
-    position = 0.3 * np.sin(20.0 * TIME)
-    signals = {"position": position, "velocity": 6.0 * np.cos(20.0 * TIME)}
-    swinging = Trace(TIME, signals, {"position": "rad", "velocity": "rad/s"}, "")
+    time = 1.5 * TIME  # three steps a sample
+    signals = {"position": 0.3 * np.sin(20.0 * time), "velocity": 6.0 * np.cos(20.0 * time)}
+    swinging = Trace(time, signals, {"position": "rad", "velocity": "rad/s"}, "")
     whole = moving(swinging, *effects, friction=0.02)
     monkeypatch.setattr("bench.plant.closed_loop.BLOCK_BYTES", 777)
     np.testing.assert_array_equal(moving(swinging, *effects, friction=0.02), whole)
