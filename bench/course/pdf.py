@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from matplotlib import rc_context
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure, SubFigure
 
@@ -16,6 +17,8 @@ from bench.report.document import Chart, Document, Paragraph, Section, Table
 
 #: A4 upright, and its margin all around - inch; height of a line - inch; characters in a line, and in one of a table.
 PAGE, MARGIN, LINE, CHARACTERS, IN_TABLE = (8.27, 11.69), 0.45, 0.18, 116, 118
+#: Size of a legend's letters, of which four entries stand beside each other - points.
+LEGEND = 6.2
 #: A chart gives up to this share of its height to stay on a page.
 SHRUNK = 0.72
 
@@ -115,7 +118,8 @@ def page(placed: Sequence[OnPage]) -> Figure:
     for k, part in enumerate(parts, start=1):
         subfigure = figure.add_subfigure(grid[k, 1])
         if isinstance(part.content, Chart):
-            figures.draw(subfigure, part.content)
+            with rc_context({"legend.fontsize": LEGEND}):
+                figures.draw(subfigure, part.content)
         else:
             _write(subfigure, part.content)
     return figure
