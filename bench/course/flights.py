@@ -1,11 +1,14 @@
-"""Read a catapult's experiments: a folder or a zip of tables of points (y, z), or one such table or MAT file."""
+"""Read a catapult's experiments: a folder or a zip of tables of points (y, z), or one such table or MAT file.
+
+Of each file it is found which columns are y and z, of one flight or of several side by side, and in which unit.
+"""
 
 from __future__ import annotations
 
 import re
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,9 +16,12 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.bounds import read_bounded
-from bench.course.flight_table import flights_of_mat, flights_of_text
+from bench.course.text import text_of
 from bench.errors import InputError
 from bench.files import read_bytes
+from bench.trace.readers.mat import load
+from bench.units import convert, dimensionality
+from bench.units.text import spelled_for_pint
 
 TEXTS = (".csv", ".txt", ".dat", ".tsv")
 ENDINGS = (*TEXTS, ".mat")
@@ -24,6 +30,25 @@ NAMES = ("catapult", "katapult", "flights", "fluege", "flüge")
 _ABOUT = re.compile(r"(read[ _-]?me|lies[ _-]?mich|license|notes?|notiz(en)?|info|hinweise?)\b.*", re.IGNORECASE)
 #: Lengths without a unit are metres; no ball of the lab flies further than this - m.
 FARTHEST = 20.0
+#: How the cells of a line may be separated, and the decimal sign between them; the first that fits a table is taken.
+_LAYOUTS: tuple[tuple[Callable[[str], Cells], str], ...] = (
+    (lambda line: line.split(";"), ","),
+    (lambda line: line.split("\t"), ","),
+    (lambda line: line.split(","), "."),
+    (lambda line: re.split(r",?\s+", line.strip()), ","),
+)
+_NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|nan", re.IGNORECASE)
+#: Name of a column, with the flight's number where several stand side by side, and its unit.
+_LABEL = re.compile(r"\W*([^\W\d_]+)[ _]*(\d*)\s*(?:(?:[\[(/]|\bin\b)\s*([^\])]*?)[\])]?)?\W*")
+#: Between the names of columns that blanks separate; a unit belongs to the name before it.
+_BETWEEN_NAMES = re.compile(r"\s+(?![\[(/]|in\b)(?<!in\s)(?<!/\s)")
+#: Names of a column that numbers the flights.
+_FLIGHT_NUMBERS = ("flight", "experiment", "versuch", "flug", "nr", "no", "wurf")
+#: A path has at least so many points: a parabola through fewer is no fit.
+LEAST = 3
+_ADVICE = "y and z on each line, named in the first one: y [m],z [m]"
+
+Cells = list[str]
 
 
 @dataclass(frozen=True)
@@ -115,3 +140,202 @@ def _require_metres(points: list[Array], where: str) -> None:
         raise InputError(
             where, f"found lengths that span {farthest:.4g} without a unit", "name it in the first line: y [mm],z [mm]"
         )
+
+
+@dataclass(frozen=True)
+class FoundFlights:
+    """Points of each flight, (n, 2) y and z - m, and whether the file told their unit."""
+
+    points: list[Array]
+    has_units: bool
+
+
+@dataclass(frozen=True)
+class ColumnLabel:
+    """Name in lower case, number of the flight or an empty text, and unit or None."""
+
+    name: str
+    number: str
+    unit: str | None
+
+
+def flights_of_text(content: bytes, where: str) -> FoundFlights:
+    """Flights of a table in text.
+
+    Raises:
+        InputError: no table of points y, z; names line or column.
+    """
+    text = text_of(content).splitlines()
+    lines = [(k, line.strip("\r\n")) for k, line in enumerate(text, 1) if line.strip(" ;,\t\r")]
+    header = next((k for k, (_, line) in enumerate(lines) if not re.search(r"[^\W\dEe_]", _without_nan(line))), None)
+    if header is None:
+        raise InputError(where, "found no line of numbers", f"allowed: at least three points, {_ADVICE}")
+    names, body = [line for _, line in lines[:header]][-2:], lines[header:]
+    split, table = _cells(body, where)
+    labels = _columns(names, split, table.shape[1], where)
+    if labels is None:
+        labels = _unnamed(table, where)
+    return _flights(labels, table, where)
+
+
+def flights_of_mat(content: bytes, where: str) -> FoundFlights:
+    """Flights of a MAT file: y and z as vectors or (n, flights) matrices, y1, z1, ..., or matrices of two columns.
+
+    Raises:
+        InputError: a damaged file, or none of these in it.
+    """
+    variables = load(content, where)
+    arrays = {name: value for name, value in variables.items() if not name.startswith("__")}
+    pairs = _pairs({name.lower(): np.asarray(value) for name, value in arrays.items()})
+    points = [_complete(np.stack([y, z], axis=1)) for y, z in pairs]
+    if not points:
+        points = [_complete(matrix) for value in arrays.values() for matrix in _matrices(value)]
+    return FoundFlights(_checked(points, where), has_units=False)
+
+
+def _without_nan(line: str) -> str:
+    return re.sub(r"\bnan\b", "", line, flags=re.IGNORECASE)
+
+
+def _cells(lines: Sequence[tuple[int, str]], where: str) -> tuple[Callable[[str], Cells], Array]:
+    """How cells are separated, and their values, (n, columns); NaN where a cell is empty.
+
+    Every layout is tried; that which reads all lines alike is the table's.
+    """
+    complaint: tuple[int, str] | None = None
+    for split, decimal in _LAYOUTS:
+        rows = [[cell.strip().replace(decimal, ".") for cell in split(line)] for _, line in lines]
+        width = max(len(row) for row in rows)
+        if width < 2:
+            continue
+        wrong = next((k for k, row in enumerate(rows) if not all(c == "" or _NUMBER.fullmatch(c) for c in row)), None)
+        ragged = next((k for k, row in enumerate(rows) if len(row) != width), None)
+        if wrong is None and ragged is None:
+            return split, np.array([[float(cell) if cell else np.nan for cell in row] for row in rows])
+        k = wrong if wrong is not None else ragged if ragged is not None else 0
+        if complaint is None or k > complaint[0]:
+            complaint = k, "a cell that is no number" if wrong is not None else f"other than {width} cells"
+    if complaint is None:
+        raise InputError(where, "found one column", f"allowed: {_ADVICE}")
+    number, text = lines[complaint[0]]
+    raise InputError(f"{where}: line {number}", f"found {complaint[1]} ({text[:40]!r})", f"allowed: {_ADVICE}")
+
+
+def _columns(names: Sequence[str], split: Callable[[str], Cells], width: int, where: str) -> list[ColumnLabel] | None:
+    """Columns by the line of names and a line of units under it; None without names."""
+    found: list[list[ColumnLabel]] = []
+    for line in names:
+        cells = split(line)
+        cells = cells if len(cells) == width else [cell for cell in _BETWEEN_NAMES.split(line.strip()) if cell]
+        matches = [_LABEL.fullmatch(cell) for cell in cells]
+        if len(cells) == width:
+            parsed = [
+                ColumnLabel(m[1].lower(), m[2], (m[3] or "").strip() or None) if m else ColumnLabel("", "", None)
+                for m in matches
+            ]
+            found.append(parsed)
+    axes = [columns for columns in found if {"y", "z"} <= {column.name for column in columns}]
+    if not axes:
+        if names and width > 2:
+            raise InputError(where, f"found no columns y and z ({names[-1][:60]!r})", f"allowed: {_ADVICE}")
+        return None
+    labels = axes[-1]
+    if found[-1] is not labels:  # a row of units
+        units = [cell.strip(" []()") for cell in split(names[-1])]
+        labels = [ColumnLabel(c.name, c.number, c.unit or unit) for c, unit in zip(labels, units, strict=True)]
+    return labels
+
+
+def _unnamed(table: Array, where: str) -> list[ColumnLabel]:
+    """Two columns are y and z, of three the first is a time that runs evenly."""
+    steps = np.diff(table[:, 0])
+    even = steps.size > 0 and steps.min() > 0.0 and np.ptp(steps) <= 0.02 * steps.max()
+    if table.shape[1] == 2:
+        return [ColumnLabel(name, "", None) for name in "yz"]
+    if table.shape[1] == 3 and even:
+        return [ColumnLabel(name, "", None) for name in "tyz"]
+    raise InputError(where, f"found {table.shape[1]} columns without names", f"allowed: {_ADVICE}")
+
+
+def _flights(columns: Sequence[ColumnLabel], table: Array, where: str) -> FoundFlights:
+    values = {(c.name, c.number): (c, table[:, k]) for k, c in enumerate(columns) if c.name in ("y", "z")}
+    expected = sum(column.name in ("y", "z") for column in columns)
+    numbers = list(dict.fromkeys(number for _, number in values))
+    lonely = [number for number in numbers if ("y", number) not in values or ("z", number) not in values]
+    if len(values) != expected or lonely:
+        raise InputError(
+            where, "found columns y and z that do not pair", "allowed: y1,z1,y2,z2, ... or one y and one z"
+        )
+    points = []
+    for number in numbers:
+        sides = [_metres(*values[name, number], where) for name in "yz"]
+        points.append(np.stack(sides, axis=1))
+    parts = _by_flight_number(columns, table, points)
+    units = all(column.unit is not None for column, _ in values.values())
+    return FoundFlights(_checked([_complete(part) for part in parts], where), units)
+
+
+def _by_flight_number(columns: Sequence[ColumnLabel], table: Array, points: list[Array]) -> list[Array]:
+    """A column that numbers the flights parts those below each other."""
+    numbering = [k for k, column in enumerate(columns) if column.name in _FLIGHT_NUMBERS]
+    if not numbering or len(points) != 1:
+        return points
+    numbers = table[:, numbering[0]]
+    return [points[0][numbers == number] for number in dict.fromkeys(numbers[np.isfinite(numbers)].tolist())]
+
+
+def _metres(column: ColumnLabel, values: Array, where: str) -> Array:
+    if column.unit is None:
+        return values
+    unit = spelled_for_pint(column.unit)
+    try:
+        known = dimensionality(unit) == "[length]"
+    except ValueError:
+        known = False
+    if not known:
+        raise InputError(f"{where}: {column.name}", f"found the unit '{column.unit}'", "allowed: a unit of length")
+    return convert(values, unit, "m")
+
+
+def _pairs(arrays: Mapping[str, np.ndarray]) -> list[tuple[Array, Array]]:
+    """y and z of each flight from variables of these names, numbered or not, one flight a column."""
+    pairs = []
+    for name, y in arrays.items():
+        match = re.fullmatch(r"y_?(\d*)", name)
+        z = arrays.get("z" + name[1:]) if match else None
+        if z is None or z.shape != y.shape or y.dtype.kind not in "fiu" or not 1 <= y.ndim <= 2:
+            continue
+        columns = (y, z) if y.ndim == 2 else (y[:, None], z[:, None])
+        pairs += list(zip(*(np.asarray(side, dtype=np.float64).T for side in columns), strict=True))
+    return pairs
+
+
+def _matrices(value: object) -> list[Array]:
+    """Matrices of two columns y, z, or three with a time first; in cells, structs or (flights, n, 2) arrays too."""
+    if isinstance(value, dict):
+        sides = {name.lower(): np.asarray(side) for name, side in value.items()}
+        pairs = _pairs(sides)
+        return [np.stack(pair, axis=1) for pair in pairs] or [m for side in value.values() for m in _matrices(side)]
+    if isinstance(value, list) or (isinstance(value, np.ndarray) and (value.dtype == object or value.ndim == 3)):
+        return [matrix for part in value for matrix in _matrices(part)]
+    if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiu" or value.ndim != 2:
+        return []
+    matrix = value if value.shape[1] in (2, 3) else value.T
+    if matrix.shape[1] == 2:
+        return [matrix.astype(np.float64)]
+    return [matrix[:, 1:].astype(np.float64)] if matrix.shape[1] == 3 and np.all(np.diff(matrix[:, 0]) > 0) else []
+
+
+def _complete(points: Array) -> Array:
+    """Points that have both."""
+    return points[np.isfinite(points).all(axis=1)]
+
+
+def _checked(points: list[Array], where: str) -> list[Array]:
+    for number, flight in enumerate(points, 1):
+        if len(flight) < LEAST:
+            name = f"{where}: flight {number}" if len(points) > 1 else where
+            raise InputError(name, f"found {len(flight)} points", f"allowed: at least three, {_ADVICE}")
+    if not points:
+        raise InputError(where, "found no points", f"allowed: at least three, {_ADVICE}")
+    return points

@@ -1,4 +1,4 @@
-"""A notebook for each task: its text, cells to fill in, and checks that do not tell the solution.
+"""A notebook for each task: its text, cells to fill in, and checks of what a result must fulfil, without telling it.
 
 Each is written from a text in `data/lab/notebooks`, Markdown with three kinds of code: `python given` is there,
 `python check` checks, and `python yours NAME` is to be filled in.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -64,3 +64,27 @@ def _cells(text: str, filled: Mapping[str, str]) -> Iterator[dict[str, Any]]:
 def _markdown(text: str) -> Iterator[dict[str, Any]]:
     if text.strip():
         yield {"cell_type": "markdown", "source": text.strip()}
+
+
+def check(what: str, holds: Callable[..., object], *values: object) -> bool | None:
+    """Print whether a condition holds.
+
+    Args:
+        what: must hold, in words.
+        holds: asked with the values.
+        values: of the student; `...` where a cell is not filled in yet.
+
+    Returns:
+        Whether it holds; None while a value is open.
+    """
+    if any(value is ... for value in values):
+        print(f"open: {what}")
+        return None
+    try:
+        found = bool(holds(*values))
+    except (TypeError, ValueError, IndexError, AttributeError) as error:
+        # a value of another kind or shape than was asked for: the condition does not hold, and why is said
+        print(f"not yet: {what} ({type(error).__name__}: {error})")
+        return False
+    print(f"{'ok' if found else 'not yet'}: {what}")
+    return found
