@@ -164,7 +164,8 @@ def _reasons(summary: Summary) -> dict[str, list[str]]:
         why = f"{words(one.history.quantity)} {_share(one)} since {one.since}"
         reasons.setdefault(one.history.axis, []).append(why)
     for one in summary.concerns:
-        why = f"{words(one.kind)} ({one.recordings} of {one.of} recordings): {short(one.reason, REASON)}"
+        which = f"{one.recordings} of {one.of} recordings, the latest {short(one.file, NAME)}"
+        why = f"{words(one.kind)} ({which}): {short(one.reason, REASON)}"
         reasons.setdefault(one.axis, []).append(why)
     return reasons
 

@@ -13,8 +13,8 @@ SPEED, OMEGA = 20.0, 2.0 * np.pi * 0.5
 
 
 def recorded(duration, glitch=0.0):
-    time = 1e-3 * np.arange(round(1000.0 * duration) + 1)
-    speed = SPEED * np.sin(OMEGA * time)
+    time = 7.0 + 1e-3 * np.arange(round(1000.0 * duration) + 1)
+    speed = SPEED * np.sin(OMEGA * (time - time[0]))
     speed[100] += glitch
     signals = {"velocity": speed, "current": np.full(time.size, 0.5)}
     return Trace(time, signals, {"velocity": "rad/s", "current": "A"}, "a sine")

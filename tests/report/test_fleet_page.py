@@ -64,7 +64,7 @@ def test_who_needs_a_person_first_comes_first_with_the_reason():
     assert [row[0] for row in people.rows] == ["axis 4", "axis 0"]
     assert people.marked == (0,)
     assert "since 2026-03-07" in people.rows[0][1]
-    assert people.rows[1][1] == "refused (1 of 10 recordings): too short"
+    assert people.rows[1][1] == "refused (1 of 10 recordings, the latest 3.csv): too short"
     assert next(iter(page.answers.values())).startswith("axis 4: ")
 
 
