@@ -146,3 +146,16 @@ def test_a_damaged_graph_is_no_page(bench, tmp_path):
     (tmp_path / "out" / DATA).write_text(text, encoding="utf-8")
     status, _, err = bench("report", "out")
     assert (status, "step" in err) == (2, True)
+
+
+def test_a_page_of_an_earlier_version_is_read(bench, tmp_path):
+    """What its parts came to have since then has a neutral value."""
+    write_document(tmp_path / "out", page_full_of("x"))
+    since = {"y_label": "x", "log": False}
+    content = json.loads((tmp_path / "out" / DATA).read_text(encoding="utf-8"))
+    for block in content["sections"][0]["blocks"]:
+        for part in (block, *(block.get("panels", ()) if block["kind"] == "chart" else ())):
+            for key in since if part is not block or block["kind"] == "intervals" else ():
+                part.pop(key, None)
+    (tmp_path / "out" / DATA).write_text(json.dumps(content), encoding="utf-8")
+    assert bench("report", "out")[0] == 0
