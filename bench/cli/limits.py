@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.cli.common import AxisOption, RigOption, list_files, say, write_picture
+from bench.cli.common import AxisOption, RigOption, tell, write_picture
 
 
 def limits(
@@ -17,13 +17,11 @@ def limits(
     axis_name: AxisOption = None,
 ) -> None:
     """Draw a recording into its motor's speed-torque diagram; say how much reserve it leaves."""
-    from bench.course.operating_range import trace_in_range
-    from bench.report.document import Picture
+    from bench.report.limits import limits as document_of
     from bench.rig.rig import load_rig
     from bench.trace.read import read
 
     axis = load_rig(rig).on_axis(axis_name)
-    found = trace_in_range(read(trace, axis.trace), axis)
-    write_picture(out, Picture(name="limits", title="", rows=(found.charts,)))
-    say("\n".join(found.findings))
-    list_files([out])
+    document = document_of(read(trace, axis.trace), axis)
+    write_picture(out, document.pictures[0])
+    tell(document, [out])

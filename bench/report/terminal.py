@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from rich import box
-from rich.console import Console, ConsoleRenderable, RenderableType, RichCast
+from rich.console import Console, RenderableType
 from rich.padding import Padding
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table as Grid
@@ -56,7 +56,8 @@ def show(document: Document) -> None:
     answers = Grid(box=None, show_header=False, pad_edge=False)
     for question, answer in document.answers.items():
         answers.add_row(question, answer)
-    shown.print(answers)
+    if document.answers:
+        shown.print(answers)
     for section in document.sections:
         parts = () if section.detail else tuple(filter(None, map(rendered, section.blocks)))
         if parts:
@@ -74,8 +75,6 @@ def rendered(part: object) -> RenderableType | None:
             return Text(writable(part.text))
         case Points():
             return Text(writable("\n".join(f"- {item}" for item in part.items)))
-        case RichCast() | ConsoleRenderable():
-            return part
         case _:
             return None
 

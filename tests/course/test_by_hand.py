@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.course import operating_range, t06_inertia, t09_least_squares, t10_peak_torque
+from bench.course import t06_inertia, t09_least_squares, t10_peak_torque
 from bench.course.axis import Sources, lab_rig
 from bench.course.recordings import LabRecordings, LabRun
 from bench.errors import UndeterminedError
 from bench.fit.lab import backward_difference
+from bench.report.limits import in_range
 from tests.course.drawn import curves
 
 RPM = 60.0 / (2.0 * math.pi)
@@ -117,16 +118,14 @@ def test_10_a_row_of_the_table_is_the_median_within_five_radians_a_second_on_the
 def test_range_of_a_motion_at_one_speed():
     """2 N*m at 1000 rpm, driving and braking: 1.5 N*m to the peak either way, and drawn below zero where it brakes."""
     velocity, torque = np.full(4, 1000.0 / RPM), np.array([2.0, -2.0, 2.0, -1.0])
-    task = operating_range.in_range(lab_rig(), velocity, torque, "by hand")
-    assert task["peak reserve, 230 V"].value == pytest.approx(1.5)
-    assert task["RMS torque"].value == pytest.approx(math.sqrt(13.0 / 4.0))
-    motion, heat, least = curves(task)[:3]
-    assert motion.y.tolist() == [2.0, -2.0, 2.0, -1.0]
-    assert motion.x == pytest.approx(1000.0)
-    assert heat.x == pytest.approx(1000.0)
-    assert least.y.tolist() == [2.0]
-    assert task.charts[0].panels[0].series[2].high == pytest.approx((3.5,))
-    task = operating_range.in_range(lab_rig(), -velocity, torque, "by hand")
-    assert curves(task)[0].y.tolist() == [-2.0, 2.0, -2.0, 1.0]
-    assert curves(task)[2].y.tolist() == [-2.0]
-    assert task.charts[0].panels[0].series[2].high == pytest.approx((-3.5,))
+    found = in_range(lab_rig(), velocity, torque, "by hand")
+    assert found.numbers["peak reserve, 230 V"] == (pytest.approx(1.5), "N·m")
+    assert found.numbers["RMS torque"] == (pytest.approx(math.sqrt(13.0 / 4.0)), "N·m")
+    motion, heat, least = found.chart.panels[0].series[:3]
+    assert motion.y == (2.0, -2.0, 2.0, -1.0)
+    assert motion.x == pytest.approx([1000.0] * 4)
+    assert heat.x == pytest.approx([1000.0])
+    assert (least.y, least.high) == ((2.0,), pytest.approx((3.5,)))
+    motion, _, least = in_range(lab_rig(), -velocity, torque, "by hand").chart.panels[0].series[:3]
+    assert motion.y == (-2.0, 2.0, -2.0, 1.0)
+    assert (least.y, least.high) == ((-2.0,), pytest.approx((-3.5,)))
