@@ -10,124 +10,119 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.gate.parts import speed_of, stretches
-from bench.rig.rig import Rig
-from bench.trace.known_torque import less_known
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
-#: Lengths of windows tried - samples -; the one that explains most is taken.
-LENGTHS = (4, 16, 64, 256)
 #: Least number of windows.
 LEAST = 60
 #: Number of columns of motion; those of position follow.
 MOTION = 4
-EFFORTS = ("torque", "force", "current", "voltage")
+#: Share of the largest singular value below which columns count as dependent.
+DEPENDENT = 1e-8
 
 
-@dataclass(frozen=True)
-class Balance:
+@dataclass(frozen=True, eq=False)
+class Balanced:
     """Least squares over windows of one length.
 
     Attributes:
+        sums: of the stretches.
         length: samples a window.
         by_motion, by_position: share of the effort's variance that motion explains, and motion with position.
         theta: J, K_w, K_0, M_0 of the motion with position.
         power: mean of effort times speed.
-        audible: standard deviation of the windows' effort over that of its white noise.
         columns: (windows, 7).
         effort: mean over each window (windows,).
         starts: first sample of each window (windows,).
     """
 
+    sums: Sequence[Sums]
     length: int
     by_motion: float
     by_position: float
     theta: Array
     power: float
-    audible: float
     columns: Array
     effort: Array
     starts: NDArray[np.intp]
 
+    @property
+    def inertia(self) -> float:
+        """J - kg*m**2 (kg), or what the effort's unit makes of it."""
+        return float(self.theta[0])
 
-def effort_of(trace: Trace, rig: Rig | None) -> tuple[Array, str] | None:
-    """Effort and its name: by the rig, else the first signal of EFFORTS; None without one."""
-    names = [name for name in EFFORTS if name in trace]
-    if not names:
-        return None
-    if rig is None:
-        return trace[names[0]], names[0]
-    effort = less_known(trace, rig.effort(trace)[0])
-    direct = rig.axis_kind.effort
-    return effort, direct if direct in trace else next(name for name in names if name not in ("torque", "force"))
+    @property
+    def coulomb(self) -> float:
+        """K_0 - the effort's unit."""
+        return float(self.theta[2])
+
+    @cached_property
+    def audible(self) -> float:
+        """Standard deviation of the windows' effort over that of its white noise."""
+        noises = [white_noise(part.effort) for part in self.sums if part.windows_of(self.length).size]
+        noise = float(np.median(noises)) / np.sqrt(self.length)
+        return float(np.std(self.effort)) / noise if noise > 0.0 else np.inf
 
 
-def balance(trace: Trace, effort: Array, lengths: Sequence[int] = LENGTHS) -> Balance | None:
-    """The balance over windows of the length that explains most; None if the recording is too short.
+def balanced(sums: Sequence[Sums], length: int) -> Balanced | None:
+    """The balance over windows of one length - samples; None if the recording is too short.
 
-    Args:
-        trace: the recording.
-        effort: over it (n,).
-        lengths: of windows to try - samples.
+    Motion alone and motion with position are solved from one triangle of their columns.
     """
-    parts = [_Summed.of(trace, effort, part) for part in stretches(trace, 3 * min(lengths))]
-    found = [one for length in lengths if (one := _balance(parts, length)) is not None]
-    return max(found, key=lambda one: one.by_position) if found else None
-
-
-def _balance(parts: Sequence[_Summed], length: int) -> Balance | None:
-    windows = [found for part in parts if (found := part.windows(length)) is not None]
+    windows = [found for part in sums if (found := part.windows(length)) is not None]
     if not windows:
         return None
     columns, mean, starts = (np.concatenate(column) for column in zip(*windows, strict=True))
     varies = float(np.var(mean))
     if mean.size < LEAST or varies == 0.0:
         return None
-    shares, thetas = zip(*(_fitted(columns[:, :count], mean) for count in (MOTION, columns.shape[1])), strict=True)
-    noises = [part.noise for part in parts if part.windows_of(length).size]
-    noise = float(np.median(noises)) / np.sqrt(length)
-    audible = float(np.sqrt(varies)) / noise if noise > 0.0 else np.inf
-    power = float(np.mean(mean * columns[:, 1]))
-    return Balance(length, shares[0], shares[1], thetas[1][:MOTION], power, audible, columns, mean, starts)
-
-
-def _fitted(columns: Array, effort: Array) -> tuple[float, Array]:
-    """Share of variance explained, and coefficients."""
     scale = np.linalg.norm(columns, axis=0)
     scale[scale == 0.0] = 1.0
-    theta = np.linalg.lstsq(columns / scale, effort, rcond=1e-8)[0] / scale
-    return 1.0 - float(np.mean((effort - columns @ theta) ** 2)) / float(np.var(effort)), theta
+    triangle = np.asarray(np.linalg.qr(np.column_stack([columns / scale, mean]), mode="r"))
+    shares, theta = [], np.zeros(MOTION)
+    for count in (MOTION, columns.shape[1]):
+        theta = np.linalg.lstsq(triangle[:, :count], triangle[:, -1], rcond=DEPENDENT)[0]
+        left = triangle[:, -1] - triangle[:, :count] @ theta
+        shares.append(1.0 - float(left @ left) / mean.size / varies)
+    theta, power = (theta / scale)[:MOTION], float(np.mean(mean * columns[:, 1]))
+    return Balanced(sums, length, shares[0], shares[1], theta, power, columns, mean, starts)
 
 
-@dataclass(frozen=True)
-class _Summed:
+@dataclass(frozen=True, eq=False)
+class Sums:
     """Running sums over a stretch, whose differences give means over windows of any length.
 
     Attributes:
         start: its first sample.
         period: of the samples - s.
+        effort: (n,).
         gone: sum of the speed before each sample, and of all (n + 1,).
         sums: by the trapezoidal rule: speed, its sign, position and its sine and cosine, effort (6, n).
-        noise: standard deviation of the effort's white noise.
     """
 
     start: int
     period: float
+    effort: Array
     gone: Array
     sums: Array
-    noise: float
 
     @classmethod
-    def of(cls, trace: Trace, effort: Array, part: slice) -> _Summed:
-        """The sums of a stretch."""
-        speed, period = speed_of(trace, part), trace.sample_period
-        assert speed is not None
+    def of(cls, trace: Trace, speed: Array, effort: Array, part: slice) -> Sums:
+        """The sums of a stretch.
+
+        Args:
+            trace: the recording.
+            speed: over the stretch - rad/s (m/s) - (n,).
+            effort: over the recording.
+            part: the stretch.
+        """
+        period = trace.sample_period
         travelled = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2.0)]) * period
         position = trace["position"][part] if "position" in trace else travelled
         known = (speed, np.sign(speed), position - position.mean(), np.sin(position), np.cos(position), effort[part])
@@ -135,7 +130,7 @@ class _Summed:
         sums = np.zeros_like(signals)
         np.cumsum((signals[:, 1:] + signals[:, :-1]) / 2.0, axis=1, out=sums[:, 1:])
         gone = np.concatenate([[0.0], np.cumsum(speed)])
-        return cls(part.start, period, gone, sums, white_noise(effort[part]))
+        return cls(part.start, period, effort[part], gone, sums)
 
     def windows_of(self, length: int) -> NDArray[np.intp]:
         """First samples of half-overlapping windows, none in a stretch of less than three."""

@@ -2,39 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bench.axis_kind import INERTIA
 from bench.errors import BenchError, InputError, UndeterminedError
-from bench.gate import constants, effort, losses, signals, timing, velocity, wraps
+from bench.gate import effort, losses, signals, timing, velocity, wraps
 from bench.gate.check import STATUSES, Check
+from bench.gate.seen import Look, Repaired, Seen
 from bench.rig.rig import Rig
 from bench.trace.plausible import require_plausible
 from bench.trace.trace import Trace
 
-Looks = tuple[Callable[[Trace, Rig | None], tuple[Trace, Check]], ...]
-
 #: Checks that repair come before those that only judge.
-CHECKS: Looks = (
+CHECKS: tuple[Look, ...] = (
     signals.moves,
     timing.regular,
-    wraps.check,
-    velocity.check,
-    losses.check,
+    wraps.runs_on,
+    velocity.is_derivative,
+    losses.none_lost,
     timing.rate,
     signals.clips,
     signals.resolution,
-    effort.check,
-    constants.check,
+    effort.follows_motion,
+    effort.constants,
 )
 #: Checks that do not apply at one steady speed: signals may stay the same, and effort follows no motion.
-UNSTEADY = (signals.moves, losses.check, timing.rate, signals.resolution, effort.check)
-STEADY = tuple(check for check in CHECKS if check not in UNSTEADY)
+UNSTEADY = (signals.moves, losses.none_lost, timing.rate, signals.resolution, effort.follows_motion)
+STEADY = tuple(look for look in CHECKS if look not in UNSTEADY)
 #: Checks of a later part of a recording: what can go wrong there, without what holds for all of it.
-PARTS = tuple(
-    check for check in CHECKS if check not in (timing.rate, signals.resolution, effort.check, constants.check)
-)
+WHOLE = (timing.rate, signals.resolution, effort.follows_motion, effort.constants)
+PARTS = tuple(look for look in CHECKS if look not in WHOLE)
 
 
 class UnanswerableError(UndeterminedError):
@@ -60,7 +58,7 @@ class Gated:
     checks: tuple[Check, ...]
 
 
-def gate(trace: Trace, rig: Rig | None = None, looks: Looks = CHECKS) -> Gated:
+def gate(trace: Trace, rig: Rig | None = None, looks: Sequence[Look] = CHECKS) -> Gated:
     """Run checks on a recording.
 
     Args:
@@ -72,14 +70,16 @@ def gate(trace: Trace, rig: Rig | None = None, looks: Looks = CHECKS) -> Gated:
         InputError: rig and recording do not fit together, or a value that no axis can have.
     """
     require_plausible(trace)
-    found = []
+    seen, checks = Seen(trace, rig), list[Check]()
     for look in looks:
-        trace, one = look(trace, rig)
-        found.append(one)
-    return Gated(trace, tuple(found))
+        found = look(seen)
+        if isinstance(found, Repaired):
+            seen = Seen(found.trace, rig)
+        checks.append(found.check if isinstance(found, Repaired) else found)
+    return Gated(seen.trace, tuple(checks))
 
 
-def passed(trace: Trace, rig: Rig, looks: Looks = CHECKS) -> Gated:
+def passed(trace: Trace, rig: Rig, looks: Sequence[Look] = CHECKS) -> Gated:
     """The gated recording.
 
     Raises:

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.gate.check import Check, absent
-from bench.gate.parts import resolution_of
-from bench.rig.rig import Rig
+from bench.gate.seen import Repaired, Seen, resolution_of
 from bench.trace.time_base import HOLE, counted, interpolate
 from bench.trace.trace import Trace
 
@@ -74,10 +73,11 @@ class Damage:
         return int(np.maximum(self.missing, 0).sum() - in_time.sum())
 
 
-def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
+def none_lost(seen: Seen) -> Check | Repaired:
     """The recording with lost and repeated samples put right."""
+    trace = seen.trace
     if len(trace) < SHORTEST or not {"position", "velocity"} & set(trace.signals):
-        return trace, absent(NAME, "too short a recording to tell, or without motion", ALLOWED)
+        return absent(NAME, "too short a recording to tell, or without motion", ALLOWED)
     right, lost, stale = trace, 0, 0
     most = (MOST if "velocity" in trace else MOST_BLIND) * len(trace)
     for _ in range(PASSES):
@@ -87,11 +87,11 @@ def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
             break
         right = repaired(right, damage)
     if not lost and not stale:
-        return trace, Check(NAME, "pass", "none found", ALLOWED)
+        return Check(NAME, "pass", "none found", ALLOWED)
     found = f"{counted(lost, 'sample')} lost, {stale} repeated of {len(trace)}, though the time runs on evenly"
     if lost + stale > most:
-        return trace, Check(NAME, "fail", found, ALLOWED, ADVICE)
-    return right, Check(NAME, "warn", f"{found}; put right", ALLOWED, ADVICE)
+        return Check(NAME, "fail", found, ALLOWED, ADVICE)
+    return Repaired(Check(NAME, "warn", f"{found}; put right", ALLOWED, ADVICE), right)
 
 
 def damage_of(trace: Trace) -> Damage:

@@ -8,10 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import rms
-from bench.gate.balance import EFFORTS, balance, effort_of
 from bench.gate.check import Check, absent
-from bench.gate.parts import resolution_of, speed_of
-from bench.rig.rig import Rig
+from bench.gate.seen import EFFORTS, Seen, resolution_of
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
@@ -45,8 +43,9 @@ ALLOWED_CLIPS = "no signal that stands at the end of its range"
 ALLOWED_STEPS = f"{FINE:g} steps within the spread of motion and of effort"
 
 
-def moves(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
-    """Whether motion and effort change at all, and all the time; the recording stays as it is."""
+def moves(seen: Seen) -> Check:
+    """Whether motion and effort change at all, and all the time."""
+    trace = seen.trace
     motion = [name for name in MOTION if name in trace]
     efforts = [name for name in EFFORTS if name in trace]
     still = [names for names in (motion, efforts) if names and not any(np.ptp(trace[name]) > 0.0 for name in names)]
@@ -54,21 +53,20 @@ def moves(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
         found = " and ".join(" and ".join(names) for names in still) + " without any change"
         advice = "record while the axis moves, and the signal that the motor's torque follows"
         # at one speed an effort may be one number; what that leaves open, the fit says better
-        status = "warn" if efforts in still and _steady(trace) else "fail"
-        return trace, Check(MOVES, status, found, ALLOWED_MOVES, advice, unanswerable=True)
+        status = "warn" if efforts in still and _steady(seen) else "fail"
+        return Check(MOVES, status, found, ALLOWED_MOVES, advice, unanswerable=True)
     frozen = {name: count for name in (*motion, *efforts) if (count := _frozen(trace, name))}
     if not frozen:
-        return trace, Check(MOVES, "pass", ", ".join((*motion, *efforts)), ALLOWED_MOVES)
+        return Check(MOVES, "pass", ", ".join((*motion, *efforts)), ALLOWED_MOVES)
     name = max(frozen, key=lambda one: frozen[one])
     found = f"{name} stands still for {frozen[name] * trace.sample_period:.3g} s while the axis moves"
     status = "fail" if frozen[name] > FROZEN * len(trace) else "warn"
-    return trace, Check(MOVES, status, found, ALLOWED_MOVES, "check the sensor, or cut the recording there")
+    return Check(MOVES, status, found, ALLOWED_MOVES, "check the sensor, or cut the recording there")
 
 
-def _steady(trace: Trace) -> bool:
+def _steady(seen: Seen) -> bool:
     """Whether the axis keeps one speed."""
-    parts = (speed_of(trace, part) for part in trace.segments if part.stop - part.start > 1)
-    speeds = [speed for speed in parts if speed is not None]
+    speeds = [seen.speed(part) for part in seen.trace.segments if part.stop - part.start > 1 and seen.tells_motion]
     every = np.concatenate(speeds) if speeds else np.zeros(1)
     return float(np.std(every)) <= STEADY * rms(every)
 
@@ -102,22 +100,20 @@ def _runs(standing: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.int
     return edges[::2], edges[1::2] - edges[::2]
 
 
-def clips(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
-    """Whether a signal stands at the end of its range; the recording stays as it is."""
-    faults: list[Check] = []
-    names = [name for name in ("current", "torque", "force", "velocity") if name in trace]
-    for name in names:
-        for side in (1.0, -1.0):
-            found = _clipped(trace, rig, name, side)
-            if found is not None:
-                faults.append(found)
+def clips(seen: Seen) -> Check:
+    """Whether a signal stands at the end of its range."""
+    names = [name for name in ("current", "torque", "force", "velocity") if name in seen.trace]
     if not names:
-        return trace, absent(CLIPS, "no speed or effort is recorded", ALLOWED_CLIPS)
+        return absent(CLIPS, "no speed or effort is recorded", ALLOWED_CLIPS)
+    sides = [_clipped(seen, name, side) for name in names for side in (1.0, -1.0)]
+    faults = [found for found in sides if found is not None]
     worst = next((one for one in faults if one.status == "fail"), faults[0] if faults else None)
-    return trace, worst or Check(CLIPS, "pass", "none found", ALLOWED_CLIPS)
+    return worst or Check(CLIPS, "pass", "none found", ALLOWED_CLIPS)
 
 
-def _clipped(trace: Trace, rig: Rig | None, name: str, side: float) -> Check | None:
+def _clipped(seen: Seen, name: str, side: float) -> Check | None:
+    """What is wrong with a signal at the upper end of its range, or at the lower one at a side of -1."""
+    trace, rig = seen.trace, seen.rig
     values = side * trace[name]
     top = float(values.max())
     peak = rig.motor.peak_current if rig is not None and name == "current" else None
@@ -130,15 +126,14 @@ def _clipped(trace: Trace, rig: Rig | None, name: str, side: float) -> Check | N
         return None
     found = f"{share:.1%} of {name} stand at exactly {side * top:.4g} {trace.units[name]}"
     advice = "the end of its range? What lies beyond is lost: record with a wider range, or move more gently"
-    lost = name != "velocity" and _more_demanded(trace, rig, name, standing, side)
+    lost = name != "velocity" and _more_demanded(seen, name, standing, side)
     status = "fail" if lost else "warn"
     return Check(CLIPS, status, found, ALLOWED_CLIPS, advice, unanswerable=True)
 
 
-def _more_demanded(trace: Trace, rig: Rig | None, name: str, standing: NDArray[np.bool_], side: float) -> bool:
+def _more_demanded(seen: Seen, name: str, standing: NDArray[np.bool_], side: float) -> bool:
     """Whether the motion, by what the other windows say of the axis, takes more effort than stands there."""
-    found = effort_of(trace, rig)
-    fitted = balance(trace, found[0], SHORT) if found is not None and found[1] == name else None
+    fitted = seen.balance(SHORT) if seen.effort is not None and seen.effort[1] == name else None
     if fitted is None:
         return False
     counted = np.concatenate([[0], np.cumsum(standing)])
@@ -152,25 +147,26 @@ def _more_demanded(trace: Trace, rig: Rig | None, name: str, standing: NDArray[n
     return float(np.median(beyond)) > BEYOND * float(np.abs(fitted.effort[full]).mean())
 
 
-def resolution(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
-    """Whether motion and effort come in steps fine enough; the recording stays as it is."""
+def resolution(seen: Seen) -> Check:
+    """Whether motion and effort come in steps fine enough."""
+    trace = seen.trace
     if trace.time_base is not None and trace.time_base.resampled:
-        return trace, absent(RESOLUTION, "interpolated onto regular times, which hides its steps", ALLOWED_STEPS)
+        return absent(RESOLUTION, "interpolated onto regular times, which hides its steps", ALLOWED_STEPS)
     if len(trace) < LEAST:
-        return trace, absent(RESOLUTION, f"only {len(trace)} samples", ALLOWED_STEPS)
+        return absent(RESOLUTION, f"only {len(trace)} samples", ALLOWED_STEPS)
     steps = {}
     for what, names in (("motion", MOTION), ("effort", EFFORTS)):
         fine = [_steps(trace, name) for name in names if name in trace and np.ptp(trace[name]) > 0.0]
         if fine:
             steps[what] = max(fine)
     if not steps:
-        return trace, absent(RESOLUTION, "nothing moves", ALLOWED_STEPS)
+        return absent(RESOLUTION, "nothing moves", ALLOWED_STEPS)
     found = ", ".join(f"{count:.3g} steps within the spread of the {what}" for what, count in steps.items())
     worst = min(steps.values())
     advice = "record in finer steps, or a larger motion"
     if worst < COARSE:
-        return trace, Check(RESOLUTION, "fail", found, ALLOWED_STEPS, advice, unanswerable=True)
-    return trace, Check(RESOLUTION, "warn" if worst < FINE else "pass", found, ALLOWED_STEPS, advice * (worst < FINE))
+        return Check(RESOLUTION, "fail", found, ALLOWED_STEPS, advice, unanswerable=True)
+    return Check(RESOLUTION, "warn" if worst < FINE else "pass", found, ALLOWED_STEPS, advice * (worst < FINE))
 
 
 def _steps(trace: Trace, name: str) -> float:

@@ -8,10 +8,8 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
-from bench.gate.balance import balance, effort_of
 from bench.gate.check import Check, absent
-from bench.gate.parts import speed_of, stretches
-from bench.rig.rig import Rig
+from bench.gate.seen import Seen
 from bench.trace.time_base import HOLE, TimeBase
 from bench.trace.trace import Trace
 
@@ -40,20 +38,21 @@ ALLOWED_TIME = "steps of one sample period, but for holes"
 ALLOWED_RATE = f"{LOWEST:g} Hz to {HIGHEST / 1e3:g} kHz, and several samples while the speed changes"
 
 
-def regular(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
-    """Whether the sample times are regular; the recording stays as it is."""
+def regular(seen: Seen) -> Check:
+    """Whether the sample times are regular."""
+    trace = seen.trace
     base = trace.time_base or _base_of(trace)
     holes = f"{len(base.holes)} holes" if base.holes else "no hole"
     found = f"steps of {base.sample_period:.4g} s within {base.jitter:.1%}, {holes}"
     advice = "record with the drive's own clock"
     if base.interpolated > PLACED * len(trace):
-        return trace, Check(REGULAR, "fail", f"{found}; {base.interpolated} samples missing", ALLOWED_TIME, advice)
+        return Check(REGULAR, "fail", f"{found}; {base.interpolated} samples missing", ALLOWED_TIME, advice)
     if not base.resampled and base.jitter > IRREGULAR:
         allowed = f"{ALLOWED_TIME} (Trace.from_arrays and read bring others to them)"
-        return trace, Check(REGULAR, "fail", found, allowed, advice)
+        return Check(REGULAR, "fail", found, allowed, advice)
     if base.resampled and base.jitter > JITTER:
-        return trace, Check(REGULAR, "warn", f"{found}; interpolated onto regular times", ALLOWED_TIME, advice)
-    return trace, Check(REGULAR, "pass", found, ALLOWED_TIME)
+        return Check(REGULAR, "warn", f"{found}; interpolated onto regular times", ALLOWED_TIME, advice)
+    return Check(REGULAR, "pass", found, ALLOWED_TIME)
 
 
 def _base_of(trace: Trace) -> TimeBase:
@@ -65,47 +64,43 @@ def _base_of(trace: Trace) -> TimeBase:
     return TimeBase(trace.sample_period, jitter, tuple((float(trace.time[k]), float(step[k])) for k in at))
 
 
-def rate(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
-    """Whether the rate can be right, and follows the motion; the recording stays as it is."""
+def rate(seen: Seen) -> Check:
+    """Whether the rate can be right, and follows the motion."""
+    trace = seen.trace
     hertz = 1.0 / trace.sample_period
     told = f"{hertz:.5g} Hz"
     unit = "check the unit of the time column, or the sample period"
     if not LOWEST <= hertz <= HIGHEST:
-        return trace, Check(RATE, "fail", f"{told}, {_duration(trace)} in all", ALLOWED_RATE, unit)
-    parts = [] if "velocity" not in trace and "position" not in trace else list(stretches(trace, LEAST))
-    speeds = [speed for part in parts if (speed := speed_of(trace, part)) is not None]
+        return Check(RATE, "fail", f"{told}, {trace.time[-1] - trace.time[0]:.4g} s in all", ALLOWED_RATE, unit)
+    parts = seen.stretches(LEAST) if seen.tells_motion else []
+    speeds = [seen.speed(part) for part in parts]
     if not speeds:
-        return trace, absent(RATE, f"{told}; no stretch of {LEAST} samples of motion", ALLOWED_RATE)
+        return absent(RATE, f"{told}; no stretch of {LEAST} samples of motion", ALLOWED_RATE)
     turned = float(np.percentile(np.abs(np.concatenate(speeds)), 95.0)) * trace.sample_period
     if hertz < SLOW and trace.axis_kind.turns and turned > TURNED:
         found = f"{told}, at which the axis turns {turned:.3g} rad from one sample to the next"
-        return trace, Check(RATE, "fail", found, ALLOWED_RATE, f"{unit}, or record faster", unanswerable=True)
-    changes = _missed(trace, rig, parts, speeds)
+        return Check(RATE, "fail", found, ALLOWED_RATE, f"{unit}, or record faster", unanswerable=True)
+    changes = _missed(seen, parts, speeds)
     if changes is not None:
         found = f"{told}, at which speed changes by {changes:.0%} of its spread from one sample to the next"
-        return trace, Check(RATE, "fail", found, ALLOWED_RATE, f"record faster, or {unit}", unanswerable=True)
-    heavy = _heavy(trace, rig)
+        return Check(RATE, "fail", found, ALLOWED_RATE, f"record faster, or {unit}", unanswerable=True)
+    heavy = _heavy(seen)
     if heavy is not None:
         found = f"{told}, which makes {trace.axis_kind.in_words(INERTIA)} {heavy:.3g} times the motor's own"
-        return trace, Check(RATE, "fail", found, f"below {HEAVY:g} times", f"{unit}, of current and of speed")
-    return trace, Check(RATE, "pass", told, ALLOWED_RATE)
+        return Check(RATE, "fail", found, f"below {HEAVY:g} times", f"{unit}, of current and of speed")
+    return Check(RATE, "pass", told, ALLOWED_RATE)
 
 
-def _duration(trace: Trace) -> str:
-    return f"{trace.time[-1] - trace.time[0]:.4g} s"
-
-
-def _missed(trace: Trace, rig: Rig | None, parts: list[slice], speeds: list[Array]) -> float | None:
+def _missed(seen: Seen, parts: list[slice], speeds: list[Array]) -> float | None:
     """Change of speed from sample to sample over its spread, where motion passed between the samples."""
     every = np.concatenate(speeds)
     if float(np.std(every)) <= STEADY * rms(every):
         return None
-    effort = effort_of(trace, rig)
     changes, alike = followed(speeds)
     if changes <= CHANGES or alike >= ALIKE:
         return None
-    if effort is not None:
-        rough, like = followed([effort[0][part] for part in parts])
+    if seen.effort is not None:
+        rough, like = followed([seen.effort[0][part] for part in parts])
         if rough <= CHANGES or like >= ALIKE:
             return None
     return changes
@@ -129,13 +124,14 @@ def _averaged(values: Array, size: int) -> Array:
     return values[: count * size].reshape(count, size).mean(axis=1)
 
 
-def _heavy(trace: Trace, rig: Rig | None) -> float | None:
+def _heavy(seen: Seen) -> float | None:
     """Times the motor's own inertia (mass), where the recording makes it more than any load can be."""
+    rig = seen.rig
     rotor = (rig.motor.rotor_inertia or rig.motor.moving_mass) if rig is not None else None
-    if rig is None or rotor is None or effort_of(trace, rig) is None or rig.effort(trace)[1] != rig.effort_unit:
+    if rig is None or rotor is None or seen.effort is None or rig.effort(seen.trace)[1] != rig.effort_unit:
         return None
-    fitted = balance(trace, rig.effort(trace)[0], (WINDOW,))
+    fitted = seen.balance((WINDOW,))
     if fitted is None or fitted.by_motion < 0.5:
         return None
-    ratio = float(fitted.theta[0]) / rotor
+    ratio = fitted.inertia / rotor
     return ratio if ratio > HEAVY else None

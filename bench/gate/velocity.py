@@ -15,8 +15,7 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.gate.check import Check, absent
-from bench.gate.parts import resolution_of, stretches
-from bench.rig.rig import Rig
+from bench.gate.seen import Seen, resolution_of
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
@@ -34,14 +33,14 @@ STEPS = 5.0
 ALLOWED = f"the same motion in both: 1 within {TOLD:.0%}, a lag aside"
 
 
-def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
-    """Compare the speed of a recording with its position; the recording is unchanged."""
-    if not {"position", "velocity"} <= set(trace.signals):
-        return trace, absent(NAME, "not both position and velocity are recorded", ALLOWED)
-    found = compared(trace)
+def is_derivative(seen: Seen) -> Check:
+    """Compare the speed of a recording with its position."""
+    if not {"position", "velocity"} <= set(seen.trace.signals):
+        return absent(NAME, "not both position and velocity are recorded", ALLOWED)
+    found = compared(seen)
     if found is None:
-        return trace, absent(NAME, f"hardly any motion, or no stretch of {2 * SPAN} samples without a hole", ALLOWED)
-    return trace, judged(found)
+        return absent(NAME, f"hardly any motion, or no stretch of {2 * SPAN} samples without a hole", ALLOWED)
+    return judged(found)
 
 
 @dataclass(frozen=True)
@@ -59,9 +58,10 @@ class SpeedAgainstPosition:
     remainder: float
 
 
-def compared(trace: Trace) -> SpeedAgainstPosition | None:
+def compared(seen: Seen) -> SpeedAgainstPosition | None:
     """Speed and position of a recording compared; None where it is too short or hardly moves."""
-    spans = [_spans(trace, part) for part in stretches(trace, 2 * SPAN)]
+    trace = seen.trace
+    spans = [_spans(trace, part) for part in seen.stretches(2 * SPAN)]
     if not spans:
         return None
     moved, claimed, change = (np.concatenate(column) for column in zip(*spans, strict=True))

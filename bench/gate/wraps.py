@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from bench.gate.check import Check, absent
-from bench.rig.rig import Rig
+from bench.gate.seen import Repaired, Seen
 from bench.trace.trace import Trace
 from bench.trace.wraps import Wraps, jumps, period_of, undone
 
@@ -15,16 +15,17 @@ NAME = "position_wraps"
 ALLOWED = "a position that runs on, or wraps by one period"
 
 
-def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
+def runs_on(seen: Seen) -> Check | Repaired:
     """The recording with its wraps undone."""
+    trace = seen.trace
     if "position" not in trace:
-        return trace, absent(NAME, "no position is recorded", ALLOWED)
+        return absent(NAME, "no position is recorded", ALLOWED)
     if trace.wraps is not None:
-        return trace, _undone(trace, trace.wraps)
+        return _undone(trace, trace.wraps)
     position = trace["position"]
     places = jumps(position, trace.time)
     if not places.size:
-        return trace, Check(NAME, "pass", "position runs on", ALLOWED)
+        return Check(NAME, "pass", "position runs on", ALLOWED)
     period = period_of(position, places)
     if period is None:
         longest = float(np.abs(np.diff(position)[places]).max())
@@ -32,11 +33,11 @@ def check(trace: Trace, rig: Rig | None) -> tuple[Trace, Check]:
             f"position jumps {places.size} times, by up to {longest:.4g} {trace.units['position']}, not by one period"
         )
         advice = "record so that it runs on, cut the recording at the jumps, or leave the position out"
-        return trace, Check(NAME, "fail", found, ALLOWED, advice)
+        return Check(NAME, "fail", found, ALLOWED, advice)
     wraps = Wraps(period, int(places.size))
     wrapping = [name for name in ("position", "position_reference") if name in trace]
     repaired = trace.with_signals({name: undone(trace[name], period) for name in wrapping}, {})
-    return replace(repaired, wraps=wraps), _undone(trace, wraps)
+    return Repaired(_undone(trace, wraps), replace(repaired, wraps=wraps))
 
 
 def _undone(trace: Trace, wraps: Wraps) -> Check:

@@ -11,8 +11,7 @@ import numpy as np
 import typer
 
 from bench.gate import effort, losses, timing, velocity
-from bench.gate.balance import balance, effort_of
-from bench.gate.parts import speed_of, stretches
+from bench.gate.seen import Seen
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from tests.gate.clean import independent, public, real, shared_cases
@@ -20,22 +19,22 @@ from tests.gate.clean import independent, public, real, shared_cases
 
 def measures(trace: Trace, rig: Rig) -> Iterator[tuple[str, float]]:
     """What the checks hold against their thresholds, larger is worse."""
+    seen = Seen(trace, rig)
     if {"position", "velocity"} <= set(trace.signals):
-        both = velocity.compared(trace)
+        both = velocity.compared(seen)
         assert both is not None
         yield f"|ratio - 1| of speed (told {velocity.TOLD}, refused {velocity.REFUSED})", abs(both.ratio - 1.0)
         yield f"remainder of speed (refused {velocity.REMAINDER})", both.remainder
     damage = losses.damage_of(trace)
     share = (damage.lost + damage.stale) / len(trace)
     yield f"share of lost samples (refused {losses.MOST}, without speed {losses.MOST_BLIND})", share
-    found = effort_of(trace, rig)
-    fitted = balance(trace, found[0]) if found is not None else None
+    fitted = seen.balance()
     if fitted is not None:
         yield (
-            f"effort unexplained (told {1.0 - effort.TOLD:.2f}, refused {1.0 - effort.REFUSED:.2f})",
+            f"effort unexplained (told {1.0 - effort.WARNED:.2f}, refused {1.0 - effort.REFUSED:.2f})",
             (1.0 - fitted.by_position),
         )
-    speeds = [speed for part in stretches(trace, timing.LEAST) if (speed := speed_of(trace, part)) is not None]
+    speeds = [seen.speed(part) for part in seen.stretches(timing.LEAST)]
     changes, alike = timing.followed(speeds)
     if changes > timing.CHANGES:
         yield (

@@ -7,8 +7,8 @@ import pytest
 
 from bench.errors import InputError
 from bench.gate import effort
-from bench.gate.balance import balance
 from bench.gate.gate import passed
+from bench.gate.seen import Seen
 from tests.gate.damage import changed
 
 
@@ -19,28 +19,28 @@ def test_a_turned_current_is_refused_and_named(sound, rig):
 
 def test_another_axis_current_is_refused(sound, rig):
     foreign = np.sin(2.0 * np.pi * 1.7 * sound.time)
-    found = effort.check(changed(sound, current=foreign), rig)[1]
+    found = effort.follows_motion(Seen(changed(sound, current=foreign), rig))
     assert found.status == "fail"
     assert "another axis" in found.advice
 
 
 def test_noise_alone_is_told_as_no_torque_signal(sound, rig):
     noise = np.random.default_rng(2).normal(size=len(sound))
-    found = effort.check(changed(sound, current=noise), rig)[1]
+    found = effort.follows_motion(Seen(changed(sound, current=noise), rig))
     assert found.status == "warn"
     assert "no torque signal" in found.advice
 
 
 def test_gravity_is_named_as_likeliest(sound, rig):
     heavy = changed(sound, current=sound["current"] + 8.0 * np.sin(sound["position"]))
-    found = effort.check(heavy, rig)[1]
+    found = effort.follows_motion(Seen(heavy, rig))
     assert found.status == "pass"
     assert "gravity" in found.advice
 
 
 @pytest.fixture(scope="module")
 def fitted(sound):
-    return balance(sound, sound["current"])
+    return Seen(sound).balance()
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,9 @@ def fitted(sound):
     ],
 )
 def test_shares_explained_are_judged_by_their_borders(fitted, by_motion, by_position, audible, status, advice):
-    found = effort.judged(replace(fitted, by_motion=by_motion, by_position=by_position, audible=audible), "current")
+    stated = replace(fitted, by_motion=by_motion, by_position=by_position)
+    stated.__dict__["audible"] = audible
+    found = effort.judged(stated, "current")
     assert found.status == status
     assert (advice in found.advice) if advice else not found.advice
 

@@ -6,7 +6,7 @@ import pytest
 from bench.errors import InputError
 from bench.fit.identify import identify
 from bench.gate import losses
-from bench.gate.gate import passed
+from bench.gate.gate import gate, passed
 from tests.gate.damage import doubled, losing, stale, with_samples, without
 from tests.independent.axes import PLAIN
 
@@ -16,9 +16,9 @@ from tests.independent.axes import PLAIN
 @pytest.mark.parametrize("seed", range(3))
 def test_lost_and_repeated_samples_are_put_right(sound, rig, damage, share, seed):
     damaged = damage(sound, share, seed)
-    mended, found = losses.check(damaged, rig)
-    assert found.status == "warn"
-    assert identify(mended, rig)["moment_of_inertia"].value == pytest.approx(PLAIN.inertia, rel=0.01)
+    gated = gate(damaged, rig, [losses.none_lost])
+    assert gated.checks[0].status == "warn"
+    assert identify(gated.trace, rig)["moment_of_inertia"].value == pytest.approx(PLAIN.inertia, rel=0.01)
 
 
 def test_each_place_of_a_loss_is_found(sound, rig):
@@ -35,10 +35,10 @@ def test_each_place_of_a_loss_is_found(sound, rig):
 
 def test_a_longer_loss_is_a_hole(sound, rig):
     kept = np.delete(np.arange(len(sound)), np.arange(1500, 1520))
-    mended, found = losses.check(with_samples(sound, kept), rig)
-    assert "20 samples lost" in found.found
-    assert [part.stop for part in mended.segments] == [1500, len(sound) - 20]
-    assert mended.time[-1] == pytest.approx(sound.time[-1])
+    gated = gate(with_samples(sound, kept), rig, [losses.none_lost])
+    assert "20 samples lost" in gated.checks[0].found
+    assert [part.stop for part in gated.trace.segments] == [1500, len(sound) - 20]
+    assert gated.trace.time[-1] == pytest.approx(sound.time[-1])
 
 
 def test_many_losses_are_refused(sound, rig):
@@ -48,5 +48,5 @@ def test_many_losses_are_refused(sound, rig):
 
 def test_losses_that_no_speed_confirms_are_refused(sound, rig):
     alone = without(sound, "velocity")
-    assert losses.check(alone, rig)[1].status == "pass"
-    assert losses.check(losing(alone, 0.005), rig)[1].status == "fail"
+    assert gate(alone, rig, [losses.none_lost]).checks[0].status == "pass"
+    assert gate(losing(alone, 0.005), rig, [losses.none_lost]).checks[0].status == "fail"

@@ -5,6 +5,7 @@ import pytest
 
 from bench.gate import signals
 from bench.gate.gate import CHECKS, UnanswerableError, passed
+from bench.gate.seen import Seen
 from bench.trace.trace import Trace
 from tests.gate.damage import changed
 
@@ -20,19 +21,19 @@ def test_a_sensor_that_stands_still_while_the_axis_moves_is_refused(sound, rig, 
     moving = int(np.argmax(np.convolve(np.abs(sound["velocity"]), np.ones(200), "valid")))
     stuck = sound[name].copy()
     stuck[moving : moving + 200] = stuck[moving]
-    assert signals.moves(changed(sound, **{name: stuck}), rig)[1].status == "fail"
+    assert signals.moves(Seen(changed(sound, **{name: stuck}), rig)).status == "fail"
 
 
 def test_a_drive_switched_off_is_no_frozen_current(sound, rig):
     coasting = sound["current"].copy()
     coasting[2000:2300] = 0.0
-    assert signals.moves(changed(sound, current=coasting), rig)[1].status == "pass"
+    assert signals.moves(Seen(changed(sound, current=coasting), rig)).status == "pass"
 
 
 def test_a_current_clipped_by_its_sensor_is_refused(sound, rig):
     limit = 0.4 * np.abs(sound["current"]).max()
     clipped = changed(sound, current=np.clip(sound["current"], -limit, limit))
-    found = signals.clips(clipped, rig)[1]
+    found = signals.clips(Seen(clipped, rig))
     assert found.status == "fail"
     assert f"exactly {limit:.4g} A" in found.found or f"exactly {-limit:.4g} A" in found.found
 
@@ -40,14 +41,14 @@ def test_a_current_clipped_by_its_sensor_is_refused(sound, rig):
 def test_a_current_at_the_drives_own_limit_is_true(sound, rig):
     limit = rig.motor.peak_current
     driven = np.where(np.arange(len(sound)) % 50 < 10, limit, np.minimum(sound["current"], 0.9 * limit))
-    assert signals.clips(changed(sound, current=driven), rig)[1].status == "pass"
+    assert signals.clips(Seen(changed(sound, current=driven), rig)).status == "pass"
 
 
 @pytest.mark.parametrize(("steps", "status"), [(0.5, "fail"), (4.0, "warn"), (50.0, "pass")])
 def test_coarse_steps_are_reported(sound, rig, steps, status):
     step = np.std(sound["current"]) / steps
     rounded = changed(sound, current=np.round(sound["current"] / step) * step)
-    assert signals.resolution(rounded, rig)[1].status == status
+    assert signals.resolution(Seen(rounded, rig)).status == status
 
 
 TIME = 1e-3 * np.arange(20000)
@@ -66,7 +67,7 @@ def test_a_sensor_may_stand_still_for_half_a_per_cent(samples, status):
     fast = 9000 + int(np.argmax(np.abs(np.convolve(trace["velocity"][9000:10000], np.ones(105), "valid"))))
     stuck = trace["current"].copy()
     stuck[fast : fast + samples + 1] = stuck[fast]
-    found = signals.moves(changed(trace, current=stuck), None)[1]
+    found = signals.moves(Seen(changed(trace, current=stuck), None))
     assert found.status == status
     assert ("current stands still for" in found.found) == (status != "pass")
 
@@ -81,7 +82,7 @@ def clipped(top, bottom):
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_current_clipped_at_either_end_is_seen(side):
     top, bottom = (1.2, -9.0) if side > 0.0 else (9.0, -1.2)
-    found = signals.clips(clipped(top, bottom), None)[1]
+    found = signals.clips(Seen(clipped(top, bottom), None))
     assert found.status == "fail"
     assert f"exactly {side * 1.2:.4g} A" in found.found
 
@@ -90,7 +91,7 @@ def test_a_current_clipped_at_either_end_is_seen(side):
 def test_half_a_per_cent_of_all_samples_may_stand_at_the_end(share, status):
     whole = clipped(9.0, -9.0)["current"]
     top = np.quantile(whole, 1.0 - share)
-    assert (signals.clips(clipped(top, -9.0), None)[1].status == "pass") == (status == "pass")
+    assert (signals.clips(Seen(clipped(top, -9.0), None)).status == "pass") == (status == "pass")
 
 
 @pytest.mark.parametrize(("more", "status"), [(0.04, "warn"), (0.07, "fail")])
@@ -101,4 +102,4 @@ def test_what_is_lost_is_where_the_motion_asks_for_five_per_cent_more(more, stat
     speed = np.cumsum(plateau / 0.01) * 1e-3
     seen = {"velocity": speed - np.linspace(0.0, speed[-1], speed.size), "current": np.minimum(plateau, 1.0)}
     trace = Trace(TIME, seen, {"velocity": "rad/s", "current": "A"}, "plateaus")
-    assert signals.clips(trace, None)[1].status == status
+    assert signals.clips(Seen(trace, None)).status == status

@@ -6,6 +6,7 @@ import pytest
 from bench.errors import InputError
 from bench.gate import timing
 from bench.gate.gate import UnanswerableError, passed
+from bench.gate.seen import Seen
 from bench.trace.trace import Trace
 from tests.gate.damage import changed, keeping, with_samples
 
@@ -14,9 +15,9 @@ def test_times_that_jitter_are_reported_and_irregular_ones_refused(sound, rig):
     rng = np.random.default_rng(0)
     jittering = sound.time + rng.uniform(-2e-4, 2e-4, len(sound))
     read = Trace.from_arrays({"time": jittering, **sound.signals}, {"time": "s", **sound.units})
-    assert timing.regular(read, rig)[1].status == "warn"
+    assert timing.regular(Seen(read, rig)).status == "warn"
     raw = Trace(jittering, sound.signals, sound.units, sound.origin)
-    assert timing.regular(raw, rig)[1].status == "fail"
+    assert timing.regular(Seen(raw, rig)).status == "fail"
 
 
 @pytest.mark.parametrize(
@@ -31,7 +32,7 @@ def test_another_unit_of_time_is_refused(sound, rig, names, factor):
 
 def test_an_axis_thousands_of_times_as_heavy_as_its_rotor_is_refused(sound, rig):
     alone = keeping(sound, ["velocity", "current"])
-    found = timing.rate(changed(alone, velocity=1e-3 * sound["velocity"]), rig)[1]
+    found = timing.rate(Seen(changed(alone, velocity=1e-3 * sound["velocity"]), rig))
     assert found.status == "fail"
     assert "times the motor's own" in found.found
 
@@ -48,7 +49,7 @@ def test_ten_hertz_are_too_slow_for_a_fast_motion(sound, rig, names):
 def test_noise_of_the_speed_is_no_undersampling(sound, rig):
     rng = np.random.default_rng(0)
     noisy = changed(sound, velocity=sound["velocity"] + rng.normal(scale=200.0, size=len(sound)))
-    assert timing.rate(noisy, rig)[1].status == "pass"
+    assert timing.rate(Seen(noisy, rig)).status == "pass"
 
 
 def stamped(jitter, resampled):
@@ -72,7 +73,7 @@ def stamped(jitter, resampled):
     ],
 )
 def test_jitter_is_judged_by_its_borders(jitter, resampled, status):
-    assert timing.regular(stamped(jitter, resampled), None)[1].status == status
+    assert timing.regular(Seen(stamped(jitter, resampled), None)).status == status
 
 
 def turning(hertz, turned, period=60.0):
@@ -87,7 +88,7 @@ def turning(hertz, turned, period=60.0):
     ("hertz", "turned", "status"), [(10.0, 3.1, "pass"), (10.0, 3.2, "fail"), (19.0, 3.2, "fail"), (21.0, 9.0, "pass")]
 )
 def test_below_twenty_hertz_half_a_turn_from_sample_to_sample_is_too_fast(hertz, turned, status):
-    found = timing.rate(turning(hertz, turned), None)[1]
+    found = timing.rate(Seen(turning(hertz, turned), None))
     assert found.status == status
     assert ("from one sample to the next" in found.found) == (status == "fail")
 
@@ -98,9 +99,9 @@ def test_a_motion_between_the_samples_is_missed_also_where_the_axis_turns_little
     rng, time = np.random.default_rng(0), 0.01 * np.arange(4000)
     phase = 2.0 * np.pi * motion * time + np.cumsum(0.1 * rng.normal(size=time.size))
     signals = {"velocity": np.sin(phase), "current": np.cos(phase)}
-    found = timing.rate(Trace(time, signals, {"velocity": "rad/s", "current": "A"}, "fast"), None)[1]
+    found = timing.rate(Seen(Trace(time, signals, {"velocity": "rad/s", "current": "A"}, "fast"), None))
     assert found.status == status
     if status == "fail":
         assert "of its spread" in found.found
         steady = changed(Trace(time, signals, {"velocity": "rad/s", "current": "A"}, "x"), current=np.sin(0.01 * time))
-        assert timing.rate(steady, None)[1].status == "pass"  # noise of the speed alone
+        assert timing.rate(Seen(steady, None)).status == "pass"  # noise of the speed alone

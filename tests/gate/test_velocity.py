@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 from bench.gate import velocity
+from bench.gate.seen import Seen
 from bench.trace.trace import Trace
 from tests.gate.damage import changed
 
 
 @pytest.mark.parametrize("factor", [0.16, 0.5, 0.6, 6.0, -1.0, 0.88, 1.12, 180.0 / np.pi, 1e-20, 1e20])
 def test_a_speed_of_another_scale_fails(sound, rig, factor):
-    _, found = velocity.check(changed(sound, velocity=factor * sound["velocity"]), rig)
+    found = velocity.is_derivative(Seen(changed(sound, velocity=factor * sound["velocity"]), rig))
     assert found.status == "fail"
     assert float(found.found.split()[2]) == pytest.approx(factor, rel=1e-3)
 
@@ -26,7 +27,7 @@ def test_a_speed_of_another_scale_fails(sound, rig, factor):
     ],
 )
 def test_a_speed_that_is_off(sound, rig, seen, status):
-    assert velocity.check(changed(sound, velocity=seen(sound["velocity"])), rig)[1].status == status
+    assert velocity.is_derivative(Seen(changed(sound, velocity=seen(sound["velocity"])), rig)).status == status
 
 
 @pytest.mark.parametrize("lag", [0.5e-3, 2e-3, 20e-3])
@@ -35,14 +36,14 @@ def test_a_filtered_speed_is_late_and_no_other_scale(sound, rig, lag):
     late = np.zeros(len(sound))
     for k in range(1, len(sound)):
         late[k] = alpha * late[k - 1] + (1.0 - alpha) * sound["velocity"][k]
-    _, found = velocity.check(changed(sound, velocity=late), rig)
+    found = velocity.is_derivative(Seen(changed(sound, velocity=late), rig))
     assert found.status == "pass"
 
 
 def test_a_standstill_compares_nothing(sound, rig):
     rng = np.random.default_rng(0)
     still = changed(sound, velocity=rng.normal(scale=0.02, size=len(sound)), position=np.zeros(len(sound)))
-    assert velocity.check(still, rig)[1].status == "not_applicable"
+    assert velocity.is_derivative(Seen(still, rig)).status == "not_applicable"
 
 
 @pytest.mark.parametrize(
@@ -71,7 +72,7 @@ def test_ratio_lag_and_offset_of_a_motion_in_closed_form_are_found():
     time = 1e-3 * np.arange(4000)
     position, speed, rate = np.sin(3.0 * time), 3.0 * np.cos(3.0 * time), -9.0 * np.sin(3.0 * time)
     seen = {"position": position, "velocity": 0.7 * (speed - 5e-3 * rate) + 0.4}
-    found = velocity.compared(Trace(time, seen, {"position": "rad", "velocity": "rad/s"}, "sine"))
+    found = velocity.compared(Seen(Trace(time, seen, {"position": "rad", "velocity": "rad/s"}, "sine")))
     assert found.ratio == pytest.approx(0.7 * (1.0 + 0.015**2), rel=1e-5)
     assert found.lag == pytest.approx(5e-3, rel=1e-3)
     assert found.remainder < 1e-4
