@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.fit.fit import Fit, fit
@@ -54,28 +55,42 @@ def mains(rows: Rows, residual: Array, known: tuple[float, ...] = ()) -> tuple[f
     return tuple(found)
 
 
-def _by_recording(rows: Rows, residual: Array) -> list[tuple[Array, Array]]:
-    """Times - s - and residuals (m,) of the rows of each recording that has some."""
+def _by_recording(rows: Rows, residual: Array) -> list[_Turned]:
+    """Residuals of the rows of each recording that has some."""
     edges = np.searchsorted(rows.time, [*rows.starts[1:], np.inf])
     times, residuals = np.split(rows.time, edges)[:-1], np.split(residual, edges)[:-1]
-    return [(time, residual) for time, residual in zip(times, residuals, strict=True) if time.size]
+    return [_Turned(time, residual) for time, residual in zip(times, residuals, strict=True) if time.size]
 
 
-def _around(recordings: Sequence[tuple[Array, Array]], line: float) -> tuple[Array, Array]:
+class _Turned:
+    """A residual turned to one frequency after another - m rows at uneven times."""
+
+    def __init__(self, time: Array, residual: Array) -> None:
+        self.time, self.residual = time, residual
+        place = np.floor((time - time[0]) * RATE).astype(np.intp)
+        self.first = np.flatnonzero(np.diff(place, prepend=-1))
+        self.place = place[self.first]
+        self.waves: dict[float, NDArray[np.complex128]] = {}
+
+    def sums(self, line: float, count: int) -> NDArray[np.complex128]:
+        """Sums over steps of time (count,) of the residual with a line - Hz - at zero frequency."""
+        half = self.waves.get(0.5 * line)  # of a harmonic that was asked for before
+        self.waves[line] = np.exp(-2j * np.pi * line * self.time) if half is None else half * half
+        sums = np.zeros(count, dtype=complex)
+        sums[self.place] = np.add.reduceat(self.residual * self.waves[line], self.first)
+        return sums
+
+
+def _around(recordings: Sequence[_Turned], line: float) -> tuple[Array, Array]:
     """Offsets from a line within BAND - Hz - and the periodogram there, of rows at uneven times (m,) - s.
 
     The line is turned to zero frequency, where few sums over steps of time are left to transform: a cost that grows
     with the recording's length, not with its square.
     """
-    count = max(int((time[-1] - time[0]) * RATE) + 1 for time, _ in recordings)
+    count = max(int((one.time[-1] - one.time[0]) * RATE) + 1 for one in recordings)
     power = np.zeros(2 * count)
-    for time, residual in recordings:
-        turned = residual * np.exp(-2j * np.pi * line * time)
-        place = np.floor((time - time[0]) * RATE).astype(np.intp)
-        first = np.flatnonzero(np.diff(place, prepend=-1))
-        sums = np.zeros(count, dtype=complex)
-        sums[place[first]] = np.add.reduceat(turned, first)
-        power += np.abs(np.fft.fft(sums, 2 * count)) ** 2
+    for one in recordings:
+        power += np.abs(np.fft.fft(one.sums(line, count), 2 * count)) ** 2
     offsets = np.fft.fftfreq(2 * count, 1.0 / RATE)
     order = np.flatnonzero(np.abs(offsets) <= BAND)
     return np.asarray(offsets[order], dtype=np.float64), np.asarray(power[order], dtype=np.float64)

@@ -79,6 +79,13 @@ class NormalEquations:
         """X'X less what sensor noise put into it - (p, p)."""
         return self.total - self.count * self.noise
 
+    @cached_property
+    def _scaled(self) -> Array:
+        """The matrix (p, p) in units in which every column has the power one."""
+        power = np.diag(self.total)
+        scale = np.sqrt(np.where(power > 0.0, power, 1.0))
+        return self.matrix / np.outer(scale, scale)
+
     def solve(self, bounds: Mapping[Name, tuple[float, float]] | None = None) -> tuple[Array, Array]:
         """Coefficients (p,) within bounds by their names, and the inverse of the matrix (p, p)."""
         limits = {self.place(name): ends for name, ends in (bounds or {}).items()}
@@ -88,9 +95,7 @@ class NormalEquations:
     def independent_share(self, name: Name, others: Iterable[Name]) -> float:
         """Share of a column's power that is neither noise nor explained by others; negative if it is noise alone."""
         places = [self.place(one) for one in (name, *others)]
-        power = np.diag(self.total)[places]
-        scale = np.sqrt(np.where(power > 0.0, power, 1.0))
-        matrix = self.matrix[np.ix_(places, places)] / np.outer(scale, scale)
+        matrix = self._scaled[places][:, places]
         return float(matrix[0, 0] - matrix[0, 1:] @ symmetric_inverse(matrix[1:, 1:], DEPENDENT) @ matrix[1:, 0])
 
     def knowing(self, name: Name, value: float, weight: float) -> NormalEquations:

@@ -59,6 +59,11 @@ class Stretch:
             used[lost : lost + direction.size] = np.abs(direction) > 1.0 - 1e-3
         return cls(signals, used, start, spectra)
 
+    @cached_property
+    def places(self) -> NDArray[np.intp]:
+        """Of the used ones among its rows."""
+        return np.flatnonzero(self.used)
+
 
 @dataclass(frozen=True)
 class Rows:
@@ -262,7 +267,7 @@ def _table(
     of_signals: bool = False,
 ) -> Array:
     parts = [
-        smooth.columns(columns(part.signals), lag, part.spectra if of_signals else None)[:, part.used]
+        smooth.columns(columns(part.signals), lag, part.spectra if of_signals else None).take(part.places, axis=1)
         for part in stretches
     ]
     return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T

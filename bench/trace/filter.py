@@ -105,8 +105,9 @@ class GaussianFilter:
         count = signals[0].size
         size = self.stride * fast_length(math.ceil(count / self.stride))
         kept = size // self.stride // 2 + 1
-        jw = 2j * math.pi / (size * self.sample_period) * np.arange(kept)
-        gain = np.exp(-0.5 * (jw.imag * self.width) ** 2) * (1.0 + jw * lag) / self.stride
+        omega = 2.0 * math.pi / (size * self.sample_period) * np.arange(kept)
+        gain = np.exp(-0.5 * (omega * self.width) ** 2) / self.stride
+        gain = gain * (1.0 + 1j * omega * lag) if lag else gain
         transformed = transformed_of(signals, size) if spectra is None else spectra.of(signals, size)
         slope = (np.array([values[-1] for values in signals]) - [values[0] for values in signals]) / (count - 1)
         first, last = self.margin // self.stride, -(-(count - self.margin) // self.stride)
@@ -117,7 +118,7 @@ class GaussianFilter:
         for row, column in enumerate(columns):
             for values, order in column:
                 k = place[id(values)]
-                sums[row] += filtered[k] * jw**order if order else filtered[k]
+                sums[row] += filtered[k] * (1j * omega) ** order if order else filtered[k]
                 if order < 2:
                     rate = float(slope[k]) / self.sample_period
                     lines[row] += rate if order else values[0] + slope[k] * at + lag * rate
@@ -141,11 +142,12 @@ class Spectra:
 
 def transformed_of(signals: Sequence[Array], size: int) -> NDArray[np.complex128]:
     """Transforms (k, size//2 + 1) of signals (n,) less the line between their ends, followed by zeros up to a size."""
-    table = np.stack(signals)
-    count = table.shape[1]
-    slope = (table[:, -1] - table[:, 0]) / (count - 1)
-    table -= table[:, :1] + slope[:, None] * np.arange(count)
-    return np.asarray(scipy.fft.rfft(table, size, overwrite_x=True))
+    table, count = np.zeros((len(signals), size)), signals[0].size
+    at = np.arange(count)
+    for row, values in zip(table, signals, strict=True):
+        slope = (values[-1] - values[0]) / (count - 1)
+        np.subtract(values, values[0] + slope * at, out=row[:count])
+    return np.asarray(scipy.fft.rfft(table, overwrite_x=True))
 
 
 def fast_length(length: int) -> int:
