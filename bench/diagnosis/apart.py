@@ -12,11 +12,10 @@ from bench.comparison.spread import ALARM, Between, Excess, between, excess, spr
 from bench.diagnosis.recordings import Recordings
 from bench.errors import UndeterminedError
 from bench.fit.determined import left_open, require_determined
-from bench.fit.estimate import Alone
+from bench.fit.estimate import Alone, load_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.layout import lay_out
-from bench.fit.load_inertia import load_inertia
 from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
 from bench.fit.solution import equations_of

@@ -16,8 +16,8 @@ from bench.diagnosis.show import Diagnosis, show
 from bench.diagnosis.warnings import suspicions
 from bench.diagnosis.where import where
 from bench.fit.determined import require_masses, require_significant
+from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit
-from bench.fit.load_inertia import load_inertia
 from bench.fit.quantities import uncertain
 from bench.gate.gate import joined, passed
 from bench.rig.rig import Rig

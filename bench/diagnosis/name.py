@@ -14,8 +14,8 @@ from bench.diagnosis.search import Searched, search
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect
 from bench.effects.present import Present
+from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit
-from bench.fit.load_inertia import load_inertia
 from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
 from bench.fit.shapes import unbiased

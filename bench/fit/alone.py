@@ -10,9 +10,8 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, Axi
 from bench.errors import UndeterminedError
 from bench.fit.covariance import NOISE_ALONE
 from bench.fit.determined import left_open, require_determined, require_inertia, require_sound
-from bench.fit.estimate import Estimate, RefusedEstimateError, Residual
+from bench.fit.estimate import Estimate, RefusedEstimateError, Residual, load_inertia
 from bench.fit.gathered import Gathered
-from bench.fit.load_inertia import load_inertia
 from bench.fit.normal_equations import NormalEquations
 from bench.fit.parameter import Parameter
 from bench.fit.solution import SURE, Solution

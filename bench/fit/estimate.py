@@ -1,4 +1,4 @@
-"""The result of an identification: parameters with intervals, and how well they explain the recording."""
+"""The result of an identification: parameters with intervals, what follows from them, and how well they explain."""
 
 from __future__ import annotations
 
@@ -6,10 +6,16 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from bench.arrays import Array
+from bench.axis_kind import ARMATURE, COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import Between
 from bench.errors import UndeterminedError
 from bench.fit.parameter import Parameter
 from bench.gate.check import Check
+from bench.rig.rig import Rig
+from bench.trace.motion import Motion
 
 
 @dataclass(frozen=True)
@@ -90,3 +96,48 @@ class RefusedEstimateError(UndeterminedError):
     def __init__(self, reason: UndeterminedError, estimate: Estimate) -> None:
         self.estimate = estimate
         super().__init__(reason.quantity, reason.reason, reason.record)
+
+
+def load_inertia(parameters: Mapping[str, Parameter], rig: Rig) -> dict[str, Parameter]:
+    """J_load = J - J_motor, or (J - J_motor - J_gear)*i**2 behind a gear, if the rig gives J_motor and J is in kg*m**2.
+
+    If the links of a robot are known, the armature of the joint instead, J*i**2 - J_links.
+    """
+    inertia = parameters.get(rig.axis_kind.inertia)
+    if inertia is not None and rig.load is not None and rig.load.link_inertia is not None:
+        square, links = rig.load.gear_ratio**2, rig.load.link_inertia
+        low, high = (bound * square - links for bound in inertia.ci95)
+        load = Parameter(inertia.value * square - links, inertia.unit, inertia.std_error * square, (low, high))
+        return {ARMATURE: load}
+    if inertia is None or rig.motor.rotor_inertia is None or inertia.unit != "kg*m**2":
+        return {}
+    value, square = _beyond(inertia.value, rig), _beyond(1.0, rig) - _beyond(0.0, rig)
+    low, high = (value + (bound - inertia.value) * square for bound in inertia.ci95)
+    load = Parameter(value, inertia.unit, inertia.std_error * square, (low, high))
+    moved = (_beyond(inertia.value, other) - value for other in rig.within_tolerance())
+    return {"load_moment_of_inertia": load.widened(*moved)}
+
+
+def _beyond(inertia: float, rig: Rig) -> float:
+    """An inertia without motor and gear, on the load's side - kg*m**2."""
+    gear, ratio = (rig.load.gear_inertia or 0.0, rig.load.gear_ratio) if rig.load else (0.0, 1.0)
+    return (inertia - (rig.motor.rotor_inertia or 0.0) - gear) * ratio**2
+
+
+def modelled_effort(motion: Motion, estimate: Estimate, kind: AxisKind) -> Array:
+    """J*alpha + K_w*omega + K_0*sgn(omega) (+ M_0) - tau*dM/dt along a motion.
+
+    Returns:
+        (m,) - the effort's unit; nan where the direction is uncertain.
+    """
+    moving = motion.direction != 0.0
+    columns = {
+        INERTIA: motion.acceleration,
+        VISCOUS: motion.velocity,
+        COULOMB: motion.direction,
+        OFFSET: np.ones(len(motion)),
+        MISALIGNMENT: -motion.effort_rate,
+    }
+    found = {kind.parameter(term): column for term, column in columns.items()}
+    modelled = sum((estimate.parameters[name].value * v for name, v in found.items() if name in estimate.parameters))
+    return np.where(moving, modelled, np.nan)

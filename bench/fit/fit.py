@@ -9,16 +9,14 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import Array, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Columns, Contact, Coupling, Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
-from bench.fit.friction_levels import follows_load, multiply, with_friction, with_levels, with_load, with_pulls
-from bench.fit.gains import gains
 from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.interplay import hang_together, in_line, with_friction, with_load
 from bench.fit.last_digit import rounding
 from bench.fit.layout import DIGIT, Layout, delays, lay_out, seen_by
-from bench.fit.load_side import with_loads
 from bench.fit.noise import Floor, noise_power
 from bench.fit.normal_equations import bounded, solved
 from bench.fit.rows import Rows
@@ -212,10 +210,8 @@ def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
     layout = lay_out(rows, hypothesis)
     theta, held = _balanced(layout, None)
     for _ in range(LEVEL_ROUNDS):
-        found = with_loads(with_levels(hypothesis, theta, layout.owners), theta, layout.owners)
-        found = with_pulls(found, theta, layout.owners)
-        loaded = follows_load(hypothesis) or any(term.load is not None for term in hypothesis.terms)
-        settled = not (loaded or multiply(hypothesis)) or _alike(found, hypothesis)
+        found = in_line(hypothesis, theta, layout.owners)
+        settled = not hang_together(found) or _alike(found, hypothesis)
         hypothesis = found
         if settled:
             break
@@ -275,3 +271,26 @@ def explained(before: Fit, after: Fit) -> float:
     """
     damped = before.count * max(before.noise.white**2 - after.noise.white**2, 0.0)
     return before.squares - after.squares - damped
+
+
+def gains(columns: Array, width: int, residual: Array, basis: Array) -> Array:
+    """Squares that groups of columns take from a residual (m,) beyond what an orthonormal basis (m, p) spans.
+
+    Args:
+        columns: (m, groups*width), group by group.
+        width: columns of a group.
+        residual: (m,).
+        basis: (m, p).
+
+    Returns:
+        (groups,) - the residual's unit squared.
+    """
+    rows = np.ascontiguousarray(columns.T)
+    full = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    rows = rows - (rows @ basis) @ basis.T
+    scale = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    rows *= np.where(scale > 1e-4 * np.maximum(full, 1e-300), 1.0 / np.maximum(scale, 1e-300), 0.0)[:, None]
+    shared = (rows @ residual).reshape(-1, width)
+    groups = rows.reshape(-1, width, rows.shape[1])
+    inverse = symmetric_inverse(groups @ groups.transpose(0, 2, 1), 1e-8)
+    return np.einsum("gi,gij,gj->g", shared, inverse, shared)

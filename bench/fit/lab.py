@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import RECORD
-from bench.fit.estimate import Estimate, Residual
-from bench.fit.load_inertia import load_inertia
+from bench.fit.estimate import Estimate, Residual, load_inertia
 from bench.fit.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95

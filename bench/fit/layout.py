@@ -13,10 +13,9 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.effects.acting import FollowsLoad
 from bench.effects.effect import Columns, Coupling, Distortion, EffortLag, Load, MotionLag
 from bench.effects.signals import Signals
-from bench.fit.friction_levels import with_friction, with_load
 from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.interplay import loads_of, with_friction, with_load
 from bench.fit.last_digit import cut_off
-from bench.fit.load_side import loads_of
 from bench.fit.rows import Rows, known_of
 from bench.trace.filter import Column
 

@@ -15,9 +15,8 @@ import scipy.optimize
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
 from bench.errors import InputError
-from bench.fit.estimate import Estimate
+from bench.fit.estimate import Estimate, load_inertia
 from bench.fit.identify import identify
-from bench.fit.load_inertia import load_inertia
 from bench.plant.axis_model import AxisModel
 from bench.plant.measured_motion import measured_velocity
 from bench.plant.model import AxisParameters

@@ -25,10 +25,9 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, Axi
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.errors import InputError, UndeterminedError
 from bench.fit.alone import estimated_alone, negative, parameter_of, sound
-from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual
+from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
 from bench.fit.gathered import Gathered
 from bench.fit.layout import BASE
-from bench.fit.load_inertia import load_inertia
 from bench.fit.normal_equations import NormalEquations, join, solved
 from bench.fit.parameter import Parameter
 from bench.fit.solution import Solution

@@ -13,14 +13,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.optimize
+import scipy.stats
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import OfSpeed
-from bench.effects.signals import Base
+from bench.effects.signals import Base, Signals
 from bench.errors import InputError, UndeterminedError
-from bench.friction_map.curve import Curve, bent_curve, chance, plain_curve
 from bench.gate.check import Check
 from bench.gate.gate import STEADY as STEADY_CHECKS
 from bench.gate.gate import joined, passed
@@ -36,6 +37,31 @@ LEAST = 8
 PARTS, STEADY = 8, 0.5
 #: Share of all squares that rounding leaves of a map without scatter.
 ROUNDING = 1e-24
+
+
+@dataclass(frozen=True)
+class FrictionCurve:
+    """Friction over speed as fitted, with one effect or, where the name is empty, without.
+
+    Attributes:
+        name: of the effect.
+        shape: what enters nonlinearly - SI.
+        theta: K_w, K_0, M_0, strengths of the effect - SI. M_0 is 0 where the effect holds a constant torque itself.
+        squares: sum of what it leaves - effort squared.
+        freedom: numbers fitted.
+        constant: whether M_0 was fitted beside the effect.
+    """
+
+    name: str
+    shape: tuple[float, ...]
+    theta: Array
+    squares: float
+    freedom: int
+    constant: bool
+
+    def effort(self, velocity: Array) -> Array:
+        """Effort (n,) at speeds - rad/s (m/s) - (n,)."""
+        return _columns(self.name, self.shape, velocity) @ self.theta
 
 
 @dataclass(frozen=True)
@@ -60,8 +86,8 @@ class FrictionMap:
     effort: Array
     effort_unit: str
     kind: AxisKind
-    plain: Curve
-    best: Curve
+    plain: FrictionCurve
+    best: FrictionCurve
     base: Base
     offset: float | None
     name: str | None
@@ -159,3 +185,65 @@ def _steady_speed(trace: Trace) -> float:
 def _different(speeds: Array) -> int:
     """Speeds more than a hundredth apart: repetitions of one tell scatter, not curvature."""
     return 1 + int((np.diff(np.log(np.sort(speeds))) > 0.01).sum()) if speeds.size else 0
+
+
+def plain_curve(velocity: Array, effort: Array) -> FrictionCurve:
+    """The curve without an effect through points - rad/s (m/s), N*m (N) - (n,)."""
+    return _fitted("", (), velocity, effort)
+
+
+def bent_curve(name: str, velocity: Array, effort: Array) -> FrictionCurve:
+    """The curve with an effect through points, its shape the one that leaves least within what physics allows.
+
+    Args:
+        name: of an effect of speed alone, whose shapes are speeds.
+        velocity, effort: points - rad/s (m/s), N*m (N) - (n,).
+    """
+    shapes = len(catalogue()[name].shapes)
+    if not shapes:
+        return _fitted(name, (), velocity, effort)
+    reach = float(np.log(np.abs(velocity).min())), float(np.log(0.5 * np.abs(velocity).max()))
+
+    def curve(logarithms: Array) -> FrictionCurve:
+        return _fitted(name, tuple(np.exp(np.atleast_1d(logarithms)).tolist()), velocity, effort)
+
+    return curve(scipy.optimize.brute(lambda x: curve(x).squares, (reach,) * shapes, Ns=60, finish=None))
+
+
+def _columns(name: str, shape: tuple[float, ...], velocity: Array) -> Array:
+    """Columns (n, 3 + strengths) of speed, its sign, a constant and the effect."""
+    zero, sign = np.zeros_like(velocity), np.sign(velocity)
+    columns = [velocity, sign, np.ones_like(velocity)]
+    if name:
+        signals = Signals(zero, zero, velocity, sign, zero, zero, sign, 1.0, 1.0)
+        effect = catalogue()[name]
+        assert isinstance(effect, OfSpeed)
+        columns += [sum((values for values, _ in column), zero) for column in effect.columns(signals, shape)]
+    return np.column_stack(columns)
+
+
+def _holds_constant(table: Array) -> bool:
+    return bool((np.ptp(table[:, 3:], axis=0) == 0.0).any())
+
+
+def _fitted(name: str, shape: tuple[float, ...], velocity: Array, effort: Array) -> FrictionCurve:
+    table = _columns(name, shape, velocity)
+    constant = not _holds_constant(table)
+    if not constant:
+        table[:, 2] = 0.0
+    solved, _, rank, _ = np.linalg.lstsq(table, effort, rcond=1e-10)
+    theta = np.asarray(solved, dtype=np.float64)
+    squares = float(np.sum((effort - table @ theta) ** 2))
+    base = Base(1.0, float(theta[0]), float(theta[1]))
+    if name and not catalogue()[name].physical(theta[3:].tolist(), shape, base):
+        squares = float("inf")
+    return FrictionCurve(name, shape, theta, squares, int(rank) + len(shape), constant)
+
+
+def chance(plain: FrictionCurve, tried: FrictionCurve, points: int, rounding: float) -> float:
+    """Probability of the F-test that an effect's columns and shape save nothing; squares below `rounding` are none."""
+    added, left = tried.freedom - plain.freedom, points - tried.freedom
+    if not np.isfinite(tried.squares) or added < 1:
+        return 1.0
+    ratio = (plain.squares - tried.squares) / added / (max(tried.squares, rounding) / left)
+    return float(scipy.stats.f.sf(ratio, added, left))

@@ -12,8 +12,7 @@ import numpy as np
 
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS
 from bench.effects.catalogue import catalogue
-from bench.friction_map.curve import Curve
-from bench.friction_map.map import CHANCE, FrictionMap
+from bench.friction_map.map import CHANCE, FrictionCurve, FrictionMap
 from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.report.document import Chart, Document, Panel, Picture, Section, Table, series, table
@@ -133,7 +132,7 @@ def _table(caption: str, values: Values) -> Table:
     return table(caption, ("quantity", "value>", "unit"), rows)
 
 
-def _curves(found: FrictionMap) -> list[tuple[Curve, str, bool]]:
+def _curves(found: FrictionMap) -> list[tuple[FrictionCurve, str, bool]]:
     """Curves that are drawn, what they are called, and whether an effect bends them."""
     plain = [(found.plain, "no effect", False)]
     return plain if found.name is None else [*plain, (found.best, words(found.name), True)]

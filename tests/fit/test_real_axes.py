@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bench.assets import asset
+from bench.fit.estimate import modelled_effort
 from bench.fit.identify import identify
-from bench.fit.modelled import modelled_effort
 from bench.rig.rig import Rig, load_rig
 from bench.trace.conditioning import condition
 from bench.trace.motion import motion

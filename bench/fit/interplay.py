@@ -1,9 +1,13 @@
-"""Dry frictions of one axis multiply: what scales the level scales all that other effects add to it.
+"""Terms whose columns depend on the strengths of others: frictions, loads on a coupling.
+
+Dry frictions of one axis multiply: what scales the level scales all that other effects add to it.
 
     M = (K_0 + sum of added levels)*(1 + w_1)*(1 + w_2)*...
 
-Linear in the strengths only with the other strengths held, as share of K_0; a fit brings them in line. So it is where
-friction follows the torque of a load, which is a matter of other strengths.
+Linear in the strengths only with the other strengths held, as share of K_0. So it is where friction follows the torque
+of a load, which is a matter of other strengths. An outer load - drag, a spring, an unbalance, an event - on the motor
+stands in the balance as it is; on the load of a soft coupling it shakes the coupling first, and its strength also
+drives the load's motion. A fit brings all of these in line.
 """
 
 from __future__ import annotations
@@ -17,9 +21,28 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.axis_kind import COULOMB
 from bench.effects.acting import CarriesFriction, FollowsLoad, FrictionLevel, LoadTorque, ScalesFriction
+from bench.effects.effect import Load, OuterTorque
 from bench.effects.signals import Signals
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.rows import Rows
+
+
+def in_line(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
+    """The hypothesis with what its terms see of each other's strengths as a fit found them.
+
+    Args:
+        hypothesis: that was fitted.
+        theta: its coefficients (p,).
+        owners: names of their columns (p,).
+    """
+    found = _with_loads(_with_levels(hypothesis, theta, owners), theta, owners)
+    return _with_pulls(found, theta, owners)
+
+
+def hang_together(hypothesis: Hypothesis) -> bool:
+    """Whether the columns of a term depend on the strengths of another."""
+    loaded = any(term.load is not None for term in hypothesis.terms)
+    return loaded or _follows_load(hypothesis) or _multiply(hypothesis)
 
 
 def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
@@ -48,7 +71,7 @@ def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
     return seen.with_signals(change)
 
 
-def with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
+def _with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
     """The hypothesis with the levels that a fit found: strengths over K_0 where that is positive."""
     coulomb = float(theta[owners == COULOMB][0])
 
@@ -60,7 +83,7 @@ def with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_
     return hypothesis.with_terms(replace(term, level=level(index, term)) for index, term in enumerate(hypothesis.terms))
 
 
-def multiply(hypothesis: Hypothesis) -> bool:
+def _multiply(hypothesis: Hypothesis) -> bool:
     """Whether an effect scales what another adds, or carries it."""
     effects = [term.effect for term in hypothesis.terms]
     levels = sum(isinstance(effect, FrictionLevel) for effect in effects)
@@ -88,9 +111,9 @@ def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows
     return seen.with_signals(change)
 
 
-def with_pulls(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
+def _with_pulls(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
     """The hypothesis with the strengths that a fit found of its loads, if the friction of a term follows them."""
-    if not follows_load(hypothesis):
+    if not _follows_load(hypothesis):
         return hypothesis
 
     def pull(index: int, term: Term) -> tuple[float, ...]:
@@ -99,6 +122,41 @@ def with_pulls(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]
     return hypothesis.with_terms(replace(term, pull=pull(k, term)) for k, term in enumerate(hypothesis.terms))
 
 
-def follows_load(hypothesis: Hypothesis) -> bool:
+def _follows_load(hypothesis: Hypothesis) -> bool:
     """Whether the friction of a term follows the torque of the load."""
     return any(isinstance(term.effect, FollowsLoad) for term in hypothesis.terms)
+
+
+def outer_loads(hypothesis: Hypothesis) -> list[int]:
+    """Indices of the terms that may act on the load of a coupling; none without one."""
+    if hypothesis.coupling is None:
+        return []
+    return [index for index, term in enumerate(hypothesis.terms) if isinstance(term.effect, OuterTorque)]
+
+
+def on_other_side(hypothesis: Hypothesis) -> Hypothesis:
+    """The hypothesis with its outer loads on the load instead of on the motor, or the other way round."""
+    outer = outer_loads(hypothesis)
+    onto = None if any(hypothesis.terms[index].load is not None for index in outer) else ()
+    return hypothesis.with_terms(
+        replace(term, load=onto) if index in outer else term for index, term in enumerate(hypothesis.terms)
+    )
+
+
+def loads_of(hypothesis: Hypothesis) -> tuple[Load, ...]:
+    """What acts on the load, as far as its strengths are known."""
+    outer = [(term.effect, term.shape, term.load) for term in hypothesis.terms if term.load]
+    return tuple((effect, shape, load) for effect, shape, load in outer if isinstance(effect, OuterTorque))
+
+
+def _with_loads(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
+    """The hypothesis with the strengths over load inertia that a fit found of what acts on the load."""
+    index = hypothesis.coupling
+    inertia = 0.0 if index is None else float(theta[owners == index][0])
+
+    def moved(k: int, term: Term) -> Term:
+        if term.load is None:
+            return term
+        return replace(term, load=tuple((theta[owners == k] / inertia).tolist()) if inertia > 0.0 else ())
+
+    return hypothesis.with_terms(moved(k, term) for k, term in enumerate(hypothesis.terms))
