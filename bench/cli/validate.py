@@ -39,9 +39,7 @@ def validate(
     from bench.report.provenance import without_files
     from bench.report.terminal import progress
     from bench.report.validation import validation, validation_json, write_validation
-    from bench.validation.case import AnyAxis
-    from bench.validation.hiding import Hiding
-    from bench.validation.plan import Plan
+    from bench.validation.plan import AnyAxis, Hiding, Plan
     from bench.validation.validate import validate as run_validation
 
     if rig is None and str(profile) != DEFAULT:

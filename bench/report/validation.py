@@ -38,8 +38,7 @@ from bench.report.parts import origin
 from bench.report.publish import write_document
 from bench.report.serial import known, picked, serialised
 from bench.statistics import NORMAL95
-from bench.validation.coverage import LEVELS, Coverage, Group, Share
-from bench.validation.naming import NOTHING, NOTHING_MISSING, Naming
+from bench.validation.coverage import LEVELS, NOTHING, NOTHING_MISSING, Coverage, Group, Naming, Share
 from bench.validation.run import Run
 from bench.validation.validate import Validation
 

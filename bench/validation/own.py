@@ -21,10 +21,10 @@ from bench.rig.simulation import Simulation
 from bench.rig.suffices import require
 from bench.trace.noise import resolution, white_noise
 from bench.trace.trace import Trace
-from bench.validation.case import PLANTS, Case, Plant
 from bench.validation.independent.references import Motion
 from bench.validation.independent.rig import Axis
 from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.plan import PLANTS, Case, Plant
 
 #: Width by which a measured speed is smoothed before a drive is told to follow it - s.
 SMOOTHED = 5e-3

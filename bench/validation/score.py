@@ -13,7 +13,7 @@ from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.name import NamedEffect
 from bench.effects.effect import Effect
 from bench.fit.parameter import Parameter
-from bench.validation.case import Case
+from bench.validation.plan import Case
 
 #: Terms of the equation of motion that are judged.
 TERMS = (INERTIA, VISCOUS, COULOMB)

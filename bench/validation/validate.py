@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
-from bench.validation.coverage import Coverage, coverage
-from bench.validation.naming import Naming, naming
+from bench.validation.coverage import Coverage, Naming, coverage, naming
 from bench.validation.plan import Plan
 from bench.validation.run import Run, carried_out, failed, pieces
 

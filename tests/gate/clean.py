@@ -9,8 +9,7 @@ import numpy as np
 from bench.rig.rig import Rig, load_rig
 from bench.trace.read import read
 from bench.trace.trace import Trace
-from bench.validation.independent.case import record
-from bench.validation.independent.draw import any_effects, hidden
+from bench.validation.independent.case import any_effects, hidden, record
 from bench.validation.independent.rig import write_rig
 from tests.diagnosis.public_axes import EMPS, LAAS, XL330, emps
 from tests.shared import SHARED

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from bench.rig.rig import load_rig
-from bench.validation.independent.case import record, residual_ratio, truth, write_case
-from bench.validation.independent.draw import any_effects, hidden
+from bench.validation.independent.case import any_effects, hidden, record, residual_ratio, truth, write_case
 from bench.validation.independent.effects import CATALOGUE, OUTSIDE
 from bench.validation.independent.sensors import Noise, Sensors
 

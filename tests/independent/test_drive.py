@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bench.validation.independent.drive import Drive
+from bench.validation.independent.simulate import Drive
 from tests.independent.axes import PLAIN
 
 

@@ -9,8 +9,7 @@ from bench.report.html import html
 from bench.report.provenance import without_files
 from bench.report.validation import confusion as matrix_of
 from bench.report.validation import validation
-from bench.validation.coverage import LEVELS, Coverage, Share
-from bench.validation.naming import Naming
+from bench.validation.coverage import LEVELS, Coverage, Naming, Share
 from bench.validation.validate import Validation
 from tests.report.test_page import HOSTILE
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.validation.case import AnyAxis, Case
 from bench.validation.independent.references import Motion, run_up_and_down
+from bench.validation.plan import AnyAxis, Case
 
 
 @dataclass(frozen=True)

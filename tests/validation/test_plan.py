@@ -5,11 +5,9 @@ import pytest
 
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError
-from bench.validation.hiding import HIDEABLE, Hiding
 from bench.validation.independent.effects import KINDS
-from bench.validation.plan import Plan
-from bench.validation.record import record
-from bench.validation.run import TOGETHER, carried_out, pieces
+from bench.validation.plan import HIDEABLE, Hiding, Plan
+from bench.validation.run import TOGETHER, carried_out, pieces, record
 from bench.validation.validate import validate
 from tests.validation.population import Short
 

@@ -9,8 +9,17 @@ from scipy import stats
 from bench.diagnosis.name import NamedEffect
 from bench.effects.catalogue import catalogue
 from bench.fit.parameter import Parameter
-from bench.validation.coverage import LEVELS, Coverage, Group, Share, coverage
-from bench.validation.naming import NOTHING, NOTHING_MISSING, REFUSED, naming
+from bench.validation.coverage import (
+    LEVELS,
+    NOTHING,
+    NOTHING_MISSING,
+    REFUSED,
+    Coverage,
+    Group,
+    Share,
+    coverage,
+    naming,
+)
 from bench.validation.plan import Plan
 from bench.validation.run import drawn
 from bench.validation.score import Named, Scored

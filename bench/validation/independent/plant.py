@@ -24,7 +24,7 @@ CONSTANTS = (
 
 
 @dataclass
-class Rows:
+class Members:
     """State and constants of those axes of a plant that have an effect, as the effect's hooks see them - (k,) each."""
 
     plant: Plant
@@ -90,7 +90,7 @@ class Plant:
             raise ValueError("an axis has one coupling between motor and load")
         self._load_inertia = self.inertia - self._body
 
-    def _with(self, hook: str) -> list[Rows]:
+    def _with(self, hook: str) -> list[Members]:
         return self._acting.get(hook, [])
 
     def advance(self, demand: np.ndarray, step: float) -> None:
@@ -165,14 +165,14 @@ class Plant:
         return np.maximum(forward, 0.0), np.maximum(backward, 0.0)
 
     def _bend_half(
-        self, rows: Rows, speed: np.ndarray, forward: np.ndarray, backward: np.ndarray, step: float
+        self, rows: Members, speed: np.ndarray, forward: np.ndarray, backward: np.ndarray, step: float
     ) -> np.ndarray:
         i = rows.index
         rows.level = np.maximum(np.where(self.velocity[i] > 0.0, forward[i], backward[i]), 1e-12)
         rows.memory = rows.effect.bend(speed[i], rows.level, rows.memory, step / 2.0)
         return rows.effect.bristle_torque(rows, rows.level, rows.memory)
 
-    def _move_load(self, rows: Rows, step: float) -> np.ndarray:
+    def _move_load(self, rows: Members, step: float) -> np.ndarray:
         """Torque from motor to load at the middle of the step, and the load moved by it."""
         i = rows.index
         speed = self.load_velocity[i]
@@ -252,18 +252,18 @@ HOOKS = (
 )
 
 
-def _members(plant: Plant, effects: Sequence[Sequence[Effect]]) -> dict[str, list[Rows]]:
+def _members(plant: Plant, effects: Sequence[Sequence[Effect]]) -> dict[str, list[Members]]:
     """For each hook the effects that act through it, each stacked over its axes."""
     found: dict[tuple[type[Effect], int], list[tuple[int, Effect]]] = {}
     for row, those in enumerate(effects):
         for order, effect in enumerate(those):
             repeats = sum(type(other) is type(effect) for other in those[:order])
             found.setdefault((type(effect), repeats), []).append((row, effect))
-    acting: dict[str, list[Rows]] = {}
+    acting: dict[str, list[Members]] = {}
     for (kind, _), pairs in found.items():
         index = np.array([row for row, _ in pairs])
         everywhere = len(index) == len(effects)
-        rows = Rows(plant, slice(None) if everywhere else index, stack([effect for _, effect in pairs]))
+        rows = Members(plant, slice(None) if everywhere else index, stack([effect for _, effect in pairs]))
         for hook in HOOKS:
             if kind.overrides(hook):
                 acting.setdefault(hook, []).append(rows)

@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.validation.independent.case import Hidden
-from bench.validation.independent.draw import any_effects, hidden
+from bench.validation.independent.case import Hidden, any_effects, hidden
 from bench.validation.independent.effects import CATALOGUE, OUTSIDE
 
 #: Severity of an effect by strength; 1 is drastic.

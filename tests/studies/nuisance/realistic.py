@@ -19,8 +19,7 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress
 
-from bench.validation.independent.case import Hidden, record, write_case
-from bench.validation.independent.draw import any_effects
+from bench.validation.independent.case import Hidden, any_effects, record, write_case
 from bench.validation.independent.effects import CATALOGUE
 from bench.validation.independent.rig import random_rig
 from bench.validation.independent.sensors import random_sensors

@@ -1,11 +1,5 @@
 """Effects of the independent axis: the contract's catalogue and some physics outside it."""
 
-from bench.validation.independent.effects.current import (
-    CurrentFilterLag,
-    CurrentGainAsymmetry,
-    CurrentOffsetDrift,
-    TorqueConstantDrift,
-)
 from bench.validation.independent.effects.effect import Effect, stack
 from bench.validation.independent.effects.friction import (
     DirectionalLoadFriction,
@@ -18,11 +12,21 @@ from bench.validation.independent.effects.friction import (
     StribeckFriction,
 )
 from bench.validation.independent.effects.load import (
+    Backlash,
+    ElasticCoupling,
     LoadTorqueEvent,
     PositionDependentInertia,
     TorqueOffset,
     TorsionSpring,
     Unbalance,
+)
+from bench.validation.independent.effects.measurement import (
+    CurrentFilterLag,
+    CurrentGainAsymmetry,
+    CurrentOffsetDrift,
+    EncoderEccentricity,
+    TorqueConstantDrift,
+    VelocityFilterLag,
 )
 from bench.validation.independent.effects.motor import (
     CoggingTorque,
@@ -32,8 +36,6 @@ from bench.validation.independent.effects.motor import (
     VoltageLimit,
 )
 from bench.validation.independent.effects.outside import PositionNotch, RestHardening, SlowMemoryFriction, Vibration
-from bench.validation.independent.effects.sensing import EncoderEccentricity, VelocityFilterLag
-from bench.validation.independent.effects.transmission import Backlash, ElasticCoupling
 
 KINDS: dict[str, type[Effect]] = {
     kind.name: kind
@@ -71,7 +73,16 @@ KINDS: dict[str, type[Effect]] = {
     )
 }
 #: Drawn as a group of their own, so that a case of another group stays what it is.
-LATER = {kind.name: kind for kind in list(KINDS.values())[-5:]}
+LATER = {
+    kind.name: kind
+    for kind in (
+        CurrentFilterLag,
+        CurrentGainAsymmetry,
+        CurrentOffsetDrift,
+        TorqueConstantDrift,
+        DirectionalLoadFriction,
+    )
+}
 CATALOGUE = {name: kind for name, kind in KINDS.items() if not kind.outside_catalogue and name not in LATER}
 OUTSIDE = {name: kind for name, kind in KINDS.items() if kind.outside_catalogue}
 

@@ -7,14 +7,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import ClassVar, Protocol, Self
 
 import numpy as np
 
 from bench.validation.independent.rig import Axis
 
-if TYPE_CHECKING:
-    from bench.validation.independent.plant import Rows
+
+class Rows(Protocol):
+    """State and constants of those axes of a plant that have an effect, as the effect's hooks see them - (k,) each.
+
+    Beside these, every attribute of the plant that is an array of axes, of those axes alone.
+    """
+
+    memory: np.ndarray
+    level: np.ndarray
+
+    @property
+    def time(self) -> float:
+        """Time at the middle of the step - s."""
+        ...
+
+    def __getattr__(self, name: str) -> np.ndarray: ...
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
-from bench.validation.independent.effects.effect import Effect, about, phase
+from bench.validation.independent.effects.effect import Effect, Rows, about, phase
 from bench.validation.independent.rig import Axis
-
-if TYPE_CHECKING:
-    from bench.validation.independent.plant import Rows
 
 
 @dataclass(frozen=True)
