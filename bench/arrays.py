@@ -13,13 +13,18 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
+#: Types whose functions are NumPy's. Asked first, as a step asks for each formula: 0.1 to 0.25 us each of the 19 us
+#: that a tick of a lone axis with five ticked effects takes, which asks six times.
+NUMPYS = frozenset({np.ndarray, np.float64, float})
+
+
 def namespace(value: object) -> ModuleType:
     """The functions of the array API standard for a value: NumPy's for one of its numbers or arrays.
 
     Raises:
         TypeError: no array, nor a number of NumPy's or Python's.
     """
-    if isinstance(value, (np.ndarray, np.generic, float)):  # asked in every step: quicker
+    if type(value) in NUMPYS:
         return np
     return array_api_compat.array_namespace(value)
 

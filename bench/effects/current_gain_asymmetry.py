@@ -43,7 +43,7 @@ class CurrentGainAsymmetry(CopiesTorque, MisreadEffort):
 
     def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
         """By the equation above."""
-        return effort + 0.5 * values["gain_difference"] * np.abs(effort)
+        return effort + 0.5 * values["gain_difference"] * abs(effort)
 
 
 EFFECT = CurrentGainAsymmetry()

@@ -11,9 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
-from bench.arrays import Array
+from bench.arrays import Array, namespace
 from bench.effects.acting import TorqueLag
 from bench.effects.axis import Number, Values
 from bench.effects.effect import Distortion, MotionLag
@@ -42,7 +40,8 @@ class CurrentLoopLag(MotionLag, Distortion, TorqueLag):
 
     def acting(self, values: Values, reported: Number, before: Number, step: float) -> tuple[Number, Number]:
         """Exact for a current that is held over the step."""
-        half = np.exp(-0.5 * step / values["time_constant"])
+        passed = -0.5 * step / values["time_constant"]
+        half = namespace(passed).exp(passed)
         return reported + (before - reported) * half, reported + (before - reported) * half**2
 
     def acting_along(self, values: Mapping[str, float], reported: Array, step: float) -> Array:

@@ -62,7 +62,7 @@ class DirectionDependentFriction(OfSpeed, DirectedFriction, Native, ResistingTor
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Of the viscous part."""
-        return 0.5 * values["viscous_difference"] * np.abs(at.velocity)
+        return 0.5 * values["viscous_difference"] * abs(at.velocity)
 
 
 EFFECT = DirectionDependentFriction()

@@ -62,7 +62,7 @@ class DirectionalLoadFriction(CopiesTorque, Replacing, FollowsLoad):
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """By the equation above."""
-        return values["motor_coefficient"] * np.abs(at.effort + values["load_ratio"] * at.load)
+        return values["motor_coefficient"] * abs(at.effort + values["load_ratio"] * at.load)
 
 
 EFFECT = DirectionalLoadFriction()

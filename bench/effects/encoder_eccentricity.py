@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.arrays import Array, namespace
 from bench.effects.acting import MisreadMotion
 from bench.effects.axis import Number, Values
 from bench.effects.effect import Distortion, Fitted, OncePerRevolution, Proposal
@@ -75,7 +75,8 @@ class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
     def seen(self, values: Values, position: Number, velocity: Number) -> tuple[Number, Number]:
         """By the equations above."""
         angle, amplitude = position + values["phase"], values["amplitude"]
-        return position + amplitude * np.sin(angle), velocity * (1.0 + amplitude * np.cos(angle))
+        xp = namespace(angle)
+        return position + amplitude * xp.sin(angle), velocity * (1.0 + amplitude * xp.cos(angle))
 
     def unseen(self, values: Mapping[str, float], position: Array, velocity: Array) -> tuple[Array, Array]:
         """The equations solved for the true motion."""

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from bench.arrays import namespace
 from bench.effects.acting import ResistingTorque, ScalesFriction
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.grids import DURATION
@@ -62,7 +63,8 @@ class FrictionWarmup(ScalesFriction, ResistingTorque):
 
 def _cold(values: Values, at: Moment) -> Number:
     """A*exp(-t/T)."""
-    return values["relative_amplitude"] * np.exp(-at.time / values["time_constant"])
+    passed = -at.time / values["time_constant"]
+    return values["relative_amplitude"] * namespace(passed).exp(passed)
 
 
 EFFECT = FrictionWarmup()

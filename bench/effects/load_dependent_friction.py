@@ -36,7 +36,7 @@ class LoadDependentFriction(CopiesTorque, RaisesFriction):
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """In proportion to the motor's torque."""
-        return values["load_friction_coefficient"] * np.abs(at.effort)
+        return values["load_friction_coefficient"] * abs(at.effort)
 
 
 EFFECT = LoadDependentFriction()

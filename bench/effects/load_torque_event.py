@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.arrays import Array, namespace
 from bench.effects.acting import ResistingTorque
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import Contact, Fitted, Occasional, OuterTorque, Proposal
@@ -88,9 +88,9 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
         """While it acts."""
-        time = at.began + at.time
-        acts = np.asarray((time >= values["start"]) & (time < values["end"]), dtype=np.float64)
-        return values["torque"] * acts
+        time, torque = at.began + at.time, values["torque"]
+        xp = namespace(torque)
+        return xp.where((time >= values["start"]) & (time < values["end"]), torque, xp.zeros_like(torque))
 
 
 EFFECT = LoadTorqueEvent()

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from bench.arrays import namespace
 from bench.effects.acting import ScalesFriction
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import OncePerRevolution
@@ -41,7 +42,8 @@ class PositionDependentFriction(OncePerRevolution, ScalesFriction):
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Once up and down a revolution."""
-        return 1.0 + values["relative_amplitude"] * np.sin(at.position + values["phase"])
+        angle = at.position + values["phase"]
+        return 1.0 + values["relative_amplitude"] * namespace(angle).sin(angle)
 
 
 EFFECT = PositionDependentFriction()

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from bench.arrays import namespace
 from bench.effects.acting import ResistingTorque, VaryingInertia
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import Columns, Wave
@@ -49,12 +50,14 @@ class PositionDependentInertia(Wave, Columns, VaryingInertia, ResistingTorque):
 
     def added_inertia(self, values: Values, axis: Axis, at: Moment) -> Number:
         """J(q) - J."""
-        return axis.inertia * values["relative_amplitude"] * np.sin(values["harmonic"] * at.position + values["phase"])
+        angle = values["harmonic"] * at.position + values["phase"]
+        return axis.inertia * values["relative_amplitude"] * namespace(angle).sin(angle)
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
         """J'(q)*omega**2/2."""
         slope = axis.inertia * values["relative_amplitude"] * values["harmonic"]
-        return 0.5 * slope * np.cos(values["harmonic"] * at.position + values["phase"]) * at.velocity**2
+        angle = values["harmonic"] * at.position + values["phase"]
+        return 0.5 * slope * namespace(angle).cos(angle) * at.velocity**2
 
 
 EFFECT = PositionDependentInertia()

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from bench.arrays import namespace
 from bench.effects.acting import RaisesFriction
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import OfSpeed
@@ -58,8 +59,8 @@ class StribeckFriction(OfSpeed, RaisesFriction):
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """The rise towards standstill."""
-        rise = values["static_friction"] - axis.coulomb
-        return rise * np.exp(-((at.velocity / values["stribeck_velocity"]) ** 2))
+        fallen = -((at.velocity / values["stribeck_velocity"]) ** 2)
+        return (values["static_friction"] - axis.coulomb) * namespace(fallen).exp(fallen)
 
 
 EFFECT = StribeckFriction()

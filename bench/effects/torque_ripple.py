@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from bench.arrays import namespace
 from bench.effects.acting import ScalesTorque
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import CopiesTorque, Repeatable, Wave
@@ -45,7 +46,8 @@ class TorqueRipple(Wave, CopiesTorque, Repeatable, ScalesTorque):
 
     def torque_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Of the angle the motor is at."""
-        return 1.0 + values["relative_amplitude"] * np.sin(values["harmonic"] * at.position + values["phase"])
+        angle = values["harmonic"] * at.position + values["phase"]
+        return 1.0 + values["relative_amplitude"] * namespace(angle).sin(angle)
 
 
 EFFECT = TorqueRipple()

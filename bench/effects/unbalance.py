@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bench.arrays import namespace
 from bench.effects.acting import LoadTorque, Native
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import OncePerRevolution, OuterTorque
@@ -46,7 +47,8 @@ class Unbalance(OncePerRevolution, OuterTorque, LoadTorque, Native):
 
     def load_torque(self, values: Values, at: Moment) -> Number:
         """By the equation above."""
-        return values["amplitude"] * np.sin(at.position + values["phase"])
+        angle = at.position + values["phase"]
+        return values["amplitude"] * namespace(angle).sin(angle)
 
     def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """A torque of one period a revolution: an eccentric body would add inertia that J holds already."""

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from bench.arrays import namespace
 from bench.effects.acting import DriveLimit
 from bench.effects.axis import Axis, Number, Values, Winding
 from bench.effects.effect import Detected
@@ -92,28 +93,29 @@ class VoltageLimit(DriveLimit):
         self, values: Values, axis: Axis, velocity: Number, demand: Number, before: Number, step: float
     ) -> tuple[Number, Number]:
         """Full voltage until the current is what is demanded, then what holds it there, if the limit allows."""
-        winding = _winding(axis)
+        winding, xp = _winding(axis), namespace(demand)
         constant = winding.torque_constant
-        tau = np.maximum(winding.inductance / winding.resistance, QUICKEST)
+        tau = xp.maximum(winding.inductance / winding.resistance, QUICKEST)
         wanted, start = demand / constant, before / constant
         emf = winding.back_emf_constant * velocity
         limit = values["voltage"]
-        holds = np.abs(emf + winding.resistance * wanted) <= limit
-        full = np.where(
-            holds, np.copysign(limit, wanted - start), np.copysign(limit, emf + winding.resistance * wanted)
+        holds = abs(emf + winding.resistance * wanted) <= limit
+        full = xp.where(
+            holds, xp.copysign(limit, wanted - start), xp.copysign(limit, emf + winding.resistance * wanted)
         )
         settled = (full - emf) / winding.resistance
-        until = np.where(holds, _time_to(wanted, start, settled, tau, step), step)
-        decay = np.exp(-until / tau)
-        end = np.where(holds & (until < step), wanted, settled + (start - settled) * decay)
+        until = xp.where(holds, _time_to(wanted, start, settled, tau, step), step)
+        decay = xp.exp(-until / tau)
+        end = xp.where(holds & (until < step), wanted, settled + (start - settled) * decay)
         area = settled * until + (start - settled) * tau * (1.0 - decay) + wanted * (step - until)
         return constant * area / step, constant * end
 
 
 def _time_to(wanted: Number, start: Number, settled: Number, tau: Number, step: float) -> Number:
     """Time in which a current that tends to `settled` goes from `start` to `wanted`, at most a step - s."""
-    ratio = (start - settled) / np.where(wanted == settled, np.inf, wanted - settled)
-    return np.minimum(tau * np.log(np.maximum(ratio, 1.0)), step)
+    xp = namespace(wanted)
+    ratio = (start - settled) / xp.where(wanted == settled, xp.inf, wanted - settled)
+    return xp.minimum(tau * xp.log(xp.maximum(ratio, 1.0)), step)
 
 
 def _winding(axis: Axis) -> Winding:

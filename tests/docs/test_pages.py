@@ -8,7 +8,7 @@ from types import ModuleType
 import pytest
 
 import bench
-from bench.effects.acting import Mechanism
+from bench.effects.acting import ResistingTorque
 from bench.effects.catalogue import catalogue
 from bench.trace.read import read
 from bench.units import Quantity
@@ -83,7 +83,7 @@ def test_the_page_of_an_effect_says_what_the_effect_says(name):
     assert re.search(r"## In MuJoCo\n\n- ", text)
 
 
-class Creep(Mechanism):
+class Creep(ResistingTorque):
     """An effect of somebody else's."""
 
     name = "belt_creep"
