@@ -42,6 +42,7 @@ class Gathered:
         tolerance: half widths of coefficients from the rig's tolerances.
         warnings: about the cut-off.
         checks: of all parts.
+        in_parts: whether there are parts beside the first.
     """
 
     first: Solution

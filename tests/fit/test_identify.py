@@ -85,6 +85,17 @@ def test_parts_give_what_the_whole_gives():
         assert joined[name].std_error == pytest.approx(whole[name].std_error, rel=0.1)
 
 
+def test_a_first_part_in_one_direction_leaves_the_offset_to_the_others():
+    """What tolerances and cut-off say of the first part holds for the friction that it knows, offset included."""
+    truth, rig = Truth(offset=0.02), RIG.model_copy(update={"offset": True})
+    whole = recording(np.random.default_rng(14), truth, duration=40.0)
+    there = recording(np.random.default_rng(15), truth, duration=10.0, speed=0.5, bias=300.0)
+    there = Trace(there.time - 10.0 - 1e-3, there.signals, UNITS, "there")
+    found = identify(iter([there, whole]), rig)
+    assert found["torque_offset"].value == pytest.approx(0.02, rel=0.1)
+    assert np.abs(errors(found, truth)).max() < 0.02
+
+
 def test_a_hole_costs_its_samples_and_nothing_else():
     truth, trace = Truth(), recording(np.random.default_rng(7), duration=10.0)
     kept = (trace.time < 3.0) | (trace.time > 4.2)
