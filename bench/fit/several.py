@@ -4,10 +4,11 @@
 
 theta - J, K_w, K_0 and offset, common to all recordings; theta_k - their estimate from recording k alone; A_k - its
 information: the matrix of its normal equations, scaled to its covariance, with its own shift of torque against speed
-and its own hum eliminated; D - variances between recordings beyond their own errors (`bench.comparison.spread`). With D = 0 it is
-the least-squares fit to all recordings (D. Jackson, I. R. White, S. G. Thompson, Statistics in Medicine 29(12), 2010,
-1282-1297). A_k may be singular: a run in one direction determines only the sum of K_0 and offset. Each recording keeps
-its own filter, noise, sample period and source of speed. The interval covers the recordings' own errors and D.
+and its own hum eliminated; D - variances between recordings beyond their own errors (`bench.comparison.spread`). With
+D = 0 it is the least-squares fit to all recordings (D. Jackson, I. R. White, S. G. Thompson, Statistics in Medicine
+29(12), 2010, 1282-1297). A_k may be singular: a run in one direction determines only the sum of K_0 and offset. Each
+recording keeps its own filter, noise, sample period and source of speed. The interval covers the recordings' own errors
+and D.
 """
 
 from __future__ import annotations
