@@ -5,6 +5,8 @@ import pytest
 
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.likely import likely_signals
+from bench.trace.plausible import require_plausible
 from bench.trace.reading_options import GivenOptions
 from bench.trace.trace import assemble
 
@@ -163,3 +165,45 @@ def test_a_foreign_clock_is_known_within_its_own_ends_and_holes():
     known = [*np.arange(10.0, 31.0), *np.arange(50.0, 81.0)]
     assert trace.time.tolist() == known
     np.testing.assert_allclose(trace["current"], 2.0 * trace.time, atol=1e-9)
+
+
+@pytest.mark.parametrize(("span", "refused"), [(10.05, False), (10.2, True)])
+def test_a_position_that_spans_more_than_its_period_does_not_wrap_by_it(span, refused):
+    columns = recording(time__s=COUNT, position__rad=np.linspace(0.0, span, COUNT.size))
+    if refused:
+        with pytest.raises(InputError, match=r"spans 10\.2, more than its period 10; allowed: a position_period"):
+            assemble(columns, WRAPS)
+    else:
+        assert np.ptp(assemble(columns, WRAPS)["position"]) == pytest.approx(span)
+
+
+def test_an_inverted_temperature_is_inverted_from_its_absolute_zero():
+    columns = recording(time__s=COUNT, velocity__rad_s=COUNT, warmth=0.0 * COUNT + 20.0)
+    trace = assemble(columns, {"temperature": "-warmth [degC]"})
+    assert trace["temperature"] == pytest.approx(-293.15)
+
+
+@pytest.mark.parametrize(("other", "derivative"), [(0.45, True), (0.52, False)])
+def test_a_column_that_correlates_by_09_with_anothers_rate_is_its_derivative(other, derivative):
+    """A share k of another sine beside the rate leaves a correlation of 1/sqrt(1 + k**2): 0.912 and 0.887."""
+    time = np.arange(4000.0)
+    angle, rate = -np.cos(time / 100.0) * 100.0, np.sin(time / 100.0)
+    found = likely_signals(recording(t=time, a=angle, b=rate + other * np.sin(time / 37.0)).channels)
+    guesses = {place: guess.signal for place, guess in found.items() if place > 0}
+    assert guesses == ({1: "position", 2: "velocity"} if derivative else {})
+
+
+@pytest.mark.parametrize(
+    ("top", "refused"),
+    [(1.01e8, "found 1.01e\\+08 rad/s at 39 s"), (0.99e8, None), (0.9e-30, "nothing beyond 9e-31"), (1.1e-30, None)],
+)
+def test_magnitudes_that_no_axis_has(top, refused):
+    """A velocity beyond 1e8 rad/s, and one whose square underflows; one that is zero throughout is another's matter."""
+    for sign in (1.0, -1.0):
+        trace = assemble(recording(time__s=COUNT, velocity__rad_s=sign * top * (COUNT == 39.0)))
+        if refused is None:
+            require_plausible(trace)
+        else:
+            with pytest.raises(InputError, match=refused.replace("found 1", f"found {'-' * (sign < 0)}1")):
+                require_plausible(trace)
+    require_plausible(assemble(recording(time__s=COUNT, velocity__rad_s=0.0 * COUNT)))

@@ -57,3 +57,9 @@ def test_a_step_is_told_where_each_value_occurs_four_times_on_average(levels, st
 
 def test_a_missing_level_does_not_double_the_step():
     assert resolution(np.repeat([0.0, 0.5, 1.0, 2.5, 3.0], 4)) == 0.5
+
+
+def test_the_median_of_a_mean_of_few_values_is_put_right():
+    """Of windows of 32 the top holds five values, correlated: without that their median would seem 3.4 % higher."""
+    stretches = np.random.default_rng(7).normal(size=(20_000, 34))
+    assert white_noise(*stretches) == pytest.approx(1.0, rel=0.012)

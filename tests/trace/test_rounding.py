@@ -66,3 +66,8 @@ def test_the_noise_floor_counts_the_lines_of_an_even_run(fraction):
     assert 0.85 < found.chi < 1.15
     white = INERTIA * rows.conditioning.source_noise * rows.conditioning.filter.noise_gain(2)
     assert rms(found.residual) > 1.3 * np.hypot(white, 2e-3 * rows.conditioning.filter.noise_gain(0))
+
+
+@pytest.mark.parametrize(("off", "step"), [(0.9e-3, 1.0), (1.1e-3, 0.0)])
+def test_a_distance_within_a_thousandth_of_a_step_is_a_multiple_of_it(off, step):
+    assert common_step(np.array([0.0, 1.0, 3.0 + off]), 0.1) == pytest.approx(step, rel=1e-9)
