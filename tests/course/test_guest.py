@@ -1,0 +1,33 @@
+"""The course is a guest: nothing of the bench imports it but its two commands, and those when they run."""
+
+import ast
+
+from tests.test_architecture import ROOT, SOURCES, imports, module_of
+
+COMMANDS = {"bench.cli.lab", "bench.cli.limits"}
+
+
+def of_course(module):
+    return module == "bench.course" or module.startswith("bench.course.")
+
+
+def test_only_its_commands_import_it():
+    users = {module_of(path) for path in SOURCES if any(map(of_course, imports(path)))}
+    assert {user for user in users if not of_course(user)} == COMMANDS
+
+
+def test_its_commands_import_it_when_they_run():
+    for command in COMMANDS:
+        tree = ast.parse((ROOT / f"{command.replace('.', '/')}.py").read_text(encoding="utf-8"))
+        first = [node.module for node in tree.body if isinstance(node, ast.ImportFrom)]
+        assert first
+        assert not any(of_course(module) for module in first)
+
+
+def test_it_takes_no_private_names():
+    for path in SOURCES:
+        if of_course(module_of(path)):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.ImportFrom):
+                    names = [*(node.module or "").split("."), *(alias.name for alias in node.names)]
+                    assert not [name for name in names if name.startswith("_") and not name.startswith("__")], path
