@@ -1,22 +1,22 @@
-"""The course is a guest: nothing of the bench imports it but its two commands, and those when they run."""
+"""The course is a guest: nothing of the bench imports it but its command, and that when it runs."""
 
 import ast
 
 from tests.test_architecture import ROOT, SOURCES, imports, module_of
 
-COMMANDS = {"bench.cli.lab", "bench.cli.limits"}
+COMMANDS = {"bench.cli.lab"}
 
 
 def of_course(module):
     return module == "bench.course" or module.startswith("bench.course.")
 
 
-def test_only_its_commands_import_it():
+def test_only_its_command_imports_it():
     users = {module_of(path) for path in SOURCES if any(map(of_course, imports(path)))}
     assert {user for user in users if not of_course(user)} == COMMANDS
 
 
-def test_its_commands_import_it_when_they_run():
+def test_its_command_imports_it_when_it_runs():
     for command in COMMANDS:
         tree = ast.parse((ROOT / f"{command.replace('.', '/')}.py").read_text(encoding="utf-8"))
         first = [node.module for node in tree.body if isinstance(node, ast.ImportFrom)]
