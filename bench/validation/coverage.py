@@ -1,4 +1,4 @@
-"""How far told values lie from the truth, and how often their intervals hold it."""
+"""How far estimates lie from the truth, how often their intervals hold it, and how often names are right."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from bench.validation.run import Run
 from bench.validation.score import TERMS, Named, Scored
@@ -42,13 +42,15 @@ class Share:
         """Of 95 %: 2.5 % on each side, and 0 and 1 of none."""
         if not self.of:
             return 0.0, 1.0
-        found = stats.binomtest(self.count, self.of).proportion_ci(CONFIDENCE, "exact")
-        return float(found.low), float(found.high)
+        beyond, others = (1.0 - CONFIDENCE) / 2.0, self.of - self.count
+        low = special.betaincinv(self.count, others + 1, beyond) if self.count else 0.0
+        high = special.betaincinv(self.count + 1, others, 1.0 - beyond) if others else 1.0
+        return float(low), float(high)
 
 
 @dataclass(frozen=True)
 class Group:
-    """Runs that are told together.
+    """Runs that are counted together.
 
     Attributes:
         name: what they have in common.
@@ -70,7 +72,7 @@ class Coverage:
         group: of runs.
         quantity: term of the equation of motion, or quantity of the effect that the group is called by.
         runs: of the group.
-        told: that tell the quantity.
+        told: runs that estimate the quantity.
         bias, bias_error: mean of the errors over the true value, and its standard error.
         spread: standard deviation of these.
         typical: root of their mean square.

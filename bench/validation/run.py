@@ -105,7 +105,7 @@ class Run:
         sample_period, duration: of the recording - s.
         status: done; refused by `identify`, which tells what it knows all the same; failed where there is no recording.
         reason: why it is not done.
-        told: quantities, by `identify` and by `diagnose`.
+        scored: quantities, by `identify` and by `diagnose`.
         named: by `diagnose`, if it was asked.
     """
 

@@ -1,4 +1,4 @@
-"""Validation: draw cases, carry them out wherever there are workers, and see how often what is told holds."""
+"""Validation: draw cases, carry them out wherever there are workers, and see how often results hold."""
 
 from __future__ import annotations
 
