@@ -31,27 +31,16 @@ class EncodersSideBySide:
 
 def reported(model: AxisModel, position: Array, velocity: Array, step: float) -> tuple[Array, Array]:
     """What sensors report of one axis' true motion, (n,) each at a constant step - s."""
-    position, velocity = seen(model, position, velocity)
-    return position, filtered(model, velocity, step)
-
-
-def seen(model: AxisModel, position: Array, velocity: Array) -> tuple[Array, Array]:
-    """What the encoder of one axis sees of its true motion, (n,) each, instant by instant."""
     for effect, values in model.acting(MisreadMotion):
         position, velocity = effect.seen(values, position, velocity)
+    for effect, values in _filters(model, "velocity"):
+        velocity = effect.recorded(values, velocity, step)
     return position, velocity
 
 
 def filters(model: AxisModel) -> bool:
     """Whether the velocity that is recorded depends on what came before."""
     return bool(_filters(model, "velocity"))
-
-
-def filtered(model: AxisModel, velocity: Array, step: float) -> Array:
-    """What is recorded of the velocity that the encoder sees, (n,) at a constant step - s."""
-    for effect, values in _filters(model, "velocity"):
-        velocity = effect.recorded(values, velocity, step)
-    return velocity
 
 
 def true_velocity(model: AxisModel, velocity: Array, step: float) -> Array:

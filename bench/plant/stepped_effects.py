@@ -83,38 +83,38 @@ class SteppedEffects:
         reported, torque = self._driven(time + 0.5 * self._step, middle, demand)
         at = Moment(time + 0.5 * self._step, position, middle, torque, began)
         if self._factors:
-            for rows in self._factors:
-                factor = rows.effect.torque_factor(rows.values, rows.axis, rows.moment(at))
-                torque = rows.with_these(torque, rows.of(torque) * factor)
+            for some in self._factors:
+                factor = some.effect.torque_factor(some.values, some.axis, some.moment(at))
+                torque = some.with_these(torque, some.of(torque) * factor)
             at = Moment(at.time, position, middle, torque, began)
         applied = self._none - self._friction.offset(at)
-        for rows in self._resisting:
-            resisting = rows.effect.resisting_torque(rows.values, rows.axis, rows.moment(at))
-            applied = rows.with_these(applied, rows.of(applied) - resisting)
+        for some in self._resisting:
+            resisting = some.effect.resisting_torque(some.values, some.axis, some.moment(at))
+            applied = some.with_these(applied, some.of(applied) - resisting)
         self._joints.set_torque(applied)
         if self._inertia:
             added = self._none
-            for rows in self._inertia:
-                more = rows.effect.added_inertia(rows.values, rows.axis, rows.moment(at))
-                added = rows.with_these(added, rows.of(added) + more)
+            for some in self._inertia:
+                more = some.effect.added_inertia(some.values, some.axis, some.moment(at))
+                added = some.with_these(added, some.of(added) + more)
             self._joints.set_added_inertia(added)
         return reported, torque
 
     def _driven(self, time: Number, velocity: Number, demand: Number) -> tuple[Number, Number]:
         """In the order of the signal: what flows of a demand, what that truly is, what acts, what torque it makes."""
         reported = demand
-        for rows in self._flowing:
-            wanted, speed = rows.of(demand), rows.of(velocity)
-            flows, rows.memory = rows.effect.flowing(rows.values, rows.axis, speed, wanted, rows.memory, self._step)
-            reported = rows.with_these(reported, flows)
+        for some in self._flowing:
+            wanted, speed = some.of(demand), some.of(velocity)
+            flows, some.memory = some.effect.flowing(some.values, some.axis, speed, wanted, some.memory, self._step)
+            reported = some.with_these(reported, flows)
         torque = reported
-        for rows in self._acted:
-            torque = rows.with_these(torque, rows.effect.acted(rows.values, rows.axis, rows.of(torque), rows.of(time)))
-        for rows in self._acting:
-            acts, rows.memory = rows.effect.acting(rows.values, rows.of(torque), rows.memory, self._step)
-            torque = rows.with_these(torque, acts)
-        for rows in self._delivered:
-            torque = rows.with_these(torque, rows.effect.delivered(rows.values, rows.axis, rows.of(torque)))
+        for some in self._acted:
+            torque = some.with_these(torque, some.effect.acted(some.values, some.axis, some.of(torque), some.of(time)))
+        for some in self._acting:
+            acts, some.memory = some.effect.acting(some.values, some.of(torque), some.memory, self._step)
+            torque = some.with_these(torque, acts)
+        for some in self._delivered:
+            torque = some.with_these(torque, some.effect.delivered(some.values, some.axis, some.of(torque)))
         return reported, torque
 
 
@@ -138,16 +138,16 @@ class _FrictionLevels:
         level = self._coulomb
         if self._loads:
             at = replace(at, load=self._load(at))
-        for rows in self._excesses:
-            excess = rows.effect.friction_excess(rows.values, rows.axis, rows.moment(at))
-            level = rows.with_these(level, rows.of(level) + excess)
+        for some in self._excesses:
+            excess = some.effect.friction_excess(some.values, some.axis, some.moment(at))
+            level = some.with_these(level, some.of(level) + excess)
         half = self._none
-        for rows in self._differences:
-            difference = rows.effect.friction_difference(rows.values, rows.axis)
-            half = rows.with_these(half, rows.of(half) + 0.5 * difference)
-        for rows in self._factors:
-            factor = rows.effect.friction_factor(rows.values, rows.axis, rows.moment(at))
-            level, half = (rows.with_these(each, rows.of(each) * factor) for each in (level, half))
+        for some in self._differences:
+            difference = some.effect.friction_difference(some.values, some.axis)
+            half = some.with_these(half, some.of(half) + 0.5 * difference)
+        for some in self._factors:
+            factor = some.effect.friction_factor(some.values, some.axis, some.moment(at))
+            level, half = (some.with_these(each, some.of(each) * factor) for each in (level, half))
         if not self._differences:
             self._joints.set_friction(np.maximum(level, 0.0))
             return 0.0
@@ -161,8 +161,8 @@ class _FrictionLevels:
     def _load(self, at: Moment) -> Number:
         """Torque of the load that the transmission carries - N*m (N) - (axes,)."""
         load = self._none
-        for rows in self._loads:
-            load = rows.with_these(load, rows.of(load) + rows.effect.load_torque(rows.values, rows.moment(at)))
+        for some in self._loads:
+            load = some.with_these(load, some.of(load) + some.effect.load_torque(some.values, some.moment(at)))
         return load
 
 
@@ -222,10 +222,10 @@ def on_axes(models: Sequence[AxisModel], kind: type[Kind], ticked: bool = False)
             key = present.name, count[present.name]
             found.setdefault(key, []).append(row)
             values.setdefault(key, []).append(dict(present.values))
-    return [_rows(models, key[0], found[key], values[key], kind) for key in sorted(found)]
+    return [_gathered(models, key[0], found[key], values[key], kind) for key in sorted(found)]
 
 
-def _rows(
+def _gathered(
     models: Sequence[AxisModel], name: str, index: list[int], values: list[dict[str, float]], kind: type[Kind]
 ) -> EffectOnAxes[Kind]:
     effect = next(p.effect for p in models[index[0]].effects if p.name == name)
