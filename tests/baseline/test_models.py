@@ -33,6 +33,7 @@ def test_a_value_has_changed_beyond_its_margin_and_not_below(factor, result):
     checked, comparisons = found(model(), model(J * factor))
     assert (checked.result, comparisons[INERTIA].result) == (result, result)
     assert comparisons[INERTIA].difference.value == pytest.approx(J * (factor - 1.0))
+    assert (checked.false_alarm_rate, checked.family) == (0.0, len(checked.comparisons))
 
 
 def test_angles_go_by_the_shorter_way_round():
