@@ -62,6 +62,37 @@ def test_no_import_goes_back(path):
     assert not back, f"{module_of(path)} imports {back} from further down the way of the data"
 
 
+def files_imported(path: Path) -> set[str]:
+    """Modules of the bench whose file a file imports, those for type checkers included."""
+    modules = {module_of(source) for source in SOURCES}
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            every = {f"{node.module}.{alias.name}" for alias in node.names}
+            found |= every & modules or {node.module} & modules
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names} & modules
+    return found - {"bench", module_of(path)}
+
+
+def test_no_files_import_each_other_in_a_circle():
+    waiting = {module_of(path): files_imported(path) for path in SOURCES}
+    while free := {name for name, needed in waiting.items() if not needed & waiting.keys()}:
+        waiting = {name: needed for name, needed in waiting.items() if name not in free}
+    assert not waiting, "each of these imports one of them"
+
+
+def test_a_class_name_has_one_meaning():
+    """The independent truth aside, which shares nothing with what it judges."""
+    found: dict[str, list[str]] = {}
+    for path in SOURCES:
+        if "independent" not in path.parts:
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.ClassDef):
+                    found.setdefault(node.name, []).append(module_of(path))
+    assert {name: modules for name, modules in found.items() if len(modules) > 1} == {}
+
+
 def test_the_truth_owes_nothing_to_what_it_judges():
     folder = ROOT / "bench" / "validation" / "independent"
     found = {name for path in sorted(folder.rglob("*.py")) for name in imports(path)}

@@ -147,7 +147,7 @@ def _axes(data: Path, rigs: Path) -> dict[str, Job]:
     log, robot = str(pendulum / "A0_20220812-061705.csv.gz"), str(pendulum / "A0.xml")
     found["axes/robot"] = [
         ["inspect", log, "--json", "inspect.json"],
-        ["identify", log, "--mjcf", robot, "--joint", "joint1", "--json", "identify.json"],
+        ["identify", log, "--mjcf", robot, "--joint", "Joint1", "--json", "identify.json"],
     ]
     return found
 
