@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 from bench.arrays import Array
 from bench.errors import BenchError
-from bench.report.document import COLOURS, Chart, Panel, Series, series
+from bench.report.document import COLOURS, Chart, Panel, Series, Style, series
 
-#: How curves of the course are drawn.
-Style = Literal["line", "dotted", "wide", "dashes", "dots", "large dots"]
 #: Where a number comes from.
 RECORDING, COMPUTED, SIMULATED, EXAMPLE = "recording", "computed", "simulated", "embedded example"
 

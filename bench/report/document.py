@@ -22,6 +22,8 @@ Tone = Literal["sure", "open", "refused"]
 Colour = Literal["ink", "model", "left", "floor", "first", "violet", "ochre", "blue", "red"]
 #: Of the curves of a chart that stand for nothing of these, in their order.
 COLOURS: tuple[Colour, ...] = ("ink", "model", "left", "violet", "ochre", "blue", "red", "first")
+#: How a series is drawn: dots, large ones or rings; a line, full, dashed, dotted or wide; or a band between its bounds.
+Style = Literal["dots", "large dots", "rings", "line", "dashes", "dotted", "wide", "band"]
 #: How many times slower than it was a motion plays.
 Slowed = Literal[1, 2, 5, 10, 20, 50, 100]
 #: How columns of a table are set, by the last character of their headings in `table`.
@@ -105,14 +107,14 @@ class Series(Part):
 
     Attributes:
         name: of it, for the legend.
-        style: dots, large ones or rings; a line, full, dashed, dotted or wide; or a band between `low` and `high`.
+        style: of dots, a line or a band.
         colour: by what it stands for.
         x, y: points (b,); `y` is () of a band.
         low, high: of a band, or of an interval around each dot (b,); () without.
     """
 
     name: str
-    style: Literal["dots", "large dots", "rings", "line", "dashes", "dotted", "wide", "band"]
+    style: Style
     colour: Colour
     x: tuple[float, ...]
     y: tuple[float, ...] = ()
@@ -122,7 +124,7 @@ class Series(Part):
 
 def series(
     name: str,
-    style: Literal["dots", "large dots", "rings", "line", "dashes", "dotted", "wide", "band"],
+    style: Style,
     colour: Colour,
     x: Array,
     y: Array | None = None,
