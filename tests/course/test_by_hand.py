@@ -9,9 +9,11 @@ import pytest
 from bench.course import t06_inertia, t09_least_squares, t10_peak_torque
 from bench.course.axis import Sources, lab_rig
 from bench.course.recordings import LabRecordings, LabRun
+from bench.course.students import draw_rig
 from bench.errors import UndeterminedError
 from bench.fit.lab import backward_difference
 from bench.report.limits import in_range
+from bench.rig.rig import Rig
 from tests.course.drawn import curves
 
 RPM = 60.0 / (2.0 * math.pi)
@@ -129,3 +131,10 @@ def test_range_of_a_motion_at_one_speed():
     motion, _, least = in_range(lab_rig(), -velocity, torque, "by hand").chart.panels[0].series[:3]
     assert motion.y == (-2.0, 2.0, -2.0, 1.0)
     assert (least.y, least.high) == ((-2.0,), pytest.approx((-3.5,)))
+
+
+def test_a_students_axis_is_a_tenth_to_a_fifth_beyond_its_disks_theory():
+    for seed in range(20):
+        rig = Rig.of(draw_rig(np.random.default_rng(seed)))
+        load = rig.simulation.moment_of_inertia - rig.motor.rotor_inertia
+        assert 0.0999 < load / rig.load.disk_inertia - 1.0 < 0.2001
