@@ -1,4 +1,4 @@
-"""SignalColumn channels in SI units, each with the clock it was sampled by."""
+"""The channels that were chosen in SI units, each with the clock it was sampled by."""
 
 from __future__ import annotations
 
