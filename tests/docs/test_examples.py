@@ -72,3 +72,46 @@ def test_check_for_change(printed):
     as_it_was, worn = printed("check_for_change").splitlines()
     assert as_it_was == "as it was: same, appeared: []"
     assert worn.startswith("worn: changed") and "cogging_torque" in worn
+
+
+def test_plan_a_motion(printed, tmp_path):
+    text = printed("plan_a_motion")
+    shares = [float(share) for share in re.findall(r"standard error ([\d.]+)%", text)]
+    assert shares == sorted(shares) and shares[0] < 1.0
+    rows = (tmp_path / "motion.csv").read_text(encoding="utf-8").splitlines()
+    assert len(rows) - 1 == number("NUMBER rows", text)
+
+
+def test_step_effects_in_a_loop(printed):
+    weak, middle, strong = re.findall(r": ([-\d.]+) rad/s", printed("step_effects_in_a_loop"))
+    assert abs(float(weak)) < 1e-3
+    assert abs(float(middle)) < 1e-3, "above Coulomb friction and below static friction it sticks"
+    assert float(strong) > 1.0
+
+
+def test_batch_of_a_hundred(printed):
+    assert number("moves one: NUMBER N", printed("batch_of_a_hundred")) == pytest.approx(0.17, abs=0.006)
+
+
+def test_fleet_of_recordings(printed):
+    text = printed("fleet_of_recordings")
+    assert "'done': 8" in text
+    explained = {(axis, day): float(share) for axis, day, share in re.findall(r"(\w+) (\S+): ([\d.]+) of", text)}
+    assert min(explained, key=explained.__getitem__) == ("saw", "2026-01-04")
+
+
+def test_joint_of_a_robot(printed):
+    text = printed("joint_of_a_robot")
+    assert number("armature: NUMBER", text) == pytest.approx(0.02, rel=1e-2)
+    assert number("coulomb_friction_torque: NUMBER", text) == pytest.approx(0.4, rel=1e-2)
+
+
+def test_effect_of_your_own(printed):
+    text = printed("effect_of_your_own")
+    assert number("noise NUMBER without", text) > 1.5
+    assert number("NUMBER with", text.split("without")[1]) == pytest.approx(1.0, abs=0.1)
+    assert number("rate of NUMBER", text) == pytest.approx(0.01, rel=0.02)
+
+
+def test_reader_of_your_own(printed):
+    assert printed("reader_of_your_own") == "1000 samples, 0.001 s apart, up to 313.85 rad/s\n"
