@@ -1,4 +1,4 @@
-"""`python -m tests.baseline --axes 1000 --out docs/check`: false alarms and detections of `bench check`, in tables."""
+"""False alarms and detections of `bench check`, in tables: `--axes 1000 --out docs/check`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import typer
 from rich.console import Console
 from rich.progress import track
 
-from tests.baseline.draw import (
+from tests.studies.false_alarms.draw import (
     Again,
     Drawn,
     as_it_was,
@@ -25,8 +25,8 @@ from tests.baseline.draw import (
     sampled_otherwise,
     with_effect,
 )
-from tests.baseline.run import SHOWN, Answers, allows, answer, observed
-from tests.baseline.table import markdown
+from tests.studies.false_alarms.run import SHOWN, Answers, allows, answer, observed
+from tests.studies.false_alarms.table import markdown
 
 #: Spread between recordings in their own errors.
 SPREADS = {"none": 0.0, "small": 1.0 / 3.0, "equal to within": 1.0}
@@ -100,7 +100,7 @@ def main(
     parts: dict[str, Answers] = {}
 
     def told() -> str:
-        text = markdown(parts, f"python -m tests.baseline {counts}")
+        text = markdown(parts, f"python -m tests.studies.false_alarms {counts}")
         if out is not None:
             out.mkdir(parents=True, exist_ok=True)
             (out / "table.md").write_text(text, encoding="utf-8")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tests.baseline.run import SHOWN, Answers
+from tests.studies.false_alarms.run import SHOWN, Answers
 
 NOTE = f"""Recordings of the independent integrator, 4 s each, sensors drawn at random. Bounds are Clopper and Pearson's
 at 95 %. `refused`: no answer, as the recording determines too little. `allows it`: errors, spread and margin of the

@@ -1,4 +1,4 @@
-"""Score every exported recording: `python -m tests.exports [FOLDER]`; the last line counts."""
+"""Score every exported recording: `python -m tests.studies.exports [FOLDER]`; the last line counts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from tests.exports.score import EXPORTS, score, truths
+from tests.studies.exports.score import EXPORTS, score, truths
 
 
 def main(folder: Annotated[Path, typer.Argument(help="Folder with truth.json.")] = EXPORTS) -> None:

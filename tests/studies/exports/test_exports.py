@@ -2,8 +2,8 @@
 
 import pytest
 
-from tests.exports.score import EXPORTS, score, truths
 from tests.shared import needs_shared
+from tests.studies.exports.score import EXPORTS, score, truths
 
 
 @needs_shared

@@ -1,4 +1,4 @@
-"""`python -m tests.fleet --out docs/fleet/table.md`: what a fleet's run endures, and how fast it is."""
+"""`python -m tests.studies.fleet --out docs/fleet/table.md`: what a fleet's run endures, and how fast it is."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def main(
         folder = Path(place)
         lines = _endured(folder, recordings, deadline) if recordings else []
         lines += _speed(folder / "timed", timed, duration) if timed else []
-    command = f"python -m tests.fleet --recordings {recordings} --timed {timed} --duration {duration:g}"
+    command = f"python -m tests.studies.fleet --recordings {recordings} --timed {timed} --duration {duration:g}"
     text = "\n".join(["# A fleet, measured", "", f"`{command}`", "", "| what | found |", "|---|---|", *lines]) + "\n"
     typer.echo(text)
     if out is not None:

@@ -1,0 +1,1 @@
+"""How a fleet of thousands goes, and what its changes miss: `python -m tests.studies.fleet --help`."""
