@@ -42,10 +42,8 @@ def view(
         raise InputError(
             "TRACE", "missing", "allowed: a recording, or --rig with [drive], whose profile it then follows"
         )
-    from bench.report.view import view as document_of
-
     if video is not None:
-        from bench.view.video import prepare
+        from bench.view.video import prepare  # before anything imports MuJoCo, which takes its renderer then
 
         prepare(video)
     of = subject(rig, axis_name, mjcf, joint, at)
@@ -58,6 +56,8 @@ def view(
 
         with progress(f"rendering {video.name}") as done:
             write_video(video, shown, Scene.of(shown, of.rig.load), slowed, done)
+    from bench.report.view import view as document_of
+
     write_page(out, document_of(shown, model, readable(profile if trace is None else trace.name), warnings))
     list_files([out, video])
     warn(warnings)

@@ -51,7 +51,7 @@ def test_a_folder_closed_by_permissions_is_told_in_one_line(folder):
 
 def test_the_page_has_commands_that_there_are():
     page = (ROOT / "docs" / "robustness.md").read_text(encoding="utf-8")
-    lines = re.findall(r"^python -m tests\.crash(.*)$", page, re.MULTILINE)
+    lines = re.findall(r"^python -m tests\.studies\.crash(.*)$", page, re.MULTILINE)
     assert lines
     for line in lines:
         options().parse_args(shlex.split(line))
