@@ -89,9 +89,10 @@ def recursive_filter(
         values: (n,), any unit.
         held: by the filter before the first value, which it adds to the first of y - the same unit.
     """
-    from scipy.linalg.blas import dtbsv  # 0.1 s, which only a filter has to pay
+    from scipy.linalg import get_blas_funcs  # 0.1 s, which only a filter has to pay
 
     driven = np.convolve(values, numerator)[: values.size]
     driven[0] += held
     bands = np.asfortranarray(np.repeat(np.asarray(denominator, dtype=np.float64)[:, None], values.size, axis=1))
-    return dtbsv(len(denominator) - 1, bands, driven, lower=1, diag=1)
+    (solve,) = get_blas_funcs(("tbsv",), dtype=np.float64)
+    return solve(len(denominator) - 1, bands, driven, lower=1, diag=1)

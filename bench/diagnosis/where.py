@@ -146,4 +146,4 @@ def _welch(values: Array, rate: float, length: int) -> tuple[Array, Array]:
     power = np.abs(np.fft.rfft((windows - windows.mean(axis=1, keepdims=True)) * hann, axis=1)) ** 2
     density = power.mean(axis=0) / (rate * np.sum(hann**2))
     density[1 : (length + 1) // 2] *= 2.0
-    return np.fft.rfftfreq(length, 1.0 / rate), density
+    return np.fft.rfftfreq(length, 1.0 / rate).astype(np.float64), density
