@@ -15,8 +15,9 @@ import numpy as np
 from bench.arrays import Array
 from bench.diagnosis.policy import Policy, freedom, worth
 from bench.diagnosis.search import Searched, Step, backward_elimination, candidates, refined
-from bench.effects.catalogue import rivals, simpler_forms
+from bench.effects.catalogue import simpler_forms
 from bench.effects.effect import Contact, Coupling, Effect, Occasional, Wave
+from bench.effects.rivals import RIVALS
 from bench.effects.signals import Signals
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Term
@@ -42,7 +43,7 @@ class Evidence:
 
     def rivals(self) -> list[Effect]:
         """Effects from outside the catalogue."""
-        return [effect for effect in rivals() if effect.name not in self.excluded]
+        return [effect for effect in RIVALS if effect.name not in self.excluded]
 
 
 #: A reason not to believe a name: the fit with what it leaves of its names.

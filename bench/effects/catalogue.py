@@ -16,7 +16,6 @@ from types import MappingProxyType
 
 import bench.effects
 from bench.effects.effect import Effect
-from bench.effects.rivals import RIVALS
 from bench.effects.signals import Scope
 from bench.errors import InputError
 
@@ -46,11 +45,6 @@ def catalogue() -> MappingProxyType[str, Effect]:
             raise InputError(f"{GROUP}: {offered.value}", f"found '{effect.name}' again", "allowed: a name of its own")
         found[effect.name] = effect
     return MappingProxyType(found)
-
-
-def rivals() -> tuple[Effect, ...]:
-    """Effects from outside the catalogue, which compete with its names."""
-    return RIVALS
 
 
 def simpler_forms(effect: Effect, scope: Scope) -> list[Effect]:

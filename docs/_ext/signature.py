@@ -16,9 +16,10 @@ from bench.arrays import Array, rms
 from bench.diagnosis.decidable import fit_bare
 from bench.diagnosis.search import candidates
 from bench.diagnosis.where import LEAST, bins_of, coordinates, means_in, where
-from bench.effects.catalogue import catalogue, rivals
+from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detectable, Effect
 from bench.effects.present import Present, parse_effect
+from bench.effects.rivals import RIVALS
 from bench.fit.fit import Fit
 from bench.fit.rows import Rows
 from bench.names import words
@@ -91,7 +92,7 @@ def signature(effect: Effect) -> Signature:
         if isinstance(effect, Detectable) and effect.detect(told[name], rig(), width[name]) is not None
     )
     main = bare[DEFAULT]
-    tried = candidates(main, [*catalogue().values(), *rivals()])
+    tried = candidates(main, [*catalogue().values(), *RIVALS])
     shares = {one.term.effect: one.gain / main.squares for one in tried}
     return Signature(present, text, told[DEFAULT], recorded(DEFAULT), main, motions, detected, shares)
 

@@ -13,7 +13,7 @@ from bench.diagnosis import doubts, search
 from bench.diagnosis.doubts import Evidence, contested, not_in_holdout, simpler, unbelievable, wrong_form
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.search import Candidate
-from bench.effects.catalogue import rivals
+from bench.effects.rivals import RIVALS
 from bench.fit.hypothesis import Hypothesis, Term
 from tests.diagnosis.hand_made import level, made, term
 
@@ -193,7 +193,7 @@ class Table:
         return [Candidate(term, 1.0) for term in self.rivals]
 
 
-RIVAL = Term(next(effect for effect in rivals() if effect.name == "outside_slow_memory"), (0.3,))
+RIVAL = Term(next(effect for effect in RIVALS if effect.name == "outside_slow_memory"), (0.3,))
 
 
 @pytest.mark.parametrize(
