@@ -16,16 +16,13 @@ from pathlib import Path
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.baseline.allowed import Allowed
-from bench.baseline.check import Checked, matched
+from bench.baseline.check import Allowed, Checked, matched
 from bench.baseline.state import INSTANTS, NamedHere, Response, State
 from bench.comparison.difference import CHANGED, SAME, Comparison, Difference, Measured
-from bench.plant.axis_model import AxisModel
-from bench.plant.drive import Cascade
-from bench.plant.model import parameter_quantities
+from bench.plant.axis_model import AxisModel, parameter_quantities
+from bench.plant.drive import Cascade, References
 from bench.plant.model_file import SCHEMA, StoredModel, load_model, read_table
 from bench.plant.plant import Plant
-from bench.plant.references import References
 from bench.plant.run import run
 from bench.units import Quantity
 

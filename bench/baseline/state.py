@@ -172,8 +172,8 @@ class State:
         verdict: of the diagnosis; empty without names.
         gaps: by `torque` and `velocity`.
         shows: smallest effects that the recording would have shown; None without names.
-        conditions: motion, sampling and cut-off by name, SI (`bench.baseline.conditions`).
-        rig: values that identification reads of the rig, by key (`bench.baseline.conditions`).
+        conditions: motion, sampling and cut-off by name, SI (`bench.baseline.observe`).
+        rig: values that identification reads of the rig, by key (`bench.baseline.observe`).
         provenance: version, digests, options.
         response: of a model; None of recordings.
     """

@@ -142,8 +142,7 @@ class Asked:
 
     def checked(self, rate: float) -> Checked:
         """The check."""
-        from bench.baseline.allowed import Allowed
-        from bench.baseline.check import compare
+        from bench.baseline.check import Allowed, compare
         from bench.baseline.state import read_baseline
 
         if self.simulated is None:

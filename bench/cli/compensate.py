@@ -22,8 +22,7 @@ def compensate(
     """Make of a diagnosed model what its drive feeds forward; say how much better it tracks with it, by simulation."""
     import numpy as np
 
-    from bench.export.drive_units import DriveUnits
-    from bench.export.feedforward import feedforward, tracking
+    from bench.export.feedforward import DriveUnits, feedforward, tracking
     from bench.plant.drive import Cascade
     from bench.plant.model_file import load_model
     from bench.plant.profiles import MotionLimits, plan

@@ -21,12 +21,11 @@ def plan(
 ) -> None:
     """Plan the motion to record inside the rig's limits: the one that tells best, and how well it will."""
     from bench.effects.present import parse_effect
-    from bench.export.drive_units import DriveUnits
+    from bench.export.feedforward import DriveUnits
     from bench.export.plan import motions
     from bench.report.drive import others_line, plan_table
     from bench.report.terminal import progress
-    from bench.rig.rig import load_rig
-    from bench.rig.suffices import require
+    from bench.rig.rig import load_rig, require
 
     axis = load_rig(rig)
     require(axis, "plan")

@@ -19,8 +19,7 @@ def rigs(
     from bench.assets import asset
     from bench.files import write_text
     from bench.names import nearest
-    from bench.rig.rig import load_rig
-    from bench.rig.suffices import lacking, without_constant
+    from bench.rig.rig import lacking, load_rig, without_constant
 
     shipped = {path.stem: path for path in sorted(asset("data", "rigs").glob("*.toml"))}
     if name is None:

@@ -28,8 +28,7 @@ def simulate(
     from bench.plant.simulate import simulate as run_simulation
     from bench.plant.simulate import write_truth
     from bench.report.terminal import progress
-    from bench.rig.rig import load_rig
-    from bench.rig.suffices import require
+    from bench.rig.rig import load_rig, require
     from bench.trace.write import write
 
     axis = load_rig(rig)

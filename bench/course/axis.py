@@ -11,10 +11,8 @@ from typing import Any
 
 from bench.assets import asset
 from bench.errors import InputError
-from bench.rig.catalogue import motor_sources
-from bench.rig.circuit import Circuit
-from bench.rig.limits import peak_curve
-from bench.rig.motor import TorqueConstant
+from bench.rig.limits import Circuit, peak_curve
+from bench.rig.motor import TorqueConstant, motor_sources
 from bench.rig.rig import Rig, load_rig
 from bench.structured import read_toml
 

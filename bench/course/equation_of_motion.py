@@ -9,7 +9,7 @@ from bench.course.axis import KG_CM2, rotor_inertia, simulated_with
 from bench.course.recordings import LabRecordings
 from bench.course.result import EXAMPLE, DoneTask, Number
 from bench.fit.identify import identify
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisParameters
 from bench.plant.simulate import simulate
 from bench.rig.load import Load
 from bench.rig.rig import Rig

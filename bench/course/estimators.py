@@ -11,8 +11,8 @@ from bench.course.result import EXAMPLE, DoneTask, Number
 from bench.course.t09_least_squares import identify_friction
 from bench.fit.identify import identify
 from bench.fit.lab import identify_as_in_the_lab, mean_inertia
-from bench.plant.model import AxisParameters
-from bench.plant.sensors import Sensors
+from bench.plant.axis_model import AxisParameters
+from bench.plant.sensing import Sensors
 from bench.plant.simulate import simulate
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace

@@ -15,10 +15,10 @@ from bench.course.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.t11_corner import VELOCITY_GAIN, saturation
 from bench.course.winding import STEP, WindingModel, WindingRun, run_winding
 from bench.files import whole, write_text
-from bench.plant.model import AxisParameters
-from bench.plant.sensors import Sensors
+from bench.plant.axis_model import AxisParameters
+from bench.plant.sensing import Sensors
 from bench.plant.simulate import SCHEMA, simulate, truth_path, write_truth
-from bench.rig.circuit import COLD
+from bench.rig.limits import COLD
 from bench.rig.rig import Rig
 from bench.structured import json_text
 from bench.trace.readers.codesys import machine_expert_trace

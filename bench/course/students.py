@@ -20,9 +20,9 @@ from bench.course.recordings import FASTEST, LabRecordings, read_truth
 from bench.course.submission import FORM, form
 from bench.errors import InputError
 from bench.files import write_text
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisParameters
 from bench.plant.simulate import truth_path
-from bench.rig.catalogue import catalogue_motor
+from bench.rig.motor import catalogue_motor
 from bench.rig.rig import Rig
 
 SCHEMA = "bench.lab.class/1"

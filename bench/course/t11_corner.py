@@ -19,10 +19,9 @@ from bench.course.t09_least_squares import identify_friction
 from bench.course.t10_peak_torque import datasheet_curve, fall
 from bench.course.winding import STEP, WindingModel, WindingRun, run_winding
 from bench.errors import BenchError, InputError
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisParameters
 from bench.report.document import Chart
-from bench.rig.circuit import COLD, HOT, Circuit
-from bench.rig.limits import peak_curve
+from bench.rig.limits import COLD, HOT, Circuit, peak_curve
 from bench.rig.motor import PeakCurve
 from bench.rig.rig import Rig
 

@@ -13,8 +13,8 @@ from bench.course.result import SIMULATED, DoneTask, Number, chart, curve, panel
 from bench.course.t09_least_squares import identify_friction
 from bench.course.t11_corner import identified_axis
 from bench.errors import InputError
+from bench.plant.axis_model import AxisParameters
 from bench.plant.drive import Cascade
-from bench.plant.model import AxisParameters
 from bench.plant.plant import Plant
 from bench.plant.profiles import MotionLimits, plan
 from bench.plant.run import run

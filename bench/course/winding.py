@@ -16,9 +16,9 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.errors import SimulationError
+from bench.plant.axis_model import AxisParameters, build_spec
 from bench.plant.closed_loop import DIVERGED
-from bench.plant.model import AxisParameters, build_spec
-from bench.rig.circuit import HOT, Circuit
+from bench.rig.limits import HOT, Circuit
 from bench.rig.motor import TorqueConstant
 
 #: Name of the motor's actuator in mjcf/rotary_axis.xml.

@@ -25,8 +25,8 @@ from bench.effects.effect import Occasional
 from bench.errors import BenchError
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
-from bench.plant.follow import follow_references
 from bench.plant.measured_motion import measured_velocity
+from bench.plant.tracking import follow_references
 from bench.trace.noise import white_noise
 
 

@@ -19,8 +19,7 @@ from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
-from bench.plant.axis_model import AxisModel, winding_of
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
 from bench.plant.model_file import Mounting, StoredModel
 from bench.rig.rig import Rig
 

@@ -31,11 +31,10 @@ from bench.errors import BenchError, InputError
 from bench.fit.fit import fit
 from bench.fit.rows import SIGN_WIDTHS
 from bench.plant.axis_model import AxisModel
-from bench.plant.drive import Cascade
+from bench.plant.drive import Cascade, References
 from bench.plant.measured_motion import measured_velocity
 from bench.plant.plant import Plant
 from bench.plant.profiles import PROFILES, MotionLimits, plan
-from bench.plant.references import References
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from bench.trace.filter import GaussianFilter

@@ -16,7 +16,7 @@ from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
 from bench.plant.measured_motion import measured_position, measured_velocity
 from bench.plant.model_file import load_model, read_table
-from bench.plant.soft_tracking import SoftTracking, track
+from bench.plant.tracking import SoftTracking, track
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

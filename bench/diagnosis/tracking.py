@@ -15,7 +15,7 @@ from bench.diagnosis.recordings import Recordings
 from bench.fit.rows import Rows
 from bench.plant.measured_motion import in_stretches, measured_velocity
 from bench.plant.model_file import StoredModel
-from bench.plant.soft_tracking import SoftTracking, track_all
+from bench.plant.tracking import SoftTracking, track_all
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

@@ -26,9 +26,8 @@ from bench.arrays import Array
 from bench.effects.axis import Number
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.errors import InputError
-from bench.plant.joints import BatchJoints, Joints, SimulationJoint
 from bench.plant.model_file import StoredModel, load_model
-from bench.plant.stepped_effects import SteppedEffects, per_axis
+from bench.plant.stepped_effects import BatchJoints, Joints, SimulationJoint, SteppedEffects, per_axis
 
 #: Integrators whose step is one evaluation; a Runge-Kutta step has four, between which effects would have to act.
 ONE_STAGE = (

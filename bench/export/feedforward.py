@@ -9,11 +9,15 @@ current; a friction level that varies with position; what the drive itself does 
 What resists is asked of all effects at once: native ones through MuJoCo, which makes their torques of position and
 speed; the others through their own hooks, as in a simulation. Time stands at its end: what warms up is warm, what
 happens for a while is over. How much better a drive tracks with it is told by simulation of the model.
+
+`DriveUnits` writes it as tables in the drive's own units: those that its recorder speaks, as the rig's columns have
+them.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -25,13 +29,13 @@ from bench.arrays import Array, rms
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel
-from bench.plant.drive import Cascade
-from bench.plant.joints import BatchJoints
+from bench.plant.drive import Cascade, References
 from bench.plant.plant import Plant
-from bench.plant.references import References
 from bench.plant.run import run
-from bench.plant.stepped_effects import SteppedEffects
+from bench.plant.stepped_effects import BatchJoints, SteppedEffects
 from bench.rig.rig import Rig
+from bench.trace.channel import split_label
+from bench.trace.signals import scale_in, unit_on
 
 #: Points of the table over position, and of each side of the table over speed.
 POSITIONS, SPEEDS = 720, 60
@@ -234,3 +238,79 @@ def dry_friction(model: AxisModel) -> float:
     spec = model.spec(TIMESTEP)
     bristles: mujoco.MjsActuator | None = spec.actuator(BRISTLES)
     return float(spec.joint(AXIS).frictionloss) if bristles is None else float(bristles.biasprm[3])
+
+
+@dataclass(frozen=True)
+class Unit:
+    """How a drive counts a signal.
+
+    Attributes:
+        text: its unit, as written.
+        factor: SI per one of it, negative where it counts the other way round.
+    """
+
+    text: str
+    factor: float
+
+    @classmethod
+    def of(cls, rig: Rig, signal: str) -> Unit:
+        """Of a signal: as the rig's `[trace.columns]` has it, else SI.
+
+        Raises:
+            InputError: the rig's column has a unit that is none of the signal's.
+        """
+        label = rig.trace.columns.get(signal, "")
+        unit = split_label(label)[1] or unit_on(rig.axis_kind, signal)
+        factor = scale_in(signal, unit, f"{rig.source}: trace.columns.{signal}").factor
+        return cls(unit, -factor if label.startswith("-") else factor)
+
+
+@dataclass(frozen=True)
+class DriveUnits:
+    """Units of a drive.
+
+    Attributes:
+        rig: of the axis, whose torque constant makes currents of torques.
+        position, velocity, current: how the drive counts them.
+    """
+
+    rig: Rig
+    position: Unit
+    velocity: Unit
+    current: Unit
+
+    @classmethod
+    def of(cls, rig: Rig) -> DriveUnits:
+        """As a rig tells them; InputError where a unit is none of its signal's."""
+        return cls(rig, Unit.of(rig, "position"), Unit.of(rig, "velocity"), Unit.of(rig, "current"))
+
+    def currents(self, torque: Array) -> Array | None:
+        """Currents that give torques - the drive's unit - (n,); None where the rig knows no torque constant."""
+        constant = self.rig.motor.torque_per_ampere
+        return None if constant is None else constant.current(torque) / self.current.factor
+
+    def table(self, name: str, unit: Unit, table: TorqueTable) -> str:
+        """A table as CSV, in the order of the drive's own count."""
+        coordinate, currents = table.coordinate / unit.factor, self.currents(table.torque)
+        columns = [coordinate, table.torque] + ([] if currents is None else [currents])
+        head = [f"{name} [{unit.text}]", f"{self.rig.axis_kind.effort} [{self.rig.effort_unit}]"]
+        head += [] if currents is None else [f"current [{self.current.text}]"]
+        rows = np.column_stack(columns)[np.argsort(coordinate, kind="stable")]
+        return "\n".join([",".join(head), *(",".join(f"{value:.9g}" for value in row) for row in rows.tolist())]) + "\n"
+
+    def inertia(self, feedforward: Feedforward) -> Iterator[tuple[str, float, str]]:
+        """The inertia's feed-forward: name, value and unit."""
+        yield "inertia_feedforward", feedforward.inertia, self.rig.axis_kind.inertia_unit
+        constant = self.rig.motor.torque_per_ampere
+        if constant is not None:
+            per = feedforward.inertia / constant.constant / self.current.factor * self.velocity.factor
+            yield "current_per_acceleration", per, f"{self.current.text}/({self.velocity.text}/s)"
+
+    def files(self, feedforward: Feedforward) -> dict[str, str]:
+        """Names and texts of the files that hold all of it."""
+        rows = [f"{name},{value:.9g},{unit}" for name, value, unit in self.inertia(feedforward)]
+        return {
+            "inertia.csv": "\n".join(["name,value,unit", *rows]) + "\n",
+            "friction.csv": self.table("velocity", self.velocity, feedforward.friction),
+            "cogging.csv": self.table("position", self.position, feedforward.cogging),
+        }

@@ -26,8 +26,7 @@ from bench.effects.mjcf import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.errors import InputError
 from bench.files import read_bytes, reason
 from bench.names import nearest, plain
-from bench.plant.axis_model import AxisModel
-from bench.plant.model import NO_MASS, STICKING_IMPEDANCE, disk_inertia
+from bench.plant.axis_model import NO_MASS, STICKING_IMPEDANCE, AxisModel, disk_inertia
 from bench.plant.model_file import StoredModel
 
 #: The body of a file that holds the joint alone.

@@ -17,10 +17,9 @@ from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
 from bench.errors import InputError
 from bench.fit.estimate import Estimate, load_inertia
 from bench.fit.identify import identify
-from bench.plant.axis_model import AxisModel
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.measured_motion import measured_velocity
-from bench.plant.model import AxisParameters
-from bench.plant.soft_tracking import BANDWIDTH, SoftTracking, track
+from bench.plant.tracking import BANDWIDTH, SoftTracking, track
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

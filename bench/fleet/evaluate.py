@@ -5,9 +5,11 @@ A recording may lie in a storage that fsspec knows (s3://, gs://, https://, sftp
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path, PurePosixPath
@@ -15,15 +17,18 @@ from typing import Any
 
 from fsspec.core import url_to_fs
 
-from bench.bounds import Bounds, require_size, within
+from bench import __version__
+from bench.bounds import Bounds, bounds, require_size, within
 from bench.errors import BenchError, InputError, UndeterminedError
-from bench.files import sha256
+from bench.files import read_text, sha256, write_text
 from bench.fit.estimate import Estimate, RefusedEstimateError
 from bench.fit.identify import identify
 from bench.fit.parameter import Parameter
+from bench.fleet.manifest import Manifest
 from bench.gate.check import Check
 from bench.gate.gate import UnanswerableError
-from bench.rig.rig import Rig
+from bench.rig.rig import Rig, load_rig
+from bench.structured import json_text, parse_json
 from bench.trace.choose import axes_of
 from bench.trace.read import read_recording
 from bench.trace.stream import cut
@@ -178,3 +183,103 @@ def _errors_as_input(url: str) -> Iterator[None]:
     except (OSError, ValueError, ImportError) as error:  # no file or way to it; no such storage; no package for it
         reason = " ".join(str(error).split()) or type(error).__name__
         raise InputError(url, f"cannot be read ({reason})", "give the URL of a trace that fsspec can open") from error
+
+
+SCHEMA = "bench.fleet.recording/1"
+
+
+@dataclass(frozen=True)
+class PlannedRecording:
+    """One recording of the manifest.
+
+    Attributes:
+        key: of its result; empty where it cannot be begun.
+        job: to be done for it; None where it cannot be begun.
+        refusal: why not, as a result; None where it can.
+        basis: what its result rests on, for the table.
+    """
+
+    key: str
+    job: Job | None
+    refusal: Plain | None
+    basis: Plain
+
+
+def plan(manifest: Manifest, diagnose: bool, progress: Callable[[float], None]) -> list[PlannedRecording]:
+    """Every recording of the manifest, in its order.
+
+    Args:
+        manifest: of the fleet.
+        diagnose: whether effects are sought too.
+        progress: called with the share done.
+
+    Raises:
+        InputError: an effect of another package is none.
+    """
+    options: Plain = {"diagnose": diagnose, "bounds": [str(value) for value in asdict(bounds()).values()]}
+    if diagnose:
+        from bench.effects.catalogue import catalogue
+
+        options["effects"] = sorted(catalogue())
+    rigs: dict[str, tuple[Rig, str] | InputError] = {}
+    planned = []
+    columns = (manifest.located("file"), manifest.located("rig"), manifest.text("axis"))
+    for number, (place, rig, axis) in enumerate(zip(*columns, strict=True)):
+        if rig not in rigs:
+            rigs[rig] = _rig(Path(rig))
+        planned.append(_planned(place, axis, rigs[rig], options))
+        progress(number / len(manifest))
+    return planned
+
+
+def _rig(path: Path) -> tuple[Rig, str] | InputError:
+    """A rig with the hash of its file, under a name that is the same wherever it lies; or what is wrong with it."""
+    try:
+        return load_rig(path).model_copy(update={"source": "rig"}), sha256(path)
+    except InputError as error:
+        return InputError(error.where.replace(str(path), "rig"), error.found, error.allowed)
+
+
+def _planned(place: str, axis: str, rig: tuple[Rig, str] | InputError, options: Plain) -> PlannedRecording:
+    """A recording with all that its result depends on: beside trace, axis and rig the version and the options."""
+    basis: Plain = {"version": __version__, "rig_sha256": None, "options": options}
+    if isinstance(rig, InputError):
+        return PlannedRecording("", None, refused(str(rig)), basis)
+    basis["rig_sha256"] = rig[1]
+    try:
+        mark = marked(place) if "://" in place else sha256(Path(place))
+    except InputError as error:
+        return PlannedRecording("", None, refused(str(error).replace(place, CALLED)), basis)
+    parts = {"trace": mark, "axis": axis, **basis}
+    key = hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
+    return PlannedRecording(key, Job(place, axis, rig[0], options["diagnose"], bounds()), None, basis)
+
+
+@dataclass(frozen=True)
+class Store:
+    """A folder of results, one file each, whole or not there."""
+
+    folder: Path
+
+    def path(self, key: str) -> Path:
+        """Of a result's file; a folder holds a 256th of them, for a hundred thousand in one are slow."""
+        return self.folder / key[:2] / f"{key}.json"
+
+    def get(self, key: str) -> Plain | None:
+        """A result; None if there is none, or it is damaged."""
+        path = self.path(key)
+        if not path.exists():
+            return None
+        try:
+            found = parse_json(read_text(path, "a result"), path)
+        except InputError:
+            return None
+        return found if isinstance(found, dict) and found.get("schema") == SCHEMA else None
+
+    def put(self, key: str, result: Mapping[str, Any]) -> None:
+        """Keep a result.
+
+        Raises:
+            InputError: the folder cannot be written to.
+        """
+        write_text(self.path(key), json_text({"schema": SCHEMA, **result}) + "\n")

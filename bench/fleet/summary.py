@@ -16,9 +16,8 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
 from bench.comparison.change_point import ChangePoint, change_point
 from bench.comparison.difference import holm
-from bench.fleet.evaluate import Plain
+from bench.fleet.evaluate import Plain, PlannedRecording
 from bench.fleet.manifest import Manifest
-from bench.fleet.plan import PlannedRecording
 
 #: Chance of being told that any axis changed of a fleet in which none did.
 ALARM = 0.01

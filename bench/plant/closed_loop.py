@@ -1,6 +1,6 @@
 """A closed loop: an axis in MuJoCo and what controls it, ready for one of the two runners; and the motion they give.
 
-MuJoCo's position belongs half a step later than its velocity (see `bench.plant.model`); runners start it there and
+MuJoCo's position belongs half a step later than its velocity (see `bench.plant.axis_model`); runners start it there and
 bring it back, so that positions in and out of them are those of the velocities beside them.
 """
 

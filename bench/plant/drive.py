@@ -17,17 +17,18 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
+from bench.effects.acting import MisreadMotion
 from bench.effects.axis import Number
 from bench.effects.mjcf import DRIVE
 from bench.errors import InputError
+from bench.plant.axis_model import AxisParameters
 from bench.plant.closed_loop import ClosedLoop, Controller
-from bench.plant.model import AxisParameters
-from bench.plant.references import References, side_by_side
-from bench.plant.sensing import EncodersSideBySide
-from bench.plant.stepped_effects import per_axis
+from bench.plant.stepped_effects import on_axes, per_axis
 from bench.rig.rig import Rig
 
 Values = float | Array
+#: Sensor that has to be in a model that runs natively.
+TORQUE = "torque"
 
 
 @dataclass(frozen=True)
@@ -176,11 +177,14 @@ class _Following:
             names = tuple(field.name for field in fields(FrictionEmulation))
             emulation = FrictionEmulation(*(per_axis([float(getattr(one, name)) for one in made]) for name in names))
         self._drive = CascadeDrive(cascade, side_by_side([drive.references for drive in drives]), emulation)
-        self._encoders = EncodersSideBySide([loop.axis for loop in loops])
+        self._encoders = on_axes([loop.axis for loop in loops], MisreadMotion)
 
     def tick(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
         """See `Ticking`."""
-        return self._drive.tick(k, *self._encoders.seen(position, velocity))
+        for some in self._encoders:
+            turned, moving = some.effect.seen(some.values, some.of(position), some.of(velocity))
+            position, velocity = some.with_these(position, turned), some.with_these(velocity, moving)
+        return self._drive.tick(k, position, velocity)
 
 
 def _by_ticks(values: Array) -> Array:
@@ -224,11 +228,17 @@ class _EmulatedFriction:
         return net + self._share * (dry - net) + self._viscous * velocity
 
 
+def sense_torque(spec: mujoco.MjSpec) -> None:
+    """Let a model report the torque of its drive."""
+    kind, actuator = mujoco.mjtSensor.mjSENS_ACTUATORFRC, mujoco.mjtObj.mjOBJ_ACTUATOR
+    spec.add_sensor(name=TORQUE, type=kind, objtype=actuator, objname=DRIVE)
+
+
 def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
     """Turn the actuator `drive` into the cascade of one axis, for a model whose timestep is the control period.
 
     With e_v integrated, K_i*integral(e_v) = K_i*(r - q) + K_i*K_p*integral(r - q), so MuJoCo's gains are
-    kp = K_v*K_p + K_i, ki = K_i*K_p, kv = K_v. MuJoCo's position leads by half a step (see `bench.plant.model`), which
+    kp = K_v*K_p + K_i, ki = K_i*K_p, kv = K_v. MuJoCo's position leads by half a step (`bench.plant.axis_model`), which
     takes kp*T/2 off kv; `pid_inputs` sends the position reference ahead alike.
     """
     actuator = spec.actuator(DRIVE)
@@ -239,6 +249,7 @@ def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
     if np.isfinite(cascade.torque_limit):
         actuator.forcerange = [-float(cascade.torque_limit), float(cascade.torque_limit)]
         actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
+    sense_torque(spec)
 
 
 def pid_inputs(cascade: Cascade, references: References) -> Array:
@@ -251,3 +262,71 @@ def pid_inputs(cascade: Cascade, references: References) -> Array:
 def _pid_gains(cascade: Cascade) -> tuple[float, float]:
     kp = float(cascade.velocity_gain * cascade.position_gain + cascade.integral_gain)
     return kp, float(cascade.velocity_gain) - kp * cascade.control_period / 2.0
+
+
+@dataclass(frozen=True)
+class References:
+    """A motion at the drive's ticks. Signals have shape (ticks,), or (ticks, axes) for axes side by side.
+
+    Attributes:
+        time: of the ticks, from zero - s - (ticks,).
+        position: rad (m on a linear axis).
+        velocity: rad/s (m/s).
+        acceleration: rad/s**2 (m/s**2).
+        torque: that is added to the drive's set-point, beside its own feed-forward - N*m (N); None without any.
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    torque: Array | None = None
+
+    def feedforward(self, inertia: Array | float) -> Array:
+        """Torque that is fed forward - N*m (N) - by a drive that takes its inertia to be one - kg*m**2 (kg)."""
+        accelerating = inertia * self.acceleration
+        return accelerating if self.torque is None else accelerating + self.torque
+
+    @property
+    def period(self) -> float:
+        """Time between ticks - s."""
+        return float(self.time[1] - self.time[0])
+
+    def then(self, other: References) -> References:
+        """This motion, then another one that starts a tick later from where this one ends, both at rest there."""
+        time = np.concatenate([self.time, self.time[-1] + self.period + other.time])
+        position = np.concatenate([self.position, self.position[-1] - other.position[0] + other.position])
+        velocity = np.concatenate([self.velocity, other.velocity])
+        return References(time, position, velocity, np.concatenate([self.acceleration, other.acceleration]))
+
+    def repeated(self, times: int) -> References:
+        """This motion so many times, each from where the one before ends."""
+        again = self
+        for _ in range(times - 1):
+            again = again.then(self)
+        return again
+
+    def csv(self, period: float, position: tuple[str, float], velocity: tuple[str, float]) -> str:
+        """Table for a controller: time, position, velocity, acceleration.
+
+        Args:
+            period: between rows - s.
+            position, velocity: unit of each, and SI per one of it.
+        """
+        rows = slice(None, None, max(1, round(period / self.period)))
+        (length, per_length), (speed, per_speed) = position, velocity
+        moved = self.position / per_length, self.velocity / per_speed, self.acceleration / per_speed
+        table = np.stack([signal[rows] for signal in (self.time, *moved)], axis=-1)
+        head = f"time [s],position [{length}],velocity [{speed}],acceleration [{speed}/s]"
+        return "\n".join([head, *(",".join(f"{value:.9g}" for value in row) for row in table.tolist())]) + "\n"
+
+
+def side_by_side(references: list[References]) -> References:
+    """Motions of several axes over one time, as one of shape (ticks, axes)."""
+    return References(
+        references[0].time,
+        np.stack([r.position for r in references], axis=1),
+        np.stack([r.velocity for r in references], axis=1),
+        np.stack([r.acceleration for r in references], axis=1),
+        np.stack([r.feedforward(0.0) for r in references], axis=1),
+    )

@@ -29,8 +29,7 @@ from bench.effects.mjcf import LOAD, MOTOR
 from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.errors import InputError
 from bench.names import nearest
-from bench.plant.axis_model import AxisModel
-from bench.plant.model import FLOOR, NO_MASS, AxisParameters, parameter_quantities
+from bench.plant.axis_model import FLOOR, NO_MASS, AxisModel, AxisParameters, parameter_quantities
 from bench.rig.load import Load
 from bench.rig.rig import Rig
 from bench.structured import read_toml

@@ -14,12 +14,9 @@ from bench.effects.acting import Friction
 from bench.effects.axis import Winding
 from bench.effects.present import Present
 from bench.errors import InputError
-from bench.plant.axis_model import AxisModel, winding_of
+from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
 from bench.plant.closed_loop import ClosedLoop, Controller, Listed
-from bench.plant.drive import Cascade, FollowReferences, FrictionEmulation, add_pid, pid_inputs
-from bench.plant.model import AxisParameters
-from bench.plant.native import sense_torque
-from bench.plant.references import References
+from bench.plant.drive import Cascade, FollowReferences, FrictionEmulation, References, add_pid, pid_inputs
 from bench.rig.rig import Rig
 
 
@@ -121,5 +118,4 @@ class Plant:
     def _with_pid(self) -> mujoco.MjModel:
         spec = self.spec()
         add_pid(spec, self.cascade)
-        sense_torque(spec)
         return spec.compile()

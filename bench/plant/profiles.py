@@ -14,9 +14,8 @@ import numpy as np
 
 from bench.errors import InputError
 from bench.names import nearest
-from bench.plant.drive import peak_torque
-from bench.plant.model import AxisParameters
-from bench.plant.references import References
+from bench.plant.axis_model import AxisParameters
+from bench.plant.drive import References, peak_torque
 from bench.rig.rig import Rig
 
 #: Without a stated speed, profiles run up to the speed that full torque reaches in this time - s.

@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bench.arrays import Array
+from bench.axis_kind import ROTARY, AxisKind
 from bench.effects.acting import FilteredSignal, MisreadEffort, MisreadMotion
-from bench.effects.axis import Number
+from bench.errors import InputError
 from bench.plant.axis_model import AxisModel
 from bench.plant.closed_loop import States
-from bench.plant.stepped_effects import on_axes
-
-
-class EncodersSideBySide:
-    """Encoders of axes side by side, as their drives have them."""
-
-    def __init__(self, models: Sequence[AxisModel]) -> None:
-        self._encoders = on_axes(models, MisreadMotion)
-
-    def seen(self, position: Number, velocity: Number) -> tuple[Number, Number]:
-        """What the drives have of the axes' true motion - rad (m), rad/s (m/s) - (axes,) each."""
-        for some in self._encoders:
-            turned, moving = some.effect.seen(some.values, some.of(position), some.of(velocity))
-            position, velocity = some.with_these(position, turned), some.with_these(velocity, moving)
-        return position, velocity
+from bench.plant.drive import References
+from bench.rig.motor import TorqueConstant
+from bench.rig.rig import Rig
+from bench.trace.signals import unit_on
+from bench.trace.trace import Trace
 
 
 def reported(model: AxisModel, position: Array, velocity: Array, step: float) -> tuple[Array, Array]:
@@ -84,3 +74,100 @@ def reported_states(model: AxisModel, states: States) -> States:
 
 def _filters(model: AxisModel, signal: str) -> list[tuple[FilteredSignal, dict[str, float]]]:
     return [(effect, values) for effect, values in model.acting(FilteredSignal) if effect.signal == signal]
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """Encoder, current measurement and recorder of a drive.
+
+    Attributes:
+        sample_period: of the recording, a multiple of the drive's control period - s.
+        encoder_resolution: angle (length) of one count - rad (m); 0 is ideal.
+        velocity_noise: standard deviation of the reported speed - rad/s (m/s), white.
+        current_noise: standard deviation of the reported current - A (torque - N*m, N - without `torque_constant`).
+        torque_constant: turns torque into the current reported; None reports torque (force).
+        kind: of the axis.
+    """
+
+    sample_period: float
+    encoder_resolution: float = 0.0
+    velocity_noise: float = 0.0
+    current_noise: float = 0.0
+    torque_constant: TorqueConstant | None = None
+    kind: AxisKind = ROTARY
+
+    @classmethod
+    def from_rig(cls, rig: Rig) -> Sensors:
+        """The sensors of a rig's `[simulation]`.
+
+        Raises:
+            InputError: the rig has none.
+        """
+        if rig.simulation is None:
+            raise InputError(f"{rig.source}: simulation", "missing", "a simulated axis needs a table [simulation]")
+        return cls(
+            sample_period=rig.simulation.sample_period,
+            encoder_resolution=rig.simulation.encoder_resolution,
+            velocity_noise=rig.simulation.velocity_noise,
+            current_noise=rig.simulation.current_noise,
+            torque_constant=rig.motor.torque_per_ampere,
+            kind=rig.axis_kind,
+        )
+
+    def stride(self, period: float) -> int:
+        """Ticks of a drive with this period - s - from one sample to the next.
+
+        Raises:
+            InputError: the sample period is no multiple of it.
+        """
+        stride = max(1, round(self.sample_period / period))
+        if abs(stride * period / self.sample_period - 1.0) > 1e-9:
+            raise InputError(
+                "simulation.sample_period",
+                f"found {self.sample_period:g} s",
+                f"allowed: a multiple of the control period of {period:g} s",
+            )
+        return stride
+
+    def record(self, states: States, references: References, random: np.random.Generator, origin: str) -> Trace:
+        """Trace of one axis' motion, position, velocity and current of a row simultaneous.
+
+        Position is rounded to counts. Velocity is the drive's own, true speed with noise. The drive holds its current
+        over each tick; the current of a row is interpolated between the middles of the ticks around it, by a cubic
+        that keeps their shape (Fritsch, Carlson, SIAM J. Numer. Anal. 17, 1980, 238-246), so it never exceeds the peak.
+
+        Args:
+            states: of one axis.
+            references: it followed, signals of shape (ticks,).
+            random: source of the noise.
+            origin: name the trace carries.
+        """
+        rows = slice(None, None, self.stride(references.period))
+        time, position, velocity = states.time[rows], states.position[rows, 0], states.velocity[rows, 0]
+        noise = random.standard_normal((2, len(time)))
+        signals = {
+            "position": _counted(position, self.encoder_resolution),
+            "velocity": velocity + self.velocity_noise * noise[0],
+            self._effort_name: self._effort(states, time) + self.current_noise * noise[1],
+            "position_reference": references.position[rows],
+            "velocity_reference": references.velocity[rows],
+        }
+        units = {name: unit_on(self.kind, name) for name in signals}
+        return Trace(time, signals, units, origin)
+
+    @property
+    def _effort_name(self) -> str:
+        return "current" if self.torque_constant is not None else self.kind.effort
+
+    def _effort(self, states: States, time: Array) -> Array:
+        """Current (torque) of one axis at some times - (n,)."""
+        from scipy.interpolate import PchipInterpolator  # 0.1 s, which only a simulated recording has to pay
+
+        torque = states.torque[:, 0]
+        held = torque if self.torque_constant is None else self.torque_constant.current(torque)
+        middles = states.time + (states.time[1] - states.time[0]) / 2.0
+        return PchipInterpolator(middles, held)(np.maximum(time, middles[0]))
+
+
+def _counted(position: Array, resolution: float) -> Array:
+    return np.round(position / resolution) * resolution if resolution > 0.0 else position

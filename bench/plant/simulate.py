@@ -12,16 +12,14 @@ from bench.axis_kind import AxisKind
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.files import write_text
+from bench.plant.axis_model import AxisParameters, parameter_quantities
 from bench.plant.closed_loop import States
-from bench.plant.model import AxisParameters, parameter_quantities
+from bench.plant.drive import References
 from bench.plant.plant import Plant
 from bench.plant.profile_names import DEFAULT
 from bench.plant.profiles import MOST_TICKS, MotionLimits, plan
-from bench.plant.references import References
-from bench.plant.run import run
-from bench.plant.sensing import reported_states
-from bench.plant.sensors import Sensors
-from bench.plant.ticked import Progress
+from bench.plant.run import Progress, run
+from bench.plant.sensing import Sensors, reported_states
 from bench.rig.rig import Rig
 from bench.structured import json_text
 from bench.trace.trace import Trace

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bench.axis_kind import INERTIA
 from bench.effects.present import Present
 from bench.names import words
-from bench.plant.model import parameter_quantities
+from bench.plant.axis_model import parameter_quantities
 from bench.plant.simulate import Simulated, Truth
 from bench.report.document import Document, Downloads, File, Paragraph, Section, Table, TimeGraph, table
 from bench.report.numbers import number, unit_text

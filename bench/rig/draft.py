@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from bench.rig.catalogue import catalogue_motor
+from bench.rig.motor import catalogue_motor
 from bench.trace.inspect import Inspection
 
 _EFFORTS = ("torque", "force", "current", "voltage")

@@ -1,19 +1,23 @@
-"""Motor of the axis: what turns the recorded current, voltage or relative torque into torque.
+"""Motor of the axis: what turns the recorded current, voltage or relative torque into torque; and the motor catalogue.
 
 Its torque constant kT(Iq) falls as the iron saturates: `M = kT(Iq)*Iq`. Its peak curves are peak torque over speed as a
-datasheet draws them.
+datasheet draws them. The catalogue is one TOML file a motor in `data/motors/`, every value with its source.
 """
 
 from __future__ import annotations
 
 import math
+import tomllib
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from bench.arrays import Array
+from bench.assets import asset
+from bench.errors import InputError
+from bench.names import nearest
 from bench.rig.values import (
     BackEmf,
     Current,
@@ -242,3 +246,28 @@ class Motor(RigTable):
         if self.continuous_stall_torque is None:
             return None
         return TorqueConstant.from_datasheet(*(getattr(self, name) for name in DATASHEET))
+
+
+def motor_names() -> list[str]:
+    """Names of the motors in the catalogue."""
+    return sorted(path.stem for path in asset("data", "motors").glob("*.toml"))
+
+
+def motor_sources(name: str) -> dict[str, tuple[Any, str]]:
+    """Value (with unit) and source of every quantity known about a motor; name must be in the catalogue."""
+    entry = tomllib.loads(asset("data", "motors", f"{name}.toml").read_text(encoding="utf-8"))
+    return {key: (item["value"], item["source"]) for key, item in entry.items()}
+
+
+def catalogue_motor(name: object, where: str) -> dict[str, Any]:
+    """Motor table of a catalogue entry, as it would stand in a rig file.
+
+    Raises:
+        InputError: no motor of this name.
+    """
+    names = motor_names()
+    if not isinstance(name, str) or name not in names:
+        raise InputError(
+            where, f"no motor {name!r} in the catalogue{nearest(str(name), names)}", f"allowed: {', '.join(names)}"
+        )
+    return {key: value for key, (value, _) in motor_sources(name).items()}

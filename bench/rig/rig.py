@@ -1,7 +1,8 @@
-"""Rig: what is known about an axis before anyone identifies it, read from a TOML file."""
+"""Rig: what is known about an axis before anyone identifies it, read from a TOML file, and what it suffices for."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
@@ -12,12 +13,26 @@ from bench.arrays import Array
 from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
 from bench.names import nearest, short
-from bench.rig.catalogue import catalogue_motor
-from bench.rig.drive import Drive
 from bench.rig.load import Load
-from bench.rig.motor import Motor
-from bench.rig.simulation import Simulation
-from bench.rig.values import RigTable, Time, Wrap, tolerance_of
+from bench.rig.motor import Motor, catalogue_motor
+from bench.rig.values import (
+    Coulomb,
+    CurrentNoise,
+    Effort,
+    Feedforward,
+    Inertia,
+    IntegralGain,
+    Mass,
+    Period,
+    Rate,
+    Resolution,
+    RigTable,
+    Time,
+    VelocityNoise,
+    Viscous,
+    Wrap,
+    tolerance_of,
+)
 from bench.structured import read_toml
 from bench.trace.known_torque import less_known
 from bench.trace.plausible import require_plausible
@@ -245,3 +260,103 @@ def _known_keys(keys: list[str]) -> list[str]:
             tables = [one for one in (kind, *get_args(kind)) if isinstance(one, type) and issubclass(one, RigTable)]
             table = tables[0] if tables else table
     return [name for name in table.model_fields if name != "source"]
+
+
+class Drive(RigTable):
+    """Cascade of a position P controller and a velocity PI controller with inertia feed-forward.
+
+    torque = velocity_gain*e_v + integral_gain*integral(e_v dt) + inertia_feedforward*acceleration_reference,
+    e_v = velocity_reference + position_gain*(position_reference - position) - velocity; current limited to the motor's
+    peak current, the integrator held while limited.
+
+    Attributes:
+        position_gain: velocity demand per position error - 1/s.
+        velocity_gain: torque per velocity error - N*m*s/rad (N*s/m on a linear axis).
+        integral_gain: torque per integrated velocity error - N*m/rad (N/m).
+        inertia_feedforward: torque per acceleration reference - kg*m**2 (kg).
+        control_period: of the loop - s.
+    """
+
+    position_gain: Rate
+    velocity_gain: Viscous
+    integral_gain: IntegralGain = 0.0
+    inertia_feedforward: Feedforward = 0.0
+    control_period: Period = 250e-6
+
+    @model_validator(mode="after")
+    def _samples_fast_enough(self) -> Drive:
+        """Half a period T of delay takes (K_v*K_p + K_i)*T/2 off the velocity gain K_v, and must leave some of it."""
+        stiffness = self.velocity_gain * self.position_gain + self.integral_gain
+        most = 2.0 * self.velocity_gain / stiffness if stiffness > 0.0 else math.inf
+        if self.control_period > most:
+            found = f"found {self.control_period:g} s"
+            raise ValueError(f"control_period must be below {most:.3g} s with these gains, {found}")
+        return self
+
+
+class Simulation(RigTable):
+    """`[simulation]` of a rig file.
+
+    Attributes:
+        moment_of_inertia: of everything that moves, on the motor's side - kg*m**2; on a linear axis `moving_mass` - kg.
+            Without it, rotor plus disk from its geometry, reflected through the gear.
+        viscous_friction_coefficient: K_w - N*m*s/rad (N*s/m).
+        coulomb_friction: K_0 - N*m (N).
+        friction: `mechanics` puts it into the joint, `drive` lets the drive's software apply it as the lab does.
+        load_torque: constant torque on the load (behind any gear) that resists positive motion - N*m (N).
+        encoder_resolution: angle (length) of one count - rad (m); 0 is ideal.
+        velocity_noise: standard deviation of the reported speed - rad/s (m/s).
+        current_noise: standard deviation of the reported current - A.
+        sample_period: of the recording - s.
+        timestep: of the integration - s; the drive's control period if not given.
+    """
+
+    moment_of_inertia: Inertia | None = None
+    moving_mass: Mass | None = None
+    viscous_friction_coefficient: Viscous = 0.0
+    coulomb_friction: Coulomb = 0.0
+    friction: Literal["mechanics", "drive"] = "mechanics"
+    load_torque: Effort = 0.0
+    encoder_resolution: Resolution = 0.0
+    velocity_noise: VelocityNoise = 0.0
+    current_noise: CurrentNoise = 0.0
+    sample_period: Period = 1e-3
+    timestep: Period | None = None
+
+
+def lacking(rig: Rig) -> dict[str, tuple[str, ...]]:
+    """Command -> keys that it needs and the rig does not give; none where the rig suffices."""
+    motor, kind = rig.motor, rig.axis_kind
+    constant, limit = motor.torque_per_ampere is not None, motor.peak_torque is not None
+    inertia = rig.simulation is not None and getattr(rig.simulation, kind.inertia) is not None
+    inertia = inertia or bool(motor.inertia) or (rig.load is not None and rig.load.disk(kind) > 0.0)
+    simulate = {
+        "drive (position_gain, velocity_gain)": rig.drive is not None,
+        "simulation (a table; friction, noise and sensors of the simulated axis)": rig.simulation is not None,
+        f"motor.{'torque' if kind.turns else 'force'}_constant (or the four datasheet values)": constant,
+        "motor.peak_current (or peak_torque)": limit or (constant and motor.peak_current is not None),
+        f"simulation.{kind.inertia} (or motor and load that give it)": inertia,
+    }
+    limits = {
+        "motor.peak_torque": limit,
+        "motor.continuous_stall_torque": motor.continuous_stall_torque is not None,
+        "motor.peak_curves": bool(motor.peak_curves),
+    }
+    simulated = dict.fromkeys(("simulate", "validate", "plan"), simulate)
+    needs: dict[str, dict[str, bool]] = {"identify": {}, "diagnose": {}, **simulated, "limits": limits}
+    return {command: tuple(key for key, given in keys.items() if not given) for command, keys in needs.items()}
+
+
+def without_constant(rig: Rig) -> str | None:
+    """What a rig without a torque constant means for results; None where it has one."""
+    if rig.motor.torque_per_ampere is not None:
+        return None
+    return f"of recorded currents, results stand in A instead of {rig.effort_unit}: the motor has no constant"
+
+
+def require(rig: Rig, command: str) -> None:
+    """InputError naming all keys that a command misses in a rig."""
+    keys = lacking(rig)[command]
+    if keys:
+        needs = "this key" if len(keys) == 1 else "all of these keys"
+        raise InputError(f"{rig.source}: {', '.join(keys)}", "missing", f"bench {command} needs {needs}")

@@ -12,13 +12,10 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.errors import InputError
 from bench.fit.identify import identify
-from bench.plant.axis_model import winding_of
+from bench.plant.axis_model import AxisParameters, winding_of
 from bench.plant.drive import Cascade
-from bench.plant.model import AxisParameters
 from bench.plant.profiles import MotionLimits, plan
-from bench.rig.rig import Rig
-from bench.rig.simulation import Simulation
-from bench.rig.suffices import require
+from bench.rig.rig import Rig, Simulation, require
 from bench.trace.noise import resolution, white_noise
 from bench.trace.trace import Trace
 from bench.validation.independent.references import Motion

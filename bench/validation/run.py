@@ -13,10 +13,9 @@ from bench.effects.present import Present
 from bench.errors import BenchError
 from bench.fit.estimate import RefusedEstimateError
 from bench.fit.identify import identify
-from bench.plant.references import References
+from bench.plant.drive import References
 from bench.plant.simulate import simulate
-from bench.rig.rig import Rig
-from bench.rig.simulation import Simulation
+from bench.rig.rig import Rig, Simulation
 from bench.trace.trace import Trace
 from bench.validation.independent.sensors import NoiseStream, rounded
 from bench.validation.independent.simulate import simulate as integrate

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from bench.effects.mjcf import AXIS, MOTOR
-from bench.plant.model import AxisParameters, build_spec
+from bench.plant.axis_model import AxisParameters, build_spec
 from bench.rig.load import Load
 from bench.view.side_by_side import SideBySide
 

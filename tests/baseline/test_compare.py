@@ -6,8 +6,7 @@ from dataclasses import replace
 import pytest
 from scipy.stats import norm
 
-from bench.baseline.allowed import Allowed
-from bench.baseline.check import compare
+from bench.baseline.check import Allowed, compare
 from bench.comparison.difference import Measured
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.baseline.conditions import conditions, unlike
+from bench.baseline.observe import conditions, unlike
 from bench.comparison.difference import Measured
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from bench.axis_kind import ROTARY
-from bench.baseline.allowed import Allowed
+from bench.baseline.check import Allowed
 from bench.baseline.model import DURATION, compare_models, response
 from bench.baseline.state import INSTANTS, Response, State
 from bench.comparison.difference import Measured
-from bench.plant.axis_model import AxisModel
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisModel, AxisParameters
 from tests.baseline.states import named
 
 J, K_W, K_0 = 2e-3, 1e-3, 0.05

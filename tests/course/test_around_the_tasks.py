@@ -4,7 +4,7 @@ import pytest
 
 from bench.course import tracking
 from bench.course.axis import Sources, lab_rig
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisParameters
 from tests.course.drawn import curves
 from tests.course.test_tasks import near
 

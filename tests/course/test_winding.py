@@ -10,8 +10,8 @@ from bench.course.axis import lab_rig, torque_constant
 from bench.course.corner import extrapolated_corner
 from bench.course.t11_corner import TIME_CONSTANTS, VELOCITY_GAIN, cross_voltage
 from bench.course.winding import CURRENT_LOOP, STEP, WindingModel, run_winding
-from bench.plant.model import AxisParameters
-from bench.rig.circuit import COLD, HOT, Circuit
+from bench.plant.axis_model import AxisParameters
+from bench.rig.limits import COLD, HOT, Circuit
 from tests.course.drawn import curves
 
 RPM = 60.0 / (2.0 * np.pi)

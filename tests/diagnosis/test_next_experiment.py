@@ -9,7 +9,7 @@ import pytest
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.next_experiment import motions
 from bench.diagnosis.recordings import Recordings
-from bench.plant.references import References
+from bench.plant.drive import References
 from bench.rig.rig import load_rig
 from bench.validation.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
 from bench.validation.independent.effects import KINDS

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.diagnosis import diagnose
-from bench.plant.follow import follow_references
+from bench.plant.tracking import follow_references
 from bench.trace.read import read
 from tests.diagnosis.public_axes import (
     DATA,

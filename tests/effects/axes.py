@@ -9,12 +9,10 @@ from scipy.signal import lsim
 
 from bench.effects.axis import Winding
 from bench.effects.present import Present
-from bench.plant.axis_model import AxisModel
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.closed_loop import States
-from bench.plant.drive import Cascade
-from bench.plant.model import AxisParameters
+from bench.plant.drive import Cascade, References
 from bench.plant.plant import Plant
-from bench.plant.references import References
 from bench.plant.run import run
 from bench.validation.independent import KINDS, Effect, Sensors, simulate
 from tests.independent.axes import PLAIN

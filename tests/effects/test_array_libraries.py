@@ -26,7 +26,7 @@ from bench.effects.acting import (
 )
 from bench.effects.axis import Axis, Moment, Winding
 from bench.effects.catalogue import catalogue
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisParameters
 from tests.effects.axes import PERIOD, VALUES, model
 
 COUNT = 40

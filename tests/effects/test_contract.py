@@ -22,7 +22,7 @@ from bench.effects.effect import Columns, Coupling, Effect
 from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.present import Present
 from bench.effects.signals import Base, Signals
-from bench.plant.model import build_spec
+from bench.plant.axis_model import build_spec
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from tests.effects.axes import AXIS, FREE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant, present, pushed

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.plant.follow import follow_references
+from bench.plant.tracking import follow_references
 from bench.rig.rig import load_rig
 from bench.trace.trace import Trace
 from bench.validation.independent import write_rig

@@ -4,7 +4,7 @@ import numpy as np
 
 from bench.axis_kind import LINEAR
 from bench.effects.present import Present
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisParameters
 from tests.effects.axes import moved, signals
 
 SLIDE = AxisParameters(3.0, motor_inertia=1.0, kind=LINEAR)

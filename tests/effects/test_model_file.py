@@ -12,8 +12,7 @@ from bench.axis_kind import LINEAR
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.files import write_text
-from bench.plant.axis_model import AxisModel
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import (
     TIMESTEP,
     StoredModel,
@@ -23,7 +22,7 @@ from bench.plant.model_file import (
     read_table,
     tables_toml,
 )
-from bench.plant.soft_tracking import SoftTracking, track
+from bench.plant.tracking import SoftTracking, track
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, PERIOD, VALUES, model
 from tests.plant.open_loop import open_loop

@@ -33,7 +33,7 @@ from bench.effects.effect import (
     Repeatable,
     Wave,
 )
-from bench.plant.model import build_spec
+from bench.plant.axis_model import build_spec
 from bench.validation.independent import KINDS
 from tests.effects.axes import PARAMETERS, PERIOD, model
 from tests.effects.recording import (

@@ -7,7 +7,7 @@ import pytest
 
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
-from bench.plant.soft_tracking import SoftTracking, track, track_all
+from bench.plant.tracking import SoftTracking, track, track_all
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, PERIOD, model
 from tests.effects.conftest import CASES

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bench.plant import ticked
+from bench.plant import run as runners
 from bench.plant.run import run
-from bench.plant.soft_tracking import SoftTracking, track
+from bench.plant.tracking import SoftTracking, track
 from bench.trace.trace import Trace
 from tests.effects.axes import AXIS, Reversals, model, plant
 
@@ -28,12 +28,12 @@ def steps(monkeypatch):
     """One entry for each call by which Python steps a batch."""
     calls = []
 
-    class Counted(ticked.Batch):
+    class Counted(runners.Batch):
         def step(self, *args, **kwargs):
             calls.append(self)
             return super().step(*args, **kwargs)
 
-    monkeypatch.setattr(ticked, "Batch", Counted)
+    monkeypatch.setattr(runners, "Batch", Counted)
     return calls
 
 

@@ -1,8 +1,7 @@
 """Models and robots that a model is put onto."""
 
 from bench.effects.present import Present
-from bench.plant.axis_model import AxisModel
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
 
 PARAMETERS = AxisParameters(1e-3, 1.1e-3, 0.08, motor_inertia=1e-4)

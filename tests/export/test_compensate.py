@@ -9,11 +9,10 @@ import pytest
 
 from bench.assets import asset
 from bench.effects.present import Present
-from bench.export.drive_units import DriveUnits
-from bench.export.feedforward import Feedforward, TorqueTable, feedforward, resisting_torque, tracking
+from bench.export.feedforward import DriveUnits, Feedforward, TorqueTable, feedforward, resisting_torque, tracking
+from bench.plant.drive import References
 from bench.plant.plant import Plant
 from bench.plant.profiles import MotionLimits, plan
-from bench.plant.references import References
 from bench.rig.rig import Rig, load_rig
 from tests.diagnosis.command import started
 from tests.effects.axes import PARAMETERS, VALUES, model

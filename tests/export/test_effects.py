@@ -13,9 +13,8 @@ from bench.effects.catalogue import catalogue
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
 from bench.export.mjcf import ArmatureShare, armature_of, onto
-from bench.plant.drive import CascadeDrive
+from bench.plant.drive import CascadeDrive, References, side_by_side
 from bench.plant.model_file import Mounting, StoredModel, model_toml
-from bench.plant.references import References, side_by_side
 from bench.plant.run import run
 from tests.effects.axes import CASCADE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant
 from tests.export.arms import ARM, stored

@@ -7,9 +7,9 @@ import pyarrow.parquet as pq
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from bench.fleet.evaluate import PlannedRecording
+from bench.fleet.fleet import tabulate, write_table
 from bench.fleet.manifest import read_manifest
-from bench.fleet.plan import PlannedRecording
-from bench.fleet.table import tabulate, write_table
 
 NAMES = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1)
 #: Of a CSV, whose cells have no line ends, and are numbers where they look like numbers.

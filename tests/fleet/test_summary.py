@@ -9,9 +9,8 @@ from scipy import stats
 
 from bench.bounds import bounds
 from bench.comparison.change_point import change_point
-from bench.fleet.evaluate import Job
+from bench.fleet.evaluate import Job, PlannedRecording
 from bench.fleet.manifest import Manifest
-from bench.fleet.plan import PlannedRecording
 from bench.fleet.summary import summarise
 from tests.fit.motions import NAMES, RIG
 

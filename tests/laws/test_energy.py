@@ -8,8 +8,8 @@ import pytest
 from bench.effects.acting import Friction
 from bench.effects.catalogue import catalogue
 from bench.effects.present import Present
+from bench.plant.axis_model import AxisParameters
 from bench.plant.drive import Cascade
-from bench.plant.model import AxisParameters
 from bench.plant.plant import Plant
 from bench.plant.run import run
 from tests.effects.axes import VALUES, WINDING, Reversals

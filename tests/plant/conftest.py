@@ -2,8 +2,8 @@ from pathlib import Path
 
 import pytest
 
+from bench.plant.axis_model import AxisParameters
 from bench.plant.drive import Cascade
-from bench.plant.model import AxisParameters
 from bench.plant.plant import Plant
 from bench.rig.rig import Rig, load_rig
 

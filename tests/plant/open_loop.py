@@ -3,10 +3,10 @@
 import mujoco
 import numpy as np
 
-from bench.plant.axis_model import AxisModel
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.closed_loop import ClosedLoop, Listed, States
-from bench.plant.model import AxisParameters
-from bench.plant.native import run_native, sense_torque
+from bench.plant.drive import sense_torque
+from bench.plant.run import run_native
 
 
 def open_loop(spec: mujoco.MjSpec, efforts: np.ndarray, position: float = 0.0, velocity: float = 0.0) -> States:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.axis_kind import LINEAR
-from bench.plant.model import AxisParameters, build_spec
+from bench.plant.axis_model import AxisParameters, build_spec
 from tests.plant.open_loop import open_loop
 
 AXES = {

@@ -6,13 +6,10 @@ import numpy as np
 import pytest
 
 from bench.effects.present import Present
-from bench.plant.drive import Cascade, CascadeDrive, FrictionEmulation
-from bench.plant.model import AxisParameters
-from bench.plant.native import run_native
+from bench.plant.axis_model import AxisParameters
+from bench.plant.drive import Cascade, CascadeDrive, FrictionEmulation, References
 from bench.plant.plant import Plant
-from bench.plant.references import References
-from bench.plant.run import run
-from bench.plant.ticked import run_ticked
+from bench.plant.run import run, run_native, run_ticked
 
 
 def reversals(period=250e-6, duration=2.0, speed=80.0, frequency=1.5):

@@ -6,7 +6,7 @@ import pytest
 
 from bench.assets import asset
 from bench.axis_kind import axis_kind
-from bench.plant.model import AxisParameters, build_spec
+from bench.plant.axis_model import AxisParameters, build_spec
 from bench.rig.load import Load
 
 KINDS = ("rotary", "linear")

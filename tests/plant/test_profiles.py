@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisParameters
 from bench.plant.profile_names import DEFAULT, NAMES
 from bench.plant.profiles import PROFILES, MotionLimits, plan, s_curve, through_speeds
 

@@ -8,10 +8,8 @@ import pytest
 from bench.effects.present import Present
 from bench.errors import InputError, SimulationError
 from bench.plant.drive import Cascade
-from bench.plant.native import run_native
 from bench.plant.plant import Plant
-from bench.plant.run import run
-from bench.plant.ticked import run_ticked
+from bench.plant.run import run, run_native, run_ticked
 from tests.plant.test_drive import reversals
 
 

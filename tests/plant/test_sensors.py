@@ -5,9 +5,9 @@ import pytest
 
 from bench.axis_kind import LINEAR
 from bench.errors import InputError
+from bench.plant.axis_model import AxisParameters, build_spec
 from bench.plant.closed_loop import States
-from bench.plant.model import AxisParameters, build_spec
-from bench.plant.sensors import Sensors
+from bench.plant.sensing import Sensors
 from bench.rig.motor import TorqueConstant
 from tests.plant.open_loop import open_loop
 from tests.plant.test_drive import reversals

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.plant.model import AxisParameters
+from bench.plant.axis_model import AxisParameters
 from bench.plant.profiles import PROFILES
 from bench.plant.simulate import simulate, truth_path, write_truth
 from bench.rig.load import Load

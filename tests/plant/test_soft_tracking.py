@@ -6,9 +6,8 @@ from scipy.linalg import expm
 
 from bench.effects.present import Present
 from bench.errors import SimulationError
-from bench.plant.axis_model import AxisModel
-from bench.plant.model import AxisParameters
-from bench.plant.soft_tracking import SoftTracking, track, track_all
+from bench.plant.axis_model import AxisModel, AxisParameters
+from bench.plant.tracking import SoftTracking, track, track_all
 from bench.trace.join import join
 from bench.trace.trace import Trace
 

@@ -7,9 +7,9 @@ import pyarrow as pa
 import pytest
 
 from bench.comparison.change_point import expected
+from bench.fleet.evaluate import PlannedRecording
 from bench.fleet.fleet import Fleet
 from bench.fleet.manifest import Manifest
-from bench.fleet.plan import PlannedRecording
 from bench.fleet.summary import summarise
 from bench.report.document import Chart, Table
 from bench.report.fleet import CHARTS, DOTS, ROWS, fleet_document

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from bench.assets import asset
 from bench.errors import InputError
-from bench.rig.catalogue import motor_names, motor_sources
+from bench.rig.motor import motor_names, motor_sources
 from bench.rig.rig import load_rig
 from bench.trace.trace import Trace
 

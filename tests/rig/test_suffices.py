@@ -6,8 +6,7 @@ from bench.assets import asset
 from bench.cli import app
 from bench.errors import InputError
 from bench.rig.draft import draft
-from bench.rig.rig import Rig, load_rig
-from bench.rig.suffices import lacking, require
+from bench.rig.rig import Rig, lacking, load_rig, require
 from bench.trace.inspect import inspect
 
 BARE = {"name": "axis", "kind": "rotary"}

@@ -18,7 +18,7 @@ from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
 from bench.diagnosis.replay import Replay
-from bench.plant.references import References
+from bench.plant.drive import References
 from bench.trace.read import read_recording
 from tests.trace.recordings import machine_expert_xml
 

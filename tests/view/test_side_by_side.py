@@ -8,9 +8,8 @@ from bench.assets import asset
 from bench.diagnosis.replay import replay
 from bench.errors import InputError
 from bench.export.feedforward import tracking
-from bench.plant.axis_model import AxisModel
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.drive import Cascade
-from bench.plant.model import AxisParameters
 from bench.plant.model_file import StoredModel, model_toml
 from bench.plant.profiles import MotionLimits, plan
 from bench.rig.rig import load_rig

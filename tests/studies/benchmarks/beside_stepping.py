@@ -9,12 +9,9 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
-from bench.plant.drive import add_pid
-from bench.plant.native import run_native
+from bench.plant.drive import References, add_pid
 from bench.plant.plant import Plant
-from bench.plant.references import References
-from bench.plant.run import run
-from bench.plant.ticked import batch_of, run_ticked
+from bench.plant.run import batch_of, run, run_native, run_ticked
 from tests.effects.axes import Reversals, plant
 from tests.studies.benchmarks.table import Table
 from tests.studies.benchmarks.timing import Way, in_turn

@@ -24,7 +24,7 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.mjcf import AXIS, DRIVE, LOAD
 from bench.fit.identify import identify
-from bench.plant.model import AxisParameters, build_spec, disk_inertia, half_step_inertia
+from bench.plant.axis_model import AxisParameters, build_spec, disk_inertia, half_step_inertia
 from bench.rig.rig import Rig
 from bench.validation.independent import Axis, Noise, Recorded, Sensors, random_motion, random_rig, simulate
 from bench.validation.independent.rig import rig_text

@@ -21,8 +21,7 @@ from bench.fit.identify import identify
 from bench.fit.layout import Layout, lay_out
 from bench.fit.memory import Memory
 from bench.fit.rows import Rows
-from bench.plant.run import run
-from bench.plant.ticked import run_ticked
+from bench.plant.run import run, run_ticked
 from bench.trace.read import read
 from bench.trace.stream import stream
 from tests.effects.axes import VALUES, Reversals, plant

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 
 from scipy.stats import binomtest, norm
 
-from bench.baseline.allowed import Allowed
-from bench.baseline.check import FALSE_ALARM_RATE, Checked, compare
+from bench.baseline.check import FALSE_ALARM_RATE, Allowed, Checked, compare
 from bench.baseline.observe import Observed, observe
 from bench.errors import BenchError
 from bench.rig.rig import Rig

@@ -1,13 +1,16 @@
-"""Hold a model softly to a recording: what it does differently is the velocity gap.
+"""Run a model beside a recording: held to it softly, or along its references under the drive of its rig.
 
-The recorded effort drives the model as feed-forward; measured position and velocity are set-points of one weak
-cascade, which keeps the model near the recording where integration alone would drift away. It needs no references and
-no drive data. Its bandwidth decides what is seen: a difference in torque of frequency well above it shows in full, one
-well below it is held down. State it beside every velocity gap.
+`track` holds it: the recorded effort drives the model as feed-forward; measured position and velocity are set-points of
+one weak cascade, which keeps the model near the recording where integration alone would drift away. It needs no
+references and no drive data. Its bandwidth decides what is seen: a difference in torque of frequency well above it
+shows in full, one well below it is held down. State it beside every velocity gap.
 
 Every effect is where it acts: electronics on the recorded effort before the simulation, mechanisms in MuJoCo, sensing
 on what comes out. What holds the model is the true motion as far as the recording tells it: sensing is undone on the
 set-points, or the model would be pulled after the sensor's errors.
+
+`follow_references` predicts, nothing holds the model. References are read between the samples: velocity by a cubic that
+is smooth in acceleration, position by the integral of that, held to the recorded one.
 """
 
 from __future__ import annotations
@@ -22,14 +25,23 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.effects.acting import Mechanism, TorqueLag, TorqueLoss
-from bench.errors import SimulationError
+from bench.errors import InputError, SimulationError
 from bench.plant.axis_model import AxisModel
 from bench.plant.closed_loop import DIVERGED, ClosedLoop, PlannedInputs
-from bench.plant.drive import Cascade, add_pid
+from bench.plant.drive import Cascade, References, add_pid
 from bench.plant.measured_motion import integrated, measured_velocity, stretches_of
-from bench.plant.native import sense_torque
-from bench.plant.run import run_loops
-from bench.plant.sensing import filters, misreads_effort, reported, true_effort, true_motion, true_velocity
+from bench.plant.plant import Plant
+from bench.plant.run import run, run_loops
+from bench.plant.sensing import (
+    filters,
+    misreads_effort,
+    reported,
+    reported_states,
+    true_effort,
+    true_motion,
+    true_velocity,
+)
+from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
 #: Bandwidth of the cascade that holds the model - rad/s.
@@ -164,7 +176,6 @@ def _compiled(model: AxisModel, cascade: Cascade) -> mujoco.MjModel:
     """The model with the cascade, effort being its feed-forward; SimulationError where MuJoCo refuses it."""
     spec = model.spec(cascade.control_period)
     add_pid(spec, cascade)
-    sense_torque(spec)
     try:
         return spec.compile()
     except ValueError as error:
@@ -227,3 +238,71 @@ class _HoldingInputs(PlannedInputs):
         for effect, values in lags:
             effort = effect.acting_along(values, effort, self._timestep)
         return effort
+
+
+@dataclass(frozen=True)
+class Followed:
+    """What a model under its drive reports at the samples of a recording, (n,) each.
+
+    Attributes:
+        position: rad (m).
+        velocity: rad/s (m/s).
+        effort: reported torque, of the tick that begins with the sample - N*m (N).
+    """
+
+    position: Array
+    velocity: Array
+    effort: Array
+
+
+def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> Followed:
+    """Run a model along the references of a recording without holes.
+
+    Args:
+        model: with effects.
+        trace: with `velocity_reference` or `position_reference`, at rest at its start.
+        rig: with `[drive]`.
+
+    Raises:
+        InputError: no references, holes, a rig without drive, or samples that are no multiple of its ticks.
+        SimulationError: the simulation diverged.
+    """
+    cascade = Cascade.from_rig(rig)
+    if len(trace.segments) > 1:
+        raise InputError(trace.origin, f"found {len(trace.segments) - 1} holes", "allowed: a recording without holes")
+    stride = round(trace.sample_period / cascade.control_period)
+    if stride < 1 or abs(stride * cascade.control_period / trace.sample_period - 1.0) > 1e-3:
+        raise InputError(
+            trace.origin,
+            f"found samples every {trace.sample_period:g} s",
+            f"allowed: a multiple of the control period of {cascade.control_period:g} s",
+        )
+    plant = Plant.of(model, cascade)
+    states = reported_states(plant.model, run([plant], [references_of(trace, cascade.control_period, stride)]))
+    rows = slice(None, None, stride)
+    return Followed(states.position[rows, 0], states.velocity[rows, 0], states.torque[rows, 0])
+
+
+def references_of(trace: Trace, period: float, stride: int) -> References:
+    """References of a recording at the drive's ticks, `stride` of which make a sample.
+
+    Raises:
+        InputError: the recording holds none.
+    """
+    from scipy.interpolate import CubicSpline  # 0.1 s, which only the drive's own loop has to pay
+
+    ticks: Array = period * np.arange((len(trace) - 1) * stride + 1, dtype=np.float64)
+    samples = ticks[::stride]
+    if "velocity_reference" in trace:
+        velocity = CubicSpline(samples, trace["velocity_reference"])
+        position = velocity.antiderivative()
+        offset = float(trace["position"][0]) if "position" in trace else 0.0
+        if "position_reference" in trace:
+            recorded = trace["position_reference"]
+            slow = CubicSpline(samples, recorded - position(samples))(ticks)
+            return References(ticks, position(ticks) + slow, velocity(ticks), velocity(ticks, 1))
+        return References(ticks, position(ticks) + offset, velocity(ticks), velocity(ticks, 1))
+    if "position_reference" in trace:
+        position = CubicSpline(samples, trace["position_reference"])
+        return References(ticks, position(ticks), position(ticks, 1), position(ticks, 2))
+    raise InputError(trace.origin, "holds no references", "allowed: velocity_reference or position_reference")
