@@ -2,9 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from bench.axis_kind import LINEAR, ROTARY
+from bench.effects.backlash.likeliest import CONTACTS, contacts_of
 from bench.effects.catalogue import catalogue
 from bench.effects.grids import extended, places
 from tests.effects.recording import scopes
@@ -43,3 +45,9 @@ def test_a_grid_is_extended_on_the_side_where_it_ends():
     assert extended((1.0, 2.0, 4.0), 1.0) == (1.0, 2.0, 4.0)
     assert extended((1.0, 2.0, 4.0), 0.5) == (0.5, 1.0, 2.0, 4.0)
     assert extended((1.0, 2.0, 4.0), 100.0) == (1.0, 2.0, 4.0, 100.0, 200.0, 400.0)
+
+
+def test_no_contact_is_sought_that_swings_faster_than_samples_follow():
+    np.testing.assert_allclose(contacts_of(USUAL), CONTACTS)
+    slow = contacts_of(replace(USUAL, sample_period=0.02, width=0.03))
+    assert max(slow) == np.pi / 0.02 and min(slow) == pytest.approx(min(CONTACTS) / 20.0)

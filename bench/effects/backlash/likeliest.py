@@ -21,6 +21,7 @@ from bench.effects.acting import Spring
 from bench.effects.backlash.dead_zone import dead_zone_columns
 from bench.effects.effect import Fitted
 from bench.effects.grids import FREQUENCY, extended
+from bench.effects.signals import Scope
 
 #: Gaps in travel of the motor at the recording's RMS speed over one filter width, wide ones closer, as impacts shift by
 #: more widths of the filter the wider the gap is; contacts - rad/s; damping ratio.
@@ -72,7 +73,7 @@ def likeliest_shape(fitted: Fitted) -> tuple[float, ...]:
         return sorted(found, key=lambda likely: likely.misfit)
 
     travel = fitted.scope.rms_speed * fitted.scope.width
-    contacts = extended(CONTACTS, FREQUENCY.factor(fitted.scope))
+    contacts = contacts_of(fitted.scope)
     axes = [np.array(GAPS) * travel, np.array(contacts), np.array([DAMPING]), np.array(sorted(_spring_rates(fitted)))]
     tried = likeliest(np.stack([m.ravel() for m in np.meshgrid(*axes, indexing="ij")], axis=1))
     starts = [next(found for found in tried if found.shape[1] == contact) for contact in contacts]
@@ -113,6 +114,12 @@ def _columns(fitted: Fitted, shapes: Array) -> Array:
     parts = [shapes[k : k + few] for k in range(0, len(shapes), few)]
     made = [fitted.seen(lambda signals, part=part: dead_zone_columns(signals, part), of_motion=True) for part in parts]
     return np.concatenate(made, axis=1)
+
+
+def contacts_of(scope: Scope) -> list[float]:
+    """Frequencies of contact that a search begins with - rad/s: one that swings faster than samples follow is rigid."""
+    fastest = np.pi / scope.sample_period
+    return sorted({min(contact, fastest) for contact in extended(CONTACTS, FREQUENCY.factor(scope))})
 
 
 def _spring_rates(fitted: Fitted) -> set[float]:
