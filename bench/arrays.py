@@ -96,3 +96,27 @@ def recursive_filter(
     bands = np.asfortranarray(np.repeat(np.asarray(denominator, dtype=np.float64)[:, None], values.size, axis=1))
     (solve,) = get_blas_funcs(("tbsv",), dtype=np.float64)
     return solve(len(denominator) - 1, bands, driven, lower=1, diag=1)
+
+
+def splined(values: Array, steps: int) -> tuple[Array, Array]:
+    """A cubic spline through samples (n,), four at least, and its slope per sample, at `steps` to each sample.
+
+    As `scipy.interpolate.CubicSpline` has them, which takes 0.2 s to import: its third derivative runs straight through
+    the second and the last but one sample.
+
+    Returns:
+        Both ((n - 1)*steps + 1,).
+    """
+    from scipy.linalg import solve_banded  # 0.1 s, which only a spline has to pay
+
+    rise = np.diff(values)
+    bands, driven = np.ones((3, values.size)), np.empty(values.size)
+    bands[1, 1:-1], driven[1:-1] = 4.0, 3.0 * (rise[1:] + rise[:-1])
+    bands[0, 1], driven[0] = 2.0, 2.5 * rise[0] + 0.5 * rise[1]
+    bands[2, -2], driven[-1] = 2.0, 2.5 * rise[-1] + 0.5 * rise[-2]
+    slope = solve_banded((1, 1), bands, driven)
+    start, bend = slope[:-1, None], (3.0 * rise - 2.0 * slope[:-1] - slope[1:])[:, None]
+    twist, at = (slope[:-1] + slope[1:] - 2.0 * rise)[:, None], np.arange(steps) / steps
+    between = values[:-1, None] + at * (start + at * (bend + at * twist))
+    slopes = start + at * (2.0 * bend + 3.0 * at * twist)
+    return np.append(between.ravel(), values[-1]), np.append(slopes.ravel(), slope[-1])

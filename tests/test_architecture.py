@@ -153,7 +153,7 @@ def test_no_effect_is_known_by_name(path):
         'say(f"it is unbalance of {amplitude}")',
         "from bench.effects.backlash import EFFECT",
         "from bench.effects import torque_ripple",
-        "from bench.effects.backlash.dead_zone import load_positions",
+        "from bench.effects.backlash import load_positions",
         "import bench.effects.cogging_torque",
         "same = present.effect.name == named.effect.name",
     ],

@@ -16,9 +16,10 @@ from bench.arrays import Array
 from bench.diagnosis.policy import Policy, freedom, worth
 from bench.diagnosis.search import Searched, Step, backward_elimination, candidates, refined
 from bench.effects.catalogue import simpler_forms
-from bench.effects.effect import Contact, Coupling, Effect, Occasional, Wave
+from bench.effects.effect import Contact, Coupling, Effect, Occasional
 from bench.effects.rivals import RIVALS
 from bench.effects.signals import Signals
+from bench.effects.waves import Wave
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Term
 from bench.fit.rows import Rows

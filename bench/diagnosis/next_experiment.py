@@ -116,10 +116,9 @@ def alternatives(recordings: Recordings, suspects: Suspects, added: Added, model
         if not isinstance(effect.effect, MotionLag):
             continue
         for other in effect.ambiguous_with:
-            values = effect.effect.counterpart(catalogue()[other], effect.values)
-            if values is not None:
+            if isinstance(catalogue()[other], MotionLag):
                 kept = [present for present in model.effects if present.effect is not effect.effect]
-                models = model, model.with_effects([*kept, Present.of(other, values)])
+                models = model, model.with_effects([*kept, Present.of(other, effect.values)])
                 yield Alternatives((effect.name, other), models, "this recording cannot tell them apart")
     yield from nearly_as_good(recordings, suspects, added, model)
     if recordings.rows.scope.one_way:

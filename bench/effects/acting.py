@@ -7,20 +7,17 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from bench.arrays import Array
 from bench.effects.axis import Axis, Moment, Number, Values
-from bench.effects.effect import Columns, Detectable, Effect
+from bench.effects.effect import Columns, Detectable, Effect, lagged, unlagged
+from bench.effects.mjcf import Spec
 from bench.effects.signals import Scope, Signals
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-
-if TYPE_CHECKING:  # 0.2 s, needed only to simulate
-    import mujoco
-
 
 # Of the mechanics.
 
@@ -33,7 +30,7 @@ class Native(Mechanism):
     """MuJoCo simulates it by itself, as part of the model."""
 
     @abstractmethod
-    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+    def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Add the effect to the model; `name` is free to name the new elements."""
 
     def native(self, values: Mapping[str, float], friction_scaled: bool) -> bool:
@@ -214,13 +211,13 @@ class FilteredSignal(Sensing):
 
     signal: ClassVar[str]
 
-    @abstractmethod
     def recorded(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
-        """What is recorded of the samples in the drive, (n,) at a constant step - s."""
+        """What is recorded of the samples in the drive, (n,) at a constant step - s; by default behind a lag."""
+        return lagged(samples, values["time_constant"], step)
 
-    @abstractmethod
     def unrecorded(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
-        """Samples in the drive from the recorded ones, (n,)."""
+        """Samples in the drive from the recorded ones, (n,): what holds a model to a recording needs no more."""
+        return unlagged(samples, values["time_constant"], step)
 
     def corrected(self, trace: Trace, values: Mapping[str, float]) -> Trace:
         """The recording with its signal as the drive has it."""

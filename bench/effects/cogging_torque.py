@@ -9,21 +9,15 @@ Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003,
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
-
-import numpy as np
 
 from bench.effects.acting import Native
 from bench.effects.axis import Axis
-from bench.effects.effect import Repeatable, Wave
-from bench.effects.mjcf import add_periodic_torque
-from bench.effects.signals import Base, Shape, Signals
-from bench.effects.waves import amplitude_and_phase, followed
+from bench.effects.effect import Repeatable
+from bench.effects.mjcf import Spec, passive_motor
+from bench.effects.signals import Signals
+from bench.effects.waves import PHASE, Wave, followed, harmonics, sine_and_cosine
 from bench.trace.filter import Column
 from bench.units import Quantity
-
-if TYPE_CHECKING:  # 0.2 s, needed only to simulate
-    import mujoco
 
 
 class CoggingTorque(Wave, Repeatable, Native):
@@ -31,26 +25,16 @@ class CoggingTorque(Wave, Repeatable, Native):
 
     name = "cogging_torque"
     summary = "torque periodic in position, independent of current"
-    quantities = (
-        Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0),
-        Quantity("harmonic", "n", "dimensionless", lower=2.0, linear_unit="rad/m"),
-        Quantity("phase", "phi", "rad", angle=True, preset=0.0),
-    )
-    shapes = (Shape(quantities[1], tuple(float(n) for n in range(2, 81)), whole=True),)
+    shapes = (harmonics(2, 80),)
+    quantities = (Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0), shapes[0].quantity, PHASE)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """sin(n*q) and cos(n*q), nothing where the wave is faster than the samples can follow."""
-        angle, slow = shape[0] * signals.position, followed(signals, shape[0])
-        return [[(np.sin(angle) * slow, 0)], [(np.cos(angle) * slow, 0)]]
+        return sine_and_cosine(signals, shape[0], followed(signals, shape[0]))
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Amplitude, harmonic and phase."""
-        amplitude, phase = amplitude_and_phase(*strengths)
-        return {"amplitude": amplitude, "harmonic": shape[0], "phase": phase}
-
-    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
-        """A passive DC motor that cogs."""
-        add_periodic_torque(spec, name, values["amplitude"], values["harmonic"], values["phase"])
+    def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """A passive DC motor that cogs, whose sign is that of driving."""
+        passive_motor(spec, name, cogging=(-values["amplitude"], values["harmonic"], values["phase"]))
 
 
 EFFECT = CoggingTorque()

@@ -11,13 +11,11 @@ Source: W. Leonhard, Control of Electrical Drives (filtered current feedback).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
-from bench.arrays import Array
 from bench.effects.acting import FilteredSignal
-from bench.effects.effect import Distortion, EffortLag, Fitted, Proposal
-from bench.effects.first_order import lagged, unlagged
+from bench.effects.effect import Distortion, EffortLag, Fitted, Proposal, unlagged
 from bench.effects.signals import Scope, Signals
 
 
@@ -43,14 +41,6 @@ class CurrentFilterLag(EffortLag, Distortion, FilteredSignal):
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """Lags of torque and speed, of which it may be the greater, unless position tells that of the speed."""
         return () if "position" in scope.signals else ("current_loop_lag", "velocity_filter_lag")
-
-    def recorded(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
-        """Exact for an effort that runs straight within the step; started where the effort is."""
-        return lagged(samples, values["time_constant"], step)
-
-    def unrecorded(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
-        """M + T*dM/dt by central differences: what a held model is fed with needs no more."""
-        return unlagged(samples, values["time_constant"], step)
 
 
 EFFECT = CurrentFilterLag()

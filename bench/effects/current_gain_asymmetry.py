@@ -18,6 +18,7 @@ import numpy as np
 from bench.effects.acting import MisreadEffort
 from bench.effects.axis import Axis, Number, Values
 from bench.effects.effect import CopiesTorque
+from bench.effects.shape import Shapes
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -37,7 +38,7 @@ class CurrentGainAsymmetry(CopiesTorque, MisreadEffort):
         """-|M|/2: what the readings of positive current lack, and those of negative have too much."""
         return [[(-0.5 * np.abs(signals.torque), 0)]]
 
-    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+    def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
         """No more than a sensor's tolerance."""
         return all(abs(difference) <= MOST for (difference,) in strengths)
 

@@ -14,8 +14,7 @@ from dataclasses import replace
 from bench.arrays import Array, namespace
 from bench.effects.acting import TorqueLag
 from bench.effects.axis import Number, Values
-from bench.effects.effect import Distortion, MotionLag
-from bench.effects.first_order import lagged
+from bench.effects.effect import Distortion, MotionLag, lagged
 from bench.effects.signals import Scope, Signals
 
 

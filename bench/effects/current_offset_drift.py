@@ -21,9 +21,6 @@ from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
-#: Share of what stands above noise that it must explain.
-NEEDED = 0.8
-
 
 class CurrentOffsetDrift(Columns, MisreadEffort):
     """See the module."""
@@ -31,6 +28,7 @@ class CurrentOffsetDrift(Columns, MisreadEffort):
     name = "current_offset_drift"
     summary = "the zero of the current sensor drifts during the recording"
     quantities = (Quantity("rate", "r", "N*m/s", null=0.0),)
+    needed = 0.8  # more than a constant torque gives it: of the squares of one, r*t takes (T**2/2)**2/(T**3/3)/T = 3/4
 
     def sought(self, scope: Scope) -> bool:
         """Where the axis goes both ways."""
@@ -39,10 +37,6 @@ class CurrentOffsetDrift(Columns, MisreadEffort):
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Time."""
         return [[(signals.time, 0)]]
-
-    def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
-        """More than a constant torque gives it: of the squares of one, r*t takes (T**2/2)**2/(T**3/3)/T = 3/4."""
-        return NEEDED
 
     def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
         """By the equation above."""

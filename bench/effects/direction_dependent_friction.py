@@ -10,20 +10,16 @@ Source: A. Janot, M. Gautier, M. Brunot, NSIB workshop 2019 (EMPS, asymmetric fr
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bench.effects.acting import DirectedFriction, Native, ResistingTorque
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import OfSpeed
-from bench.effects.mjcf import AXIS, add_resisting_torque
+from bench.effects.mjcf import AXIS, Spec, add_resisting_torque
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
-
-if TYPE_CHECKING:  # 0.2 s, needed only to simulate
-    import mujoco
 
 
 class DirectionDependentFriction(OfSpeed, DirectedFriction, Native, ResistingTorque):
@@ -49,7 +45,7 @@ class DirectionDependentFriction(OfSpeed, DirectedFriction, Native, ResistingTor
         """Dry friction alone is native: half of the difference is a constant torque, at rest and in motion."""
         return values["viscous_difference"] == 0.0 and not friction_scaled
 
-    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+    def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Half of what is left of the two levels as friction of the joint, half of their difference as torque."""
         level, half = float(axis.coulomb), 0.5 * values["coulomb_difference"]
         forward, backward = max(level + half, 0.0), max(level - half, 0.0)

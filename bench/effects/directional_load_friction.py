@@ -20,8 +20,8 @@ import numpy as np
 from bench.effects.acting import FollowsLoad, LoadTorque
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import CopiesTorque, Fitted, Replacing
-from bench.effects.grids import grid_of
-from bench.effects.signals import Base, Shape, Signals
+from bench.effects.shape import Shape, grid_of
+from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 

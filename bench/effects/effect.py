@@ -6,7 +6,8 @@ Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are s
 and says by the further types that it derives from what else it is; the rest of the bench asks `isinstance`, and knows
 no effect by name.
 
-    in the torque balance   Columns: CopiesTorque, OfSpeed, OuterTorque, Repeatable, Occasional, Wave, Coupling, Contact
+    in the torque balance   Columns: CopiesTorque, OfSpeed, OuterTorque, Repeatable, Occasional, Coupling, Contact
+    over position           Wave (`bench.effects.waves`)
     in the recording        Distortion, MotionLag, EffortLag, FiltersMotion, Detectable
     in the search           Replacing
     in a simulation (`bench.effects.acting`)
@@ -26,10 +27,10 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import Array, recursive_filter
 from bench.effects.axis import Axis, Values
-from bench.effects.grids import LAG, LAGS, grid_of, is_pitch
-from bench.effects.signals import Base, Scope, Shape, Shapes, Signals
+from bench.effects.shape import LAG, Shape, Shapes, grid_of, is_pitch
+from bench.effects.signals import Base, Scope, Signals
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95
 from bench.trace.filter import Column
@@ -41,6 +42,8 @@ from bench.units import Quantity
 SHARE, PITCH_SHARE, MANY = 0.25, 0.1, 20.0
 #: Share of the inertia that sits behind a coupling, at least and at most.
 BEHIND = (0.02, 0.98)
+#: Lags that a search tries first - s.
+LAGS = (3e-4, 8e-4, 2e-3, 4e-3, 8e-3)
 
 
 @dataclass(frozen=True)
@@ -103,6 +106,7 @@ class Effect(ABC):
         quantities: its parameters, with unit and bounds.
         derived: quantities reported too, which follow from them.
         shapes: the nonlinear quantities, in the order in which all methods take them.
+        needed: share of the squared residual above the noise floor that it must explain, other than of a pitch.
     """
 
     name: ClassVar[str]
@@ -110,6 +114,7 @@ class Effect(ABC):
     quantities: ClassVar[tuple[Quantity, ...]]
     derived: ClassVar[tuple[Quantity, ...]] = ()
     shapes: ClassVar[tuple[Shape, ...]] = ()
+    needed: ClassVar[float] = SHARE
 
     def null(self, axis: Axis) -> Values:
         """Values of some quantities at which the effect is exactly absent - SI."""
@@ -134,7 +139,7 @@ class Effect(ABC):
     def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
         """Share of the squared residual above the noise floor that it must explain to be accepted."""
         pitches = [value for slot, value in zip(self.shapes, shape, strict=True) if is_pitch(slot, scope)]
-        return PITCH_SHARE if any(value > MANY * scope.spacing for value in pitches) else SHARE
+        return PITCH_SHARE if any(value > MANY * scope.spacing for value in pitches) else self.needed
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """Whether every quantity lies within its physical bounds."""
@@ -196,26 +201,6 @@ class Repeatable(Columns):
 
 class Occasional(Repeatable):
     """It may occur in one recording and not in another."""
-
-
-class Wave(Effect):
-    """It repeats with position: so many times a revolution as its harmonic says, or per length as its wave number."""
-
-    def wave_number(self, shape: Sequence[float]) -> float:
-        """Wave number over position - 1 (rad/m)."""
-        return shape[0]
-
-
-class OncePerRevolution(Wave):
-    """A wave of one revolution, of which a linear axis has none."""
-
-    def sought(self, scope: Scope) -> bool:
-        """Where something turns."""
-        return super().sought(scope) and scope.kind.turns
-
-    def wave_number(self, shape: Sequence[float]) -> float:
-        """One cycle a revolution."""
-        return 1.0
 
 
 #: An effect on the load behind a coupling: the effect, its shape, its strengths divided by the load inertia.
@@ -283,16 +268,25 @@ class Lag(Effect):
         return [scope.latched / NORMAL95]
 
 
+def lagged(values: Array, time_constant: float, step: float) -> Array:
+    """Values (n,) behind a lag - s -, exact for an input that runs straight between samples; started in equilibrium."""
+    decay = np.exp(-step / time_constant)
+    mean = time_constant / step * (1.0 - decay)
+    now, before = 1.0 - mean, mean - decay
+    return recursive_filter([now, before], [1.0, -decay], values, held=values[0] * (1.0 - now))
+
+
+def unlagged(values: Array, time_constant: float, step: float) -> Array:
+    """What comes out behind a lag - s - as these values (n,), by central differences: y + T*dy/dt."""
+    return values + time_constant * np.gradient(values, step) if values.size > 1 else values
+
+
 class MotionLag(Lag, FiltersMotion):
-    """A lag between torque and reported motion."""
+    """A lag between torque and reported motion; another such lag of as much looks like it."""
 
     @abstractmethod
     def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
         """Lags to undo in columns of motion, and in all others, if speed comes from `source` - s."""
-
-    def counterpart(self, other: Effect, values: Mapping[str, float]) -> Mapping[str, float] | None:
-        """Values of another effect at which both look alike: another such lag's by as much; None of what is none."""
-        return {"time_constant": values["time_constant"]} if isinstance(other, MotionLag) else None
 
 
 class EffortLag(Lag):

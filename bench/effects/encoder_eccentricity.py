@@ -17,9 +17,10 @@ import numpy as np
 from bench.arrays import Array, namespace
 from bench.effects.acting import MisreadMotion
 from bench.effects.axis import Number, Values
-from bench.effects.effect import Distortion, Fitted, OncePerRevolution, Proposal
-from bench.effects.signals import Base, Scope, Shape, Signals
-from bench.effects.waves import amplitude_and_phase
+from bench.effects.effect import Distortion, Fitted, Proposal
+from bench.effects.shape import Shape
+from bench.effects.signals import Base, Scope, Signals
+from bench.effects.waves import PHASE, OncePerRevolution, amplitude_and_phase
 from bench.statistics import NORMAL95
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -33,10 +34,7 @@ class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
 
     name = "encoder_eccentricity"
     summary = "measured position errs once per revolution"
-    quantities = (
-        Quantity("amplitude", "e", "rad", lower=0.0, upper=0.5, null=0.0),
-        Quantity("phase", "phi", "rad", angle=True, preset=0.0),
-    )
+    quantities = (Quantity("amplitude", "e", "rad", lower=0.0, upper=0.5, null=0.0), PHASE)
     shapes = (
         Shape(Quantity("sine", "s", "rad"), additive=True),
         Shape(Quantity("cosine", "c", "rad"), additive=True),

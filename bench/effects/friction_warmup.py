@@ -15,8 +15,8 @@ import numpy as np
 from bench.arrays import namespace
 from bench.effects.acting import ResistingTorque, ScalesFriction
 from bench.effects.axis import Axis, Moment, Number, Values
-from bench.effects.grids import DURATION
-from bench.effects.signals import Base, Shape, Signals
+from bench.effects.shape import DURATION, Shape
+from bench.effects.signals import Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 

@@ -15,7 +15,8 @@ from bench.arrays import Array, namespace
 from bench.effects.acting import ResistingTorque
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import Contact, Fitted, Occasional, OuterTorque, Proposal
-from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.effects.shape import Shape, Shapes
+from bench.effects.signals import Base, Scope, Signals
 from bench.statistics import NORMAL95
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -24,8 +25,6 @@ from bench.units import Quantity
 EDGES = 240
 #: Longest events together, as share of the recording (of the longest, of several).
 LONGEST = 0.6
-#: Share of what stands above the noise floor that an event must explain.
-NEEDED = 0.5
 #: Widths of the filter that an event lasts at least: the full width at half maximum of its impulse response.
 RESOLVED = 2.355
 
@@ -41,6 +40,7 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         Quantity("end", "t_2", "s", lower=0.0, instant=True),
     )
     shapes = tuple(Shape(instant, reach=0.05, additive=True) for instant in quantities[1:])
+    needed = 0.5  # more than of others: with a window of time to choose freely, an event fits a part of anything
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """One within the stretch; its edges shared between the samples around them."""
@@ -68,15 +68,11 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         stop = min(int(edges[last[best]]), time.size - 1)
         return [Proposal((float(time[edges[first[best]]]), float(time[stop])), float(gain[best]))]
 
-    def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
-        """More than of others: with a window of time to choose freely, an event fits a part of anything."""
-        return NEEDED
-
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """It ends after it starts."""
         return shape[1] > shape[0]
 
-    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+    def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
         """Each lasts longer than the filter blurs; all of them for most of the recording would be how the axis is."""
         lasting = [stop - start for start, stop in shapes]
         return min(lasting) > RESOLVED * scope.width and sum(lasting) <= LONGEST * scope.duration

@@ -7,16 +7,12 @@ A - relative amplitude; q - angle - rad.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-import numpy as np
-
-from bench.arrays import namespace
 from bench.effects.acting import ScalesFriction
 from bench.effects.axis import Axis, Moment, Number, Values
-from bench.effects.effect import OncePerRevolution
 from bench.effects.signals import Base, Signals
-from bench.effects.waves import amplitude_and_phase
+from bench.effects.waves import PHASE, OncePerRevolution, sine_and_cosine, wave
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -28,22 +24,20 @@ class PositionDependentFriction(OncePerRevolution, ScalesFriction):
     summary = "friction level varies with position"
     quantities = (
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.5, null=0.0),
-        Quantity("phase", "phi", "rad", angle=True, preset=0.0),
+        PHASE,
     )
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """sin(q) and cos(q) of the friction level."""
-        return [[(signals.friction * wave, 0)] for wave in (np.sin(signals.position), np.cos(signals.position))]
+        return sine_and_cosine(signals, 1.0, signals.friction)
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Amplitude relative to Coulomb friction, and phase."""
-        amplitude, phase = amplitude_and_phase(*strengths)
-        return {"relative_amplitude": amplitude / base.coulomb, "phase": phase}
+    def unit(self, base: Base) -> float:
+        """Coulomb friction."""
+        return base.coulomb
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Once up and down a revolution."""
-        angle = at.position + values["phase"]
-        return 1.0 + values["relative_amplitude"] * namespace(angle).sin(angle)
+        return 1.0 + wave(values, "relative_amplitude", at.position)
 
 
 EFFECT = PositionDependentFriction()

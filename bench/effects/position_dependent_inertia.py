@@ -8,16 +8,16 @@ With J*sin(n*q)*alpha = d/dt(J*sin(n*q)*omega) - J*n*cos(n*q)*omega**2, only raw
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from bench.arrays import namespace
 from bench.effects.acting import ResistingTorque, VaryingInertia
 from bench.effects.axis import Axis, Moment, Number, Values
-from bench.effects.effect import Columns, Wave
-from bench.effects.signals import Base, Shape, Signals
-from bench.effects.waves import amplitude_and_phase
+from bench.effects.effect import Columns
+from bench.effects.signals import Base, Signals
+from bench.effects.waves import PHASE, Wave, harmonics, wave
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -27,12 +27,12 @@ class PositionDependentInertia(Wave, Columns, VaryingInertia, ResistingTorque):
 
     name = "position_dependent_inertia"
     summary = "inertia varies with position, with its velocity-squared torque"
+    shapes = (harmonics(1, 4),)
     quantities = (
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.0, null=0.0),
-        Quantity("harmonic", "n", "dimensionless", lower=1.0, linear_unit="rad/m"),
-        Quantity("phase", "phi", "rad", angle=True, preset=0.0),
+        shapes[0].quantity,
+        PHASE,
     )
-    shapes = (Shape(quantities[1], (1.0, 2.0, 3.0, 4.0), whole=True),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Sine and cosine variation."""
@@ -43,15 +43,13 @@ class PositionDependentInertia(Wave, Columns, VaryingInertia, ResistingTorque):
             [(omega * np.cos(angle), 1), (half * np.sin(angle), 0)],
         ]
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Amplitude relative to the mean inertia, and phase."""
-        amplitude, phase = amplitude_and_phase(*strengths)
-        return {"relative_amplitude": amplitude / base.inertia, "harmonic": shape[0], "phase": phase}
+    def unit(self, base: Base) -> float:
+        """Mean inertia."""
+        return base.inertia
 
     def added_inertia(self, values: Values, axis: Axis, at: Moment) -> Number:
         """J(q) - J."""
-        angle = values["harmonic"] * at.position + values["phase"]
-        return axis.inertia * values["relative_amplitude"] * namespace(angle).sin(angle)
+        return axis.inertia * wave(values, "relative_amplitude", at.position)
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
         """J'(q)*omega**2/2."""

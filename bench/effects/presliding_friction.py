@@ -13,21 +13,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from bench.arrays import Array, recurrence
 from bench.effects.acting import CarriesFriction, Native
 from bench.effects.axis import Axis
-from bench.effects.grids import ANGLE
-from bench.effects.mjcf import AXIS, BRISTLES, passive_motor
-from bench.effects.signals import Base, Scope, Shape, Shapes, Signals
+from bench.effects.mjcf import AXIS, BRISTLES, Spec, passive_motor
+from bench.effects.shape import ANGLE, Shape, Shapes
+from bench.effects.signals import Base, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
-
-if TYPE_CHECKING:  # 0.2 s, needed only to simulate
-    import mujoco
 
 #: Level of sliding friction, as share of Coulomb's, below which a fit of others has lost its way.
 LEAST = 1e-3
@@ -74,7 +71,7 @@ class PreslidingFriction(CarriesFriction, Native):
         """The bristles bend over a small part of the travel: over most of it they would be a spring and a damper."""
         return all(rate * scope.travel > SLIDES for (rate,) in shapes)
 
-    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+    def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """LuGre friction of a passive DC motor in place of the joint's."""
         joint = spec.joint(AXIS)
         level, joint.frictionloss = joint.frictionloss, 0.0

@@ -8,20 +8,16 @@ k_q - N*m*s**2/rad**2 (N*s**2/m**2), not negative.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bench.effects.acting import Native
 from bench.effects.axis import Axis
 from bench.effects.effect import OfSpeed, OuterTorque
-from bench.effects.mjcf import AXIS
+from bench.effects.mjcf import AXIS, Spec
 from bench.effects.signals import Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
-
-if TYPE_CHECKING:  # 0.2 s, needed only to simulate
-    import mujoco
 
 
 class QuadraticDrag(OfSpeed, OuterTorque, Native):
@@ -35,7 +31,7 @@ class QuadraticDrag(OfSpeed, OuterTorque, Native):
         """omega*|omega|."""
         return [[(signals.velocity * np.abs(signals.velocity), 0)]]
 
-    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+    def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Second coefficient of the joint's damping, which grows with speed."""
         spec.joint(AXIS).damping[1] += values["quadratic_drag"]
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from bench.arrays import Array, recursive_filter
 from bench.effects.effect import Columns, Effect
-from bench.effects.grids import DURATION, FREQUENCY, SPEED
-from bench.effects.signals import Scope, Shape, Signals
+from bench.effects.shape import DURATION, FREQUENCY, SPEED, Shape
+from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 

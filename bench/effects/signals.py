@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.trace.filter import Column
-from bench.units import Quantity
-
-#: Values of the nonlinear quantities of an effect, of several terms or candidates.
-Shapes = Sequence[Sequence[float]]
 
 
 @dataclass(frozen=True)
@@ -99,47 +94,3 @@ class Scope:
     def spacing(self) -> float:
         """Distance of wave numbers that the travel just tells apart: half a cycle over it - 1 (rad/m)."""
         return math.pi / self.travel
-
-
-@dataclass(frozen=True)
-class Measure:
-    """What a recording has of its own that a quantity goes with: a speed with the top speed, a lag with the filter.
-
-    Attributes:
-        of: its value in a recording - SI.
-        usual: the value for which grids are stated - the same unit.
-        power: of it that the quantity goes with.
-        angular: whether the quantity is one of angle, of which a linear axis has none.
-    """
-
-    of: Callable[[Scope], float]
-    usual: float
-    power: int = 1
-    angular: bool = False
-
-    def factor(self, scope: Scope) -> float:
-        """By which values that are stated for the usual are those of this recording."""
-        return (self.of(scope) / self.usual) ** self.power
-
-
-@dataclass(frozen=True)
-class Shape:
-    """A quantity of an effect that enters nonlinearly.
-
-    Attributes:
-        quantity: name, unit, bounds.
-        grid: where a search looks first.
-        whole: whether only whole numbers make sense on a rotary axis (a harmonic).
-        reach: how far a search goes from there, as factor e**reach, or as distance where `additive`; 0 if it does not.
-        additive: whether steps are added rather than multiplied (an instant, an angle).
-        step: of a numerical derivative, as share of the value; 0 of what is no free number of the fit.
-        measure: that the quantity goes with; None where the grid holds for every recording.
-    """
-
-    quantity: Quantity
-    grid: tuple[float, ...] = ()
-    whole: bool = False
-    reach: float = 0.9
-    additive: bool = False
-    step: float = 1e-4
-    measure: Measure | None = None

@@ -16,8 +16,8 @@ from bench.arrays import namespace
 from bench.effects.acting import RaisesFriction
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import OfSpeed
-from bench.effects.grids import SPEED
-from bench.effects.signals import Base, Scope, Shape, Signals
+from bench.effects.shape import SPEED, Shape, Shapes
+from bench.effects.signals import Base, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -49,7 +49,7 @@ class StribeckFriction(OfSpeed, RaisesFriction):
         """Friction rises towards standstill, and dry friction stays positive."""
         return strengths[0] > 0.0 and base.coulomb > 0.0
 
-    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+    def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
         """The rise ends within a share of the speeds."""
         return all(speed <= RISE * scope.top_speed for (speed,) in shapes)
 

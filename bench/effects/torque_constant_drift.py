@@ -17,13 +17,11 @@ from collections.abc import Sequence
 from bench.effects.acting import MisreadEffort
 from bench.effects.axis import Axis, Number, Values
 from bench.effects.effect import CopiesTorque
+from bench.effects.shape import Shapes
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
-#: Share of what stands above noise that it must explain: of what changes at once at half time, t takes
-#: (3*T**2/8)**2/(T**3/3)/(T/2) = 27/32 of the squares, and a compensation that is switched on is no drift.
-NEEDED = 0.85
 #: Relative change over a recording at most: ferrite magnets that warm by 150 K. Without a bound a rate that fades the
 #: torque out passes for what a torque of many waves, such as cogging at rising speed, has to do with time.
 MOST = 0.3
@@ -35,16 +33,15 @@ class TorqueConstantDrift(CopiesTorque, MisreadEffort):
     name = "torque_constant_drift"
     summary = "torque per ampere changes during the recording"
     quantities = (Quantity("rate", "r", "1/s", null=0.0),)
+    # of what changes at once at half time, t takes (3*T**2/8)**2/(T**3/3)/(T/2) = 27/32 of the squares, and a
+    # compensation that is switched on is no drift
+    needed = 0.85
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """The motor's torque times time: what the rig's constant overstates."""
         return [[(-signals.torque * signals.time, 0)]]
 
-    def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
-        """More than a change at once gives it."""
-        return NEEDED
-
-    def plausible(self, strengths: Sequence[Sequence[float]], shapes: Sequence[Sequence[float]], scope: Scope) -> bool:
+    def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
         """No more than magnets can lose."""
         return all(abs(rate) * scope.duration <= MOST for (rate,) in strengths)
 

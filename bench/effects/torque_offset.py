@@ -8,19 +8,15 @@ M_0 - N*m (N).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bench.effects.acting import ConstantTorque, Native
 from bench.effects.axis import Axis, Moment, Number, Values
-from bench.effects.mjcf import add_resisting_torque
+from bench.effects.mjcf import Spec, add_resisting_torque
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
-
-if TYPE_CHECKING:  # 0.2 s, needed only to simulate
-    import mujoco
 
 
 class TorqueOffset(ConstantTorque, Native):
@@ -42,7 +38,7 @@ class TorqueOffset(ConstantTorque, Native):
         """A weight."""
         return values["torque"]
 
-    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+    def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Part of the load's constant torque."""
         add_resisting_torque(spec, values["torque"])
 

@@ -8,18 +8,14 @@ c - stiffness - N*m/rad (N/m), not negative; q - position - rad (m). A rest posi
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from bench.effects.acting import Native, Spring
 from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import OuterTorque
-from bench.effects.mjcf import AXIS
+from bench.effects.mjcf import AXIS, Spec
 from bench.effects.signals import Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
-
-if TYPE_CHECKING:  # 0.2 s, needed only to simulate
-    import mujoco
 
 
 class TorsionSpring(OuterTorque, Spring, Native):
@@ -37,7 +33,7 @@ class TorsionSpring(OuterTorque, Spring, Native):
         """By the equation above."""
         return values["stiffness"] * at.position
 
-    def add(self, spec: mujoco.MjSpec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+    def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Stiffness of the joint."""
         spec.joint(AXIS).stiffness[0] += values["stiffness"]
 

@@ -10,14 +10,12 @@ Source: W. Leonhard, Control of Electrical Drives (filtered speed feedback).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from bench.arrays import Array
 from bench.effects.acting import FilteredSignal
 from bench.effects.effect import Detectable, Detected, MotionLag
-from bench.effects.first_order import lagged, unlagged
 from bench.effects.signals import Scope
 from bench.rig.rig import Rig
 from bench.statistics import NORMAL95
@@ -82,14 +80,6 @@ class VelocityFilterLag(MotionLag, Detectable, FilteredSignal):
         evidence = {"speed_against_position_before": before, "speed_against_position_after": after}
         errors = {"time_constant": NORMAL95 * error + 0.5 * tick}
         return Detected({"time_constant": lag}, errors, evidence, mends=after < max(DISAGREE, MENDED * before))
-
-    def recorded(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
-        """Exact for a velocity that changes linearly within the step; started where the velocity is."""
-        return lagged(samples, values["time_constant"], step)
-
-    def unrecorded(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
-        """v + T*dv/dt by central differences: what holds a model to a recording needs no more."""
-        return unlagged(samples, values["time_constant"], step)
 
 
 EFFECT = VelocityFilterLag()

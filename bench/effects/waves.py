@@ -1,11 +1,64 @@
-"""Waves of position: their amplitude and phase, and where samples follow them."""
+"""Waves: effects that repeat with position, so many times a revolution, or per length of a linear axis.
+
+    A*sin(n*q + phi) = s*sin(n*q) + c*cos(n*q)
+
+A - amplitude; n - harmonic, the wave number of a pitch - rad/m - on a linear axis; phi - phase - rad in (-pi, pi];
+s, c - strengths; q - position - rad (m).
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
-from bench.arrays import Array
-from bench.effects.signals import Signals
+from bench.arrays import Array, namespace
+from bench.effects.axis import Number, Values
+from bench.effects.effect import Effect
+from bench.effects.shape import Shape
+from bench.effects.signals import Base, Scope, Signals
+from bench.trace.filter import Column
+from bench.units import Quantity
+
+PHASE = Quantity("phase", "phi", "rad", angle=True, preset=0.0)
+#: Share of the Nyquist frequency up to which samples follow a wave.
+FOLLOWED = 0.8
+
+
+class Wave(Effect):
+    """It repeats with position: its quantities are an amplitude, a harmonic if that is searched, and the phase."""
+
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """Wave number over position - 1 (rad/m)."""
+        return shape[0]
+
+    def unit(self, base: Base) -> float:
+        """Strength of amplitude one."""
+        return 1.0
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Amplitude, harmonic and phase."""
+        amplitude, phase = amplitude_and_phase(*strengths)
+        harmonic = super().report((), shape, base)
+        return {self.quantities[0].name: amplitude / self.unit(base), **harmonic, PHASE.name: phase}
+
+
+class OncePerRevolution(Wave):
+    """A wave of one revolution, of which a linear axis has none."""
+
+    def sought(self, scope: Scope) -> bool:
+        """Where something turns."""
+        return super().sought(scope) and scope.kind.turns
+
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """One cycle a revolution."""
+        return 1.0
+
+
+def harmonics(first: int, last: int) -> Shape:
+    """The harmonic of a wave, sought from the first to the last."""
+    quantity = Quantity("harmonic", "n", "dimensionless", lower=float(first), linear_unit="rad/m")
+    return Shape(quantity, tuple(float(n) for n in range(first, last + 1)), whole=True)
 
 
 def amplitude_and_phase(sine: float, cosine: float) -> tuple[float, float]:
@@ -13,6 +66,18 @@ def amplitude_and_phase(sine: float, cosine: float) -> tuple[float, float]:
     return float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))
 
 
-def followed(signals: Signals, harmonic: float) -> Array:
-    """1 where a wave of n cycles a revolution stays below 0.8 of the Nyquist frequency, else 0 - (n,)."""
-    return (harmonic * np.abs(signals.velocity) < 0.8 * np.pi / signals.sample_period).astype(float)
+def sine_and_cosine(signals: Signals, number: float, of: Array | float) -> list[Column]:
+    """Columns of a wave of such a wave number, times what it is a wave of (n,)."""
+    angle = number * signals.position
+    return [[(of * np.sin(angle), 0)], [(of * np.cos(angle), 0)]]
+
+
+def followed(signals: Signals, number: float) -> Array:
+    """1 where the samples follow a wave of such a wave number, else 0 - (n,)."""
+    return (number * np.abs(signals.velocity) < FOLLOWED * np.pi / signals.sample_period).astype(float)
+
+
+def wave(values: Values, amplitude: str, position: Number) -> Number:
+    """The wave at a position, in the unit of the quantity that is its amplitude."""
+    angle = values.get("harmonic", 1.0) * position + values[PHASE.name]
+    return values[amplitude] * namespace(angle).sin(angle)

@@ -14,7 +14,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Contact, Effect, FiltersMotion
-from bench.effects.grids import is_pitch
+from bench.effects.shape import is_pitch
 from bench.effects.signals import Base, Signals
 from bench.fit.covariance import estimated, misfit
 from bench.fit.fit import Fit, least_squares

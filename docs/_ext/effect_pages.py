@@ -18,13 +18,13 @@ from bench.effects.effect import (
     Effect,
     Lag,
     Occasional,
-    OncePerRevolution,
     OuterTorque,
     Repeatable,
     Replacing,
 )
 from bench.effects.present import Present
 from bench.effects.signals import Scope
+from bench.effects.waves import OncePerRevolution
 from bench.names import words
 from bench.plant.plant import Plant
 from bench.plant.profile_names import NAMES

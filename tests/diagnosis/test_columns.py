@@ -6,9 +6,9 @@ import scipy.signal
 from scipy.interpolate import CubicSpline
 
 from bench.diagnosis.where import Coordinate, _account, _welch
-from bench.effects.backlash.dead_zone import load_positions
+from bench.effects.backlash import load_positions
 from bench.effects.catalogue import catalogue
-from bench.effects.first_order import lagged
+from bench.effects.effect import lagged
 from bench.effects.presliding_friction import bristles
 from bench.effects.signals import Signals
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.decidable import fit_bare
-from bench.effects.backlash.likeliest import likeliest_shape
+from bench.effects.backlash import likeliest_shape
 from bench.fit.rows import Rows
 from bench.rig.rig import load_rig
 from bench.validation.independent.effects.load import Backlash

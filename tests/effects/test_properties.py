@@ -28,11 +28,10 @@ from bench.effects.effect import (
     MotionLag,
     Occasional,
     OfSpeed,
-    OncePerRevolution,
     OuterTorque,
     Repeatable,
-    Wave,
 )
+from bench.effects.waves import OncePerRevolution, Wave
 from bench.plant.axis_model import build_spec
 from bench.validation.independent import KINDS
 from tests.effects.axes import PARAMETERS, PERIOD, model

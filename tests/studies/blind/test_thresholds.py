@@ -24,7 +24,7 @@ def test_one_threshold_changes_and_comes_back(threshold):
         assert changed is not (policy != Policy())
         assert changed is (threshold.owner != "Policy")
     assert thresholds() == before
-    assert effect.SHARE == 0.25
+    assert effect.Effect.needed == 0.25
 
 
 def test_a_sample_holds_every_effect_and_group():

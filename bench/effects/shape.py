@@ -1,14 +1,63 @@
-"""Where a search looks first for a shape of an effect, on rotary and on linear axes."""
+"""Shapes: quantities of effects that enter nonlinearly, and where a search looks for them first on any axis."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
-from bench.effects.signals import Measure, Scope, Shape
+from bench.effects.signals import Scope
+from bench.units import Quantity
 
+
+@dataclass(frozen=True)
+class Measure:
+    """What a recording has of its own that a quantity goes with: a speed with the top speed, a lag with the filter.
+
+    Attributes:
+        of: its value in a recording - SI.
+        usual: the value for which grids are stated - the same unit.
+        power: of it that the quantity goes with.
+        angular: whether the quantity is one of angle, of which a linear axis has none.
+    """
+
+    of: Callable[[Scope], float]
+    usual: float
+    power: int = 1
+    angular: bool = False
+
+    def factor(self, scope: Scope) -> float:
+        """By which values that are stated for the usual are those of this recording."""
+        return (self.of(scope) / self.usual) ** self.power
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A quantity of an effect that enters nonlinearly.
+
+    Attributes:
+        quantity: name, unit, bounds.
+        grid: where a search looks first.
+        whole: whether only whole numbers make sense on a rotary axis (a harmonic).
+        reach: how far a search goes from there, as factor e**reach, or as distance where `additive`; 0 if it does not.
+        additive: whether steps are added rather than multiplied (an instant, an angle).
+        step: of a numerical derivative, as share of the value; 0 of what is no free number of the fit.
+        measure: that the quantity goes with; None where the grid holds for every recording.
+    """
+
+    quantity: Quantity
+    grid: tuple[float, ...] = ()
+    whole: bool = False
+    reach: float = 0.9
+    additive: bool = False
+    step: float = 1e-4
+    measure: Measure | None = None
+
+
+#: Shapes of several terms or candidates, or strengths of several terms.
+Shapes = Sequence[Sequence[float]]
 #: What quantities scale with: a speed with the top speed - rad/s -, a rate over angle with its inverse, a lag with the
 #: width of the filter - s -, a frequency with its inverse, a slow change with the duration - s. `usual`: of the axes
 #: for which effects state their grids.
@@ -17,8 +66,6 @@ ANGLE = Measure(lambda scope: scope.top_speed, usual=100.0, power=-1, angular=Tr
 LAG = Measure(lambda scope: scope.width, usual=1.5e-3)
 FREQUENCY = Measure(lambda scope: scope.width, usual=1.5e-3, power=-1)
 DURATION = Measure(lambda scope: scope.duration, usual=8.0)
-#: Lags that a search tries first - s.
-LAGS = (3e-4, 8e-4, 2e-3, 4e-3, 8e-3)
 #: Angle of a cycle that the motion must cover - rad: over less, a wave is a mere curve, and a wave of torque copies it.
 PERIOD = 2.0 * np.pi
 #: Cycles over the travel of a linear axis between which pitches are sought: fewer than two are no repetition.

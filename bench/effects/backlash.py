@@ -1,0 +1,348 @@
+"""Backlash: motor and load are joined through a dead zone (a gear, a worn key).
+
+    M_c = 0 for |p| <= g/2, beyond it k*(|p| - g/2)*sgn(p) + d*dp/dt, never pulling; p = q_m - q_l
+
+g - gap - rad (m); k, d - stiffness - N*m/rad (N/m) - and damping - N*m*s/rad (N*s/m) - of the contact; p - angle of the
+motor less that of the load. Sensor and friction sit at the motor. In the balance the load's acceleration less the
+motor's is a column of strength J_l, and the load is driven along the recorded motion,
+
+    q_l'' = w_c**2*e + 2*D*w_c*e' - c*q_l,  e = p - clip(p, -g/2, g/2)
+
+e - penetration of the contact, 0 within the gap - rad (m); w_c - frequency of the contact - rad/s -, D its damping
+ratio, both per unit of load inertia; c - rate of a spring on the load's side - 1/s**2. The contact's damping is an
+impulse 2*D*w_c*de, so it also acts while the contact opens.
+
+Impacts are short and hard, and the instant of one hangs on how the load left the other side of the gap: a few rows are
+far off whatever the shape. So shapes are compared by Cauchy's likelihood, sum(log(1 + (r/s)**2)), which lets them be.
+A softer contact looks like a wider gap, and each impact errs by its own instant: a ridge along which the likelihood is
+rough, so that its curvature at the top tells nothing of how far the shape is open. What tells is how the likeliest
+shape moves when stretches of the recording are resampled with replacement (block bootstrap).
+Source: M. Nordin, P.-O. Gutman, Automatica 38 (2002) 1633-1649, sec. 2 (dead zone with stiff contact); P. J. Huber,
+E. M. Ronchetti, Robust Statistics, 2nd ed., 2009, ch. 7; B. Efron, R. J. Tibshirani, An Introduction to the Bootstrap,
+1993, sec. 8.6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array, splined
+from bench.effects.acting import Native, Spring
+from bench.effects.axis import Axis, Number
+from bench.effects.effect import Contact, Coupling, Fitted, Load, Replacing
+from bench.effects.mjcf import Spec, add_coupling_joint
+from bench.effects.shape import FREQUENCY, Shape, Shapes, extended
+from bench.effects.signals import Base, Scope, Signals
+from bench.trace.filter import Column
+from bench.units import Quantity
+
+#: Contact of a gear whose own is not known: natural frequency against the two inertias - rad/s - and damping ratio.
+CONTACT_FREQUENCY, CONTACT_DAMPING_RATIO = 2.0 * np.pi * 200.0, 0.2
+#: Impedance of the joint's limit: constant, and so small that stiffness and damping below act unattenuated.
+IMPEDANCE = (0.01, 0.01, 1.0, 0.5, 2.0)
+#: Factors of gap, frequency and damping within which a recording does not tell a contact from another.
+INDISTINCT = (1.01, 1.1, 1.1)
+#: Steps of the integration per radian of the contact's oscillation: the trapezoidal rule errs by 1/(12*steps**2) of it.
+STEPS_PER_RADIAN = 6.0
+#: Windows that a recording is cut into, which are integrated side by side, and samples of the shortest.
+WINDOWS, SHORTEST = 128, 60
+#: Share of the gap to which a window's start agrees with the end of the window before.
+CLOSED = 1e-5
+#: Gaps in travel of the motor at the recording's RMS speed over one filter width, wide ones closer, as impacts shift by
+#: more widths of the filter the wider the gap is; contacts - rad/s; damping ratio.
+GAPS = (*np.geomspace(0.03, 0.8, 16).tolist(), *np.geomspace(0.88, 8.0, 24).tolist())
+CONTACTS = tuple(2.0 * np.pi * f for f in (40.0, 80.0, 130.0, 210.0))
+DAMPING = 0.4
+#: Offsets around a shape in each round of refinement - gap, frequency, damping - and their size at first, as factor
+#: e**offset. Refinement starts from the likeliest shapes of several contacts, and ends with the likeliest of all.
+OFFSETS = np.stack([m.ravel() for m in np.meshgrid(np.linspace(-1, 1, 5), [-1, 0, 1], [-1, 0, 1], indexing="ij")], 1)
+SPREAD = (0.12, 0.4, 0.5)
+ROUNDS, STARTS, ALL_STARTS = 6, 3, 2
+#: Residual in noise floors beyond which a row counts less and less, and reweightings of the least squares.
+SCALE, REWEIGHTED = 3.0, 6
+#: Samples of all shapes tried at once, which bounds memory: 8 bytes each, some four times over.
+TOGETHER = 4_000_000
+#: Factors e**x around a shape that are compared for its spread: of gap, frequency and damping.
+AROUND = (np.linspace(-0.12, 0.12, 7), np.linspace(-0.6, 0.6, 5), np.linspace(-0.5, 0.5, 3))
+#: Length of what is drawn: longer than a load rings after an impact - s.
+STRETCH = 0.2
+#: Standard errors that all resampled recordings share, as shares: rebounds run faster than samples of 1 ms follow.
+#: Of 11 drawn axes (`python -m tests.studies.blind --only backlash --seed 9`) ten gaps came out within 2 % and one 4 %
+#: too narrow; frequencies of contact 15 % too low on average and 22 % off by root mean square, of which resampling
+#: shows 14 %; damping 1.5 to 7 times too high.
+SHARED = np.array([0.01, 0.16, 0.32])
+#: Resampled recordings.
+DRAWS = 400
+
+
+class Backlash(Replacing, Coupling, Contact, Native):
+    """See the module."""
+
+    name = "backlash"
+    summary = "motor and load are joined through a dead zone"
+    quantities = (
+        Quantity("gap", "g", "rad", lower=0.0, null=0.0),
+        Quantity("contact_stiffness", "k", "N*m/rad", lower=0.0),
+        Quantity("contact_damping", "d", "N*m*s/rad", lower=0.0),
+    )
+    shapes = (  # impacts move in jumps: a smaller step of a derivative would see only one
+        Shape(quantities[0], reach=0.0, step=3e-3),
+        Shape(Quantity("contact_frequency", "w_c", "rad/s", lower=0.0), reach=0.0, step=3e-2),
+        Shape(Quantity("contact_damping_ratio", "D", "dimensionless", lower=0.0), reach=0.0, step=3e-2),
+        Shape(Quantity("spring_rate", "c/J_l", "1/s**2", lower=0.0), reach=0.0, step=0.0),
+    )
+    replaces = frozenset({"elastic_coupling", "current_loop_lag"})
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Load's acceleration less the motor's."""
+        return dead_zone_columns(signals, np.array([shape]))
+
+    def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
+        """The same; of what acts on the load, a spring's share is a shape of its own."""
+        return dead_zone_columns(signals, np.array(shapes))
+
+    def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array:
+        """The load does not follow it."""
+        return -np.ones_like(omega)
+
+    def open_torque(self, fitted: Fitted, shape: Sequence[float]) -> Array:
+        """Rows soon after an impact: its instant hangs on how the load left the other side of the gap."""
+        shapes = np.tile(shape, (2 * len(INDISTINCT) + 1, 1))
+        for k, factor in enumerate(INDISTINCT):
+            shapes[2 * k + 1, k] *= factor
+            shapes[2 * k + 2, k] /= factor
+        columns = fitted.seen(lambda signals: dead_zone_columns(signals, shapes), of_motion=True)
+        return np.abs(columns[:, 1:] - columns[:, :1]).max(axis=1)
+
+    def in_place_of(self, fitted: Fitted) -> tuple[float, ...]:
+        """By likelihood over gaps and contacts."""
+        return likeliest_shape(fitted)
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Gap, and what the contact's frequency and damping ratio are with the load's inertia."""
+        gap, contact, ratio, _ = shape
+        stiffness = strengths[0] * contact**2
+        return {"gap": gap, "contact_stiffness": stiffness, "contact_damping": 2.0 * ratio * stiffness / contact}
+
+    def spread(self, fitted: Fitted, shape: Sequence[float]) -> Array:
+        """Of resampled recordings: along the ridge of softer contacts and wider gaps curvature tells nothing."""
+        return contact_spread(fitted, np.array(shape), int(fitted.places(Backlash)[0]))
+
+    def defaults(self, axis: Axis) -> Mapping[str, Number]:
+        """A contact that resonates at CONTACT_FREQUENCY; recordings of an axis hardly tell it."""
+        motor = np.asarray(axis.motor_inertia)
+        reduced = float(motor * (axis.inertia - motor) / axis.inertia)
+        return {
+            "contact_stiffness": reduced * CONTACT_FREQUENCY**2,
+            "contact_damping": 2.0 * CONTACT_DAMPING_RATIO * reduced * CONTACT_FREQUENCY,
+        }
+
+    def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """A joint with a range between motor and load; limits take acceleration, hence the inverse inertia."""
+        import mujoco
+
+        joint = add_coupling_joint(spec, name)
+        inverse = 1.0 / float(axis.motor_inertia) + 1.0 / float(axis.inertia - axis.motor_inertia)
+        joint.range = [-0.5 * values["gap"], 0.5 * values["gap"]]
+        joint.limited = mujoco.mjtLimited.mjLIMITED_TRUE
+        joint.solref_limit = [-values["contact_stiffness"] * inverse, -values["contact_damping"] * inverse]
+        joint.solimp_limit = list(IMPEDANCE)
+
+
+def load_positions(angle: Array, sample_period: float, shapes: Array) -> Array:
+    """Positions of the load behind several dead zones - rad (m) - (n, k).
+
+    The motor moves along a cubic spline through its samples. The recording is cut into windows that are integrated side
+    by side, each from where the one before it ended in the sweep before, until starts and ends agree: a contact forgets
+    how it was entered, so few sweeps do. The load starts with the motor, in the middle of the gap.
+
+    Args:
+        angle: of the motor - rad (m) - (n,).
+        sample_period: s.
+        shapes: (k, 4): gap, contact's frequency and damping, spring's rate.
+    """
+    substeps = max(2, int(np.ceil(sample_period * shapes[:, 1].max() * STEPS_PER_RADIAN)))
+    between, slopes = splined(angle, substeps)
+    length = max(SHORTEST, -(-(angle.size - 1) // WINDOWS))
+    count, size = -(-(angle.size - 1) // length), len(shapes)
+    fine = np.pad(between, (0, count * length * substeps + 1 - between.size), mode="edge")
+    windows = fine[np.arange(length * substeps + 1)[:, None] + length * substeps * np.arange(count)]
+    firsts = length * np.arange(count)
+    position = np.repeat(angle[firsts][:, None], size, axis=1)
+    velocity = np.repeat((slopes[substeps * firsts] / sample_period)[:, None], size, axis=1)
+    found = np.empty((length, count, size))
+    window, shape = (pairs.ravel() for pairs in np.indices((count, size)))
+    while window.size:
+        start = position[window, shape], velocity[window, shape]
+        moved, last, speed = _run(windows, window, shapes[shape], start, sample_period / substeps)
+        found[:, window, shape] = moved[substeps - 1 :: substeps]
+        inside = window + 1 < count
+        window, shape, last, speed = window[inside] + 1, shape[inside], last[inside], speed[inside]
+        away = np.abs(last - position[window, shape])
+        away = np.maximum(away, np.abs(speed - velocity[window, shape]) / shapes[shape, 1])
+        position[window, shape], velocity[window, shape] = last, speed
+        apart = away > CLOSED * shapes[shape, 0]
+        window, shape = window[apart], shape[apart]
+    samples = found.transpose(1, 0, 2).reshape(count * length, size)
+    return np.concatenate([np.full((1, size), angle[0]), samples[: angle.size - 1]])
+
+
+def _run(
+    angles: Array, window: NDArray[np.intp], shapes: Array, start: tuple[Array, Array], step: float
+) -> tuple[Array, Array, Array]:
+    """Positions at the ends of all steps (steps, p), and the last position and velocity, of windows with shapes (p, 4).
+
+    Trapezoidal rule, implicit where a step ends in contact.
+    """
+    gap, frequency, damping, spring = shapes.T
+    above, below, half_step = 0.5 * gap, -0.5 * gap, 0.5 * step
+    push = half_step * frequency**2 + 2.0 * damping * frequency
+    resist = half_step * frequency**2 - 2.0 * damping * frequency
+    implicit = push / (1.0 + half_step * push)
+    explicit = resist / (1.0 + half_step * push)
+    springs, pull = bool(spring.any()), step * spring
+    position, velocity = start
+    moved = np.empty((angles.shape[0] - 1, position.size))
+    twist = angles[0][window] - position
+    before = twist - np.minimum(np.maximum(twist, below), above)
+    for k in range(moved.shape[0]):
+        angle = angles[k + 1][window]
+        ahead = position + step * velocity
+        twist = angle - ahead
+        after = twist - np.minimum(np.maximum(twist, below), above)
+        impulse = np.where(after != 0.0, implicit * after + explicit * before, resist * before)
+        if springs:
+            impulse -= pull * (position + half_step * velocity)
+        velocity = velocity + impulse
+        position = np.add(ahead, half_step * impulse, out=moved[k])
+        twist = angle - position
+        before = twist - np.minimum(np.maximum(twist, below), above)
+    return moved, position, velocity
+
+
+def dead_zone_columns(signals: Signals, shapes: Array) -> list[Column]:
+    """Load's acceleration less the motor's behind several dead zones, with the spring's share of it.
+
+    Where the speed is the source, the motor's angle is its integral, whose noise no resolution of an encoder adds to.
+
+    Args:
+        signals: of one stretch.
+        shapes: (k, 4), see `load_positions`.
+    """
+    angle = signals.position
+    if signals.source == "velocity":
+        speed = signals.velocity
+        steps = 0.5 * signals.sample_period * (speed[1:] + speed[:-1])
+        angle = angle[0] + np.concatenate([[0.0], np.cumsum(steps)])
+    twist = (load_positions(angle, signals.sample_period, shapes) - angle[:, None]).T
+    return [[(load, 2), (rate * load, 0)] for load, rate in zip(twist, shapes[:, 3], strict=True)]
+
+
+@dataclass(frozen=True)
+class Likely:
+    """A dead zone's shape (4,), its negative logarithm of likelihood, and the load's spring rate that comes of it."""
+
+    shape: Array
+    misfit: float
+    spring_rate: float
+
+    def around(self, factors: Array) -> Array:
+        """Shapes (k, 4) around it, with the spring that was found beside it."""
+        return np.column_stack([self.shape[:3] * factors, np.full(len(factors), self.spring_rate)])
+
+
+def likeliest_shape(fitted: Fitted) -> tuple[float, ...]:
+    """Gap, contact's frequency and damping ratio, and spring's rate beside a fit without them; see `load_positions`."""
+
+    def likeliest(shapes: Array) -> list[Likely]:
+        columns = _columns(fitted, shapes)
+        found = (_likely(fitted, shape, column) for shape, column in zip(shapes, columns.T, strict=True))
+        return sorted(found, key=lambda likely: likely.misfit)
+
+    travel = fitted.scope.rms_speed * fitted.scope.width
+    contacts = contacts_of(fitted.scope)
+    axes = [np.array(GAPS) * travel, np.array(contacts), np.array([DAMPING]), np.array(sorted(_spring_rates(fitted)))]
+    tried = likeliest(np.stack([m.ravel() for m in np.meshgrid(*axes, indexing="ij")], axis=1))
+    starts = [next(found for found in tried if found.shape[1] == contact) for contact in contacts]
+    starts = sorted(starts, key=lambda likely: likely.misfit)[:STARTS]
+    for level in range(1, ROUNDS):
+        offsets = np.exp(OFFSETS * np.array(SPREAD) * 0.6 ** (level - 1))
+        around = np.concatenate([start.around(offsets) for start in starts])
+        tried, size = likeliest(around), len(offsets)
+        groups = [{row.tobytes() for row in around[k * size : (k + 1) * size]} for k in range(len(starts))]
+        refined = [next(found for found in tried if found.shape.tobytes() in group) for group in groups]
+        starts = [min(pair, key=lambda likely: likely.misfit) for pair in zip(starts, refined, strict=True)]
+        starts = sorted(starts, key=lambda likely: likely.misfit)[: STARTS if level < ALL_STARTS else 1]
+    return tuple(float(value) for value in starts[0].shape)
+
+
+def contact_spread(fitted: Fitted, shape: Array, place: int) -> Array:
+    """Covariance (3, 3) of gap, frequency and damping of a fit's dead zone, of a shape (4,) and a column's place."""
+    offsets = np.stack([m.ravel() for m in np.meshgrid(*AROUND, indexing="ij")], axis=1)
+    shapes = np.column_stack([shape[:3] * np.exp(offsets), np.full(len(offsets), shape[3])])
+    others, effort = fitted.columns.copy(), fitted.effort
+    time = fitted.time
+    edges = np.unique(np.searchsorted(time, np.arange(time[0], time[-1], STRETCH)))
+    misfits = []
+    for column in _columns(fitted, shapes).T:
+        others[:, place] = column
+        misfits.append(np.add.reduceat(cauchy(others, effort, SCALE * fitted.floor)[1], edges))
+    rng = np.random.default_rng(0)
+    drawn = rng.multinomial(edges.size, np.full(edges.size, 1.0 / edges.size), size=DRAWS)
+    likeliest = offsets[np.argmin(np.stack(misfits) @ drawn.T, axis=0)]
+    step = np.array([axis[1] - axis[0] for axis in AROUND])
+    relative = likeliest.T @ likeliest / DRAWS + np.diag(step**2 / 12.0 + SHARED**2)
+    return relative * np.outer(shape[:3], shape[:3])
+
+
+def _columns(fitted: Fitted, shapes: Array) -> Array:
+    """Columns (m, k) of many shapes, few at a time where the recording is long."""
+    few = max(1, TOGETHER // max(fitted.time.size, 1))
+    parts = [shapes[k : k + few] for k in range(0, len(shapes), few)]
+    made = [fitted.seen(lambda signals, part=part: dead_zone_columns(signals, part), of_motion=True) for part in parts]
+    return np.concatenate(made, axis=1)
+
+
+def contacts_of(scope: Scope) -> list[float]:
+    """Frequencies of contact that a search begins with - rad/s: one that swings faster than samples follow is rigid."""
+    fastest = np.pi / scope.sample_period
+    return sorted({min(contact, fastest) for contact in extended(CONTACTS, FREQUENCY.factor(scope))})
+
+
+def _spring_rates(fitted: Fitted) -> set[float]:
+    """Stiffness over load inertia of a spring on the load's side, 0 for none - 1/s**2: where a search begins."""
+    stiffness, load = _stiffness(fitted, fitted.theta), fitted.base.inertia - fitted.scope.rotor_inertia
+    return {0.0, max(stiffness, 0.0) / load} if load > 0.0 else {0.0}
+
+
+def _stiffness(fitted: Fitted, theta: Array) -> float:
+    return float(theta[fitted.places(Spring)].sum())
+
+
+def _likely(fitted: Fitted, shape: Array, column: Array) -> Likely:
+    theta, rows = cauchy(np.column_stack([fitted.columns, column]), fitted.effort, SCALE * fitted.floor)
+    rate = float(shape[3])
+    if rate > 0.0:
+        stiffness = _stiffness(fitted, theta[:-1])
+        rate = stiffness / float(theta[-1]) if theta[-1] > 0.0 and stiffness > 0.0 else rate
+    return Likely(shape, float(rows.sum()), rate)
+
+
+def cauchy(columns: Array, effort: Array, scale: float) -> tuple[Array, Array]:
+    """Coefficients (p,) by reweighted least squares, and each row's negative logarithm of Cauchy's likelihood (m,)."""
+    size = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
+    columns = columns / size
+    weight, left, theta = np.ones(effort.size), effort, np.zeros(size.size)
+    for _ in range(REWEIGHTED):
+        weighted = columns.T * weight
+        theta = np.linalg.lstsq(weighted @ columns, weighted @ effort, rcond=1e-12)[0]
+        left = effort - columns @ theta
+        weight = 1.0 / (1.0 + (left / scale) ** 2)
+    return theta / size, np.log1p((left / scale) ** 2)
+
+
+EFFECT = Backlash()

@@ -1,0 +1,181 @@
+"""Elastic coupling: motor and load are joined by a spring and damper (a belt, a bellows, a slender shaft).
+
+    M_c = k*(q_m - q_l) + d*(omega_m - omega_l),  J_m*alpha_m = M - friction - M_c,  J_l*alpha_l = M_c
+
+k - stiffness - N*m/rad (N/m); d - damping - N*m*s/rad (N*s/m); J_m, J_l - inertia on the motor's and on the load's
+side - kg*m**2 (kg). Sensor and friction sit at the motor. Resonance at sqrt(k*(1/J_m + 1/J_l)), antiresonance of the
+motor at w_a = sqrt(k/J_l). In the balance the load's acceleration less the motor's is a column of strength J_l. The
+load is driven along the recorded motion,
+
+    p'' + 2*D*w_a*p' + w_a**2*p = -alpha_m - sum(c_k*D_k(q_l, omega_l, t)),  p = q_l - q_m
+
+D - damping ratio; D_k - torque of what acts on the load (drag, a spring, an unbalance) per unit of its strength -, c_k
+its strength over load inertia. It starts with the motor, at rest against it. In time, not in frequency: there the
+ringing that a recording ends with returns at its start.
+Source: D. Schröder, Elektrische Antriebe - Regelung von Antriebssystemen (two-mass system).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array, recursive_filter, splined
+from bench.effects.acting import Native
+from bench.effects.axis import Axis
+from bench.effects.effect import Coupling, FiltersMotion, Load
+from bench.effects.mjcf import Spec, add_coupling_joint
+from bench.effects.shape import FREQUENCY, Shape, Shapes
+from bench.effects.signals import Base, Signals
+from bench.trace.filter import Column
+from bench.units import Quantity
+
+#: Antiresonances - rad/s - and damping ratios that a search tries first.
+ANTIRESONANCES = tuple(2.0 * np.pi * float(f) for f in np.geomspace(8.0, 110.0, 28))
+DAMPINGS = (0.01, 0.04, 0.12)
+#: Damping ratio from which a coupling no longer rings, so that nothing tells it from a lag, and the one from which its
+#: quality 1/(2*D) is below one, so that hardly anything does; those of the blind set have 0.04 at most. On the way to
+#: another coupling a search may pass the latter.
+OVERDAMPED, DULL = 1.0, 0.5
+#: Longest step - rad of the antiresonance: speed that runs straight within it lacks step**2/12 of its swing.
+LONGEST_STEP = 0.1
+#: Steps of a sample at least and at most: a coupling that rings as fast as samples come is not told from a rigid one.
+LEAST, MOST = 2, 8
+#: Turns in which the load's motion and what acts on it are brought in line, the change that ends them and the one that
+#: no load beyond belief would make - shares of the twist under the load's own inertia.
+TURNS, SETTLED, ASTRAY = 40, 1e-6, 10.0
+
+
+class ElasticCoupling(Coupling, FiltersMotion, Native):
+    """See the module."""
+
+    name = "elastic_coupling"
+    summary = "motor and load are joined by a spring and damper"
+    quantities = (
+        Quantity("stiffness", "k", "N*m/rad", lower=0.0, null=np.inf),
+        Quantity("damping", "d", "N*m*s/rad", lower=0.0, preset=0.0),
+    )
+    derived = (Quantity("resonance_frequency", "f", "Hz", lower=0.0),)
+    shapes = (
+        Shape(Quantity("antiresonance", "w_a", "rad/s", lower=0.0), ANTIRESONANCES, reach=0.35, measure=FREQUENCY),
+        Shape(Quantity("damping_ratio", "D", "dimensionless", lower=0.0), DAMPINGS, reach=0.35),
+    )
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Load's acceleration less the motor's."""
+        return self.columns_of(signals, [shape])
+
+    def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
+        """Load's acceleration less the motor's, with what acts on the load.
+
+        The own column of that in the balance is one of an effect on the motor, so only the difference enters here.
+        """
+        fine: dict[int, Array] = {}
+        columns: list[Column] = []
+        for antiresonance, damping in shapes:
+            substeps = int(np.ceil(antiresonance * signals.sample_period / LONGEST_STEP))
+            substeps = min(max(substeps, LEAST), MOST)
+            if substeps not in fine:
+                by_position = signals.source == "position"
+                values, slopes = splined(signals.position if by_position else signals.velocity, substeps)
+                fine[substeps] = slopes / signals.sample_period if by_position else values
+            columns.append(_column(signals, fine[substeps], substeps, antiresonance, damping, loads))
+        return columns
+
+    def noise_of_motion(self, shape: Sequence[float], omega: Array) -> NDArray[np.complex128]:
+        """Load's acceleration over the motor's, less one: (1 + 2*D*s/w_a)/(1 + 2*D*s/w_a + (s/w_a)**2) - 1."""
+        s = 1j * omega / shape[0]
+        return -(s**2) / (1.0 + 2.0 * shape[1] * s + s**2)
+
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+        """It rings, and part of the inertia sits behind it."""
+        return shape[1] < OVERDAMPED and super().physical(strengths, shape, base)
+
+    def credible(self, shape: Sequence[float]) -> bool:
+        """It rings well enough to be told from a lag."""
+        return shape[1] < DULL
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        """Stiffness J_l*w_a**2, damping 2*D*k/w_a, and the frequency at which both sides resonate."""
+        antiresonance, ratio = shape
+        load, motor = strengths[0], base.inertia - strengths[0]
+        stiffness = load * antiresonance**2
+        resonance = np.sqrt(max(stiffness * (1.0 / max(motor, 1e-12) + 1.0 / load), 0.0)) / (2.0 * np.pi)
+        loss = 2.0 * ratio * stiffness / antiresonance
+        return {"stiffness": stiffness, "damping": loss, "resonance_frequency": float(resonance)}
+
+    def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """A joint with stiffness and damping between motor and load."""
+        joint = add_coupling_joint(spec, name)
+        joint.stiffness[0], joint.damping[0] = values["stiffness"], values["damping"]
+
+
+def _column(
+    signals: Signals, speed: Array, substeps: int, antiresonance: float, damping: float, loads: Sequence[Load]
+) -> Column:
+    """Terms of one coupling, driven by the motor's speed at substeps of the samples.
+
+    What acts on the load is brought in line with its motion turn by turn. Half of its steepest damping is counted to
+    the coupling's, so that a turn leaves less of an error than it found.
+    """
+    loss, spring, step = 2.0 * damping * antiresonance, antiresonance**2, signals.sample_period
+    damped = 0.5 * _steepest(signals, loads) if loads else 0.0
+    state = np.array([[0.0, 1.0], [-spring, -loss - damped]])
+    (to_twist, to_speed), free_denominator = _driven(state, np.array([-1.0, loss]), step / substeps)
+    driven = speed - speed[0]
+    twist = free = recursive_filter(to_twist, free_denominator, driven)[::substeps]
+    if not loads:
+        return [(free, 2)]
+    load_speed = free_speed = recursive_filter(to_speed, free_denominator, driven)[::substeps]
+    forcing, denominator = _driven(state, np.array([0.0, -1.0]), step)
+    torque = np.zeros_like(free)
+    for _ in range(TURNS):
+        torque = _torque(replace(signals, position=signals.position + twist, velocity=load_speed + speed[0]), loads)
+        forced = [recursive_filter(row, denominator, torque - damped * load_speed) for row in forcing]
+        before, twist, load_speed = twist, free + forced[0], free_speed + forced[1]
+        change = np.abs(twist - before).max()
+        if change < SETTLED * np.abs(free).max():
+            break
+        if change > ASTRAY * np.abs(free).max():
+            return [(free, 2)]
+    return [(twist, 2), (torque - _torque(signals, loads), 0)]
+
+
+def _steepest(signals: Signals, loads: Sequence[Load]) -> float:
+    """Largest rise of what acts on the load with its speed, over its inertia - 1/s."""
+    step = 1e-3 * float(np.abs(signals.velocity).max()) + 1e-12
+    faster = replace(signals, velocity=signals.velocity + step)
+    return max(float(np.max(_torque(faster, loads) - _torque(signals, loads))) / step, 0.0)
+
+
+def _driven(state: Array, drive: Array, step: float) -> tuple[Array, Array]:
+    """Numerators (2, 3) and denominator (3,) of both states of x' = A*x + b*u from rest, u straight between steps.
+
+    Exact over a step: x+ = F*x + (P - Q)*u + Q*u+, with F = exp(m*h)*(cosh(s*h) + sinh(s*h)/s*(A - m)) of a matrix A
+    (2, 2), m half its trace, s = sqrt(m**2 - det(A)).
+    """
+    one, inverse, mean = np.eye(2), np.linalg.inv(state), 0.5 * np.trace(state)
+    turn = step * np.sqrt(complex(mean**2 - np.linalg.det(state)))
+    shear = np.sinc(1j * turn / np.pi).real * step
+    moved = np.exp(mean * step) * (np.cosh(turn).real * one + shear * (state - mean * one))
+    grown = inverse @ (moved - one)
+    later = inverse @ (grown / step - one) @ drive
+    first = grown @ drive - later
+    adjugate = np.array([[-moved[1, 1], moved[0, 1]], [moved[1, 0], -moved[0, 0]]])
+    numerators = np.stack([later, adjugate @ later + first, adjugate @ first], axis=1)
+    return numerators, np.array([1.0, -np.trace(moved), np.linalg.det(moved)])
+
+
+def _torque(signals: Signals, loads: Sequence[Load]) -> Array:
+    """What acts on a load that moves so, over its inertia - rad/s**2 (m/s**2) - (n,)."""
+    total = np.zeros_like(signals.position)
+    for effect, shape, rates in loads:
+        for ((values, _),), rate in zip(effect.columns(signals, shape), rates, strict=True):
+            total = total + rate * values
+    return total
+
+
+EFFECT = ElasticCoupling()
