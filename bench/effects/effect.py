@@ -37,9 +37,9 @@ from bench.trace.filter import Column
 from bench.trace.trace import Trace
 from bench.units import Quantity
 
-#: Share of the squared residual above noise that an effect must explain (see `tests.studies.blind.margins`), and that
-#: of a pitch with more than MANY half cycles in a linear axis' travel, which no smooth error imitates.
-SHARE, PITCH_SHARE, MANY = 0.25, 0.1, 20.0
+#: Share of the squared residual above noise that a pitch must explain of which a linear axis' travel has more than
+#: MANY half cycles, as no smooth error imitates it.
+PITCH_SHARE, MANY = 0.1, 20.0
 #: Share of the inertia that sits behind a coupling, at least and at most.
 BEHIND = (0.02, 0.98)
 #: Lags that a search tries first - s.
@@ -106,7 +106,7 @@ class Effect(ABC):
         quantities: its parameters, with unit and bounds.
         derived: quantities reported too, which follow from them.
         shapes: the nonlinear quantities, in the order in which all methods take them.
-        needed: share of the squared residual above the noise floor that it must explain, other than of a pitch.
+        needed: share of the squared residual above noise that it must explain (see `tests.studies.blind.margins`).
     """
 
     name: ClassVar[str]
@@ -114,7 +114,7 @@ class Effect(ABC):
     quantities: ClassVar[tuple[Quantity, ...]]
     derived: ClassVar[tuple[Quantity, ...]] = ()
     shapes: ClassVar[tuple[Shape, ...]] = ()
-    needed: ClassVar[float] = SHARE
+    needed: ClassVar[float] = 0.25
 
     def null(self, axis: Axis) -> Values:
         """Values of some quantities at which the effect is exactly absent - SI."""

@@ -126,7 +126,7 @@ def markdown(truths: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, N
     for each in thresholds():
         half, double = (tally(key(each, factor)) for factor in FACTORS)
         idle = " (changes nothing here)" if half == double == as_is else ""
-        owner = each.owner.rsplit(".", 1)[-1]
+        owner = each.owner.rpartition(".")[2].partition(":")[0]
         rows.append(f"| {owner}.{each.name} | {each.value:g} | {each.decides}{idle} | {half} | {as_is} | {double} |")
     off = [f"| {rule} | {as_is} | {tally(rule)} |" for rule in switched_off()]
     lines = [

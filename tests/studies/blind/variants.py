@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 import inspect
 import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
+from pkgutil import resolve_name
 
 from bench.diagnosis.doubts import DOUBTS, Doubt
 from bench.diagnosis.policy import POLICY, Margin, Policy
@@ -16,10 +16,10 @@ from tests.diagnosis.off import undoubted, without
 
 #: Shares and bounds that effects state of themselves: where each stands, and what it decides.
 OF_EFFECTS = (
-    ("bench.effects.effect", "SHARE", "share of what stands above the noise floor that an effect must explain"),
+    ("bench.effects.effect:Effect", "needed", "share of what stands above the noise floor that an effect must explain"),
     ("bench.effects.effect", "PITCH_SHARE", "the same for a fine pitch of a linear axis"),
     ("bench.effects.effect", "MANY", "half cycles over the travel from which a pitch is fine"),
-    ("bench.effects.load_torque_event", "NEEDED", "share that an event must explain"),
+    ("bench.effects.load_torque_event:LoadTorqueEvent", "needed", "share that an event must explain"),
     ("bench.effects.load_torque_event", "RESOLVED", "filter widths that an event lasts at least"),
     ("bench.effects.load_torque_event", "LONGEST", "share of the recording that events last together at most"),
 )
@@ -35,7 +35,7 @@ class Threshold:
     """A number that decides on names.
 
     Attributes:
-        owner, name: policy or module that it stands in, and what it is called there; of a margin `name.part`.
+        owner, name: policy, module or class that it stands in, and what it is called there; of a margin `name.part`.
         value: as is.
         decides: what, in the words of its documentation.
     """
@@ -58,12 +58,12 @@ class Threshold:
             name, _, part = self.name.partition(".")
             yield replace(POLICY, **{name: replace(getattr(POLICY, name), **{part: value}) if part else value})
             return
-        module = importlib.import_module(self.owner)
-        setattr(module, self.name, value)
+        owner = resolve_name(self.owner)
+        setattr(owner, self.name, value)
         try:
             yield POLICY
         finally:
-            setattr(module, self.name, self.value)
+            setattr(owner, self.name, self.value)
 
 
 def thresholds() -> list[Threshold]:
@@ -81,8 +81,7 @@ def thresholds() -> list[Threshold]:
             if number not in (0.0, math.inf)
         ]
     return found + [
-        Threshold(module, name, getattr(importlib.import_module(module), name), decides)
-        for module, name, decides in OF_EFFECTS
+        Threshold(owner, name, getattr(resolve_name(owner), name), decides) for owner, name, decides in OF_EFFECTS
     ]
 
 
