@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.axis_kind import LINEAR, ROTARY
-from bench.effects.backlash.likeliest import CONTACTS, contacts_of
+from bench.effects.backlash import CONTACTS, contacts_of
 from bench.effects.catalogue import catalogue
 from bench.effects.shape import extended, places
 from tests.effects.recording import scopes
