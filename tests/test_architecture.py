@@ -32,9 +32,8 @@ LAYERS = (
     {"report"},
     {"course"},  # a guest: nothing but its commands imports it
     {"demo"},
-    {"console"},
-    {"cli", "__main__"},
     {"__init__"},  # public names: `import bench`
+    {"cli", "__main__"},
 )
 
 

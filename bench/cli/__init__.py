@@ -26,24 +26,12 @@ from typer.exceptions import TyperException
 from bench import __version__
 from bench.cli.check import check
 from bench.cli.common import guarded
-from bench.cli.compensate import compensate
-from bench.cli.demo import demo
-from bench.cli.diagnose import diagnose
-from bench.cli.effects import effects
-from bench.cli.export import export
-from bench.cli.fleet import fleet
-from bench.cli.friction import friction
-from bench.cli.identify import identify
-from bench.cli.inspect import inspect
+from bench.cli.identify import diagnose, identify
 from bench.cli.lab import lab
-from bench.cli.limits import limits
-from bench.cli.plan import plan
-from bench.cli.replay import replay
-from bench.cli.report import report
-from bench.cli.rigs import rigs
-from bench.cli.simulate import simulate
-from bench.cli.validate import validate
-from bench.cli.view import view
+from bench.cli.many import fleet, validate
+from bench.cli.model import compensate, export, replay, view
+from bench.cli.recording import friction, inspect, limits
+from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate
 from bench.errors import BenchError, InputError
 from bench.names import plain, short
 

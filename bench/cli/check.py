@@ -13,27 +13,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.cli.common import (
-    STDOUT,
-    AxisOption,
-    JsonOption,
-    ReportOption,
-    list_files,
-    refusal_as_json,
-    tell,
-    warn,
-    write_json,
-    write_page,
-)
+import bench
+from bench.cli import common
+from bench.cli.common import STDOUT, AxisOption, JsonOption, ReportOption
 from bench.errors import InputError
-from bench.files import keeping, require_writable, write_text
+from bench.files import sha256, write_text
 from bench.names import in_a_row, readable
 
 if TYPE_CHECKING:
-    from bench.baseline.check import Checked
     from bench.baseline.observe import Observed
     from bench.baseline.state import State
-    from bench.rig.rig import Rig
 
 #: Exit status of each result.
 STATUS = {"same": 0, "changed": 3, "undecided": 1}
@@ -72,94 +61,74 @@ def check(
     axis_name: AxisOption = None,
 ) -> None:
     """Has this axis, or this model of one, changed? Exit status 0: the same, 3: changed, 1: undecided."""
-    asked = Asked(traces or [], rig, simulated, baseline, axis_name)
-    _require_consistent(asked, update, without_names, [path for path in (junit, json, report) if path is not None])
-    with keeping(asked.inputs if update else [*asked.inputs, baseline]):
-        for path in (junit, json, report, baseline if update else None):
-            if path is not None and path != STDOUT:
-                require_writable(path)
-        if update:
-            _update(asked, not without_names)
-            return
-        with refusal_as_json(json, "bench.check/1"):
-            checked = asked.checked(false_alarm_rate)
-        _write(checked, asked, junit, json, report, form)
+    asked = Asked(traces or [], rig, simulated, axis_name)
+    _require_consistent(asked, update, without_names, any((junit, json, report)))
+    if update:
+        _update(asked, baseline, not without_names)
+        return
+    with common.refusal_as_json(json, "bench.check/1"):
+        checked = asked.checked(baseline, false_alarm_rate)
+    if simulated is not None:  # all of which are named model.toml
+        title = f"{simulated} against {baseline}"
+    else:
+        title = f"{in_a_row(asked.traces)} against {readable(baseline.name)}"
+    _write(checked, title, baseline, (junit, json, report), form)
     raise typer.Exit(STATUS[checked.result])
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What is to be held against what: recordings with their rig, or a model."""
+    """What is to be held against the baseline: recordings with their rig, or a model."""
 
     traces: list[Path]
     rig: Path | None
     simulated: Path | None
-    baseline: Path
     axis_name: str | None
 
-    @property
-    def inputs(self) -> list[Path]:
-        """Files that are read whatever is asked."""
-        return [*self.traces, *(path for path in (self.rig, self.simulated) if path is not None)]
-
-    @property
-    def title(self) -> str:
-        """What stands above results."""
-        if self.simulated is not None:  # all of which are named model.toml
-            return f"{self.simulated} against {self.baseline}"
-        return f"{in_a_row(self.traces)} against {readable(self.baseline.name)}"
-
-    @property
-    def axis(self) -> Rig | None:
+    def axis(self) -> bench.Rig | None:
         """The rig, if one is given."""
-        from bench.rig.rig import load_rig
+        return None if self.rig is None else bench.load_rig(self.rig).on_axis(self.axis_name)
 
-        return None if self.rig is None else load_rig(self.rig).on_axis(self.axis_name)
-
-    def observed(self, names: bool) -> Observed:
+    def observed(self, axis: bench.Rig | None, names: bool) -> Observed:
         """What recordings tell now, with where it comes from."""
         from bench.baseline.observe import observe
-        from bench.report.provenance import provenance
+        from bench.report.parts import provenance
         from bench.report.terminal import progress
-        from bench.trace.read import read
 
-        axis = self.axis
         assert axis is not None
         assert self.rig is not None
         with progress(f"checking {in_a_row(self.traces)}") as done:
-            observed = observe([read(trace, axis.trace) for trace in self.traces], axis, names, done)
+            observed = observe([bench.read(trace, axis.trace) for trace in self.traces], axis, names, done)
         basis = provenance(self.rig, self.traces, {"names": names, "axis": self.axis_name})
         return replace(observed, state=replace(observed.state, provenance=basis))
 
-    def of_model(self, model: Path, like: State | None = None) -> State:
-        """What a model has, with where it comes from."""
-        from bench import __version__
-        from bench.baseline.model import modelled
-        from bench.report.provenance import sha256
-
-        basis = {"version": __version__, "model": {"file": str(model), "sha256": sha256(model)}}
-        return replace(modelled(model, like), provenance=basis)
-
-    def checked(self, rate: float) -> Checked:
+    def checked(self, baseline: Path, rate: float) -> bench.Checked:
         """The check."""
         from bench.baseline.check import Allowed, compare
         from bench.baseline.state import read_baseline
 
         if self.simulated is None:
-            axis, before = self.axis, read_baseline(self.baseline)
-            before.require_source("recordings", self.baseline)
+            axis, before = self.axis(), read_baseline(baseline)
+            before.require_source("recordings", baseline)
             assert axis is not None
-            allowed = Allowed.of(axis)
-            return compare(before, self.observed(before.names), allowed, rate)
+            return compare(before, self.observed(axis, before.names), Allowed.of(axis), rate)
         from bench.baseline.model import compare_models, is_model
 
-        before = self.of_model(self.baseline) if is_model(self.baseline) else read_baseline(self.baseline)
-        before.require_source("model", self.baseline)
-        now = self.of_model(self.simulated, before)
-        return compare_models(before, now, Allowed.of(self.axis, now.kind))
+        before = _of_model(baseline) if is_model(baseline) else read_baseline(baseline)
+        before.require_source("model", baseline)
+        now = _of_model(self.simulated, before)
+        return compare_models(before, now, Allowed.of(self.axis(), now.kind))
 
 
-def _require_consistent(asked: Asked, update: bool, quick: bool, written: list[Path]) -> None:
+def _of_model(model: Path, like: State | None = None) -> State:
+    """What a model has, with where it comes from."""
+    from bench.baseline.model import modelled
+
+    basis = {"version": bench.__version__, "model": {"file": str(model), "sha256": sha256(model)}}
+    return replace(modelled(model, like), provenance=basis)
+
+
+def _require_consistent(asked: Asked, update: bool, quick: bool, written: bool) -> None:
     """InputError where arguments contradict each other, or one is missing."""
     if asked.simulated is not None and asked.traces:
         raise InputError("--simulated", "found with recordings", "allowed: a model, or recordings with their rig")
@@ -176,56 +145,64 @@ def _require_consistent(asked: Asked, update: bool, quick: bool, written: list[P
         )
 
 
-def _update(asked: Asked, names: bool) -> None:
+def _update(asked: Asked, baseline: Path, names: bool) -> None:
     """Accept the present state, and say what a check against it will not be able to tell."""
     from bench.baseline.state import write_baseline
     from bench.comparison.difference import ENOUGH
 
-    state = asked.of_model(asked.simulated) if asked.simulated is not None else asked.observed(names).state
-    write_baseline(asked.baseline, state)
-    list_files([asked.baseline])
+    simulated = asked.simulated
+    state = asked.observed(asked.axis(), names).state if simulated is None else _of_model(simulated)
+    write_baseline(baseline, state)
+    common.list_files([baseline])
     count = len(asked.traces)
     if 0 < count < ENOUGH:
         told = "1 recording tells" if count == 1 else f"{count} recordings tell"
         advice = f"make the baseline of {ENOUGH} or more, or state it in [check.between] of the rig"
-        warn([f"{told} little of how recordings of this axis differ, so defaults count (docs/check.md): {advice}"])
+        how = f"{told} little of how recordings of this axis differ, so defaults count (docs/check.md)"
+        common.warn([f"{how}: {advice}"])
 
 
 def _write(
-    checked: Checked, asked: Asked, xml: Path | None, json: Path | None, report: Path | None, form: Format
+    checked: bench.Checked,
+    title: str,
+    baseline: Path,
+    files: tuple[Path | None, Path | None, Path | None],
+    form: Format,
 ) -> None:
-    """Every result where it is asked for."""
+    """Every result where it is asked for: JUnit's, JSON and page into their files."""
     from bench.report.check import check_document, check_json, findings, headline
     from bench.report.continuous_integration import github_lines, github_summary, gitlab_report, junit
 
-    document, found, says = check_document(checked, asked.title), findings(checked), headline(checked)
+    document, found, says = check_document(checked, title), findings(checked), headline(checked)
+    xml, json, report = files
     if xml is not None:
-        write_text(xml, junit(found, says, asked.title))
+        write_text(xml, junit(found, says, title))
     if json is not None:
-        write_json(json, check_json(checked))
-    write_page(report, document)
+        common.write_json(json, check_json(checked))
+    common.write_page(report, document)
     if form is Format.GITLAB:
-        typer.echo(gitlab_report(found, asked.baseline))
+        typer.echo(gitlab_report(found, baseline))
     elif json != STDOUT:
         with _no_commands(form):
-            tell(document, (xml, json, report))
+            common.tell(document, files)
     if form is Format.GITHUB:
-        for line in github_lines(found, asked.baseline):
+        for line in github_lines(found, baseline):
             typer.echo(line)
-        _append_summary(github_summary(found, says, asked.title))
+        _append_summary(github_summary(found, says, title))
 
 
 @contextmanager
 def _no_commands(form: Format) -> Iterator[None]:
     """Within the block GitHub takes no line for a workflow command, whatever a file is named."""
+    if form is not Format.GITHUB:
+        yield
+        return
     token = secrets.token_hex(16)
-    if form is Format.GITHUB:
-        typer.echo(f"::stop-commands::{token}")
+    typer.echo(f"::stop-commands::{token}")
     try:
         yield
     finally:
-        if form is Format.GITHUB:
-            typer.echo(f"::{token}::")
+        typer.echo(f"::{token}::")
 
 
 def _append_summary(text: str) -> None:

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, get_type_hints
 
 import typer
 
+import bench
 from bench.bounds import bounded
 from bench.errors import InputError
 from bench.files import keeping, require_writable, write_text
@@ -25,11 +27,24 @@ if TYPE_CHECKING:
 
 #: Parameters of commands that name what is written, files or folders; every other path is read.
 WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "video"})
-#: Parameters of commands whose file is read, and replaced where that is asked for.
+#: Those of them that name folders, which may be there.
+FOLDERS = frozenset({"out", "synthetic", "notebooks"})
+#: Parameters of commands whose file is read, and replaced with `--update`.
 REPLACED = frozenset({"baseline"})
 
 TracesArgument = Annotated[
     list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
+]
+BesideRigOption = Annotated[
+    Path | None, typer.Option("--rig", help="Rig file (TOML): what is known about the axis; not needed with --mjcf.")
+]
+MjcfOption = Annotated[
+    Path | None, typer.Option("--mjcf", help="MJCF of the robot whose other dynamics are known, gravity among them.")
+]
+JointOption = Annotated[str | None, typer.Option("--joint", help="Joint of the MJCF that the log is of.")]
+AtOption = Annotated[
+    list[str] | None,
+    typer.Option("--at", help="NAME=ANGLE of a joint that stands and that the log does not hold. Repeatable."),
 ]
 RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
 AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
@@ -74,7 +89,7 @@ def guarded(verb: Callable[..., None]) -> Callable[..., None]:
 
     @functools.wraps(verb)
     def command(max_size: str | None, debug: bool, **given: object) -> None:  # `debug` is `bench.cli.main`'s
-        with bounded(max_size), keeping(_paths(given, read=True)):
+        with bounded(max_size), keeping(path for _, path in _paths(given, read=True)):
             _require_places(given)
             verb(**given)
 
@@ -83,16 +98,18 @@ def guarded(verb: Callable[..., None]) -> Callable[..., None]:
     return command
 
 
-def _paths(given: Mapping[str, object], read: bool) -> Iterator[Path]:
-    """Paths among a command's arguments that are read, or written."""
+def _paths(given: Mapping[str, object], read: bool) -> Iterator[tuple[str, Path]]:
+    """Paths among a command's arguments that are read, or written, each with its name."""
+    written = WRITTEN | REPLACED if given.get("update") else WRITTEN
     for name, value in given.items():
-        if name not in REPLACED and (name in WRITTEN) is not read:
-            yield from (path for path in (value if isinstance(value, list) else [value]) if isinstance(path, Path))
+        if (name in written) is not read:
+            paths = value if isinstance(value, list) else [value]
+            yield from ((name, path) for path in paths if isinstance(path, Path))
 
 
 def _require_places(given: Mapping[str, object]) -> None:
-    for path in _paths(given, read=False):
-        if path != STDOUT and not path.is_dir():
+    for name, path in _paths(given, read=False):
+        if path != STDOUT and not (name in FOLDERS and path.is_dir()):
             require_writable(path)
     json, out = given.get("json"), given.get("out")
     if isinstance(json, Path) and json != STDOUT and not json.parent.is_dir() and json.parent != out:
@@ -189,3 +206,67 @@ def warn(warnings: Iterable[str]) -> None:
     """A line on standard error for each warning."""
     for warning in warnings:
         typer.echo(plain(f"warning: {warning}"), err=True)
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What a recording is of.
+
+    Attributes:
+        rig: of the axis.
+        read: how its recordings are read whole.
+        robot: whether it is a joint of one.
+    """
+
+    rig: bench.Rig
+    read: Callable[[Path], bench.Trace]
+    robot: bool
+
+    @property
+    def whole(self) -> Callable[[Path], bench.Trace] | None:
+        """How a recording has to be read at once, beside its robot; None where parts do."""
+        return self.read if self.robot else None
+
+
+def subject(
+    rig: Path | None, axis: str | None, mjcf: Path | None, joint: str | None, at: Sequence[str] | None
+) -> Subject:
+    """The axis of a rig file, or the joint of an MJCF with or without one.
+
+    Raises:
+        InputError: neither is given, options that do not go together, or a file that cannot be read.
+    """
+    if mjcf is None:
+        if joint is not None or at:
+            raise InputError("--joint" if joint is not None else "--at", "found without --mjcf", "allowed: with --mjcf")
+        if rig is None:
+            raise InputError("--rig", "missing", "allowed: a rig file, or --mjcf and --joint")
+        known = bench.load_rig(rig).on_axis(axis)
+        return Subject(known, lambda path: bench.read(path, known.trace), robot=False)
+    if joint is None:
+        raise InputError("--joint", "missing", "allowed: the joint of the MJCF that the log is of")
+    from bench.plant.robot import Robot, read_log, rig_within
+
+    robot = Robot.of(mjcf, joint)
+    alone = {"name": joint, "kind": "rotary" if robot.turns else "linear"}
+    own = (bench.Rig.of(alone, str(mjcf)) if rig is None else bench.load_rig(rig)).on_axis(axis)
+    if own.axis_kind.turns is not robot.turns:
+        found = f"found a joint that {'turns' if robot.turns else 'slides'}"
+        raise InputError(f"--joint {joint}", found, f"allowed: a {own.kind} one, as {own.source} says")
+    within = rig_within(own, robot)
+    stands = _positions(at or (), robot.units)
+    return Subject(within, lambda path: read_log(path, within, robot, stands), robot=True)
+
+
+def _positions(texts: Sequence[str], units: dict[str, str]) -> dict[str, float]:
+    """Positions - rad (m) - of joints from `NAME=0.3 rad`; a number without unit is SI."""
+    from bench.effects.present import parse_value
+
+    found = {}
+    for text in texts:
+        name, sign, value = (part.strip() for part in text.partition("="))
+        if not sign or name not in units:
+            allowed = f"allowed: NAME=ANGLE, NAME one of {', '.join(units) or 'none, as the robot has one joint'}"
+            raise InputError(f"--at {text}", "names no other joint" if sign else "has no =", allowed)
+        found[name] = parse_value(value, units[name], f"--at {text}")
+    return found

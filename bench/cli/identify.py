@@ -1,4 +1,4 @@
-"""`bench identify`."""
+"""`bench identify` and `bench diagnose`: inertia and friction of an axis, and what its model is missing."""
 
 from __future__ import annotations
 
@@ -10,24 +10,25 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import bench
+from bench.cli import common
 from bench.cli.common import (
+    AtOption,
     AxisOption,
+    BesideRigOption,
     Figures,
     FiguresOption,
+    JointOption,
     JsonOption,
+    MjcfOption,
     TracesArgument,
-    refusal_as_json,
-    tell,
-    warn,
-    write_json,
 )
-from bench.cli.robot import AtOption, BesideRigOption, JointOption, MjcfOption, subject
 from bench.errors import InputError
+from bench.files import held
 from bench.names import in_a_row
 
 if TYPE_CHECKING:
-    from bench.cli.robot import Subject
-    from bench.fit.estimate import Estimate
+    from bench.cli.common import Subject
     from bench.fit.refine import Refinement
 
 
@@ -56,24 +57,23 @@ def identify(
     figures: FiguresOption = Figures.PNG,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
-    from bench.files import held
     from bench.fit.estimate import RefusedEstimateError
     from bench.report.identification import SCHEMA, identification, identification_json, moved
-    from bench.report.provenance import provenance
+    from bench.report.parts import provenance
 
-    of = subject(rig, axis_name, mjcf, joint, at)
+    of = common.subject(rig, axis_name, mjcf, joint, at)
     axis = of.rig.model_copy(update={"offset": of.rig.offset or offset})
     _require_consistent(traces, estimator, refine, bool(offset or cutoff))
     options = {"estimator": estimator.value, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
     options |= {"joint": joint, "at": at or []} if of.robot else {}
     try:
-        with refusal_as_json(json, SCHEMA):
+        with common.refusal_as_json(json, SCHEMA):
             estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, cutoff)
     except RefusedEstimateError as error:
         basis = provenance(rig, traces, options, None, mjcf)
         if json is not None:
-            write_json(json, identification_json(error.estimate, None, str(error), basis))
-        warn(error.estimate.warnings)
+            common.write_json(json, identification_json(error.estimate, None, str(error), basis))
+        common.warn(error.estimate.warnings)
         raise
     basis = provenance(rig, traces, options, None, mjcf)
     with nullcontext() if out is None else held(out):
@@ -85,8 +85,8 @@ def identify(
 
             files = write_document(out, found, figures.ending)
         if json is not None:
-            write_json(json, identification_json(estimate, refinement, None, basis))
-    tell(found, files, json)
+            common.write_json(json, identification_json(estimate, refinement, None, basis))
+    common.tell(found, files, json)
 
 
 def _require_consistent(traces: list[Path], estimator: Estimator, refine: bool, tuned: bool) -> None:
@@ -101,7 +101,7 @@ def _require_consistent(traces: list[Path], estimator: Estimator, refine: bool, 
 
 def _estimate(
     traces: list[Path], of: Subject, estimator: Estimator, refine: bool, cutoff: float | None
-) -> tuple[Estimate, Refinement | None]:
+) -> tuple[bench.Estimate, Refinement | None]:
     """Estimate by the method asked for, and what polishing did to it."""
     from bench.gate.gate import passed
 
@@ -111,15 +111,54 @@ def _estimate(
 
         gated = passed(of.read(trace), rig)
         return replace(identify_as_in_the_lab(gated.trace, rig), checks=gated.checks), None
-    from bench.fit.identify import identify as regress
     from bench.report.terminal import progress
     from bench.trace.stream import stream
 
     with progress(f"identifying {', '.join(each.name for each in traces)}") as done:
         if not refine:
             parts = [of.read(each) if of.robot else stream(each, rig.trace) for each in traces]
-            return regress(parts, rig, cutoff), None
+            return bench.identify(parts, rig, cutoff), None
         from bench.fit.refine import refine as polish  # MuJoCo: 0.1 s
 
         recording = passed(of.read(trace), rig).trace
-        return polish(recording, rig, regress(recording, rig, cutoff), done)
+        return polish(recording, rig, bench.identify(recording, rig, cutoff), done)
+
+
+def diagnose(
+    traces: TracesArgument,
+    rig: BesideRigOption = None,
+    holdout: Annotated[
+        Path | None, typer.Option("--holdout", help="Another recording of the axis, not fitted.")
+    ] = None,
+    json: JsonOption = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
+    without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
+    axis_name: AxisOption = None,
+    mjcf: MjcfOption = None,
+    joint: JointOption = None,
+    at: AtOption = None,
+    figures: FiguresOption = Figures.PNG,
+) -> None:
+    """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
+    from bench.effects.present import named
+    from bench.report.diagnosis import SCHEMA, diagnosis, diagnosis_json, write_diagnosis
+    from bench.report.parts import provenance
+    from bench.report.terminal import progress
+
+    of = common.subject(rig, axis_name, mjcf, joint, at)
+    axis, read = of.rig, of.read
+    excluded = frozenset(named(name, "--without").name for name in without or [])
+    other = read(holdout) if holdout else None
+    names = in_a_row(traces)
+    with common.refusal_as_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
+        recordings = [read(trace) for trace in traces]
+        found = bench.diagnose(recordings, axis, other, excluded, done)
+    options = {"without": sorted(excluded)} | ({"joint": joint, "at": at or []} if of.robot else {})
+    basis = provenance(rig, traces, options, holdout, mjcf)
+    title, files = f"{axis.name}: {names}", []
+    with nullcontext() if out is None else held(out):
+        if out is not None:
+            files = write_diagnosis(out, found, title, basis, figures.ending)
+        if json is not None:
+            common.write_json(json, diagnosis_json(found, basis))
+    common.tell(diagnosis(found, title, basis), files, json)

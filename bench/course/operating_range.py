@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bench.course.recordings import LabRecordings
 from bench.course.result import DoneTask, Number
-from bench.report.limits import in_range
+from bench.report.drive import in_range
 
 KEY, TITLE = "range", "Operating range"
 

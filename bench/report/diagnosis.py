@@ -63,7 +63,7 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
 
     Args:
         found: by the diagnosis.
-        provenance: of the files it came from (`bench.report.provenance`); null where it came from none.
+        provenance: of the files it came from (`bench.report.parts`); null where it came from none.
     """
     return serialised(
         {

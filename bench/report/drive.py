@@ -1,13 +1,36 @@
-"""What a drive is given, as tables: a motion to record, and how much better it tracks with what is fed forward."""
+"""What a drive is asked for and given: a motion to record, how well it tracks, and the operating range of its motor."""
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.arrays import Array
 from bench.axis_kind import AxisKind
+from bench.errors import InputError
 from bench.export.feedforward import Tracking
 from bench.export.plan import PlannedMotion
-from bench.names import words
-from bench.report.document import Table, table
+from bench.names import readable, words
+from bench.report.document import (
+    COLOURS,
+    Chart,
+    Document,
+    Panel,
+    Picture,
+    Points,
+    Section,
+    Series,
+    Table,
+    series,
+    table,
+)
 from bench.report.numbers import number, unit_text
+from bench.report.parts import origin
+from bench.rig.limits import OperatingRange, Reserve, reserve
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
 
 
 def plan_table(best: PlannedMotion) -> Table:
@@ -41,3 +64,160 @@ def tracking_table(title: str, before: Tracking, after: Tracking, kind: AxisKind
         rows.append((name, number(was), number(now), less, unit_text(unit)))
     headings = ("RMS tracking error", "as the rig's drive is>", "with the tables>", "times less>", "unit")
     return table(title, headings, rows)
+
+
+#: Mains voltage that a motor is held to which states no curve - V - and revolutions per minute of 1 rad/s.
+MAINS, RPM = 230.0, 30.0 / math.pi
+
+
+@dataclass(frozen=True)
+class InRange:
+    """A motion in its motor's range.
+
+    Attributes:
+        findings: a sentence or two each.
+        numbers: reserves and effective values with their units, by name.
+        chart: speed-torque diagram.
+    """
+
+    findings: tuple[str, ...]
+    numbers: dict[str, tuple[float, str]]
+    chart: Chart
+
+
+def limits(trace: Trace, rig: Rig) -> Document:
+    """The document of a recording's reserve to the motor's limits, at every mains voltage the rig has a curve for.
+
+    Raises:
+        InputError: a linear axis, no velocity, no torque in N*m to be had, or no limits in the rig.
+    """
+    if not rig.axis_kind.turns:
+        raise InputError(rig.source, f"found a {rig.kind} axis", "allowed: a rotary one, whose motor has peak_curves")
+    effort, unit = rig.effort(trace)
+    if unit != "N*m":
+        raise InputError(rig.source, f"gives the effort in {unit}", "the operating range needs it in N*m")
+    name = readable(trace.origin).rpartition("/")[2]
+    found = in_range(rig, trace["velocity"], np.asarray(effort), name)
+    least = min(value for key, (value, _) in found.numbers.items() if "reserve" in key)
+    rows = ((name, number(value), unit) for name, (value, unit) in found.numbers.items())
+    blocks = (table("Reserves and effective values", ("quantity", "value>", "unit"), rows), found.chart)
+    return Document(
+        title=name,
+        subject=f"Operating range of {rig.name}: {name}",
+        verdict=f"The motion {'stays within' if least >= 0.0 else 'exceeds'} the motor's limits.",
+        tone="sure" if least >= 0.0 else "refused",
+        answers={},
+        sections=(
+            Section(key="findings", heading="What it leaves", blocks=(Points(items=found.findings),)),
+            Section(key="range", heading="Operating range", blocks=blocks),
+        ),
+        origin=origin(None),
+        pictures=(Picture(name="limits", title="", rows=((found.chart,),)),),
+    )
+
+
+def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
+    """Draw a motion into the range at every mains voltage of the motor, and state its reserve.
+
+    Args:
+        rig: its motor.
+        speed, torque: of the motion, (n,) - rad/s, N*m.
+        what: it is, for the title.
+
+    Raises:
+        InputError: the motor lacks its torques or curves.
+    """
+    mains = [curve.mains_voltage for curve in rig.motor.peak_curves] or [MAINS]
+    ranges = [OperatingRange.of(rig.motor, voltage, rig.source) for voltage in mains]
+    findings, curves, numbers = [], [], {}
+    for limit in ranges:
+        volts = f"{limit.curve.mains_voltage:g} V"
+        left = reserve(limit, speed, torque)
+        findings.append(f"At {volts}: {_peak_finding(left, speed, torque)} {_thermal_finding(left)}")
+        numbers[f"peak reserve, {volts}"] = left.peak, "N·m"
+        numbers[f"thermal reserve, {volts}"] = left.thermal, "A"
+        curves += _limit_curves(limit, volts)
+        cold = _cold(limit, rig)
+        if cold is not None:
+            numbers[f"peak reserve, {volts}, cold"] = reserve(cold, speed, torque).peak, "N·m"
+            at = np.linspace(0.0, cold.curve.no_load_speed, 300)
+            label = f"peak, {volts}, winding at 20 °C"
+            curves.append(series(label, "dotted", "ink", at * RPM, cold.peak(at)))
+    left = reserve(ranges[0], speed, torque)
+    findings.append(_heat_finding(left, ranges[0]))
+    if any(name.endswith("cold") for name in numbers):
+        findings.append(
+            "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve stands apart and is "
+            "none to plan with. It changes nothing where the magnets limit, nor for heat."
+        )
+    numbers |= {"RMS torque": (left.rms_torque, "N·m"), "RMS current": (left.rms_current, "A")}
+    return InRange(tuple(findings), numbers, _chart(what, [*_motion(speed, torque, left, ranges[0]), *curves]))
+
+
+def _chart(what: str, curves: list[Series]) -> Chart:
+    """The diagram, each curve in the next colour."""
+    coloured = (one.model_copy(update={"colour": COLOURS[k % len(COLOURS)]}) for k, one in enumerate(curves))
+    axes = Panel(
+        x_label="speed |n| / rpm", y_label="torque M in the direction of motion / (N·m)", series=tuple(coloured)
+    )
+    return Chart(title=f"Operating range: {what}", alternative="Torque over speed, and the limits.", panels=(axes,))
+
+
+def _peak_finding(left: Reserve, speed: Array, torque: Array) -> str:
+    braking = "braking" if speed[left.at] * torque[left.at] < 0.0 else "driving"
+    beyond = f"; {left.beyond:.1%} of the samples lie beyond the limit" if left.beyond else ""
+    return (
+        f"least reserve to the peak torque {left.peak:.3g} N·m ({left.peak_share:.0%}) at "
+        f"{speed[left.at] * RPM:.0f} rpm, {braking}{beyond}."
+    )
+
+
+def _thermal_finding(left: Reserve) -> str:
+    hot = ", the motor would overheat if this repeats" if left.thermal < 0.0 else ""
+    return (
+        f"RMS current {left.rms_current:.3g} A at {left.mean_speed * RPM:.0f} rpm on average leaves "
+        f"{left.thermal:.3g} A ({left.thermal_share:.0%}) to the continuous {left.continuous_current:.3g} A{hot}."
+    )
+
+
+def _heat_finding(left: Reserve, limit: OperatingRange) -> str:
+    """Why heat goes by current and not by torque."""
+    by_torque = left.rms_torque / float(limit.torque_constant(np.asarray(left.continuous_current)))
+    return (
+        f"Heat goes with the square of the current. The RMS torque of {left.rms_torque:.3g} N·m over the torque "
+        f"constant at continuous current would say {by_torque:.3g} A; the iron saturates at the peaks, so they take "
+        f"more: {left.rms_current:.3g} A."
+    )
+
+
+def _motion(speed: Array, torque: Array, left: Reserve, limit: OperatingRange) -> list[Series]:
+    """The samples, those that brake below the axis; the point that heats as all; the least reserve to the limit."""
+    effective = np.atleast_1d(limit.torque_constant.torque(np.asarray(left.rms_current)))
+    least = np.abs([speed[left.at], torque[left.at]])
+    side = -1.0 if speed[left.at] * torque[left.at] < 0.0 else 1.0
+    label = f"least reserve to the peak, {left.peak:.3g} N·m"
+    ends = side * (least[1] + np.array([0.0, left.peak]))
+    heat = np.array([left.mean_speed * RPM])
+    return [
+        series("motion, braking below 0", "dots", "ink", np.abs(speed) * RPM, np.sign(speed * torque) * np.abs(torque)),
+        series("RMS current at mean speed", "large dots", "ink", heat, effective),
+        series(label, "large dots", "ink", least[:1] * RPM, ends[:1], (ends[:1], ends[1:])),
+    ]
+
+
+def _limit_curves(limit: OperatingRange, volts: str) -> list[Series]:
+    speed = np.linspace(0.0, limit.curve.no_load_speed, 300)
+    braking = limit.available(speed, np.full_like(speed, -1.0))
+    return [
+        series(f"peak, {volts}", "line", "ink", speed * RPM, limit.peak(speed)),
+        series(f"continuous, {volts}", "dashes", "ink", speed * RPM, limit.continuous(speed)),
+        series(f"peak braking, {volts}", "dotted", "ink", speed * RPM, -braking),
+    ]
+
+
+def _cold(limit: OperatingRange, rig: Rig) -> OperatingRange | None:
+    """None where the motor does not tell its circuit."""
+    try:
+        return limit.cold(rig.motor, rig.source)
+    except InputError:
+        return None

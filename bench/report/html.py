@@ -1,20 +1,27 @@
-"""A document as HTML: one file that opens without any other and without a network, or beside a script file for many."""
+"""A document as HTML: one file that opens without any other and without a network, or beside a script file for many.
+
+Charts are SVG: here is their geometry; the page's style sheet draws it.
+"""
 
 from __future__ import annotations
 
 import base64
 import hashlib
 import json
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
+from matplotlib.ticker import MaxNLocator
 
 from bench.names import plain
-from bench.report.document import Document, File, Moving, TimeGraph
-from bench.report.drawing import drawn, laid, rail
+from bench.report.document import Chart, Document, File, Intervals, Moving, Panel, Series, Span, TimeGraph
 
 
 def html(document: Document, script: str | None = None) -> str:
@@ -86,3 +93,162 @@ def _policy(inside: str | None) -> str:
     else:
         scripts = f"'sha256-{base64.b64encode(hashlib.sha256(inside.encode()).digest()).decode('ascii')}'"
     return f"default-src 'none'; style-src 'unsafe-inline'; img-src data:; script-src {scripts}; base-uri 'none'"
+
+
+#: Size of a panel, and of its margins left, right, top, bottom - units of the drawing; one panel alone is wider.
+WIDTH, ALONE, HEIGHT = 380.0, 760.0, 230.0
+LEFT, RIGHT, TOP, BOTTOM = 58.0, 12.0, 12.0, 42.0
+#: Share of the span that is left free around the points.
+MARGIN = 0.04
+#: Width of a row of intervals, which the page stretches, and ends of the travel of a slide, which is 760 wide.
+ROW, TRAVEL = 1000.0, (80.0, 680.0)
+#: Labels of an axis at most.
+TICKS = 5
+#: Styles that have dots, and those that have a line.
+DOTTED, LINED = ("dots", "large dots", "rings"), ("line", "dashes", "dotted", "wide")
+
+
+@dataclass(frozen=True)
+class Ruler:
+    """From values to the drawing: `low` at `start`, `high` at `stop`; logarithmic where `log`."""
+
+    low: float
+    high: float
+    start: float
+    stop: float
+    log: bool = False
+
+    def __call__(self, value: float) -> float:
+        """Where a value stands."""
+        low, high, value = map(math.log10, (self.low, self.high, value)) if self.log else (self.low, self.high, value)
+        return round(self.start + (value - low) / (high - low) * (self.stop - self.start), 1)
+
+    @classmethod
+    def around(cls, values: Iterable[float], start: float, stop: float, log: bool = False) -> Ruler:
+        """A ruler that holds all values with a margin."""
+        known = [value for value in values if shown(value, log)] or [1.0 if log else 0.0]
+        low, high = min(known), max(known)
+        if log:
+            margin = (high / low) ** MARGIN if high > low else 2.0
+            return cls(low / margin, high * margin, start, stop, log)
+        margin = MARGIN * (high - low) or 0.5 * abs(high) or 0.5
+        return cls(low - margin, high + margin, start, stop)
+
+    def ticks(self, most: int = TICKS) -> list[tuple[float, str]]:
+        """Places of round values with their labels."""
+        if self.log:
+            powers = range(math.ceil(math.log10(self.low)), math.floor(math.log10(self.high)) + 1)
+            found = [(10.0**power, f"{10.0**power:g}") for power in powers[:: 1 + len(powers) // most]]
+        else:
+            found = ticks(self.low, self.high, most)
+        return [(self(value), label) for value, label in found]
+
+
+def shown(value: float, log: bool) -> bool:
+    """Whether a value has a place on an axis."""
+    return math.isfinite(value) and (value > 0.0 or not log)
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A series in the drawing: dots, the points of a line or of an area, and bars from dots to their bounds."""
+
+    series: Series
+    dots: Sequence[tuple[float, float]]
+    points: str
+    bars: Sequence[tuple[float, float, float]]
+
+
+@dataclass(frozen=True)
+class PlacedPanel:
+    """A panel in the drawing: ticks of its axes, the place of zero where its scale holds it, and what is drawn."""
+
+    panel: Panel
+    width: float
+    x: Sequence[tuple[float, str]]
+    y: Sequence[tuple[float, str]]
+    zero: float | None
+    marks: Sequence[Drawn]
+
+
+def drawn(chart: Chart) -> list[PlacedPanel]:
+    """All panels: on one scale, or one above the other on a scale each."""
+    groups = [[panel] for panel in chart.panels] if chart.stacked else [chart.panels]
+    width = ALONE if chart.stacked or len(chart.panels) == 1 else WIDTH
+    return [_placed(panel, _down(group), width) for group in groups for panel in group]
+
+
+def _down(panels: Sequence[Panel]) -> Ruler:
+    every = (series for panel in panels for series in panel.series)
+    heights = (value for series in every for value in (*series.y, *series.low, *series.high))
+    return Ruler.around(heights, HEIGHT - BOTTOM, TOP, panels[0].log)
+
+
+def _placed(panel: Panel, down: Ruler, width: float) -> PlacedPanel:
+    across = Ruler.around((value for one in panel.series for value in one.x), LEFT, width - RIGHT, panel.log)
+    zero = down(0.0) if down.low < 0.0 < down.high else None
+    marks = [_drawn(one, across, down) for one in panel.series]
+    return PlacedPanel(panel, width, across.ticks(), down.ticks(), zero, marks)
+
+
+def _drawn(series: Series, across: Ruler, down: Ruler) -> Drawn:
+    x = [across(value) if shown(value, across.log) else math.nan for value in series.x]
+    y, low, high = (
+        [down(value) if shown(value, down.log) else math.nan for value in values]
+        for values in (series.y, series.low, series.high)
+    )
+    dots = [(a, b) for a, b in zip(x, y, strict=False) if math.isfinite(a) and math.isfinite(b)]
+    area = [*zip(x, low, strict=False), *zip(x[::-1], high[::-1], strict=False)]
+    around = {"band": area}.get(series.style, dots if series.style in LINED else [])
+    return Drawn(
+        series,
+        dots if series.style in DOTTED else [],
+        " ".join(f"{a},{b}" for a, b in around),
+        list(zip(x, low, high, strict=True)) if series.style in DOTTED and low else [],
+    )
+
+
+def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
+    """Round values within bounds, with labels of as many digits as tell them apart."""
+    places = [float(value) for value in MaxNLocator(most).tick_values(low, high) if low <= value <= high]
+    step = min(np.diff(places), default=1.0)
+    size = max(map(abs, places), default=1.0)
+    if size >= 1e5 or size < 1e-3:
+        return [(value, f"{value:.3g}".replace("-", "−")) for value in places]
+    decimals = next((n for n in range(9) if abs(round(step, n) - step) < 1e-6 * step), 9)
+    return [(value, f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")) for value in places]
+
+
+@dataclass(frozen=True)
+class Laid:
+    """Rows of intervals in the drawing.
+
+    Attributes:
+        rows: each with places of its value and its bounds, and whether the value lies beyond the scale.
+        right: ends of the band behind them.
+        ticks: of the scale.
+    """
+
+    rows: Sequence[tuple[Span, float, float, float, bool]]
+    right: tuple[float, float]
+    ticks: Sequence[tuple[float, str]]
+
+
+def laid(block: Intervals) -> Laid:
+    """The rows, cut at the limits of the scale."""
+    low, high = block.limits
+    ruler = Ruler(low, high, 0.0, ROW, block.log)
+
+    def place(value: float) -> float:
+        return ruler(min(max(value, low), high))
+
+    rows = [
+        (span, place(span.value), place(span.low), place(span.high), not low <= span.value <= high)
+        for span in block.spans
+    ]
+    return Laid(rows, (place(block.right[0]), place(block.right[1])), ruler.ticks())
+
+
+def rail(motion: Moving) -> list[tuple[float, str]]:
+    """Places along the rail that a slide is drawn on, with their labels."""
+    return Ruler(motion.low, motion.high, *TRAVEL).ticks(8)

@@ -52,7 +52,7 @@ def identification_json(
         estimate: what was identified.
         refinement: what polishing did, where it was asked for.
         refused: why the recording cannot answer, where it cannot.
-        provenance: of the files it came from (`bench.report.provenance`); null where it came from none.
+        provenance: of the files it came from (`bench.report.parts`); null where it came from none.
     """
     residual = estimate.residual
     content = {

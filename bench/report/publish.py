@@ -1,9 +1,9 @@
-"""Where a document goes: a page by itself, or a folder with page, data, figures and the files to take along."""
+"""Where a document goes: a page by itself, a folder with page, data, figures and files to take along, or Markdown."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from urllib.parse import quote
 
@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from bench.errors import InputError
 from bench.files import held, read_text, write_text
 from bench.names import short
-from bench.report.document import Document
+from bench.report.document import Code, Document, Paragraph, Points, Table
 from bench.report.html import html, program
 
 HTML, DATA = "report.html", "report.json"
@@ -105,3 +105,25 @@ def read_document(path: Path) -> Document:
         key = ".".join(str(part) for part in detail["loc"]) or "page"
         found = f"found {short(repr(detail['input']), 60)}"
         raise InputError(f"{path}: {key}", found, f"allowed: {detail['msg'][0].lower()}{detail['msg'][1:]}") from error
+
+
+def markdown(part: object) -> str:
+    """A table, a text or a list as Markdown; empty of what only a page can show."""
+    match part:
+        case Table():
+            rule = ["---:" if column.number else "---" for column in part.columns]
+            rows = ([column.heading for column in part.columns], rule, *part.rows)
+            return "\n".join([*((f"## {part.caption}", "") if part.caption else ()), *map(_line, rows)])
+        case Paragraph():
+            return part.text
+        case Points():
+            return "\n".join(f"- {item}" for item in part.items)
+        case Code():
+            return f"```\n{part.text}\n```"
+        case _:
+            return ""
+
+
+def _line(cells: Sequence[str]) -> str:
+    """A row, in which what would end a cell is escaped."""
+    return "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |"

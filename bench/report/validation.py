@@ -32,10 +32,9 @@ from bench.report.document import (
     Table,
     table,
 )
-from bench.report.markdown import markdown
 from bench.report.numbers import number, sentence, share, unit_text
 from bench.report.parts import origin
-from bench.report.publish import write_document
+from bench.report.publish import markdown, write_document
 from bench.report.serial import known, picked, serialised
 from bench.statistics import NORMAL95
 from bench.validation.coverage import LEVELS, NOTHING, NOTHING_MISSING, Coverage, Group, Naming, Share

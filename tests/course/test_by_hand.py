@@ -12,7 +12,7 @@ from bench.course.recordings import LabRecordings, LabRun
 from bench.course.students import draw_rig
 from bench.errors import UndeterminedError
 from bench.fit.lab import backward_difference
-from bench.report.limits import in_range
+from bench.report.drive import in_range
 from bench.rig.rig import Rig
 from tests.course.drawn import curves
 

@@ -3,7 +3,7 @@
 import pytest
 
 from bench.fit.parameter import Parameter
-from bench.report.drawing import ticks
+from bench.report.html import ticks
 from bench.report.numbers import interval, number, share, unit_text
 
 

@@ -27,8 +27,8 @@ from bench.report.document import (
     series,
     table,
 )
-from bench.report.drawing import Ruler, drawn
-from bench.report.markdown import markdown
+from bench.report.html import Ruler, drawn
+from bench.report.publish import markdown
 from bench.report.serial import known, picked, serialised
 from bench.report.terminal import rendered, show, writable
 

@@ -6,7 +6,7 @@ import pytest
 
 from bench.report.document import HeatMap, Intervals, Table
 from bench.report.html import html
-from bench.report.provenance import without_files
+from bench.report.parts import without_files
 from bench.report.validation import confusion as matrix_of
 from bench.report.validation import validation
 from bench.validation.coverage import LEVELS, Coverage, Naming, Share

@@ -8,7 +8,7 @@ import pytest
 
 from bench.axis_kind import LINEAR, ROTARY
 from bench.report.publish import write_html
-from bench.report.view import MOST, motion_of, view
+from bench.report.simulation import MOST, motion_of, view
 from tests.report.test_page import HOSTILE
 from tests.view.motions import AHEAD, SPEED, shown
 

@@ -1,4 +1,4 @@
-"""`bench validate`."""
+"""`bench validate` and `bench fleet`: very many recordings, simulated or real."""
 
 from __future__ import annotations
 
@@ -7,12 +7,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from bench.cli.common import JsonOption, tell, write_json
-from bench.errors import InputError
+import bench
+from bench.cli import common
+from bench.cli.common import STDOUT, JsonOption
+from bench.errors import InputError, UndeterminedError
+from bench.files import keeping, sha256, write_text
 from bench.plant.profile_names import DEFAULT, NAMES
 
 if TYPE_CHECKING:
+    from bench.fleet.fleet import Fleet
     from bench.validation.own import OwnAxis
+
+SUMMARY = "summary.json"
 
 
 def validate(
@@ -36,7 +42,7 @@ def validate(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for page, tables, figures and JSON.")] = None,
 ) -> None:
     """Monte Carlo on synthetic recordings: how far off numbers are, and how often intervals and names hold."""
-    from bench.report.provenance import without_files
+    from bench.report.parts import without_files
     from bench.report.terminal import progress
     from bench.report.validation import validation, validation_json, write_validation
     from bench.validation.plan import AnyAxis, Hiding, Plan
@@ -56,20 +62,58 @@ def validate(
     document = validation(found, basis, command, rig is not None)
     written = [] if out is None else write_validation(out, found, basis, command, rig is not None)
     if json is not None:
-        write_json(json, validation_json(found, basis))
-    tell(document, written, json)
+        common.write_json(json, validation_json(found, basis))
+    common.tell(document, written, json)
 
 
 def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis, dict[str, Any]]:
     """The axis of a rig along a named motion, or the one of a file, and what it rests on."""
-    from bench.report.provenance import provenance
-    from bench.rig.rig import load_rig
-    from bench.trace.read import read
+    from bench.report.parts import provenance
     from bench.validation.own import own_axis
 
-    known = load_rig(rig)
+    known = bench.load_rig(rig)
     if str(profile) in NAMES:
         return own_axis(known, str(profile), None), provenance(rig, [], options)
     if not profile.exists():
         raise InputError("--profile", f"found '{profile}'", f"allowed: the file of a recording, or {', '.join(NAMES)}")
-    return own_axis(known, profile.name, read(profile, known.trace)), provenance(rig, [profile], options)
+    return own_axis(known, profile.name, bench.read(profile, known.trace)), provenance(rig, [profile], options)
+
+
+def fleet(
+    manifest: Annotated[Path, typer.Argument(metavar="MANIFEST", help="CSV or Parquet: file, rig, axis, time, ...")],
+    out: Annotated[Path, typer.Option("--out", help="Folder for results, table, summary and page.")],
+    diagnose: Annotated[bool, typer.Option("--diagnose", help="Name missing effects too.")] = False,
+    retry: Annotated[bool, typer.Option("--retry", help="Do again what failed or timed out.")] = False,
+    deadline: Annotated[float, typer.Option("--deadline", help="Of one recording, in s.", min=0.1)] = 120.0,
+    memory: Annotated[float, typer.Option("--memory", help="Of one recording, in GB.", min=0.25)] = 4.0,
+    workers: Annotated[int | None, typer.Option("--workers", help="Processes (preset: one a core).", min=1)] = None,
+    scheduler: Annotated[str | None, typer.Option("--scheduler", help="Dask's, e.g. tcp://host:8786.")] = None,
+    json: JsonOption = None,
+) -> None:
+    """Evaluate many recordings of many axes: one row each, which axes changed since when, and which need a person."""
+    from bench.fleet.fleet import TABLE
+    from bench.fleet.fleet import fleet as run_fleet
+    from bench.jobs.process import Limits
+    from bench.report.fleet import fleet_document, fleet_json
+    from bench.report.publish import write_html
+    from bench.report.terminal import progress
+
+    limits = Limits(deadline, memory * 1024**3)
+    basis = {"version": bench.__version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
+    page = out / "fleet.html"
+
+    def write_document(found: Fleet) -> None:
+        with keeping(found.manifest.inputs):
+            write_text(out / SUMMARY, fleet_json(found, basis) + "\n")
+            write_html(page, fleet_document(found, SUMMARY, basis))
+
+    with progress(f"evaluating {manifest.name}") as done:
+        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, write_document)
+    if json is not None:
+        common.write_json(json, fleet_json(found, basis))
+    common.tell(fleet_document(found, SUMMARY, basis), (out / TABLE, out / SUMMARY, page), json)
+    if json != STDOUT:
+        common.say(f"{found.evaluated} evaluated now")
+    if not found.summary.counts["done"]:
+        reason = f"none of {len(found.manifest)} recordings gave a result"
+        raise UndeterminedError("the fleet", reason, f"what the column `reason` of {out / TABLE} asks for")

@@ -1,0 +1,191 @@
+"""`bench replay`, `view`, `export` and `compensate`: what is done with a model that `diagnose` wrote."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import bench
+from bench.cli import common
+from bench.cli.common import AtOption, AxisOption, BesideRigOption, JointOption, MjcfOption, ReportOption, RigOption
+from bench.errors import InputError
+from bench.files import held, write_text
+from bench.names import readable
+from bench.plant.profile_names import DEFAULT, NAMES
+
+if TYPE_CHECKING:
+    from bench.cli.common import Subject
+    from bench.export.mjcf import Carried
+    from bench.plant.model_file import StoredModel
+    from bench.view.side_by_side import SideBySide
+
+ModelArgument = Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")]
+#: Name of the joint of a file that holds the joint alone, unless another is given.
+ALONE = "axis"
+
+
+def replay(
+    model: ModelArgument,
+    trace: Annotated[Path, typer.Argument(help="Recording to run it along.")],
+    out: Annotated[Path, typer.Option("--out", help="CSV to write.")],
+    rig: BesideRigOption = None,
+    axis_name: AxisOption = None,
+    report: ReportOption = None,
+    mjcf: MjcfOption = None,
+    joint: JointOption = None,
+    at: AtOption = None,
+) -> None:
+    """Run a diagnosed model along a recording; write measured and simulated signals."""
+    of = common.subject(rig, axis_name, mjcf, joint, at)
+    replayed = bench.replay(model, of.read(trace), of.rig)
+    write_text(out, replayed.csv())
+    if report is not None:
+        from bench.report.simulation import replay as document_of
+
+        common.write_page(report, document_of(replayed, model, readable(trace.name)))
+    common.say(replayed.summary)
+    common.list_files([out, report])
+    common.warn(replayed.warnings)
+
+
+def view(
+    model: ModelArgument,
+    trace: Annotated[
+        Path | None, typer.Argument(help="Recording to run it along; without, it follows a profile.")
+    ] = None,
+    out: Annotated[Path, typer.Option("--out", help="Page to write, for any browser: .html, all in one file.")] = Path(
+        "view.html"
+    ),
+    rig: BesideRigOption = None,
+    profile: Annotated[str, typer.Option("--profile", help=f"Without a recording: {', '.join(NAMES)}.")] = DEFAULT,
+    start: Annotated[float | None, typer.Option("--from", help="Show it from this time on, in s.")] = None,
+    stop: Annotated[float | None, typer.Option("--to", help="Show it up to this time, in s.")] = None,
+    video: Annotated[Path | None, typer.Option("--video", help="Video to write: .mp4, rendered by MuJoCo.")] = None,
+    slowed: Annotated[float, typer.Option("--slowed", help="How many times slower the video plays.", min=1.0)] = 1.0,
+    axis_name: AxisOption = None,
+    mjcf: MjcfOption = None,
+    joint: JointOption = None,
+    at: AtOption = None,
+) -> None:
+    """Show a diagnosed model moving, with the measured axis as a ghost: in a browser, or as a video."""
+    if trace is None and rig is None:
+        raise InputError(
+            "TRACE", "missing", "allowed: a recording, or --rig with [drive], whose profile it then follows"
+        )
+    if video is not None:
+        from bench.view.video import prepare  # before anything imports MuJoCo, which takes its renderer then
+
+        prepare(video)
+    of = common.subject(rig, axis_name, mjcf, joint, at)
+    shown, warnings = _shown(model, trace, of, profile)
+    shown = shown.between(start, stop)
+    if video is not None:
+        from bench.report.terminal import progress
+        from bench.view.scene import Scene
+        from bench.view.video import write_video
+
+        with progress(f"rendering {video.name}") as done:
+            write_video(video, shown, Scene.of(shown, of.rig.load), slowed, done)
+    from bench.report.simulation import view as document_of
+
+    common.write_page(out, document_of(shown, model, readable(profile if trace is None else trace.name), warnings))
+    common.list_files([out, video])
+    common.warn(warnings)
+
+
+def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, list[str]]:
+    """Model and ghost, and what the user should know before believing them."""
+    from bench.view.side_by_side import along_profile, along_recording
+
+    if trace is None:
+        return along_profile(model, of.rig, profile), []
+    recording = of.read(trace)
+    replayed = bench.replay(model, recording, of.rig)
+    no_position = f"{trace.name} holds no position: shown is the integral of its speed, from zero after each hole"
+    return along_recording(model, replayed), [*replayed.warnings, *([] if "position" in recording else [no_position])]
+
+
+def export(
+    model: ModelArgument,
+    out: Annotated[Path, typer.Option("--out", help="File to write.")],
+    mjcf: Annotated[Path | None, typer.Option("--mjcf", help="MJCF of the robot that has the joint.")] = None,
+    joint: Annotated[str | None, typer.Option("--joint", help="Joint that the model goes onto.")] = None,
+    snippet: Annotated[bool, typer.Option("--snippet", help="A default class and a body on this joint alone.")] = False,
+    ranges: Annotated[
+        Path | None, typer.Option("--ranges", help="JSON of identify or diagnose: ranges for domain randomisation.")
+    ] = None,
+    armature: Annotated[
+        str | None, typer.Option("--armature", help="Inertia that becomes the joint's armature: motor, or all.")
+    ] = None,
+) -> None:
+    """Put a diagnosed model into a robot's MJCF; or write its joint as an MJCF of its own, or ranges of its values."""
+    from bench.plant.model_file import load_model
+
+    if [snippet, mjcf is not None, ranges is not None].count(True) != 1:
+        raise InputError("bench export", "found none or several of --mjcf, --snippet, --ranges", "allowed: one of them")
+    stored = load_model(model)
+    if ranges is not None:
+        from bench.export.ranges import ranges_json
+
+        write_text(out, ranges_json(stored, ranges))
+    else:
+        text, carried = _text(stored, out, mjcf, joint, armature)
+        write_text(out, text)
+        for line in carried.lines:
+            common.say(line)
+    common.list_files([out])
+
+
+def _text(
+    stored: StoredModel, out: Path, mjcf: Path | None, joint: str | None, armature: str | None
+) -> tuple[str, Carried]:
+    from bench.export.mjcf import ArmatureShare, joint_alone, robot_with
+
+    if mjcf is None:
+        return joint_alone(stored, joint or ALONE)
+    if joint is None:
+        raise InputError("--joint", "missing", "allowed: a joint of the MJCF")
+    shares = {share.value: share for share in ArmatureShare}
+    if armature is not None and armature not in shares:
+        raise InputError("--armature", f"found '{armature}'", f"allowed: {', '.join(shares)}")
+    return robot_with(mjcf, joint, stored, out, shares.get(armature or ""))
+
+
+def compensate(
+    model: ModelArgument,
+    rig: RigOption,
+    out: Annotated[Path, typer.Option("--out", help="Folder for the tables.")],
+    profile: Annotated[str, typer.Option("--profile", help=f"Motion to track: {', '.join(NAMES)}.")] = DEFAULT,
+) -> None:
+    """Make of a diagnosed model what its drive feeds forward; say how much better it tracks with it, by simulation."""
+    import numpy as np
+
+    from bench.export.feedforward import DriveUnits, feedforward, tracking
+    from bench.plant.drive import Cascade
+    from bench.plant.model_file import load_model
+    from bench.plant.profiles import MotionLimits, plan
+    from bench.report.drive import tracking_table
+    from bench.report.terminal import progress
+
+    axis, stored = bench.load_rig(rig), load_model(model).model
+    kind = stored.parameters.kind
+    if kind is not axis.axis_kind:
+        raise InputError(f"{model}: kind", f"found '{kind.name}'", f"allowed: '{axis.kind}', as {axis.source} says")
+    motion = plan(profile, MotionLimits.from_rig(axis, stored.parameters, Cascade.from_rig(axis).control_period))
+    reach = float(motion.position.min()), float(motion.position.max())
+    with progress(f"tracking {profile}") as done:
+        found = feedforward(stored, float(np.abs(motion.velocity).max()), reach)
+        done(0.4)
+        before = tracking(stored, axis, motion)
+        done(0.7)
+        after = tracking(stored, axis, motion, found)
+    files = DriveUnits.of(axis).files(found)
+    with held(out):
+        for name, text in files.items():
+            write_text(out / name, text)
+    common.printed(tracking_table(f"{axis.name}: {profile}", before, after, kind))
+    if found.left:
+        common.say(f"left to the drive's feedback: {', '.join(found.left)}")
+    common.list_files(out / name for name in files)

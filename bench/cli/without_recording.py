@@ -1,0 +1,150 @@
+"""`bench demo`, `simulate`, `plan`, `rigs`, `effects` and `report`: commands that need no recording."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import bench
+from bench.cli import common
+from bench.cli.common import ReportOption, RigOption
+from bench.errors import InputError
+from bench.files import held, write_text
+from bench.names import nearest, readable
+from bench.plant.profile_names import DEFAULT, NAMES
+
+
+def demo(
+    out: Annotated[Path, typer.Option("--out", help="Folder for trace, truth and figures.")] = Path("bench_demo"),
+) -> None:
+    """Simulate the embedded rig, identify it, and set truth beside estimate."""
+    from bench.demo import demo as run_demo
+    from bench.report.terminal import progress
+
+    with progress("demo") as done:
+        found, files = run_demo(out, done)
+    common.tell(found, files)
+
+
+def simulate(
+    rig: Annotated[Path, typer.Argument(help="Rig file with [drive] and [simulation].")],
+    out: Annotated[Path, typer.Option("--out", help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
+    profile: Annotated[str, typer.Option("--profile", help=f"Motion: {', '.join(NAMES)}.")] = DEFAULT,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of the sensors' noise.", min=0)] = 0,
+    effect: Annotated[
+        list[str] | None, typer.Option("--effect", help="NAME:key=value,... to add; see bench effects. Repeatable.")
+    ] = None,
+    report: ReportOption = None,
+) -> None:
+    """Simulate the axis of a rig in MuJoCo; write its trace and, beside it, the truth."""
+    from bench.effects.present import parse_effect
+    from bench.plant.simulate import write_truth
+    from bench.report.terminal import progress
+    from bench.rig.rig import require
+    from bench.trace.write import write
+
+    axis = bench.load_rig(rig)
+    require(axis, "simulate")
+    with progress(f"simulating {axis.name}") as done:
+        present = [parse_effect(text, axis.axis_kind) for text in effect or ()]
+        simulated = bench.simulate(axis, profile, seed, progress=done, effects=present)
+    with held(out.parent):  # a trace and its own truth, not that of a run beside this one
+        write(simulated.trace, out)
+        truth = write_truth(out, simulated.truth)
+    if report is not None:
+        from bench.report.simulation import simulation
+
+        common.write_page(report, simulation(simulated, readable(out.name)))
+    common.list_files([out, truth, report])
+
+
+def plan(
+    rig: RigOption,
+    out: Annotated[Path, typer.Option("--out", help="CSV of the motion, for a controller.")],
+    wanted: Annotated[
+        str | None, typer.Option("--for", help="NAME:key=value,... of an effect that is to be told; see bench effects.")
+    ] = None,
+    period: Annotated[float, typer.Option("--period", help="Between rows of the CSV in ms.", min=1e-3)] = 1.0,
+) -> None:
+    """Plan the motion to record inside the rig's limits: the one that tells best, and how well it will."""
+    from bench.effects.present import parse_effect
+    from bench.export.feedforward import DriveUnits
+    from bench.export.plan import motions
+    from bench.report.drive import others_line, plan_table
+    from bench.report.terminal import progress
+    from bench.rig.rig import require
+
+    axis = bench.load_rig(rig)
+    require(axis, "plan")
+    units = DriveUnits.of(axis)
+    effect = None if wanted is None else parse_effect(wanted, axis.axis_kind)
+    with progress(f"planning for {axis.name}"):
+        found = motions(axis, effect)
+    best = found[0]
+    counted = ((unit.text, unit.factor) for unit in (units.position, units.velocity))
+    write_text(out, best.motion.csv(period * 1e-3, *counted))
+    common.printed(plan_table(best))
+    common.say(others_line(found))
+    common.list_files([out])
+
+
+def rigs(
+    name: Annotated[str | None, typer.Argument(help="A shipped rig, or a rig file of your own; all without.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Copy of the rig file to write.")] = None,
+) -> None:
+    """List the rigs that are shipped, copy one, or say which commands a rig suffices for and all that is missing."""
+    from bench.assets import asset
+    from bench.rig.rig import lacking, without_constant
+
+    shipped = {path.stem: path for path in sorted(asset("data", "rigs").glob("*.toml"))}
+    if name is None:
+        if out is not None:
+            raise InputError("--out", "found without a rig", f"allowed: with one of {', '.join(shipped)}")
+        for stem, path in shipped.items():
+            typer.echo(f"{stem:12} {bench.load_rig(path).name}")
+        return
+    path = shipped.get(name) or Path(name)
+    if name not in shipped and not path.exists():
+        raise InputError(
+            name, f"no shipped rig and no file{nearest(name, list(shipped))}", f"allowed: {', '.join(shipped)}"
+        )
+    if out is not None:
+        if out.exists() and out.resolve() == path.resolve():
+            raise InputError(out, "found the rig itself", "allowed: another file")
+        write_text(out, path.read_text(encoding="utf-8"))
+        common.list_files([out])
+    rig = bench.load_rig(path)
+    typer.echo(f"{rig.name}, {rig.kind}")
+    for command, keys in lacking(rig).items():
+        typer.echo(f"bench {command}: {'missing ' + ', '.join(keys) if keys else 'suffices'}")
+    remark = without_constant(rig)
+    if remark is not None:
+        typer.echo(f"note: {remark}")
+
+
+def effects(
+    name: Annotated[
+        str | None, typer.Argument(help="Effect whose page to print; all of them as a table without.")
+    ] = None,
+) -> None:
+    """List the physical effects the bench knows, or print the page of one: equation, quantities, source."""
+    from bench.report.effects import effect_page, effects_table
+
+    if name is None:
+        common.printed(effects_table())
+    else:
+        typer.echo(effect_page(name))
+
+
+def report(
+    folders: Annotated[list[Path], typer.Argument(metavar="DIR...", help="Folders that --out of a command wrote.")],
+    script: Annotated[
+        Path | None, typer.Option("--script", help="Script file to write that the pages share, for many of them.")
+    ] = None,
+) -> None:
+    """Make report.html of folders anew, from the report.json that lies in each."""
+    from bench.report.publish import rebuild
+
+    common.list_files(rebuild(folders, script))
