@@ -42,7 +42,7 @@ def validate(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for page, tables, figures and JSON.")] = None,
 ) -> None:
     """Monte Carlo on synthetic recordings: how far off numbers are, and how often intervals and names hold."""
-    from bench.report.parts import without_files
+    from bench.report.parts import provenance
     from bench.report.terminal import progress
     from bench.report.validation import validation, validation_json, write_validation
     from bench.validation.plan import AnyAxis, Hiding, Plan
@@ -53,7 +53,7 @@ def validate(
     hiding = Hiding.parse(effects)
     named = diagnose or (rig is not None and hiding.anything)  # what is hidden in one's own axis is to be named
     options = {"rigs": rigs, "seed": seed, "effects": effects, "diagnose": named, "profile": str(profile)}
-    population, basis = (AnyAxis(), without_files(options)) if rig is None else _own(rig, profile, options)
+    population, basis = (AnyAxis(), provenance(None, [], options)) if rig is None else _own(rig, profile, options)
     plan = Plan(seed, hiding, named, population)
     with progress(f"validating on {rigs} runs") as done:
         found = run_validation(plan, rigs, workers, scheduler, done)

@@ -11,7 +11,7 @@ from typing import Any
 
 from bench.baseline.check import Checked
 from bench.baseline.model import RESPONSE_TORQUE
-from bench.baseline.state import GAPS, NamedHere, RemainingGap, State
+from bench.baseline.state import GAPS, NamedHere, RemainingGap
 from bench.comparison.difference import CHANGED, SAME, UNDECIDED, Comparison, Measured
 from bench.names import short, words
 from bench.report.continuous_integration import Finding
@@ -47,6 +47,8 @@ LONG = 600
 def check_json(checked: Checked) -> str:
     """The check as the contract's JSON."""
     baseline, now = checked.baseline, checked.now
+    came = {name: [_effect(*pair) for pair in getattr(checked, name)] for name in ("appeared", "gone")}
+    gaps = {name: {"unit": unit, "baseline": _gap(was), "now": _gap(left)} for name, unit, was, left in _gaps(checked)}
     return serialised(
         {
             "schema": SCHEMA,
@@ -55,17 +57,10 @@ def check_json(checked: Checked) -> str:
             "false_alarm_rate": checked.false_alarm_rate,
             "comparisons": checked.family,
             "quantities": [_comparison(one) for one in checked.comparisons if not one.effect],
-            "effects": {
-                "appeared": [_effect(*pair) for pair in checked.appeared],
-                "gone": [_effect(*pair) for pair in checked.gone],
-            },
+            "effects": came,
             "verdict": {"baseline": baseline.verdict or None, "now": now.verdict or None},
-            "gap": {
-                name: {"unit": unit, "baseline": _gap(was), "now": _gap(left)}
-                for name, unit, was, left in _gaps(baseline, now)
-            },
-            "rig": checked.rig,
-            "conditions": checked.conditions,
+            "gap": gaps,
+            **picked(checked, "rig", "conditions"),
             "provenance": {**now.provenance, "baseline": baseline.provenance},
         }
     )
@@ -82,20 +77,18 @@ def _comparison(one: Comparison) -> dict[str, Any]:
 
 def _effect(effect: NamedHere, one: Comparison) -> dict[str, Any]:
     """An effect that came or went; how sure that is: its torque against what the other state would have shown."""
+    parameters = {
+        key: {**picked(found, "value", "unit"), "std_error": known(found.std_error)}
+        for key, found in effect.quantities.items()
+    }
+    torque = picked(one, "unit", "baseline", "now", "margin") if one.unit else None
     return {
         "name": effect.name,
-        "parameters": {
-            key: {**picked(found, "value", "unit"), "std_error": known(found.std_error)}
-            for key, found in effect.quantities.items()
-        },
+        "parameters": parameters,
         "ambiguous_with": effect.ambiguous_with,
         "result": one.result,
         "because": one.held_back or None,
-        "evidence": {
-            "torque": picked(one, "unit", "baseline", "now", "margin") if one.unit else None,
-            "chance": one.chance,
-            "gain": known(effect.gain),
-        },
+        "evidence": {"torque": torque, "chance": one.chance, "gain": known(effect.gain)},
     }
 
 
@@ -103,17 +96,22 @@ def _gap(gap: RemainingGap | None) -> dict[str, Any] | None:
     return None if gap is None else picked(gap, "after", "noise_floor")
 
 
-def _gaps(baseline: State, now: State) -> Iterator[tuple[str, str, RemainingGap | None, RemainingGap | None]]:
+def _gaps(checked: Checked) -> Iterator[tuple[str, str, RemainingGap | None, RemainingGap | None]]:
     """Name and unit of each gap, then and now."""
-    for name in dict.fromkeys([*baseline.gaps, *now.gaps]):
-        unit = (now.gaps.get(name) or baseline.gaps[name]).unit
-        yield name, unit, baseline.gaps.get(name), now.gaps.get(name)
+    before, now = checked.baseline.gaps, checked.now.gaps
+    for name in dict.fromkeys([*before, *now]):
+        yield name, (now.get(name) or before[name]).unit, before.get(name), now.get(name)
 
 
 def headline(checked: Checked) -> str:
     """What changed, in one line; or that nothing did, or why it is undecided."""
-    if checked.result == CHANGED:
-        return _sentence(_changes(checked))
+    if checked.result == CHANGED:  # names, then parameters; gaps only if nothing else did
+        changed = [one for one in checked.comparisons if one.result == CHANGED]
+        changed.sort(key=lambda one: not one.effect)
+        *first, last = (
+            described(one, checked) for one in [one for one in changed if one.name not in FOLLOWING] or changed
+        )
+        return sentence(f"{', '.join(first)}, and {last}" if first else last)
     if checked.result == SAME:
         return "The same: no quantity differs by more than its margin"
     if checked.rig:
@@ -126,25 +124,15 @@ def headline(checked: Checked) -> str:
     return f"Undecided: {'; '.join([*motion, *open_])}"
 
 
-def _changes(checked: Checked) -> list[str]:
-    """What changed: names, then parameters; gaps only if nothing else did."""
-    changed = [one for one in checked.comparisons if one.result == CHANGED]
-    changed.sort(key=lambda one: not one.effect)
-    parts = [one for one in changed if one.name not in FOLLOWING] or changed
-    return [described(one, checked) for one in parts]
-
-
-def _sentence(parts: list[str]) -> str:
-    joined = parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])}, and {parts[-1]}"
-    return f"{joined[:1].upper()}{joined[1:]}"
-
-
 def described(one: Comparison, checked: Checked) -> str:
     """One comparison in words."""
     label = words(one.name).replace(".", " ")
     effect = next((effect for effect, found in (*checked.appeared, *checked.gone) if found is one), None)
     if effect is not None:
-        return f"{label} {_came_or_went(one)}: {_values(effect)}{_why(one)}"
+        came, went = ("appeared", "is gone, which had")
+        if one.result != CHANGED:
+            came, went = ("is named now", "is named no more, which had")
+        return f"{label} {came if one.effect == 'appeared' else went}: {_values(effect)}{_why(one)}"
     if one.baseline is None or one.now is None:
         return f"{label} cannot be compared{_why(one)}"
     before, after = formatted(one.baseline, one.unit), formatted(one.now, one.unit)
@@ -155,12 +143,6 @@ def described(one: Comparison, checked: Checked) -> str:
         return f"{label} {verb} from {before} to {after}{unit}{share}"
     how = "is the same:" if one.result == SAME else "may have changed:"
     return f"{label} {how} {before} and now {after}{unit}{share}{_why(one)}"
-
-
-def _came_or_went(one: Comparison) -> str:
-    if one.effect == "appeared":
-        return "appeared" if one.result == CHANGED else "is named now"
-    return "is gone, which had" if one.result == CHANGED else "is named no more, which had"
 
 
 def _why(one: Comparison) -> str:
@@ -210,16 +192,11 @@ def findings(checked: Checked) -> list[Finding]:
 
 
 def check_document(checked: Checked, title: str) -> Document:
-    """The document of a check.
-
-    Args:
-        checked: what was found.
-        title: names of what is compared.
-    """
-    alike, differing = not (checked.rig or checked.conditions), (_unlike(checked),)
+    """The document of a check of what `title` names."""
+    alike, line = not (checked.rig or checked.conditions), unit_text(headline(checked))
     sections = [
         Section(key="comparisons", heading="What was compared", blocks=tuple(_compared(checked))),
-        Section(key="conditions", heading="Like with like", blocks=differing, detail=alike),
+        Section(key="conditions", heading="Like with like", blocks=(_unlike(checked),), detail=alike),
     ]
     if checked.baseline.gaps or checked.now.gaps:
         gaps = (_gaps_table(checked),)
@@ -227,7 +204,7 @@ def check_document(checked: Checked, title: str) -> Document:
     return Document(
         title=f"{short(title)}: check",
         subject=short(title, LONG),
-        verdict=_verdict(checked),
+        verdict=f"Changed: {line[:1].lower()}{line[1:]}." if checked.result == CHANGED else f"{line}.",
         tone=TONES[checked.result],
         answers=_answers(checked),
         sections=tuple(sections),
@@ -235,18 +212,17 @@ def check_document(checked: Checked, title: str) -> Document:
     )
 
 
-def _verdict(checked: Checked) -> str:
-    line = unit_text(headline(checked))
-    return f"Changed: {line[:1].lower()}{line[1:]}." if checked.result == CHANGED else f"{line}."
-
-
 def _answers(checked: Checked) -> dict[str, str]:
     results = [one.result for one in checked.comparisons]
+    sure = (
+        f"Of axes that differ by no margin at most {share(checked.false_alarm_rate)} are called changed, all "
+        f"{checked.family} comparisons together."
+    )
     count = ", ".join(f"{results.count(result)} {result}" for result in TONES if result in results)
     return {
         "What came or went?": _came_and_went(checked),
         "How many differ?": f"{count} of {len(results)} comparisons." if results else "Nothing could be compared.",
-        "How sure?": _sure(checked),
+        "How sure?": sure if checked.false_alarm_rate else "Two models are compared by what they say, without noise.",
         "What next?": _next(checked),
     }
 
@@ -261,20 +237,11 @@ def _came_and_went(checked: Checked) -> str:
     return f"No effect; {kept} as in the baseline." if kept else "No effect: none is named in either state."
 
 
-def _sure(checked: Checked) -> str:
-    if not checked.false_alarm_rate:
-        return "Two models are compared by what they say, without noise."
-    return (
-        f"Of axes that differ by no margin at most {share(checked.false_alarm_rate)} are called changed, all "
-        f"{checked.family} comparisons together."
-    )
-
-
 def _next(checked: Checked) -> str:
-    if checked.result == SAME:
-        return "Nothing."
     if checked.result == CHANGED:
         return "Look at what changed; where the new state is right, accept it with --update."
+    if checked.result == SAME:
+        return "Nothing."
     if checked.rig:
         return "Make the baseline anew: --update with recordings of the old state and the rig file of now."
     if checked.conditions:
@@ -331,9 +298,8 @@ def _cells(one: Comparison) -> tuple[str, ...]:
 
 def _unlike(checked: Checked) -> Points | Paragraph:
     """In what the two states are not recorded alike."""
-    lines = [f"rig: {line}" for line in checked.rig] + [
-        f"not as in the baseline: {line}" for line in checked.conditions
-    ]
+    lines = [f"rig: {line}" for line in checked.rig]
+    lines += [f"not as in the baseline: {line}" for line in checked.conditions]
     if lines:
         return Points(items=tuple(lines))
     if not checked.now.conditions:
@@ -345,7 +311,7 @@ def _gaps_table(checked: Checked) -> Table:
     """What is left in both states, and their verdicts."""
     verdicts = [words(state.verdict) or "not asked" for state in (checked.baseline, checked.now)]
     rows: list[tuple[str, ...]] = [("verdict", *verdicts, "")]
-    for name, unit, *gaps in _gaps(checked.baseline, checked.now):
+    for name, unit, *gaps in _gaps(checked):
         what = effort_word(unit) if name == "torque" else words(name)
         for of, value in (("left", "after"), ("noise alone", "noise_floor")):
             both = ("–" if gap is None else number(getattr(gap, value), digits=3) for gap in gaps)

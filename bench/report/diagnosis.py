@@ -59,48 +59,41 @@ BESIDE = 1.5
 
 
 def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None) -> str:
-    """The diagnosis as the contract's JSON.
-
-    Args:
-        found: by the diagnosis.
-        provenance: of the files it came from (`bench.report.parts`); null where it came from none.
-    """
-    return serialised(
-        {
-            "schema": SCHEMA,
-            "verdict": found.verdict,
-            "because": found.because,
-            "effects": [
-                {
-                    "name": each.name,
-                    "kind": "measurement" if isinstance(each.effect, Sensing) else "physics",
-                    **picked(each, "parameters", "ambiguous_with", "evidence"),
-                }
-                for each in found.effects
-            ],
-            "where": [_where_json(each) for each in found.where],
-            "unexplained": {
-                "share": found.unexplained_share,
-                "where": [_where_json(each) for each in found.unexplained_where],
-            },
-            "parameters": found.parameters,
-            **recordings_json(found.recordings, found.between, provenance),
-            "gap": {"torque": _gap_json(found.torque), "velocity": _velocity_json(found)},
-            "steps": [_step_json(step) for step in found.steps[1:]],
-            "rejected": found.rejected,
-            "holdout": _holdout_json(found.holdout),
-            "next_experiment": _experiment_json(found),
-            "stopped": found.stopped,
-            "provenance": provenance,
-            "model": {"mjcf": "model.xml" if found.model is not None else None, "toml": "model.toml"},
-            "checks": found.checks,
-            "warnings": found.warnings,
-        }
-    )
+    """The diagnosis as the contract's JSON; `provenance` of the files it came from, null where it came from none."""
+    kinds = ("measurement" if isinstance(each.effect, Sensing) else "physics" for each in found.effects)
+    effects = [
+        {"name": each.name, "kind": kind, **picked(each, "parameters", "ambiguous_with", "evidence")}
+        for each, kind in zip(found.effects, kinds, strict=True)
+    ]
+    velocity = {  # models held to the recording by a cascade, fed with the recorded effort
+        **_gap_json(found.velocity),
+        "loop": {"kind": "held", "bandwidth": {"value": found.bandwidth, "unit": "rad/s"}},
+        "closed_loop": _before_after(found.closed_loop),
+        "refined": _before_after(found.refined),
+    }
+    content = {
+        "schema": SCHEMA,
+        **picked(found, "verdict", "because"),
+        "effects": effects,
+        "where": _where_json(found.where),
+        "unexplained": {"share": found.unexplained_share, "where": _where_json(found.unexplained_where)},
+        "parameters": found.parameters,
+        **recordings_json(found.recordings, found.between, provenance),
+        "gap": {"torque": _gap_json(found.torque), "velocity": velocity},
+        "steps": [_step_json(step) for step in found.steps[1:]],
+        "rejected": found.rejected,
+        "holdout": _holdout_json(found.holdout),
+        "next_experiment": _experiment_json(found),
+        "stopped": found.stopped,
+        "provenance": provenance,
+        "model": {"mjcf": "model.xml" if found.model is not None else None, "toml": "model.toml"},
+        **picked(found, "checks", "warnings"),
+    }
+    return serialised(content)
 
 
-def _where_json(account: Where) -> dict[str, Any]:
-    return picked(account, "coordinate", "region", "unit", "share")
+def _where_json(accounts: Sequence[Where]) -> list[dict[str, Any]]:
+    return [picked(account, "coordinate", "region", "unit", "share") for account in accounts]
 
 
 def _before_after(pair: tuple[float, float] | None) -> dict[str, float] | None:
@@ -111,16 +104,6 @@ def _gap_json(gap: Gap) -> dict[str, Any]:
     content = picked(gap, "unit", "noise_floor")
     content |= {"identify": _before_after(gap.identify), "holdout": _before_after(gap.holdout)}
     return content if gap.judged is None else content | {"judged": {"share": gap.judged[0], "after": gap.judged[1]}}
-
-
-def _velocity_json(found: Diagnosis) -> dict[str, Any]:
-    """The gap, and how it was had: models held to the recording by a cascade, fed with the recorded effort."""
-    return {
-        **_gap_json(found.velocity),
-        "loop": {"kind": "held", "bandwidth": {"value": found.bandwidth, "unit": "rad/s"}},
-        "closed_loop": _before_after(found.closed_loop),
-        "refined": _before_after(found.refined),
-    }
 
 
 def _step_json(step: Shrunk) -> dict[str, Any]:
@@ -187,14 +170,7 @@ def write_diagnosis(
 def diagnosis(
     found: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, files: Sequence[File] = ()
 ) -> Document:
-    """The document of a diagnosis.
-
-    Args:
-        found: by it.
-        title: rig and recordings.
-        provenance: of the files it came from.
-        files: to take along: the model, and all numbers.
-    """
+    """The document of a diagnosis of what `title` names, with files to take along: the model, and all numbers."""
     sections = (
         _motion(found),
         _where(found),
@@ -442,9 +418,7 @@ def _over(profile: Profile, found: Diagnosis) -> Panel:
 def _parameters(found: Diagnosis) -> Section:
     tables = [parameters_table("The axis", found.parameters)]
     tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in found.effects]
-    if found.recordings:
-        units = {name: each.unit for name, each in found.parameters.items()}
-        tables.append(recordings_table(found.recordings, found.between, units))
+    tables += recordings_table(found.recordings, found.between, found.parameters)
     return Section(key="parameters", heading="Parameters", blocks=tuple(tables))
 
 
@@ -489,17 +463,14 @@ def _next(found: Diagnosis) -> Section:
     if found.because:
         blocks.append(Paragraph(text="What speaks against this being all:"))
         blocks.append(Points(items=tuple(map(words, found.because))))
-    if found.unexplained_where:
-        blocks.append(Points(items=tuple(map(_sits, found.unexplained_where))))
-    return Section(key="next", heading="What to record next", blocks=tuple(blocks), detail=True)
-
-
-def _sits(account: Where) -> str:
-    """Where a part of what is left is."""
-    return (
-        f"{share(account.share)} of what is left hangs on {coordinate_word(account.coordinate, account.unit)}, most of "
-        f"it between {number(account.region[0])} and {number(account.region[1], account.unit)}"
+    left = (
+        f"{share(one.share)} of what is left hangs on {coordinate_word(one.coordinate, one.unit)}, most of it between "
+        f"{number(one.region[0])} and {number(one.region[1], one.unit)}"
+        for one in found.unexplained_where
     )
+    if found.unexplained_where:
+        blocks.append(Points(items=tuple(left)))
+    return Section(key="next", heading="What to record next", blocks=tuple(blocks), detail=True)
 
 
 def _where_picture(found: Diagnosis, title: str) -> Picture:

@@ -58,13 +58,7 @@ class Code(Part):
 
 
 class Heading(Part):
-    """Of a column of a table.
-
-    Attributes:
-        heading: its text.
-        number: whether the column holds numbers, which are set to the right.
-        prose: whether it holds sentences, which need room.
-    """
+    """Of a column of a table: of numbers, which are set to the right, or of sentences (`prose`), which need room."""
 
     heading: str
     number: bool = False
@@ -72,13 +66,7 @@ class Heading(Part):
 
 
 class Table(Part):
-    """A table.
-
-    Attributes:
-        caption: what it tells.
-        columns, rows: of it; the first cell of a row names it.
-        marked: rows to be noticed, by their numbers.
-    """
+    """A table: the first cell of a row names it; `marked` are numbers of rows to be noticed."""
 
     kind: Literal["table"] = "table"
     caption: str
@@ -88,14 +76,7 @@ class Table(Part):
 
 
 def table(caption: str, headings: Sequence[str], rows: Iterable[Iterable[str]], marked: Iterable[int] = ()) -> Table:
-    """A table.
-
-    Args:
-        caption: what it tells.
-        headings: of the columns; `>` behind one sets its cells to the right, as numbers are, `~` gives sentences room.
-        rows: their cells.
-        marked: numbers of the rows to be noticed.
-    """
+    """A table; `>` behind a heading sets its cells to the right, as numbers are, `~` gives sentences room."""
     columns = tuple(
         Heading(heading=one[:-1], **SET[one[-1]]) if one[-1:] in SET else Heading(heading=one) for one in headings
     )
@@ -103,12 +84,9 @@ def table(caption: str, headings: Sequence[str], rows: Iterable[Iterable[str]], 
 
 
 class Series(Part):
-    """What is drawn into a chart.
+    """What is drawn into a chart, under its name in the legend, in the colour of what it stands for.
 
     Attributes:
-        name: of it, for the legend.
-        style: of dots, a line or a band.
-        colour: by what it stands for.
         x, y: points (b,); `y` is () of a band.
         low, high: of a band, or of an interval around each dot (b,); () without.
     """
@@ -123,12 +101,7 @@ class Series(Part):
 
 
 def series(
-    name: str,
-    style: Style,
-    colour: Colour,
-    x: Array,
-    y: Array | None = None,
-    bounds: tuple[Array, Array] | None = None,
+    name: str, style: Style, colour: Colour, x: Array, y: Array | None = None, bounds: tuple[Array, Array] | None = None
 ) -> Series:
     """A series of arrays: points `x`, `y` (b,), and what lies below and above of each (b,)."""
     found = {key: tuple(map(float, values)) for key, values in (("x", x), ("y", y)) if values is not None}
@@ -140,11 +113,9 @@ class Panel(Part):
     """One pair of axes of a chart.
 
     Attributes:
-        x_label, x_unit: of the horizontal one.
         note: that stands in its corner.
-        series: that are drawn into it.
-        y_label: of the vertical one with its unit, where it is no other panel's.
-        log: whether both are logarithmic.
+        y_label: of the vertical axis with its unit, where it is no other panel's.
+        log: whether both axes are logarithmic.
     """
 
     x_label: str
@@ -155,22 +126,21 @@ class Panel(Part):
     log: bool = False
 
 
-class Chart(Part):
+class Drawing(Part):
+    """What is drawn: its title, and what it shows in words."""
+
+    title: str
+    alternative: str
+
+
+class Chart(Drawing):
     """Panels of points and lines over anything; drawn without a script.
 
     Panels stand beside each other and share one y scale; those that have y labels stand one above the other, with
     a scale each.
-
-    Attributes:
-        title: of the chart.
-        alternative: what it shows, in words.
-        y_label, y_unit: of all panels.
-        panels: of it.
     """
 
     kind: Literal["chart"] = "chart"
-    title: str
-    alternative: str
     y_label: str = ""
     y_unit: str = ""
     panels: tuple[Panel, ...]
@@ -182,13 +152,7 @@ class Chart(Part):
 
 
 class Span(Part):
-    """A row of intervals: a value and its bounds.
-
-    Attributes:
-        name: of it.
-        colour: by what it stands for, as of a series.
-        value, low, high: of it, low <= value <= high.
-    """
+    """A row of intervals, coloured as a series: a value and its bounds, low <= value <= high."""
 
     name: str
     colour: Colour
@@ -197,12 +161,10 @@ class Span(Part):
     high: float
 
 
-class Intervals(Part):
+class Intervals(Drawing):
     """Intervals below each other on one scale, a row each (a forest plot); drawn without a script.
 
     Attributes:
-        title: of the chart.
-        alternative: what it shows, in words.
         label, unit: of the scale.
         right: values between which all is as it should be: a band behind all rows, or a line.
         limits: of the scale; what lies beyond is drawn at its end, as a ring.
@@ -211,8 +173,6 @@ class Intervals(Part):
     """
 
     kind: Literal["intervals"] = "intervals"
-    title: str
-    alternative: str
     label: str
     unit: str = ""
     right: tuple[float, float]
@@ -225,7 +185,6 @@ class HeatMap(Part):
     """Counts as a table whose cells are coloured by their share of the row; drawn without a script.
 
     Attributes:
-        caption: what it tells.
         corner: what rows are.
         rows, columns: headings.
         counts: a row each; zero is left blank. All should lie on the diagonal, which is framed.
@@ -254,14 +213,7 @@ class Samples(Part):
 
 
 class TimeCurve(Part):
-    """A curve of a graph over time.
-
-    Attributes:
-        name: of it.
-        role: how it is drawn: what was measured, what a model makes, or what a model leaves.
-        choice: shown where this one of the graph's choices is made; None always.
-        samples: of it.
-    """
+    """A curve over time, drawn by its role; shown where its graph's choice is `choice`, always where that is None."""
 
     name: str
     role: Literal["measured", "model", "left"]
@@ -278,20 +230,15 @@ class TimePanel(Part):
     first: bool = False
 
 
-class TimeGraph(Part):
-    """Panels over one time axis that zoom, pan and hover together.
+class TimeGraph(Drawing):
+    """Panels from top to bottom over one time axis that zoom, pan and hover together.
 
     Attributes:
-        title: of the graph.
-        alternative: what it shows, in words.
         start, step, count: of the grid of its curves - s.
         choices: models to choose from, the last one first in sight.
-        panels: from top to bottom.
     """
 
     kind: Literal["time"] = "time"
-    title: str
-    alternative: str
     start: float
     step: float = Field(gt=0.0)
     count: int = Field(gt=0)
@@ -299,12 +246,10 @@ class TimeGraph(Part):
     panels: tuple[TimePanel, ...]
 
 
-class Moving(Part):
+class Moving(Drawing):
     """An axis in motion, with the one it is compared with as a ghost: a disk, or a slide on its rail.
 
     Attributes:
-        title: of the drawing.
-        alternative: what it shows, in words.
         turns: whether the axis does.
         unit: of its position.
         ghost: what the ghost is.
@@ -315,8 +260,6 @@ class Moving(Part):
     """
 
     kind: Literal["motion"] = "motion"
-    title: str
-    alternative: str
     turns: bool
     unit: str
     ghost: str
@@ -331,14 +274,7 @@ class Moving(Part):
 
 
 class File(Part):
-    """A file to take along: inside of the page, and beside it in the folder of a command.
-
-    Attributes:
-        name: under which it is saved.
-        about: what it is.
-        media: its type.
-        content: its text.
-    """
+    """A file to take along, under its name and media type: inside of the page, and beside it in a command's folder."""
 
     name: str
     about: str
@@ -371,21 +307,12 @@ AnyPart = Annotated[
     Paragraph | Points | Code | Table | TimeGraph | Moving | Chart | Intervals | HeatMap | Downloads | Neighbours,
     Field(discriminator="kind"),
 ]
-
-
 #: What a picture can hold.
 Drawable = Table | TimeGraph | Chart | Intervals | HeatMap
 
 
 class Section(Part):
-    """A section under a heading.
-
-    Attributes:
-        key: its anchor on the page.
-        heading: of it.
-        blocks: its parts.
-        detail: whether it is left to the page: a terminal does not show it.
-    """
+    """A section under a heading; `key`: its anchor on the page, `detail`: whether a terminal leaves it to the page."""
 
     key: str = Field(pattern=r"^[a-z][a-z0-9-]*$")
     heading: str
@@ -394,30 +321,24 @@ class Section(Part):
 
 
 class Picture(Part):
-    """A figure for paper.
-
-    Attributes:
-        name: of its file, without ending.
-        title: above it.
-        rows: what is drawn from top to bottom, beside each other in a row.
-    """
+    """A figure for paper, by its file's name without ending: rows from top to bottom, their parts beside each other."""
 
     name: str
     title: str
     rows: tuple[tuple[Drawable, ...], ...]
 
 
-def _from_list(given: Any) -> Any:  # noqa: ANN401 - whatever a file holds
-    """Questions with their answers, as a file lists them."""
-    listed = isinstance(given, list) and all(
-        isinstance(one, dict) and {*one} == {"question", "answer"} for one in given
-    )
-    return {one["question"]: one["answer"] for one in given} if listed else given
+def _answers(given: Any) -> Any:  # noqa: ANN401 - whatever a file holds
+    """Answers by question: of the list that a file has, or as they are."""
+    try:
+        return {one["question"]: one["answer"] for one in given}
+    except (KeyError, TypeError):
+        return given
 
 
 Answers = Annotated[
     Mapping[str, str],
-    BeforeValidator(_from_list),
+    BeforeValidator(_answers),
     PlainSerializer(lambda answers: [{"question": key, "answer": value} for key, value in answers.items()]),
 ]
 
@@ -428,10 +349,8 @@ class Document(Part):
     Attributes:
         title: of the window.
         subject: what it is about: rig and recordings.
-        verdict: the headline, a sentence.
-        tone: of it.
+        verdict, tone: the headline, a sentence.
         answers: what a reader wants to know first, by question.
-        sections: the rest.
         origin: version and digests, so that anybody can tell what it rests on.
         pictures: figures for paper, which are no part of the page.
         warnings: what a user should know before relying on it, for standard error; the page has them in a section.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +28,7 @@ from bench.report.document import (
     table,
 )
 from bench.report.numbers import number, unit_text
-from bench.report.parts import origin
+from bench.report.parts import origin, values_table
 from bench.rig.limits import OperatingRange, Reserve, reserve
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
@@ -45,18 +46,12 @@ def plan_table(best: PlannedMotion) -> Table:
 
 def others_line(found: list[PlannedMotion]) -> str:
     """How well all profiles tell the same, in a line."""
-    others = [f"{each.profile} {each.worst:.2%}" if not each.reason else f"{each.profile} nothing" for each in found]
+    others = [f"{each.profile} {'nothing' if each.reason else f'{each.worst:.2%}'}" for each in found]
     return f"largest standard error over its value: {', '.join(others)}"
 
 
 def tracking_table(title: str, before: Tracking, after: Tracking, kind: AxisKind) -> Table:
-    """RMS tracking errors without and with what is fed forward.
-
-    Args:
-        title: axis and motion.
-        before, after: without, and with it.
-        kind: of the axis.
-    """
+    """RMS tracking errors before, without what is fed forward, and after, with it; `title`: axis and motion."""
     rows = []
     for name, unit in (("position", kind.length_unit), ("velocity", kind.speed_unit)):
         was, now = getattr(before, name), getattr(after, name)
@@ -99,8 +94,8 @@ def limits(trace: Trace, rig: Rig) -> Document:
     name = readable(trace.origin).rpartition("/")[2]
     found = in_range(rig, trace["velocity"], np.asarray(effort), name)
     least = min(value for key, (value, _) in found.numbers.items() if "reserve" in key)
-    rows = ((name, number(value), unit) for name, (value, unit) in found.numbers.items())
-    blocks = (table("Reserves and effective values", ("quantity", "value>", "unit"), rows), found.chart)
+    values = ((name, value, unit) for name, (value, unit) in found.numbers.items())
+    blocks = (values_table("Reserves and effective values", values, 4), found.chart)
     return Document(
         title=name,
         subject=f"Operating range of {rig.name}: {name}",
@@ -117,12 +112,7 @@ def limits(trace: Trace, rig: Rig) -> Document:
 
 
 def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
-    """Draw a motion into the range at every mains voltage of the motor, and state its reserve.
-
-    Args:
-        rig: its motor.
-        speed, torque: of the motion, (n,) - rad/s, N*m.
-        what: it is, for the title.
+    """A motion of speed (n,) - rad/s - and torque (n,) - N*m - in the range at every mains voltage, and its reserve.
 
     Raises:
         InputError: the motor lacks its torques or curves.
@@ -137,8 +127,8 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
         numbers[f"peak reserve, {volts}"] = left.peak, "N·m"
         numbers[f"thermal reserve, {volts}"] = left.thermal, "A"
         curves += _limit_curves(limit, volts)
-        cold = _cold(limit, rig)
-        if cold is not None:
+        with suppress(InputError):  # the motor does not tell its circuit
+            cold = limit.cold(rig.motor, rig.source)
             numbers[f"peak reserve, {volts}, cold"] = reserve(cold, speed, torque).peak, "N·m"
             at = np.linspace(0.0, cold.curve.no_load_speed, 300)
             label = f"peak, {volts}, winding at 20 °C"
@@ -151,16 +141,11 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
             "none to plan with. It changes nothing where the magnets limit, nor for heat."
         )
     numbers |= {"RMS torque": (left.rms_torque, "N·m"), "RMS current": (left.rms_current, "A")}
-    return InRange(tuple(findings), numbers, _chart(what, [*_motion(speed, torque, left, ranges[0]), *curves]))
-
-
-def _chart(what: str, curves: list[Series]) -> Chart:
-    """The diagram, each curve in the next colour."""
-    coloured = (one.model_copy(update={"colour": COLOURS[k % len(COLOURS)]}) for k, one in enumerate(curves))
-    axes = Panel(
-        x_label="speed |n| / rpm", y_label="torque M in the direction of motion / (N·m)", series=tuple(coloured)
-    )
-    return Chart(title=f"Operating range: {what}", alternative="Torque over speed, and the limits.", panels=(axes,))
+    every = enumerate([*_motion(speed, torque, left, ranges[0]), *curves])
+    coloured = tuple(one.model_copy(update={"colour": COLOURS[k % len(COLOURS)]}) for k, one in every)
+    axes = Panel(x_label="speed |n| / rpm", y_label="torque M in the direction of motion / (N·m)", series=coloured)
+    title, alternative = f"Operating range: {what}", "Torque over speed, and the limits."
+    return InRange(tuple(findings), numbers, Chart(title=title, alternative=alternative, panels=(axes,)))
 
 
 def _peak_finding(left: Reserve, speed: Array, torque: Array) -> str:
@@ -213,11 +198,3 @@ def _limit_curves(limit: OperatingRange, volts: str) -> list[Series]:
         series(f"continuous, {volts}", "dashes", "ink", speed * RPM, limit.continuous(speed)),
         series(f"peak braking, {volts}", "dotted", "ink", speed * RPM, -braking),
     ]
-
-
-def _cold(limit: OperatingRange, rig: Rig) -> OperatingRange | None:
-    """None where the motor does not tell its circuit."""
-    try:
-        return limit.cold(rig.motor, rig.source)
-    except InputError:
-        return None

@@ -15,9 +15,9 @@ from bench.effects.catalogue import catalogue
 from bench.friction_map.map import CHANCE, FrictionCurve, FrictionMap
 from bench.gate.gate import warnings_of
 from bench.names import words
-from bench.report.document import Chart, Document, Panel, Picture, Section, Table, series, table
+from bench.report.document import Chart, Document, Panel, Picture, Section, series
 from bench.report.numbers import effort_word, number, sentence, share, unit_text
-from bench.report.parts import checks_section, origin
+from bench.report.parts import checks_section, origin, values_table
 from bench.report.serial import serialised
 
 SCHEMA = "bench.friction/1"
@@ -50,15 +50,9 @@ def _values_json(values: Values) -> dict[str, Any]:
 
 
 def friction(found: FrictionMap, title: str) -> Document:
-    """The document of a friction map.
-
-    Args:
-        found: the map.
-        title: of the axis.
-    """
-    tables = [_table("The axis", _base(found))]
-    if found.name is not None:
-        tables.append(_table(sentence(words(found.name)), _effect(found)))
+    """The document of a friction map of the axis that `title` names."""
+    axes = {"The axis": _base(found), **({} if found.name is None else {sentence(words(found.name)): _effect(found)})}
+    tables = [values_table(of, ((name, *value) for name, value in values.items())) for of, values in axes.items()]
     curves, left = _over_speed(found), _left(found)
     return Document(
         title=f"{title}: friction",
@@ -127,11 +121,6 @@ def _answers(found: FrictionMap) -> dict[str, str]:
     }
 
 
-def _table(caption: str, values: Values) -> Table:
-    rows = ((words(name), number(value, digits=5), unit_text(unit)) for name, (value, unit) in values.items())
-    return table(caption, ("quantity", "value>", "unit"), rows)
-
-
 def _curves(found: FrictionMap) -> list[tuple[FrictionCurve, str, bool]]:
     """Curves that are drawn, what they are called, and whether an effect bends them."""
     plain = [(found.plain, "no effect", False)]
@@ -159,20 +148,14 @@ def _over_speed(found: FrictionMap) -> Chart:
 
 def _left(found: FrictionMap) -> Chart:
     """What each curve leaves of the recordings."""
-    drawn = tuple(
-        series(
-            label,
-            "dots" if bent else "rings",
-            "model" if bent else "left",
-            found.velocity,
-            found.effort - curve.effort(found.velocity),
-        )
-        for curve, label, bent in _curves(found)
-    )
+    drawn = []
+    for curve, label, bent in _curves(found):
+        style, colour = ("dots", "model") if bent else ("rings", "left")
+        drawn.append(series(label, style, colour, found.velocity, found.effort - curve.effort(found.velocity)))
     return Chart(
         title="What is left.",
         alternative="What each curve leaves of the recordings.",
         y_label="left",
         y_unit=unit_text(found.effort_unit),
-        panels=(Panel(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=drawn),),
+        panels=(Panel(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=tuple(drawn)),),
     )

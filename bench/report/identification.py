@@ -165,11 +165,9 @@ def identification(
         provenance: of the files it came from.
         truth: true values by the parameters' names, in their units, where they are known.
     """
-    tables = [parameters_table("The axis", estimate.parameters, truth)]
-    if estimate.recordings:
-        units = {name: found.unit for name, found in estimate.parameters.items()}
-        tables.append(recordings_table(estimate.recordings, estimate.between, units))
-    sections = [Section(key="parameters", heading="Parameters", blocks=tuple(tables))]
+    alone = recordings_table(estimate.recordings, estimate.between, estimate.parameters)
+    tables = (parameters_table("The axis", estimate.parameters, truth), *alone)
+    sections = [Section(key="parameters", heading="Parameters", blocks=tables)]
     if motions:
         graphs = tuple(_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])
         sections += [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,33 +20,36 @@ from bench.report.numbers import interval, number, unit_text
 def parameters_table(
     caption: str, parameters: Mapping[str, Parameter], truth: Mapping[str, float] | None = None
 ) -> Table:
-    """Parameters with their intervals of 95 %; beside the truth and the error where it is known.
-
-    Args:
-        caption: what they are.
-        parameters: by name.
-        truth: true values by the parameters' names, in their units.
-    """
+    """Parameters with their intervals of 95 %; beside the truth, in their units, and the error where it is known."""
     rows = []
     for name, found in parameters.items():
         known = truth.get(name) if truth else None
         compared = (
             (number(known, digits=5), f"{found.value / known - 1.0:+.3%}".replace("-", "−")) if known else ("", "")
         )
-        beside = compared if truth else ()
-        rows.append((words(name), interval(found, unit=False), *beside, unit_text(found.unit)))
+        rows.append((words(name), interval(found, unit=False), *(compared if truth else ()), unit_text(found.unit)))
     beside = ("truth>", "error>") if truth else ()
     return table(caption, ("quantity", "value ± half interval (95 %)>", *beside, "unit"), rows)
 
 
-def recordings_table(recordings: Sequence[Alone], between: Mapping[str, Between], units: Mapping[str, str]) -> Table:
-    """What each of several recordings tells alone, and where the next one is to be expected.
+def values_table(caption: str, values: Iterable[tuple[str, float, str]], digits: int = 5) -> Table:
+    """Quantities by name with their values and units, without intervals."""
+    rows = ((words(name), number(value, digits=digits), unit_text(unit)) for name, value, unit in values)
+    return table(caption, ("quantity", "value>", "unit"), rows)
+
+
+def recordings_table(
+    recordings: Sequence[Alone], between: Mapping[str, Between], parameters: Mapping[str, Parameter]
+) -> list[Table]:
+    """What each of several recordings tells alone, and where the next is to be expected; none where there is only one.
 
     Args:
-        recordings: with what each determines alone.
+        recordings: with what each determines alone; () of one.
         between: how they differ, by name of a quantity.
-        units: of these quantities.
+        parameters: of all together, whose units these have.
     """
+    if not recordings:
+        return []
     rows = [
         (
             Path(alone.origin).name,
@@ -56,8 +59,8 @@ def recordings_table(recordings: Sequence[Alone], between: Mapping[str, Between]
     ]
     following = [spread.predictive95 for spread in between.values()]
     rows.append(("the next one (95 %)", *(f"{number(low)} to {number(high)}" for low, high in following)))
-    headings = (f"{words(name)} / {unit_text(units[name])}>" for name in between)
-    return table("Each recording alone", ("recording", *headings), rows)
+    headings = (f"{words(name)} / {unit_text(parameters[name].unit)}>" for name in between)
+    return [table("Each recording alone", ("recording", *headings), rows)]
 
 
 def noise_band(x: Sequence[float], floor: float) -> Series:
@@ -95,7 +98,7 @@ def model_section(model: Path) -> Section:
 
 
 def warnings_sections(warnings: Sequence[str]) -> list[Section]:
-    """What the user should know before believing a result; none where that is nothing."""
+    """What the user should know before believing a result, if anything."""
     return [Section(key="warnings", heading="Warnings", blocks=(Points(items=tuple(warnings)),))] if warnings else []
 
 
@@ -119,10 +122,10 @@ def provenance(
     holdout: Path | None = None,
     mjcf: Path | None = None,
 ) -> dict[str, Any]:
-    """The contract's `provenance`.
+    """The contract's `provenance`: from the same version, files and options come the same results.
 
     Args:
-        rig: file of the axis; None of a joint that only an MJCF knows.
+        rig: file of the axis; None of a joint that only an MJCF knows, and of what rests on no file.
         traces: files of the recordings, in the order given.
         options: of the command that change its result.
         holdout: file of the recording that was not fitted.
@@ -131,21 +134,14 @@ def provenance(
     Raises:
         InputError: a file cannot be read.
     """
-    found = {
+
+    def told(path: Path) -> dict[str, str]:
+        return {"file": readable(path), "sha256": sha256(path)}
+
+    return {
         "version": __version__,
         "rig_sha256": None if rig is None else sha256(rig),
-        "traces": [{"file": readable(trace), "sha256": sha256(trace)} for trace in traces],
+        "traces": [told(trace) for trace in traces],
         "options": dict(options),
+        **{key: told(path) for key, path in (("holdout", holdout), ("mjcf", mjcf)) if path is not None},
     }
-    beside = {"holdout": holdout, "mjcf": mjcf}
-    given = {key: path for key, path in beside.items() if path is not None}
-    return found | {key: {"file": readable(path), "sha256": sha256(path)} for key, path in given.items()}
-
-
-def without_files(options: Mapping[str, Any]) -> dict[str, Any]:
-    """The same of what rests on no file.
-
-    Args:
-        options: of the command that change its result.
-    """
-    return {"version": __version__, "rig_sha256": None, "traces": [], "options": dict(options)}

@@ -21,23 +21,46 @@ from bench.plant.simulate import Simulated, Truth
 from bench.report.document import Document, Downloads, File, Moving, Paragraph, Section, Slowed, Table, TimeGraph, table
 from bench.report.numbers import effort_word, number, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import model_section, origin, warnings_sections
+from bench.report.parts import model_section, origin, values_table, warnings_sections
 from bench.trace.noise import white_noise
 from bench.view.side_by_side import SideBySide
+
+#: Instants that a page holds of a motion, 8 bytes each and a third more as text: 0.4 MB.
+MOST = 40_000
+#: Part of what a page may hold of graphs over time that is left beside them.
+PART = 0.8
+#: How much slower a page plays; what turns plays at first so that it goes round at most once a second.
+SLOWED: tuple[Slowed, ...] = get_args(Slowed)
 
 
 def simulation(simulated: Simulated, name: str) -> Document:
     """The document of a simulated recording of a name."""
     truth, trace = simulated.truth, simulated.trace
-    effects = [_effect(present, truth) for present in truth.effects]
+    kind, values = truth.parameters.kind, {present.name: _values(present, truth) for present in truth.effects}
+    effects = (
+        f"{words(effect)} ({', '.join(f'{name} {number(value, unit)}' for name, value, unit in found)})"
+        for effect, found in values.items()
+    )
     seconds = number(float(trace.time[-1] - trace.time[0]), "s", 3)
-    hidden = f", with {', '.join(words(present.name) for present in truth.effects)} in it" if effects else ""
-    kind = truth.parameters.kind
+    hidden = f", with {', '.join(map(words, values))} in it" if values else ""
     answers = {
         f"{kind.in_words(INERTIA).capitalize()}?": number(truth.parameters.inertia, kind.inertia_unit, 5),
         "What is hidden?": "; ".join(effects) or "Nothing beyond inertia and friction.",
         "Where is the friction?": f"In the {truth.friction}.",
     }
+    axis = (
+        (quantity.name, getattr(truth.parameters, field), quantity.unit)
+        for field, quantity in parameter_quantities(kind).items()
+    )
+    added: Table | Paragraph = Paragraph(text="No effect was added.")
+    if values:
+        rows = (
+            (words(effect), name, number(value, digits=5), unit_text(unit))
+            for effect, found in values.items()
+            for name, value, unit in found
+        )
+        added = table("Effects", ("effect", "quantity", "value>", "unit"), rows)
+    true = (values_table("The axis, on the motor's side", axis), added)
     file = File(name="truth.json", about="the truth", media="application/json", content=truth.as_json())
     return Document(
         title=name,
@@ -46,17 +69,12 @@ def simulation(simulated: Simulated, name: str) -> Document:
         tone="sure",
         answers=answers,
         sections=(
-            Section(key="motion", heading="Recorded and true", blocks=(_over_time(simulated),)),
-            Section(key="truth", heading="The truth", blocks=(_parameters(truth), *_effects(truth))),
+            Section(key="motion", heading="Recorded and true", blocks=(_recorded(simulated),)),
+            Section(key="truth", heading="The truth", blocks=true),
             Section(key="files", heading="The numbers", blocks=(Downloads(files=(file,)),)),
         ),
         origin=(*origin(None), f"seed {truth.seed}"),
     )
-
-
-def _effect(present: Present, truth: Truth) -> str:
-    values = ", ".join(f"{name} {number(value, unit)}" for name, value, unit in _values(present, truth))
-    return f"{words(present.name)} ({values})"
 
 
 def _values(present: Present, truth: Truth) -> list[tuple[str, float, str]]:
@@ -64,7 +82,7 @@ def _values(present: Present, truth: Truth) -> list[tuple[str, float, str]]:
     return [(words(name), value, units[name]) for name, value in present.values]
 
 
-def _over_time(simulated: Simulated) -> TimeGraph:
+def _recorded(simulated: Simulated) -> TimeGraph:
     """Speed and position as recorded and as they were, and the recorded effort."""
     trace, states = simulated.trace, simulated.states
     period = float(states.time[1] - states.time[0])
@@ -83,72 +101,45 @@ def _over_time(simulated: Simulated) -> TimeGraph:
     return time_graph("Over time.", alternative, trace.time, signals)
 
 
-def _parameters(truth: Truth) -> Table:
-    quantities = parameter_quantities(truth.parameters.kind)
-    rows = (
-        (words(quantity.name), number(getattr(truth.parameters, field), digits=5), unit_text(quantity.unit))
-        for field, quantity in quantities.items()
-    )
-    return table("The axis, on the motor's side", ("quantity", "value>", "unit"), rows)
-
-
-def _effects(truth: Truth) -> tuple[Table | Paragraph, ...]:
-    if not truth.effects:
-        return (Paragraph(text="No effect was added."),)
-    rows = (
-        (words(present.name), name, number(value, digits=5), unit_text(unit))
-        for present in truth.effects
-        for name, value, unit in _values(present, truth)
-    )
-    return (table("Effects", ("effect", "quantity", "value>", "unit"), rows),)
-
-
 def replay(replayed: Replay, model: Path, along: str) -> Document:
-    """The document of a replay.
-
-    Args:
-        replayed: signals measured and simulated.
-        model: file that was run.
-        along: name of the recording.
+    """The document of a model's file that was run along a recording of a name.
 
     Raises:
         InputError: the model cannot be read.
     """
-    title = f"{readable(model.name)} along {along}"
-    effort = effort_word(replayed.effort_unit)
+    title, effort = f"{readable(model.name)} along {along}", effort_word(replayed.effort_unit)
     torque = _left(replayed.torque, replayed.torque_simulated)
-    speed = _left(replayed.velocity, replayed.velocity_simulated)
-    alike = torque[0] < LEFT
-    line = f"The model leaves {share(torque[0])} of the {effort}"
-    simulated = math.isfinite(speed[1])
-    if simulated:
-        line += f" and is off by {number(speed[1], replayed.speed_unit, 3)} in simulated speed"
-    noise = white_noise(replayed.velocity)
+    speed = _left(replayed.velocity, replayed.velocity_simulated)[1]
+    line, moves = f"The model leaves {share(torque[0])} of the {effort}", "The model holds no motion, only torque."
+    if math.isfinite(speed):
+        off, noise = number(speed, replayed.speed_unit, 3), white_noise(replayed.velocity)
+        line += f" and is off by {off} in simulated speed"
+        like = "Yes" if speed <= NULL * noise else "Not wholly"
+        moves = f"{like}: off by {off} RMS; the sensor's noise is {number(noise, digits=3)}."
     answers = {
         f"How much {effort} is left?": f"{number(torque[1], replayed.effort_unit, 3)} RMS",
-        "Does it move like the axis?": _moves(speed[1], noise, replayed.speed_unit),
+        "Does it move like the axis?": moves,
         "Is it this axis?": " ".join(replayed.warnings) or "Nothing speaks against it.",
     }
     signals = [
-        _signal("speed", replayed.speed_unit, replayed.time, replayed.velocity, replayed.velocity_simulated),
-        _signal(effort, replayed.effort_unit, replayed.time, replayed.torque, replayed.torque_simulated),
+        Plotted(label, unit, replayed.time, measured, [measured - simulated])
+        for label, unit, measured, simulated in (
+            ("speed", replayed.speed_unit, replayed.velocity, replayed.velocity_simulated),
+            (effort, replayed.effort_unit, replayed.torque, replayed.torque_simulated),
+        )
     ]
     shown = f"Speed and {effort} of the recording as measured and as the model has them, and what is left of each."
     graph = time_graph("Over time.", shown, replayed.time, signals)
-    sections = [Section(key="motion", heading="Measured and simulated", blocks=(graph,))]
+    motion = Section(key="motion", heading="Measured and simulated", blocks=(graph,))
     return Document(
         title=title,
         subject=f"Replay: {title}",
         verdict=f"{line}.",
-        tone="sure" if alike and not replayed.warnings else "open",
+        tone="sure" if torque[0] < LEFT and not replayed.warnings else "open",
         answers=answers,
-        sections=(*sections, *warnings_sections(replayed.warnings), model_section(model)),
+        sections=(motion, *warnings_sections(replayed.warnings), model_section(model)),
         origin=origin(None),
     )
-
-
-def _signal(label: str, unit: str, time: Array, measured: Array, simulated: Array) -> Plotted:
-    return Plotted(label, unit, time, measured, [measured - simulated])
 
 
 def _left(measured: Array, simulated: Array) -> tuple[float, float]:
@@ -160,30 +151,8 @@ def _left(measured: Array, simulated: Array) -> tuple[float, float]:
     return left / max(rms(measured[known]), 1e-300), left
 
 
-def _moves(left: float, noise: float, unit: str) -> str:
-    """Whether simulated speed is measured speed, but for noise."""
-    if not math.isfinite(left):
-        return "The model holds no motion, only torque."
-    like = "Yes" if left <= NULL * noise else "Not wholly"
-    return f"{like}: off by {number(left, unit, 3)} RMS; the sensor's noise is {number(noise, digits=3)}."
-
-
-#: Instants that a page holds of a motion, 8 bytes each and a third more as text: 0.4 MB.
-MOST = 40_000
-#: Part of what a page may hold of graphs over time that is left beside them.
-PART = 0.8
-#: How much slower a page plays; what turns plays at first so that it goes round at most once a second.
-SLOWED: tuple[Slowed, ...] = get_args(Slowed)
-
-
 def view(shown: SideBySide, model: Path, along: str, warnings: Sequence[str] = ()) -> Document:
-    """The document of a motion.
-
-    Args:
-        shown: model and ghost.
-        model: file that was run.
-        along: name of the recording, or of the profile.
-        warnings: what the user should know before believing it.
+    """The document of a model's file in motion beside its ghost, along a recording or profile of a name.
 
     Raises:
         InputError: the model cannot be read.
@@ -196,9 +165,18 @@ def view(shown: SideBySide, model: Path, along: str, warnings: Sequence[str] = (
         "What moves?": shown.simulated_is,
         "How far apart?": f"{number(rms(apart), kind.length_unit, 3)} RMS, {furthest} at most",
     }
+    signals = [
+        Plotted(label, unit, shown.time, ghost, [ghost - simulated], name=shown.ghost_is)
+        for label, unit, ghost, simulated in (
+            ("speed", kind.speed_unit, shown.ghost_velocity, shown.velocity),
+            ("position", kind.length_unit, shown.ghost, shown.position),
+        )
+    ]
+    alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
+    graph = time_graph("Over time.", alternative, shown.time, signals, part=PART)
     sections = [
         Section(key="moving", heading="Moving", blocks=(motion_of(shown),)),
-        Section(key="motion", heading="Over time", blocks=(_graph(shown),)),
+        Section(key="motion", heading="Over time", blocks=(graph,)),
     ]
     return Document(
         title=title,
@@ -221,7 +199,13 @@ def motion_of(shown: SideBySide) -> Moving:
     nearest = after - (instants - time[after - 1] < time[after] - instants)
     known = np.abs(time[nearest] - instants) <= 0.75 * max(float(step), period)
     ghost, apart = (np.where(known, values[nearest], np.nan) for values in (shown.ghost, shown.apart))
-    low, high = _range(np.concatenate([shown.ghost, shown.position]))
+    both = np.concatenate([shown.ghost, shown.position])
+    low, high = float(np.nanmin(both)), float(np.nanmax(both))
+    low, high = (low, high) if high > low else (low - 0.5, low + 0.5)
+    slowed: Slowed = 1
+    if shown.kind.turns:
+        turns = float(np.nanmax(np.abs(shown.ghost_velocity))) / (2.0 * np.pi)
+        slowed = SLOWED[min(int(np.searchsorted(SLOWED, turns)), len(SLOWED) - 1)]
     return Moving(
         title="The axis.",
         alternative=f"{shown.simulated_is} The ghost is the motion {shown.ghost_is}.",
@@ -233,36 +217,11 @@ def motion_of(shown: SideBySide) -> Moving:
         count=count,
         low=low,
         high=high,
-        slowed=_slowed(shown),
+        slowed=slowed,
         position=_packed(ghost),
         apart=_packed(apart),
     )
 
 
-def _slowed(shown: SideBySide) -> Slowed:
-    if not shown.kind.turns:
-        return 1
-    turns = float(np.nanmax(np.abs(shown.ghost_velocity))) / (2.0 * np.pi)
-    return SLOWED[min(int(np.searchsorted(SLOWED, turns)), len(SLOWED) - 1)]
-
-
-def _range(values: Array) -> tuple[float, float]:
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    return (low, high) if high > low else (low - 0.5, low + 0.5)
-
-
 def _packed(values: Array) -> str:
     return base64.b64encode(values.astype("<f4").tobytes()).decode("ascii")
-
-
-def _graph(shown: SideBySide) -> TimeGraph:
-    kind = shown.kind
-    signals = [
-        Plotted(label, unit, shown.time, ghost, [ghost - model], name=shown.ghost_is)
-        for label, unit, ghost, model in (
-            ("speed", kind.speed_unit, shown.ghost_velocity, shown.velocity),
-            ("position", kind.length_unit, shown.ghost, shown.position),
-        )
-    ]
-    alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
-    return time_graph("Over time.", alternative, shown.time, signals, part=PART)

@@ -6,7 +6,7 @@ import pytest
 
 from bench.report.document import HeatMap, Intervals, Table
 from bench.report.html import html
-from bench.report.parts import without_files
+from bench.report.parts import provenance
 from bench.report.validation import confusion as matrix_of
 from bench.report.validation import validation
 from bench.validation.coverage import LEVELS, Coverage, Naming, Share
@@ -35,7 +35,7 @@ def named(false, of, confusion=None):
 
 
 def page_of(coverage, naming=None, command="bench validate"):
-    return validation(Validation((), tuple(coverage), naming), without_files({"seed": 1}), command, own=False)
+    return validation(Validation((), tuple(coverage), naming), provenance(None, [], {"seed": 1}), command, own=False)
 
 
 def blocks(page, kind):
