@@ -147,9 +147,9 @@ def write_picture(path: Path | None, picture: Picture) -> None:
         InputError: an ending that is no picture's, or a place that cannot be written to.
     """
     if path is not None:
-        from bench.report.figures import drawn, save_as_named  # matplotlib: 0.35 s
+        from bench.report.figures import drawn, save  # matplotlib: 0.35 s
 
-        save_as_named(drawn(picture), path)
+        save(drawn(picture), path)
 
 
 @contextmanager

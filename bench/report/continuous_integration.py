@@ -50,20 +50,10 @@ class Finding:
 
 
 def junit(found: Sequence[Finding], headline: str, title: str) -> str:
-    """Findings as JUnit XML.
-
-    Args:
-        found: of every quantity.
-        headline: all of it in a sentence.
-        title: of the suite.
-    """
-    counts = {result: sum(one.result == result for one in found) for result in (CHANGED, UNDECIDED)}
-    numbers = {
-        "tests": str(len(found)),
-        "failures": str(counts[CHANGED]),
-        "errors": "0",
-        "skipped": str(counts[UNDECIDED]),
-    }
+    """Findings of every quantity, and all of it in a sentence, as JUnit XML."""
+    results = [one.result for one in found]
+    failures, skipped = str(results.count(CHANGED)), str(results.count(UNDECIDED))
+    numbers = {"tests": str(len(found)), "failures": failures, "errors": "0", "skipped": skipped}
     suites = ElementTree.Element("testsuites", {"name": "bench check", **numbers})
     suite = ElementTree.SubElement(suites, "testsuite", {"name": xml_text(title), **numbers})
     for one in found:
@@ -85,14 +75,10 @@ def xml_text(given: str) -> str:
 
 def github_lines(found: Sequence[Finding], baseline: Path) -> list[str]:
     """Workflow commands for what is not the same, worst first, at the baseline's lines."""
-    lines = _lines(baseline)
+    levels = {CHANGED: "error", UNDECIDED: "warning"}
     return [
-        command(
-            "error" if one.result == CHANGED else "warning",
-            one.sentence,
-            {"file": str(baseline), "line": str(_line(one, lines))},
-        )
-        for one in _not_same(found)[:MOST]
+        command(levels[one.result], one.sentence, {"file": str(baseline), "line": str(line)})
+        for one, line in _not_same(found, baseline)[:MOST]
     ]
 
 
@@ -116,7 +102,7 @@ def github_summary(found: Sequence[Finding], headline: str, title: str) -> str:
     for one in found:
         numbers = ("-" if value is None else f"{value:.4g}" for value in one.values)
         rows.append(f"| {' | '.join(map(_cell, [one.name, *numbers, one.unit, one.result]))} |")
-    items = [f"- {_cell(one.sentence)}" for one in _not_same(found)]
+    items = [f"- {_cell(one.sentence)}" for one in found if one.result != SAME]
     return "\n".join([f"### bench check: {_cell(title)}", "", _cell(headline), "", *rows, "", *items, ""])
 
 
@@ -128,31 +114,21 @@ def _cell(text: str) -> str:
 
 def gitlab_report(found: Sequence[Finding], baseline: Path) -> str:
     """Code quality report: an issue for each finding that is not the same."""
-    lines = _lines(baseline)
-    return json.dumps(
-        [
-            {
-                "description": plain(one.sentence),
-                "check_name": f"bench check: {plain(one.name)}",
-                "fingerprint": hashlib.sha256(f"{baseline}:{one.name}".encode("utf-8", "backslashreplace")).hexdigest(),
-                "severity": "major" if one.result == CHANGED else "info",
-                "location": {"path": plain(str(baseline)), "lines": {"begin": _line(one, lines)}},
-            }
-            for one in _not_same(found)
-        ],
-        indent=2,
-    )
+    issues = [
+        {
+            "description": plain(one.sentence),
+            "check_name": f"bench check: {plain(one.name)}",
+            "fingerprint": hashlib.sha256(f"{baseline}:{one.name}".encode("utf-8", "backslashreplace")).hexdigest(),
+            "severity": "major" if one.result == CHANGED else "info",
+            "location": {"path": plain(str(baseline)), "lines": {"begin": line}},
+        }
+        for one, line in _not_same(found, baseline)
+    ]
+    return json.dumps(issues, indent=2)
 
 
-def _not_same(found: Sequence[Finding]) -> list[Finding]:
-    return [one for one in found if one.result != SAME]
-
-
-def _lines(baseline: Path) -> dict[str, int]:
-    """Number of the line at which each table of the baseline begins, by the table's head."""
+def _not_same(found: Sequence[Finding], baseline: Path) -> list[tuple[Finding, int]]:
+    """Findings to look at, each with the line of the baseline at which its table begins."""
     lines = read_text(baseline, "a baseline").splitlines()
-    return {line: number for number, line in reversed(list(enumerate(lines, start=1))) if line.startswith("[")}
-
-
-def _line(one: Finding, lines: Mapping[str, int]) -> int:
-    return lines.get(f"[quantities.{one.name}]", 1)
+    heads = {line: number for number, line in reversed(list(enumerate(lines, start=1))) if line.startswith("[")}
+    return [(one, heads.get(f"[quantities.{one.name}]", 1)) for one in found if one.result != SAME]

@@ -35,7 +35,6 @@ from bench.report.document import (
     Points,
     Section,
     Span,
-    Table,
     TimeGraph,
     series,
     table,
@@ -171,10 +170,13 @@ def diagnosis(
     found: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, files: Sequence[File] = ()
 ) -> Document:
     """The document of a diagnosis of what `title` names, with files to take along: the model, and all numbers."""
+    tables = [parameters_table("The axis", found.parameters)]
+    tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in found.effects]
+    tables += recordings_table(found.recordings, found.between, found.parameters)
     sections = (
         _motion(found),
         _where(found),
-        _parameters(found),
+        Section(key="parameters", heading="Parameters", blocks=tuple(tables)),
         *_beside(found),
         _suspects(found),
         _next(found),
@@ -323,20 +325,6 @@ def _following(found: Diagnosis) -> str:
 
 def _motion(found: Diagnosis) -> Section:
     """Speed and torque over time for each recording, and the gaps after each addition."""
-    graphs = (_over_time(found, course) for course in found.courses)
-    loop = Paragraph(
-        text=f"The models run in MuJoCo on the recorded torque, held softly to the recorded motion at "
-        f"{number(found.bandwidth, 'rad/s', 3)}."
-    )
-    return Section(key="motion", heading="Measured and simulated", blocks=(_steps(found), *graphs, loop))
-
-
-def _labels(found: Diagnosis) -> list[str]:
-    """The bare axis, then each addition."""
-    return ["inertia and friction", *(f"+ {words(step.effect)}" for step in found.steps[1:])]
-
-
-def _steps(found: Diagnosis) -> Table:
     names = [course.name for course in found.courses]
     gaps = (effort_word(found.torque.unit), found.torque), ("speed", found.velocity)
     headings = [f"{what} gap, {name} / {unit_text(gap.unit)}>" for what, gap in gaps for name in names]
@@ -345,7 +333,16 @@ def _steps(found: Diagnosis) -> Table:
         for label, step in zip(_labels(found), found.steps, strict=True)
     ]
     rows.append(("noise floor", *(number(gap.noise_floor, digits=3) for _, gap in gaps for _ in names)))
-    return table("RMS gaps before and after each addition", ("model", *headings), rows)
+    steps = table("RMS gaps before and after each addition", ("model", *headings), rows)
+    graphs = (_over_time(found, course) for course in found.courses)
+    loop = "The models run in MuJoCo on the recorded torque, held softly to the recorded motion at "
+    held = Paragraph(text=f"{loop}{number(found.bandwidth, 'rad/s', 3)}.")
+    return Section(key="motion", heading="Measured and simulated", blocks=(steps, *graphs, held))
+
+
+def _labels(found: Diagnosis) -> list[str]:
+    """The bare axis, then each addition."""
+    return ["inertia and friction", *(f"+ {words(step.effect)}" for step in found.steps[1:])]
 
 
 def _over_time(found: Diagnosis, course: Course) -> TimeGraph:
@@ -371,15 +368,10 @@ def _over_time(found: Diagnosis, course: Course) -> TimeGraph:
 
 def _where(found: Diagnosis) -> Section:
     """The gap over the coordinates."""
-    rows = (
-        (
-            coordinate_word(one.coordinate, one.unit),
-            share(one.share),
-            f"{number(one.region[0])} and {number(one.region[1])}",
-            unit_text(one.unit),
-        )
-        for one in found.where
-    )
+    rows = []
+    for one in found.where:
+        between = " and ".join(map(number, one.region))
+        rows.append((coordinate_word(one.coordinate, one.unit), share(one.share), between, unit_text(one.unit)))
     headings = ("coordinate", "share of the gap>", "most of it between>", "unit")
     shares = table("Share of the gap's variance that each coordinate accounts for", headings, rows)
     blocks = (_gap_chart(found, DRAWN), shares)
@@ -413,13 +405,6 @@ def _over(profile: Profile, found: Diagnosis) -> Panel:
         note=f"{share(profile.share)} of the gap",
         series=tuple(drawn),
     )
-
-
-def _parameters(found: Diagnosis) -> Section:
-    tables = [parameters_table("The axis", found.parameters)]
-    tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in found.effects]
-    tables += recordings_table(found.recordings, found.between, found.parameters)
-    return Section(key="parameters", heading="Parameters", blocks=tuple(tables))
 
 
 def _beside(found: Diagnosis) -> list[Section]:
@@ -490,9 +475,9 @@ def _where_picture(found: Diagnosis, title: str) -> Picture:
 
 def _gaps_picture(found: Diagnosis, title: str) -> Picture:
     """RMS gaps of the bare axis and after each addition, on both recordings, against the noise floor."""
-    gaps = (effort_word(found.torque.unit), "torque", found.torque), ("speed", "velocity", found.velocity)
-    parts = (_shrinking(found, what, [getattr(step, name) for step in found.steps], gap) for what, name, gap in gaps)
-    return Picture(name="gaps", title=title, rows=(tuple(part for part in parts if part is not None),))
+    torque = _shrinking(found, effort_word(found.torque.unit), [step.torque for step in found.steps], found.torque)
+    speed = _shrinking(found, "speed", [step.velocity for step in found.steps], found.velocity)
+    return Picture(name="gaps", title=title, rows=(tuple(filter(None, (torque, speed))),))
 
 
 def _shrinking(found: Diagnosis, what: str, steps: Sequence[tuple[float, ...]], gap: Gap) -> Intervals | None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, ParamSpec
 
 import numpy as np
-from matplotlib import rc_context
+from matplotlib import rc_context, rc_params_from_file
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.patches import Rectangle
@@ -30,7 +30,6 @@ from bench.report.document import (
     Series,
     Table,
     TimeGraph,
-    TimePanel,
 )
 from bench.report.over_time import unpacked
 
@@ -43,32 +42,8 @@ MEASURED, MODELLED, REST, NOISE = "#4c5c6e", "#c0480a", "#25704e", "#d6e0e8"
 #: Colours of a document on paper.
 COLOURS = {"ink": MEASURED, "model": MODELLED, "left": REST, "floor": NOISE, "first": "#7d8894"}
 COLOURS |= {"violet": "#7a4a8c", "ochre": "#a07a1e", "blue": "#2f7fb5", "red": "#9c2626"}
-#: How every figure is set: text stays text in SVG and PDF, no box around the axes, a grid that recedes.
-STYLE: dict[Any, Any] = {
-    "font.size": 9.0,
-    "axes.titlesize": 9.0,
-    "axes.labelsize": 9.0,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
-    "legend.fontsize": 8.0,
-    "legend.frameon": False,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": "#8a94a0",
-    "axes.linewidth": 0.8,
-    "xtick.color": "#55616d",
-    "ytick.color": "#55616d",
-    "xtick.labelcolor": "#1c232b",
-    "ytick.labelcolor": "#1c232b",
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": "#dfe4e9",
-    "grid.linewidth": 0.7,
-    "lines.linewidth": 1.0,
-    "svg.fonttype": "none",
-    "pdf.fonttype": 42,
-    "savefig.dpi": 140,
-}
+#: How every figure is set.
+STYLE = rc_params_from_file(Path(__file__).parent / "page" / "figures.mplstyle", use_default_template=False)
 #: Endings of a figure's file.
 FORMATS = (".png", ".pdf", ".svg")
 #: Width of a picture, and height of its title - inch.
@@ -189,15 +164,12 @@ def _over_time(figure: Figure | SubFigure, graph: TimeGraph) -> None:
                 style = ROLES["alone" if len(panel.curves) == 1 and curve.role == "measured" else curve.role]
                 faded = {"color": COLOURS["first"]} if curve.choice == 0 < last else {}
                 axes.plot(*_extent(time, low, high), label=plain(curve.name), **style | faded)
-        axes.set_ylabel(_panel_label(panel), parse_math=False)
+        unit = f"\n{panel.unit}" if panel.unit else ""
+        axes.set_ylabel(plain(panel.label.replace(", ", ",\n") + unit), parse_math=False)
         if len(panel.curves) > 1:
             legend_above(axes)
     every[-1].set_xlabel("time / s")
     figure.align_ylabels(every)
-
-
-def _panel_label(panel: TimePanel) -> str:
-    return plain(panel.label.replace(", ", ",\n") + (f"\n{panel.unit}" if panel.unit else ""))
 
 
 def _extent(time: Array, low: Array, high: Array) -> list[Array]:
@@ -314,21 +286,16 @@ def _labelled(name: str, unit: str) -> str:
     return f"{name} / {f'({unit})' if '/' in unit else unit}" if unit else name
 
 
-def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure whole or not at all; the ending decides the format."""
-    with whole(path) as temporary, quiet_about_glyphs(), rc_context(STYLE):
-        figure.savefig(temporary)
-
-
-def save_as_named(figure: Figure, path: Path) -> None:
-    """Write a figure to the file a person named.
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure whole or not at all; the ending decides the format.
 
     Raises:
         InputError: another ending than .png, .pdf or .svg, or a place that cannot be written to.
     """
     if path.suffix.lower() not in FORMATS:
         raise InputError(path, f"found the ending '{path.suffix}'", f"allowed: {', '.join(FORMATS)}")
-    save(figure, path)
+    with whole(path) as temporary, quiet_about_glyphs(), rc_context(STYLE):
+        figure.savefig(temporary)
 
 
 @contextmanager

@@ -26,7 +26,6 @@ from bench.report.document import (
     Section,
     Series,
     Table,
-    Tone,
     series,
     table,
 )
@@ -52,27 +51,21 @@ MEANT = {
 
 
 def fleet_json(fleet: Fleet, provenance: Mapping[str, Any]) -> str:
-    """The summary as the contract's JSON.
-
-    Args:
-        fleet: what was found.
-        provenance: of it.
-    """
+    """The summary as the contract's JSON."""
     summary = fleet.summary
-    return serialised(
-        {
-            "schema": SCHEMA,
-            "recordings": {"total": len(fleet.manifest), **summary.counts},
-            "axes": summary.axes,
-            "false_alarm_rate": ALARM,
-            "compared": summary.compared,
-            "changed": [_changed(one) for one in summary.changed],
-            "named": summary.shown,
-            "attention": summary.concerns,
-            "table": TABLE,
-            "provenance": provenance,
-        }
-    )
+    content = {
+        "schema": SCHEMA,
+        "recordings": {"total": len(fleet.manifest), **summary.counts},
+        "axes": summary.axes,
+        "false_alarm_rate": ALARM,
+        "compared": summary.compared,
+        "changed": [_changed(one) for one in summary.changed],
+        "named": summary.shown,
+        "attention": summary.concerns,
+        "table": TABLE,
+        "provenance": provenance,
+    }
+    return serialised(content)
 
 
 def _changed(one: Changed) -> dict[str, Any]:
@@ -98,19 +91,30 @@ def fleet_document(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any
         provenance: of it: version, manifest_sha256 and options.
     """
     summary, name = fleet.summary, short(fleet.manifest.path.name, NAME)
-    shown = (Section(key="effects", heading="Effects that axes show", blocks=(_effects(summary),)),)
+    rows = [
+        (short(one.axis, NAME), words(one.name), f"{one.recordings} of {one.of}", one.since) for one in summary.shown
+    ]
+    caption = "Those that most recordings of their axis show come first"
+    effects = _first(caption, ("axis", "effect", "recordings>", "first"), rows)
+    shown = (Section(key="effects", heading="Effects that axes show", blocks=(effects,)),)
+    beside = Neighbours(
+        files=(
+            Neighbour(name=TABLE, about="a row for each recording: parameters, errors, verdict, reason, provenance"),
+            Neighbour(name=summary_file, about="all that this page says, without a bound on its length"),
+        )
+    )
     options = ", ".join(key for key, value in provenance["options"].items() if value) or "none"
     return Document(
         title=f"{name}: fleet",
         subject=f"Fleet {name}: {len(fleet.manifest)} recordings of {summary.axes} axes",
         verdict=_verdict(summary),
-        tone=_tone(summary),
+        tone="refused" if summary.changed else "open" if summary.concerns or not summary.compared else "sure",
         answers=_answers(fleet),
         sections=(
             Section(key="people", heading="Who needs a person first", blocks=(_people(summary),)),
             Section(key="changes", heading="What changed", blocks=tuple(_changes(fleet))),
             *(shown if summary.shown else ()),
-            Section(key="recordings", heading="Recordings", blocks=(_statuses(summary), _beside(summary_file))),
+            Section(key="recordings", heading="Recordings", blocks=(_statuses(summary), beside)),
         ),
         origin=(
             f"servobench {provenance['version']}; manifest sha256 {provenance['manifest_sha256']}",
@@ -131,12 +135,6 @@ def _verdict(summary: Summary) -> str:
     return (
         f"{first}, but {beside} of {summary.axes} {verb} a person." if beside else f"{first}, and none needs a person."
     )
-
-
-def _tone(summary: Summary) -> Tone:
-    if summary.changed:
-        return "refused"
-    return "open" if summary.concerns or not summary.compared else "sure"
 
 
 def _answers(fleet: Fleet) -> dict[str, str]:
@@ -253,31 +251,13 @@ def _clock(fleet: Fleet, rows: Sequence[int]) -> tuple[Array, str, str]:
 
 
 def _band(name: str, x: Array, around: tuple[float, float]) -> Series:
-    low, high = around
-    return series(name, "band", "floor", x, bounds=(np.full(2, low), np.full(2, high)))
-
-
-def _effects(summary: Summary) -> Table:
-    rows = [
-        (short(one.axis, NAME), words(one.name), f"{one.recordings} of {one.of}", one.since) for one in summary.shown
-    ]
-    caption = "Those that most recordings of their axis show come first"
-    return _first(caption, ("axis", "effect", "recordings>", "first"), rows)
+    return series(name, "band", "floor", x, bounds=(np.full(2, around[0]), np.full(2, around[1])))
 
 
 def _statuses(summary: Summary) -> Table:
     rows = ((words(status), str(summary.counts[status]), MEANT[status]) for status in STATUSES)
     marked = (k for k, status in enumerate(STATUSES) if status != "done" and summary.counts[status])
     return table("By status", ("status", "recordings>", "which~"), rows, marked)
-
-
-def _beside(summary_file: str) -> Neighbours:
-    return Neighbours(
-        files=(
-            Neighbour(name=TABLE, about="a row for each recording: parameters, errors, verdict, reason, provenance"),
-            Neighbour(name=summary_file, about="all that this page says, without a bound on its length"),
-        )
-    )
 
 
 def _first(caption: str, headings: Sequence[str], rows: Sequence[tuple[str, ...]], marked: Sequence[int] = ()) -> Table:

@@ -21,7 +21,7 @@ from markupsafe import Markup
 from matplotlib.ticker import MaxNLocator
 
 from bench.names import plain
-from bench.report.document import Chart, Document, File, Intervals, Moving, Panel, Series, Span, TimeGraph
+from bench.report.document import Chart, Document, File, Intervals, Moving, Panel, Series, TimeGraph
 
 
 def html(document: Document, script: str | None = None) -> str:
@@ -175,13 +175,13 @@ def drawn(chart: Chart) -> list[PlacedPanel]:
     """All panels: on one scale, or one above the other on a scale each."""
     groups = [[panel] for panel in chart.panels] if chart.stacked else [chart.panels]
     width = ALONE if chart.stacked or len(chart.panels) == 1 else WIDTH
-    return [_placed(panel, _down(group), width) for group in groups for panel in group]
-
-
-def _down(panels: Sequence[Panel]) -> Ruler:
-    every = (series for panel in panels for series in panel.series)
-    heights = (value for series in every for value in (*series.y, *series.low, *series.high))
-    return Ruler.around(heights, HEIGHT - BOTTOM, TOP, panels[0].log)
+    placed = []
+    for panels in groups:
+        every = (series for panel in panels for series in panel.series)
+        heights = (value for series in every for value in (*series.y, *series.low, *series.high))
+        down = Ruler.around(heights, HEIGHT - BOTTOM, TOP, panels[0].log)
+        placed += [_placed(panel, down, width) for panel in panels]
+    return placed
 
 
 def _placed(panel: Panel, down: Ruler, width: float) -> PlacedPanel:
@@ -219,23 +219,12 @@ def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
     return [(value, f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")) for value in places]
 
 
-@dataclass(frozen=True)
-class Laid:
-    """Rows of intervals in the drawing.
+def laid(block: Intervals) -> dict[str, Sequence[Any]]:
+    """Rows of intervals in the drawing, cut at the limits of the scale.
 
-    Attributes:
-        rows: each with places of its value and its bounds, and whether the value lies beyond the scale.
-        right: ends of the band behind them.
-        ticks: of the scale.
+    Each row has its span, the places of value and bounds, and whether the value lies beyond the scale; beside them the
+    ends of the band behind them, and the ticks of the scale.
     """
-
-    rows: Sequence[tuple[Span, float, float, float, bool]]
-    right: tuple[float, float]
-    ticks: Sequence[tuple[float, str]]
-
-
-def laid(block: Intervals) -> Laid:
-    """The rows, cut at the limits of the scale."""
     low, high = block.limits
     ruler = Ruler(low, high, 0.0, ROW, block.log)
 
@@ -246,7 +235,7 @@ def laid(block: Intervals) -> Laid:
         (span, place(span.value), place(span.low), place(span.high), not low <= span.value <= high)
         for span in block.spans
     ]
-    return Laid(rows, (place(block.right[0]), place(block.right[1])), ruler.ticks())
+    return {"rows": rows, "right": tuple(map(place, block.right)), "ticks": ruler.ticks()}
 
 
 def rail(motion: Moving) -> list[tuple[float, str]]:

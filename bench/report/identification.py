@@ -25,7 +25,7 @@ from bench.report.document import Chart, Document, Downloads, File, Panel, Pictu
 from bench.report.numbers import effort_word, interval, number, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
-from bench.report.serial import known, serialised
+from bench.report.serial import known, picked, serialised
 from bench.rig.rig import Rig
 from bench.trace.conditioning import condition
 from bench.trace.motion import Motion, motion
@@ -52,7 +52,7 @@ def identification_json(
         estimate: what was identified.
         refinement: what polishing did, where it was asked for.
         refused: why the recording cannot answer, where it cannot.
-        provenance: of the files it came from (`bench.report.parts`); null where it came from none.
+        provenance: of the files it came from; null where it came from none.
     """
     residual = estimate.residual
     content = {
@@ -66,8 +66,7 @@ def identification_json(
         "residual": {
             "rms": residual.rms,
             "noise_floor": known(residual.noise_floor),
-            "unit": residual.unit,
-            "relative": residual.relative,
+            **picked(residual, "unit", "relative"),
         },
         "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
         "filter": {"cutoff": known(estimate.cutoff), "unit": "Hz", "source": estimate.source},
@@ -86,7 +85,7 @@ def recordings_json(
         {
             "file": one.origin,
             "sha256": digests.get(one.origin),
-            "parameters": one.parameters,
+            **picked(one, "parameters"),
             "reason": one.reason or None,
         }
         for one in recordings
@@ -128,21 +127,15 @@ def moved(
         read: how its files are read, unless part by part as the rig says.
     """
     found, cutoff = [], estimate.cutoff if estimate.cutoff > 0.0 else None
+    shift = rig.axis_kind.parameter(MISALIGNMENT)  # of torque against speed, which each recording has of its own
     for index, trace in enumerate(traces):
         first = gate(read(trace) if read is not None else next(stream(trace, rig.trace)), rig).trace
         (effort, _), (own, _) = rig.net_effort(first), rig.own_effort(first)
         filtered = motion(first, effort, condition(first, own, cutoff))
-        found.append(Moved(readable(trace.name), rig.axis_kind, filtered, _along(estimate, index, rig)))
+        own_shift = estimate.recordings[index].parameters.get(shift) if estimate.recordings else None
+        parameters = {**estimate.parameters, **({shift: own_shift} if own_shift is not None else {})}
+        found.append(Moved(readable(trace.name), rig.axis_kind, filtered, replace(estimate, parameters=parameters)))
     return found
-
-
-def _along(estimate: Estimate, index: int, rig: Rig) -> Estimate:
-    """The estimate along one of its recordings, which has a shift of torque against speed of its own."""
-    shift = rig.axis_kind.parameter(MISALIGNMENT)
-    if not estimate.recordings or shift not in estimate.recordings[index].parameters:
-        return estimate
-    own = estimate.recordings[index].parameters[shift]
-    return replace(estimate, parameters={**estimate.parameters, shift: own})
 
 
 def identification(
@@ -211,7 +204,7 @@ def _verdict(estimate: Estimate, kind: AxisKind) -> str:
 
 
 def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) -> dict[str, str]:
-    inertia = kind.parameter(INERTIA)
+    inertia, residual = kind.parameter(INERTIA), estimate.residual
     friction = [
         f"{words(name)} {interval(estimate[name])}"
         for name in map(kind.parameter, (COULOMB, VISCOUS))
@@ -220,15 +213,25 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
     sure = "Half widths are those of 95 % intervals that count correlated residuals."
     if estimate.between:
         sure += " They count how the recordings differ, too."
+    of = f"{share(residual.relative)} of the {effort_word(residual.unit)}"
+    left = f"{number(residual.rms, residual.unit, 3)} RMS, {of}"
+    if math.isfinite(residual.noise_floor):
+        left += f"; noise alone would leave {number(residual.noise_floor, digits=3)}"
+    basis = f"{estimate.samples_used} of {estimate.samples_read} samples"
+    if math.isfinite(estimate.cutoff):  # of the filter that they went through
+        basis += f"; cut-off {number(estimate.cutoff, 'Hz', 3)}, speed from {estimate.source}"
     answers = {
         f"{words(inertia).capitalize()}?": f"{interval(estimate[inertia])} (95 %)",
         "Friction?": "; ".join(friction) or "not determined",
         "How sure?": sure,
-        "What is left?": _left(estimate),
-        "From what?": _basis(estimate),
+        "What is left?": f"{left}.",
+        "From what?": f"{basis}.",
     }
     if refinement is not None:
-        answers["Polished?"] = _polished(refinement, kind)
+        before, after = refinement.held_out
+        error = f"simulation error on held-out motion {number(before)} to {number(after, kind.speed_unit)}"
+        kept = "polish kept" if refinement.accepted else "polish not kept"
+        answers["Polished?"] = f"{error} (held at {number(refinement.bandwidth, 'rad/s')}): {kept}."
     answers["What next?"] = (
         "bench diagnose: something is in this axis beside inertia and friction, and it says what."
         if _times_noise(estimate) > NOISE_ALONE
@@ -237,43 +240,14 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
     return answers
 
 
-def _left(estimate: Estimate) -> str:
-    residual = estimate.residual
-    of = f"{share(residual.relative)} of the {effort_word(residual.unit)}"
-    if math.isfinite(residual.noise_floor):
-        of += f"; noise alone would leave {number(residual.noise_floor, digits=3)}"
-    return f"{number(residual.rms, residual.unit, 3)} RMS, {of}."
-
-
-def _basis(estimate: Estimate) -> str:
-    """Samples, and the filter that they went through."""
-    samples = f"{estimate.samples_used} of {estimate.samples_read} samples"
-    if not math.isfinite(estimate.cutoff):
-        return f"{samples}."
-    return f"{samples}; cut-off {number(estimate.cutoff, 'Hz', 3)}, speed from {estimate.source}."
-
-
-def _polished(refinement: Refinement, kind: AxisKind) -> str:
-    """What polishing by simulation did."""
-    before, after = refinement.held_out
-    error = f"simulation error on held-out motion {number(before)} to {number(after, kind.speed_unit)}"
-    kept = "polish kept" if refinement.accepted else "polish not kept"
-    return f"{error} (held at {number(refinement.bandwidth, 'rad/s')}): {kept}."
-
-
 def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> TimeGraph:
     """Speed, and torque beside the model's; one of so many graphs."""
     moved, unit = one.motion, one.along.residual.unit
     effort = effort_word(unit)
-    signals = [
-        Plotted("speed", one.kind.speed_unit, moved.time, moved.velocity),
-        *(
-            [Plotted("acceleration", one.kind.acceleration_unit, moved.time, moved.acceleration)]
-            if acceleration
-            else []
-        ),
-        Plotted(effort, unit, moved.time, moved.effort, [one.left], "modelled"),
-    ]
+    signals = [Plotted("speed", one.kind.speed_unit, moved.time, moved.velocity)]
+    if acceleration:
+        signals.append(Plotted("acceleration", one.kind.acceleration_unit, moved.time, moved.acceleration))
+    signals.append(Plotted(effort, unit, moved.time, moved.effort, [one.left], "modelled"))
     alternative = (
         f"Speed of {one.name}, its {effort} as measured and as inertia and friction make it, and what is left of it."
     )

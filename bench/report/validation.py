@@ -69,15 +69,14 @@ FILES = {
 def validation_json(found: Validation, provenance: Mapping[str, Any]) -> str:
     """The whole, as the contract's JSON; nan is null."""
     status = Counter(run.status for run in found.runs)
-    return serialised(
-        {
-            "schema": SCHEMA,
-            "runs": {"asked": len(found.runs), **{name: status[name] for name in ("done", "refused", "failed")}},
-            "coverage": [_coverage_json(each) for each in found.coverage],
-            "naming": None if found.naming is None else _naming_json(found.naming),
-            "provenance": provenance,
-        }
-    )
+    content = {
+        "schema": SCHEMA,
+        "runs": {"asked": len(found.runs), **{name: status[name] for name in ("done", "refused", "failed")}},
+        "coverage": [_coverage_json(each) for each in found.coverage],
+        "naming": None if found.naming is None else _naming_json(found.naming),
+        "provenance": provenance,
+    }
+    return serialised(content)
 
 
 def _coverage_json(found: Coverage) -> dict[str, Any]:
@@ -88,12 +87,7 @@ def _coverage_json(found: Coverage) -> dict[str, Any]:
 
 
 def _share_json(found: Share) -> dict[str, Any]:
-    return {
-        "count": found.count,
-        "of": found.of,
-        "share": found.value if found.of else None,
-        "bounds95": found.bounds,
-    }
+    return {**picked(found, "count", "of"), "share": found.value if found.of else None, "bounds95": found.bounds}
 
 
 def _naming_json(found: Naming) -> dict[str, Any]:
@@ -111,14 +105,7 @@ def _naming_json(found: Naming) -> dict[str, Any]:
 
 
 def validation(found: Validation, provenance: Mapping[str, Any], command: str, own: bool) -> Document:
-    """The document of a validation.
-
-    Args:
-        found: what was found.
-        provenance: of it.
-        command: that does the same again.
-        own: whether the axis is one's own: then how well the motion determines it comes first.
-    """
+    """The document of a validation that `command` does again; on one's own axis how well it is told comes first."""
     first, naming, note = _first(found), found.naming, Paragraph(text=NOTE)
     sections = [Section(key="coverage", heading="How often an interval holds the truth", blocks=tuple(_charts(found)))]
     if own:
@@ -162,17 +149,14 @@ def _verdict(first: list[Coverage], naming: Naming | None) -> str:
         verdict = "No run tells a quantity"
     else:
         shares = ", ".join(f"of {TERM_WORDS[one.quantity]} in {share(one.inside[-1].value)}" for one in first)
-        verdict = f"Intervals of {share(LEVEL)} hold the truth {shares}, of {_runs(first[0])}"
+        runs, hidden = first[0].runs, "nothing" if first[0].group == "nulls" else first[0].group
+        of = f"{runs} {'run' if runs == 1 else 'runs'} with {hidden} hidden"
+        verdict = f"Intervals of {share(LEVEL)} hold the truth {shares}, of {of}"
     if naming is None:
         return f"{verdict}."
     false = naming.false
     has = "has" if false.count == 1 else "have"
     return f"{verdict}; {false.count or 'none'} of {false.of} diagnosed runs {has} a false name."
-
-
-def _runs(one: Coverage) -> str:
-    hidden = "nothing" if one.group == "nulls" else one.group
-    return f"{one.runs} {'run' if one.runs == 1 else 'runs'} with {hidden} hidden"
 
 
 def _answers(found: Validation, first: list[Coverage]) -> Iterator[tuple[str, str]]:
@@ -222,14 +206,11 @@ def _pictures(found: Validation) -> Iterator[Picture]:
     """Coverage of each quantity at every level, and names by what is hidden."""
     rows = [tuple(_chart(found, quantity, place) for place in range(len(LEVELS))) for quantity in SYMBOLS]
     told = tuple(row for row in rows if row[0].spans)
-    yield Picture(name="coverage", title="How often an interval holds the truth", rows=told or (_nothing(),))
+    nothing = table("", ("",), [("No run tells a quantity.",)])
+    yield Picture(name="coverage", title="How often an interval holds the truth", rows=told or ((nothing,),))
     if found.naming is not None:
         matrix = confusion(found.naming.confusion)
         yield Picture(name="confusion", title="Named, by what is hidden", rows=((matrix,),))
-
-
-def _nothing() -> tuple[Table]:
-    return (table("", ("",), [("No run tells a quantity.",)]),)
 
 
 def _numbers(found: Validation, whole: bool) -> Iterator[AnyPart]:
@@ -283,9 +264,22 @@ def _outcomes(runs: tuple[Run, ...]) -> Table:
 
 
 def _naming(found: Naming) -> Iterator[AnyPart]:
-    yield _names(found)
-    if found.named:
-        yield _by_name(found)
+    """Whether names are right, over all runs that were diagnosed."""
+    by_motion = found.nulls_by_motion if len(found.nulls_by_motion) > 1 else {}
+    every = {
+        "nulls with a false name": found.nulls,
+        **{f"  {name}": each for name, each in by_motion.items()},
+        "runs with a false name": found.false,
+        "  and no remainder beside it": found.silent,
+        "runs named exactly": found.exact,
+        "refused": found.refused,
+    }
+    names = ((name, _bounded(one), _of(one)) for name, one in every.items())
+    yield table("Names", ("what", "share>", "runs>"), names)
+    if found.named:  # of each effect, how often it is named where it is, and where it is not
+        shares = {name: found.named.get(name, Share(0, 0)) for name in sorted({*found.named, *found.falsely})}
+        by_name = ((name, _bounded(one), _of(one), str(found.falsely.get(name, 0))) for name, one in shares.items())
+        yield table("By effect", ("effect", "named where it is>", "runs>", "where it is not>"), by_name)
     if found.confusion:
         yield confusion(found.confusion)
     rows = ((words(hidden), _counts(counts)) for hidden, counts in found.confusion.items())
@@ -295,27 +289,6 @@ def _naming(found: Naming) -> Iterator[AnyPart]:
 def _counts(counts: Mapping[str, int]) -> str:
     ordered = sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))
     return ", ".join(f"{words(name)} {number(count)}" for name, count in ordered)
-
-
-def _names(found: Naming) -> Table:
-    """Whether names are right, over all runs that were diagnosed."""
-    by_motion = found.nulls_by_motion if len(found.nulls_by_motion) > 1 else {}
-    rows = {
-        "nulls with a false name": found.nulls,
-        **{f"  {name}": each for name, each in by_motion.items()},
-        "runs with a false name": found.false,
-        "  and no remainder beside it": found.silent,
-        "runs named exactly": found.exact,
-        "refused": found.refused,
-    }
-    return table("Names", ("what", "share>", "runs>"), ((name, _bounded(one), _of(one)) for name, one in rows.items()))
-
-
-def _by_name(found: Naming) -> Table:
-    """Of each effect, how often it is named where it is, and where it is not."""
-    every = {name: found.named.get(name, Share(0, 0)) for name in sorted({*found.named, *found.falsely})}
-    rows = ((name, _bounded(one), _of(one), str(found.falsely.get(name, 0))) for name, one in every.items())
-    return table("By effect", ("effect", "named where it is>", "runs>", "where it is not>"), rows)
 
 
 def confusion(counts: Mapping[str, Mapping[str, int]]) -> HeatMap:
@@ -385,15 +358,11 @@ def quantities_table(runs: tuple[Run, ...]) -> pa.Table:
         [
             {
                 "index": run.index,
-                "by": one.by,
-                "effect": one.effect,
-                "quantity": one.quantity,
+                **{name: getattr(one, name) for name in ("by", "effect", "quantity")},
                 "unit": one.parameter.unit,
                 "true": one.true,
-                "value": one.parameter.value,
-                "std_error": one.parameter.std_error,
-                "low": one.parameter.ci95[0],
-                "high": one.parameter.ci95[1],
+                **{name: getattr(one.parameter, name) for name in ("value", "std_error")},
+                **dict(zip(("low", "high"), one.parameter.ci95, strict=True)),
             }
             for run in runs
             for one in run.scored
@@ -404,10 +373,7 @@ def quantities_table(runs: tuple[Run, ...]) -> pa.Table:
 def write_validation(
     folder: Path, found: Validation, provenance: Mapping[str, Any], command: str, own: bool
 ) -> list[Path]:
-    """Write page, pictures, JSON and tables into a folder; as `validation`.
-
-    Returns:
-        Paths written.
+    """Write page, pictures, JSON and tables into a folder; the paths written.
 
     Raises:
         InputError: the folder cannot be written to.
@@ -419,9 +385,8 @@ def write_validation(
     with held(folder):
         written = write_document(folder, validation(found, provenance, command, own), beside=beside)
         for name, rows in (("runs", runs_table(found.runs)), ("quantities", quantities_table(found.runs))):
-            with whole(folder / f"{name}.parquet") as temporary:
-                pq.write_table(rows, temporary)
-            with whole(folder / f"{name}.csv") as temporary:
-                csv.write_csv(rows, temporary)
-            written += [folder / f"{name}.parquet", folder / f"{name}.csv"]
+            for ending, write in (("parquet", pq.write_table), ("csv", csv.write_csv)):
+                written.append(folder / f"{name}.{ending}")
+                with whole(written[-1]) as temporary:
+                    write(rows, temporary)
     return written
