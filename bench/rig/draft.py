@@ -12,15 +12,12 @@ _EFFORTS = ("torque", "force", "current", "voltage")
 
 
 def draft(inspection: Inspection, motor: str | None = None, axis: str | None = None) -> str:
-    """Text of a rig file.
+    """Text of a rig file; InputError where the catalogue has no such motor.
 
     Args:
         inspection: of the recording.
         motor: name in the motor catalogue.
         axis: picked of several.
-
-    Raises:
-        InputError: the catalogue has no such motor.
     """
     if motor is not None:
         catalogue_motor(motor, "--motor")
@@ -42,9 +39,7 @@ def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]
     if motor is not None:
         return [f"model = {json.dumps(motor)}"]
     efforts = {column.signal for column in inspection.columns}
-    units = {
-        (column.unit or "") + (column.suggestion or "") for column in inspection.columns if column.signal == "torque"
-    }
+    units = [f"{one.unit or ''}{one.suggestion or ''}" for one in inspection.columns if one.signal == "torque"]
     constant, unit = ("force_constant", "N/A") if linear else ("torque_constant", "N*m/A")
     lines = [
         f'# {"moving_mass" if linear else "rotor_inertia"} = "? {"kg" if linear else "kg*cm**2"}"'
@@ -63,9 +58,8 @@ def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]
 def _trace(inspection: Inspection, axis: str | None) -> list[str]:
     """`[trace]` and its columns: those that are plain, and as comments those whose unit only the user knows."""
     settings = [f"axis = {json.dumps(axis)}"] if axis is not None else []
-    found = {column.signal for column in inspection.columns} | ({"time"} if inspection.rate is not None else set())
-    timed = "time" in found or any(column.rate is not None for column in inspection.columns)
-    if not timed:
+    timed = inspection.rate is not None
+    if not (timed or any(one.signal == "time" or one.rate is not None for one in inspection.columns)):
         settings.append('# sample_period = "? ms"     # the file holds no time: how often was it sampled?')
     lines = ["[trace]", *settings, ""] if settings else []
     columns = []

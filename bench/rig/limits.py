@@ -26,6 +26,63 @@ from bench.rig.motor import Motor, PeakCurve, TorqueConstant
 
 #: Torque this share of the peak torque beyond a limit is still at it: noise of current and speed.
 AT_LIMIT = 0.01
+#: Winding temperatures of the datasheet's curve and of a cold motor - degC.
+HOT, COLD = 120.0, 20.0
+#: Of a motor, what its circuit follows from beside the peak curve.
+OF_CIRCUIT = ("peak_current", "continuous_stall_current", "cold_resistance_share")
+OF_CIRCUIT += ("electrical_time_constant", "thermal_time_constant")
+
+
+@dataclass(frozen=True)
+class Circuit:
+    """Constants of the circuit.
+
+    Attributes:
+        voltage: U_max - V.
+        back_emf_constant: Ke - V*s/rad.
+        resistance: R at HOT - ohm.
+        cold_share: R at COLD over R at HOT.
+        time_constant: L/R at COLD - s.
+        thermal_resistance: winding to surroundings - K/W; continuous stall current heats from COLD to HOT through it.
+        thermal_time_constant: of the winding - s.
+    """
+
+    voltage: float
+    back_emf_constant: float
+    resistance: float
+    cold_share: float
+    time_constant: float
+    thermal_resistance: float
+    thermal_time_constant: float
+
+    @classmethod
+    def from_motor(cls, motor: Motor, curve: PeakCurve, where: str) -> Circuit:
+        """Circuit of a motor at the mains voltage of one of its curves; InputError naming `where` if a value is
+        missing.
+        """
+        missing = [name for name in OF_CIRCUIT if getattr(motor, name) is None]
+        if missing:
+            raise InputError(f"{where}: motor", f"missing {', '.join(missing)}", "the winding's circuit needs them")
+        peak, stall, share, electrical, thermal = (getattr(motor, name) for name in OF_CIRCUIT)
+        voltage = math.sqrt(3.0) * curve.mains_voltage
+        back_emf = voltage / curve.no_load_speed
+        resistance = (voltage - back_emf * curve.corner_speed) / peak
+        heating = (HOT - COLD) / (resistance * stall**2)
+        return cls(voltage, back_emf, resistance, share, electrical, heating, thermal)
+
+    @property
+    def temperature_coefficient(self) -> float:
+        """Of the resistance, about HOT - 1/K."""
+        return (1.0 - self.cold_share) / (HOT - COLD)
+
+    @property
+    def inductance(self) -> float:
+        """L - H."""
+        return self.time_constant * self.cold_share * self.resistance
+
+    def resistance_at(self, temperature: float) -> float:
+        """R at a winding temperature - degC - in ohm."""
+        return self.resistance * (1.0 + self.temperature_coefficient * (temperature - HOT))
 
 
 @dataclass(frozen=True)
@@ -48,11 +105,7 @@ class OperatingRange:
 
     @classmethod
     def of(cls, motor: Motor, mains: float, where: str) -> OperatingRange:
-        """Range of a motor at a mains voltage - V.
-
-        Raises:
-            InputError: the motor lacks its torques, or a curve for this voltage; names `where`.
-        """
+        """Range of a motor at a mains voltage - V; InputError where it lacks its torques, or a curve for this voltage."""
         if motor.peak_torque is None or motor.continuous_stall_torque is None:
             missing = "peak_torque" if motor.peak_torque is None else "continuous_stall_torque"
             raise InputError(f"{where}: motor.{missing}", "missing", "the operating range needs it")
@@ -67,11 +120,7 @@ class OperatingRange:
         )
 
     def cold(self, motor: Motor, where: str) -> OperatingRange:
-        """The same motor with its winding at COLD: less voltage goes into its resistance, so the corner lies higher.
-
-        Raises:
-            InputError: the motor lacks what its circuit needs; names `where`.
-        """
+        """The same motor with its winding at COLD: less voltage goes into its resistance, so the corner lies higher."""
         circuit = Circuit.from_motor(motor, self.curve, where)
         drop = circuit.resistance_at(COLD) * (motor.peak_current or 0.0)
         corner = (circuit.voltage - drop) / circuit.back_emf_constant
@@ -82,10 +131,7 @@ class OperatingRange:
         return self.peak_torque * self.curve.share(speed)
 
     def available(self, speed: Array, torque: Array) -> Array:
-        """Peak torque in the direction of a torque - N*m.
-
-        Voltage limits driving only: while braking, the back-EMF helps to drive the current.
-        """
+        """Peak torque in the direction of a torque - N*m: voltage limits driving only; braking, the back-EMF helps."""
         return np.where(speed * torque >= 0.0, self.peak(speed), self.peak_torque)
 
     def continuous(self, speed: Array) -> Array:
@@ -129,7 +175,6 @@ def reserve(limits: OperatingRange, speed: Array, torque: Array) -> Reserve:
     at = int(np.argmin(left))
     effective, mean = rms(limits.torque_constant.current(torque)), float(np.mean(np.abs(speed)))
     allowed = float(limits.torque_constant.current(limits.continuous(np.asarray(mean))))
-    thermal_share = (allowed - effective) / allowed if allowed > 0.0 else -1.0
     return Reserve(
         peak=float(left[at]),
         peak_share=float(left[at]) / limits.peak_torque,
@@ -140,83 +185,14 @@ def reserve(limits: OperatingRange, speed: Array, torque: Array) -> Reserve:
         mean_speed=mean,
         continuous_current=allowed,
         thermal=allowed - effective,
-        thermal_share=thermal_share,
+        thermal_share=(allowed - effective) / allowed if allowed > 0.0 else -1.0,
     )
 
 
 def peak_curve(motor: Motor, mains: float, where: str) -> PeakCurve:
-    """The motor's peak curve at a mains voltage - V.
-
-    Raises:
-        InputError: the motor has none for it; names `where`.
-    """
+    """The motor's peak curve at a mains voltage - V; InputError naming `where` if it has none for it."""
     for curve in motor.peak_curves:
         if abs(curve.mains_voltage / mains - 1.0) < 1e-6:
             return curve
     known = ", ".join(f"{curve.mains_voltage:g} V" for curve in motor.peak_curves) or "none"
     raise InputError(f"{where}: motor.peak_curves", f"found none for {mains:g} V", f"given are: {known}")
-
-
-#: Winding temperatures of the datasheet's curve and of a cold motor - degC.
-HOT, COLD = 120.0, 20.0
-
-
-@dataclass(frozen=True)
-class Circuit:
-    """Constants of the circuit.
-
-    Attributes:
-        voltage: U_max - V.
-        back_emf_constant: Ke - V*s/rad.
-        resistance: R at HOT - ohm.
-        cold_share: R at COLD over R at HOT.
-        time_constant: L/R at COLD - s.
-        thermal_resistance: winding to surroundings - K/W; continuous stall current heats from COLD to HOT through it.
-        thermal_time_constant: of the winding - s.
-    """
-
-    voltage: float
-    back_emf_constant: float
-    resistance: float
-    cold_share: float
-    time_constant: float
-    thermal_resistance: float
-    thermal_time_constant: float
-
-    @classmethod
-    def from_motor(cls, motor: Motor, curve: PeakCurve, where: str) -> Circuit:
-        """Circuit of a motor at the mains voltage of one of its curves.
-
-        Raises:
-            InputError: a value missing; names `where`.
-        """
-        peak, stall = motor.peak_current, motor.continuous_stall_current
-        share, electrical, thermal = (
-            motor.cold_resistance_share,
-            motor.electrical_time_constant,
-            motor.thermal_time_constant,
-        )
-        if peak is None or stall is None or share is None or electrical is None or thermal is None:
-            names = ("peak_current", "continuous_stall_current", "cold_resistance_share")
-            names += ("electrical_time_constant", "thermal_time_constant")
-            missing = [name for name in names if getattr(motor, name) is None]
-            raise InputError(f"{where}: motor", f"missing {', '.join(missing)}", "the winding's circuit needs them")
-        voltage = math.sqrt(3.0) * curve.mains_voltage
-        back_emf = voltage / curve.no_load_speed
-        resistance = (voltage - back_emf * curve.corner_speed) / peak
-        heating = (HOT - COLD) / (resistance * stall**2)
-        return cls(voltage, back_emf, resistance, share, electrical, heating, thermal)
-
-    @property
-    def temperature_coefficient(self) -> float:
-        """Of the resistance, about HOT - 1/K."""
-        return (1.0 - self.cold_share) / (HOT - COLD)
-
-    @property
-    def inductance(self) -> float:
-        """L - H."""
-        return self.time_constant * self.cold_share * self.resistance
-
-    def resistance_at(self, temperature: float) -> float:
-        """R at a winding temperature - degC - in ohm."""
-        return self.resistance * (1.0 + self.temperature_coefficient * (temperature - HOT))

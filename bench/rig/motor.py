@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import tomllib
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -62,21 +62,11 @@ class TorqueConstant:
     curvature: float = 0.0
 
     @classmethod
-    def from_datasheet(
-        cls,
-        continuous_stall_torque: float,
-        continuous_stall_current: float,
-        peak_torque: float,
-        peak_current: float,
-    ) -> TorqueConstant:
-        """kT from the stall point (M0 - N*m, I0 - A) and the peak point (Mmax - N*m, Imax - A), both met exactly.
-
-        c + a*I0**2 = M0/I0 and c + a*Imax**2 = Mmax/Imax.
-        """
-        stall = continuous_stall_torque / continuous_stall_current
-        peak = peak_torque / peak_current
-        curvature = (peak - stall) / (peak_current**2 - continuous_stall_current**2)
-        return cls(stall - curvature * continuous_stall_current**2, curvature)
+    def from_datasheet(cls, stall_torque: float, stall_current: float, peak_torque: float, peak_current: float) -> Self:
+        """kT from the stall point (M0 - N*m, I0 - A) and the peak point (Mmax, Imax): c + a*I**2 = M/I at both."""
+        stall, peak = stall_torque / stall_current, peak_torque / peak_current
+        curvature = (peak - stall) / (peak_current**2 - stall_current**2)
+        return cls(stall - curvature * stall_current**2, curvature)
 
     def __call__(self, current: Array) -> Array:
         """Torque per ampere at a current - A, any shape."""
@@ -192,11 +182,10 @@ class Motor(RigTable):
         """Values told for effective currents, as values for peaks, which are sqrt(2) times as high."""
         if self.current == "peak":
             return self
-        root = math.sqrt(2.0)
-        per_ampere = {name: getattr(self, name) for name in ("torque_constant", "force_constant")}
-        amperes = {name: getattr(self, name) for name in ("continuous_stall_current", "peak_current")}
-        converted = {name: times(value, 1.0 / root) for name, value in per_ampere.items() if value is not None}
-        converted |= {name: times(value, root) for name, value in amperes.items() if value is not None}
+        factors = dict.fromkeys(("torque_constant", "force_constant"), 1.0 / math.sqrt(2.0))
+        factors |= dict.fromkeys(("continuous_stall_current", "peak_current"), math.sqrt(2.0))
+        told = {name: getattr(self, name) for name in factors}
+        converted = {name: times(value, factors[name]) for name, value in told.items() if value is not None}
         return self.model_copy(update={**converted, "current": "peak"})
 
     @property
@@ -216,10 +205,8 @@ class Motor(RigTable):
             return None
         stated = tolerance_of(self.torque_constant or self.force_constant) / constant.constant
         stated = math.hypot(stated, tolerance_of(back_emf) / back_emf) or USUAL_TOLERANCE
-        nearest = min(
-            (share * back_emf for share in CONVENTIONS), key=lambda asked: abs(constant.constant / asked - 1.0)
-        )
-        return None if abs(constant.constant / nearest - 1.0) <= stated else nearest
+        asked = min((share * back_emf for share in CONVENTIONS), key=lambda one: abs(constant.constant / one - 1.0))
+        return None if abs(constant.constant / asked - 1.0) <= stated else asked
 
     @property
     def disagreement(self) -> str | None:
@@ -260,14 +247,9 @@ def motor_sources(name: str) -> dict[str, tuple[Any, str]]:
 
 
 def catalogue_motor(name: object, where: str) -> dict[str, Any]:
-    """Motor table of a catalogue entry, as it would stand in a rig file.
-
-    Raises:
-        InputError: no motor of this name.
-    """
+    """Motor table of a catalogue entry, as it would stand in a rig file; InputError if there is none of this name."""
     names = motor_names()
     if not isinstance(name, str) or name not in names:
-        raise InputError(
-            where, f"no motor {name!r} in the catalogue{nearest(str(name), names)}", f"allowed: {', '.join(names)}"
-        )
+        found = f"no motor {name!r} in the catalogue{nearest(str(name), names)}"
+        raise InputError(where, found, f"allowed: {', '.join(names)}")
     return {key: value for key, (value, _) in motor_sources(name).items()}

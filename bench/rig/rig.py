@@ -57,25 +57,79 @@ class TraceNotes(RigTable):
 
 
 class CheckTable(RigTable):
-    """What `bench check` allows; quantities by name, each a share such as `"2 %"` or a number with its unit.
-
-    Attributes:
-        margin: changes below it do not matter.
-        between: standard deviation of one axis from recording to recording.
+    """What `bench check` allows, by quantity: a change that does not matter, and the standard deviation of one axis
+    from recording to recording; each a share such as `"2 %"` or a number with its unit.
     """
 
     margin: dict[str, str] = Field(default_factory=dict)
     between: dict[str, str] = Field(default_factory=dict)
 
 
-class Rig(RigTable):
-    """One axis as its rig file describes it, in SI units.
+class Drive(RigTable):
+    """Cascade of a position P controller and a velocity PI controller with inertia feed-forward.
+
+    torque = velocity_gain*e_v + integral_gain*integral(e_v dt) + inertia_feedforward*acceleration_reference,
+    e_v = velocity_reference + position_gain*(position_reference - position) - velocity; current limited to the motor's
+    peak current, the integrator held while limited.
 
     Attributes:
-        name: of the axis.
-        kind: `rotary` or `linear`.
-        offset: whether identification fits a constant torque (force) too, for axes known to have one.
+        position_gain: velocity demand per position error - 1/s.
+        velocity_gain: torque per velocity error - N*m*s/rad (N*s/m on a linear axis).
+        integral_gain: torque per integrated velocity error - N*m/rad (N/m).
+        inertia_feedforward: torque per acceleration reference - kg*m**2 (kg).
+        control_period: of the loop - s.
     """
+
+    position_gain: Rate
+    velocity_gain: Viscous
+    integral_gain: IntegralGain = 0.0
+    inertia_feedforward: Feedforward = 0.0
+    control_period: Period = 250e-6
+
+    @model_validator(mode="after")
+    def _samples_fast_enough(self) -> Drive:
+        """Half a period T of delay takes (K_v*K_p + K_i)*T/2 off the velocity gain K_v, and must leave some of it."""
+        stiffness = self.velocity_gain * self.position_gain + self.integral_gain
+        most = 2.0 * self.velocity_gain / stiffness if stiffness > 0.0 else math.inf
+        if self.control_period > most:
+            raise ValueError(
+                f"control_period must be below {most:.3g} s with these gains, found {self.control_period:g} s"
+            )
+        return self
+
+
+class Simulation(RigTable):
+    """`[simulation]` of a rig file.
+
+    Attributes:
+        moment_of_inertia: of everything that moves, on the motor's side - kg*m**2; on a linear axis `moving_mass` - kg.
+            Without it, rotor plus disk from its geometry, reflected through the gear.
+        viscous_friction_coefficient: K_w - N*m*s/rad (N*s/m).
+        coulomb_friction: K_0 - N*m (N).
+        friction: `mechanics` puts it into the joint, `drive` lets the drive's software apply it as the lab does.
+        load_torque: constant torque on the load (behind any gear) that resists positive motion - N*m (N).
+        encoder_resolution: angle (length) of one count - rad (m); 0 is ideal.
+        velocity_noise: standard deviation of the reported speed - rad/s (m/s).
+        current_noise: standard deviation of the reported current - A.
+        sample_period: of the recording - s.
+        timestep: of the integration - s; the drive's control period if not given.
+    """
+
+    moment_of_inertia: Inertia | None = None
+    moving_mass: Mass | None = None
+    viscous_friction_coefficient: Viscous = 0.0
+    coulomb_friction: Coulomb = 0.0
+    friction: Literal["mechanics", "drive"] = "mechanics"
+    load_torque: Effort = 0.0
+    encoder_resolution: Resolution = 0.0
+    velocity_noise: VelocityNoise = 0.0
+    current_noise: CurrentNoise = 0.0
+    sample_period: Period = 1e-3
+    timestep: Period | None = None
+
+
+class Rig(RigTable):
+    """One axis as its rig file describes it, in SI units; with `offset`, one known to have a constant torque (force)."""
 
     name: str
     kind: Literal["rotary", "linear"]
@@ -90,12 +144,7 @@ class Rig(RigTable):
 
     @classmethod
     def of(cls, table: Mapping[str, Any], source: str = "rig") -> Rig:
-        """Checked from the table of a rig file, values with their units; pydantic's ValidationError where it is none.
-
-        Args:
-            table: as TOML gives it.
-            source: that it comes from, for messages.
-        """
+        """Checked from the table of a rig file, values with their units; pydantic's ValidationError where it is none."""
         kind = LINEAR if table.get("kind") == LINEAR.name else ROTARY
         return cls.model_validate({**table, "source": source}, context={"kind": kind})
 
@@ -141,28 +190,21 @@ class Rig(RigTable):
                 return trace[direct] * rated, self.effort_unit
             return trace[direct], trace.units[direct]
         if "current" in trace:
-            constant = self.motor.torque_per_ampere
-            return (
-                (trace["current"], "A") if constant is None else (constant.torque(trace["current"]), self.effort_unit)
-            )
+            constant, current = self.motor.torque_per_ampere, trace["current"]
+            return (current, "A") if constant is None else (constant.torque(current), self.effort_unit)
         if "voltage" in trace:
             return self._effort_of_voltage(trace)
         raise InputError(trace.origin, "holds no current, torque, force or voltage", "identification needs one of them")
 
     def net_effort(self, trace: Trace) -> tuple[Array, str]:
-        """The effort less all that is known to act, and its unit: what inertia, friction and effects are to explain.
-
-        Raises:
-            InputError: as `own_effort`.
-        """
+        """Effort less all that is known to act, and its unit: what inertia, friction and effects are to explain."""
         effort, unit = self.own_effort(trace)
         return less_known(trace, effort), unit
 
     def own_effort(self, trace: Trace) -> tuple[Array, str]:
         """The effort less the load torque that the rig knows (an eccentric mass under gravity), and its unit.
 
-        Raises:
-            InputError: as `effort`; or the known load needs a position, or torque, that the recording does not give.
+        InputError as `effort`, or where the known load needs a position, or torque, that the recording does not give.
         """
         effort, unit = self.effort(trace)
         if self.load is None or self.load.eccentric_mass is None:
@@ -237,9 +279,8 @@ def _input_error(path: Path, error: ValidationError) -> InputError:
     detail = error.errors()[0]
     keys = [str(key) for key in detail["loc"]]
     where = f"{path}: {'.'.join(keys) or 'rig'}"
-    context: dict[str, Any] = detail.get("ctx", {})
     if detail["type"] == "unit":
-        return InputError(where, context["found"], context["allowed"])
+        return InputError(where, detail["ctx"]["found"], detail["ctx"]["allowed"])
     if detail["type"] == "extra_forbidden":
         known = _known_keys(keys[:-1])
         return InputError(where, f"unknown key{nearest(keys[-1], known)}", f"allowed: {', '.join(known)}")
@@ -260,68 +301,6 @@ def _known_keys(keys: list[str]) -> list[str]:
             tables = [one for one in (kind, *get_args(kind)) if isinstance(one, type) and issubclass(one, RigTable)]
             table = tables[0] if tables else table
     return [name for name in table.model_fields if name != "source"]
-
-
-class Drive(RigTable):
-    """Cascade of a position P controller and a velocity PI controller with inertia feed-forward.
-
-    torque = velocity_gain*e_v + integral_gain*integral(e_v dt) + inertia_feedforward*acceleration_reference,
-    e_v = velocity_reference + position_gain*(position_reference - position) - velocity; current limited to the motor's
-    peak current, the integrator held while limited.
-
-    Attributes:
-        position_gain: velocity demand per position error - 1/s.
-        velocity_gain: torque per velocity error - N*m*s/rad (N*s/m on a linear axis).
-        integral_gain: torque per integrated velocity error - N*m/rad (N/m).
-        inertia_feedforward: torque per acceleration reference - kg*m**2 (kg).
-        control_period: of the loop - s.
-    """
-
-    position_gain: Rate
-    velocity_gain: Viscous
-    integral_gain: IntegralGain = 0.0
-    inertia_feedforward: Feedforward = 0.0
-    control_period: Period = 250e-6
-
-    @model_validator(mode="after")
-    def _samples_fast_enough(self) -> Drive:
-        """Half a period T of delay takes (K_v*K_p + K_i)*T/2 off the velocity gain K_v, and must leave some of it."""
-        stiffness = self.velocity_gain * self.position_gain + self.integral_gain
-        most = 2.0 * self.velocity_gain / stiffness if stiffness > 0.0 else math.inf
-        if self.control_period > most:
-            found = f"found {self.control_period:g} s"
-            raise ValueError(f"control_period must be below {most:.3g} s with these gains, {found}")
-        return self
-
-
-class Simulation(RigTable):
-    """`[simulation]` of a rig file.
-
-    Attributes:
-        moment_of_inertia: of everything that moves, on the motor's side - kg*m**2; on a linear axis `moving_mass` - kg.
-            Without it, rotor plus disk from its geometry, reflected through the gear.
-        viscous_friction_coefficient: K_w - N*m*s/rad (N*s/m).
-        coulomb_friction: K_0 - N*m (N).
-        friction: `mechanics` puts it into the joint, `drive` lets the drive's software apply it as the lab does.
-        load_torque: constant torque on the load (behind any gear) that resists positive motion - N*m (N).
-        encoder_resolution: angle (length) of one count - rad (m); 0 is ideal.
-        velocity_noise: standard deviation of the reported speed - rad/s (m/s).
-        current_noise: standard deviation of the reported current - A.
-        sample_period: of the recording - s.
-        timestep: of the integration - s; the drive's control period if not given.
-    """
-
-    moment_of_inertia: Inertia | None = None
-    moving_mass: Mass | None = None
-    viscous_friction_coefficient: Viscous = 0.0
-    coulomb_friction: Coulomb = 0.0
-    friction: Literal["mechanics", "drive"] = "mechanics"
-    load_torque: Effort = 0.0
-    encoder_resolution: Resolution = 0.0
-    velocity_noise: VelocityNoise = 0.0
-    current_noise: CurrentNoise = 0.0
-    sample_period: Period = 1e-3
-    timestep: Period | None = None
 
 
 def lacking(rig: Rig) -> dict[str, tuple[str, ...]]:

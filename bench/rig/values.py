@@ -28,11 +28,7 @@ class RigTable(BaseModel):
 
 
 class Toleranced(float):
-    """A value of a rig, which knows how far from it the true one may lie.
-
-    Attributes:
-        tolerance: half width of the range that holds the true value at 95 % - the value's unit; 0 where none is stated.
-    """
+    """A value of a rig that knows its tolerance: half width of the range that holds the true one at 95 % - its unit."""
 
     tolerance: float
 
