@@ -57,9 +57,7 @@ class Circuit:
 
     @classmethod
     def from_motor(cls, motor: Motor, curve: PeakCurve, where: str) -> Circuit:
-        """Circuit of a motor at the mains voltage of one of its curves; InputError naming `where` if a value is
-        missing.
-        """
+        """Circuit of a motor at the mains voltage of one of its curves; InputError where a value is missing."""
         missing = [name for name in OF_CIRCUIT if getattr(motor, name) is None]
         if missing:
             raise InputError(f"{where}: motor", f"missing {', '.join(missing)}", "the winding's circuit needs them")
@@ -105,7 +103,7 @@ class OperatingRange:
 
     @classmethod
     def of(cls, motor: Motor, mains: float, where: str) -> OperatingRange:
-        """Range of a motor at a mains voltage - V; InputError where it lacks its torques, or a curve for this voltage."""
+        """Range of a motor at a mains voltage - V; InputError where its torques or a curve for it are missing."""
         if motor.peak_torque is None or motor.continuous_stall_torque is None:
             missing = "peak_torque" if motor.peak_torque is None else "continuous_stall_torque"
             raise InputError(f"{where}: motor.{missing}", "missing", "the operating range needs it")

@@ -78,7 +78,7 @@ class Load(RigTable):
         return (self.disk_inertia if kind.turns else self.disk_mass) or 0.0
 
     def gravity_torque(self, position: Array) -> Array | None:
-        """M_load = m*g*r*sin(q/i - q_0)/i - N*m - at the motor, at its angles q - rad - (n,); None without such a mass."""
+        """M_load = m*g*r*sin(q/i - q_0)/i - N*m - at the motor, at its angles q - rad - (n,); None without a mass."""
         if self.eccentric_mass is None or self.eccentric_radius is None:
             return None
         moment = self.eccentric_mass * STANDARD_GRAVITY * self.eccentric_radius

@@ -129,7 +129,7 @@ class Simulation(RigTable):
 
 
 class Rig(RigTable):
-    """One axis as its rig file describes it, in SI units; with `offset`, one known to have a constant torque (force)."""
+    """One axis as its rig file describes it, in SI; `offset`: one that is known to have a constant torque (force)."""
 
     name: str
     kind: Literal["rotary", "linear"]
@@ -144,7 +144,7 @@ class Rig(RigTable):
 
     @classmethod
     def of(cls, table: Mapping[str, Any], source: str = "rig") -> Rig:
-        """Checked from the table of a rig file, values with their units; pydantic's ValidationError where it is none."""
+        """Checked from the table of a rig file, values with units; pydantic's ValidationError where it is none."""
         kind = LINEAR if table.get("kind") == LINEAR.name else ROTARY
         return cls.model_validate({**table, "source": source}, context={"kind": kind})
 
