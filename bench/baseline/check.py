@@ -29,6 +29,23 @@ from bench.units import parse
 
 #: Probability of a false alarm of an unchanged axis, over all comparisons together.
 FALSE_ALARM_RATE = 0.01
+_SHARE = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
+#: Default margins, as shares of the baseline's value.
+MARGINS = {INERTIA: 0.005, VISCOUS: 0.15, COULOMB: 0.03, TORQUE_GAP: 0.25, VELOCITY_GAP: 0.5}
+#: Default standard deviations between recordings, as shares of the baseline's value, for an axis that is warm and moves
+#: the same way each time. Used where the rig states none and fewer than `difference.ENOUGH` recordings show them.
+BETWEEN = {INERTIA: 0.001, VISCOUS: 0.03, COULOMB: 0.0075, TORQUE_GAP: 0.04, VELOCITY_GAP: 0.1}
+#: Relative standard deviation of a recording's noise floor: coloured noise is hard to separate from a gap.
+FLOOR = 0.12
+#: Default margin, and standard deviation between recordings, of quantities of effects and of their torque.
+OF_EFFECTS, BETWEEN_OF_EFFECTS = 0.25, 0.05
+#: Share of the effort of a motion below which the contribution of a parameter does not matter.
+LEAST = 1e-3
+#: Factor on these standard deviations for recordings of different motion or sampling. For two recordings at 95 % it
+#: gives what `bench.diagnosis.same_axis` allows (1 % of inertia, 30 % of viscous and 10 % of Coulomb friction).
+OTHER_MOTION = 5.0
+#: The quantity of a motion that a parameter's torque is proportional to.
+_MADE_OF = {INERTIA: "rms_acceleration", VISCOUS: "rms_speed"}
 
 
 def check(
@@ -98,13 +115,8 @@ class Checked:
 
 
 def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Checked:
-    """Whether the axis is the same.
-
-    Args:
-        baseline: what it was.
-        now: what it is by recordings.
-        allowed: margins and spreads.
-        rate: probability that an axis that differs by no more than its margins is called changed.
+    """Whether the axis is the same: what it was, what it is by recordings, and the rate of false alarms as `check`
+    has it.
     """
     state = now.state
     rig, moved = differing(baseline.rig, state.rig), unlike(baseline.conditions, state.conditions)
@@ -112,24 +124,22 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     under = None if effects.alike or now.fitted is None else now.under(effects.others(baseline))
     names = [*_of_names(effects, under, baseline, allowed, "the motion is not that of the baseline" if moved else "")]
     pairs = [*_of_both(effects.both, allowed, baseline, OTHER_MOTION if moved else 0.0)]
-    silent = _silent(baseline, state) if baseline.shows is not None else 0
+    named = {effect.name for effect in (*baseline.effects, *state.effects)}  # the others were searched for too
+    silent = len(set(catalogue()) - named) if baseline.shows is not None else 0
     family = len(baseline.quantities) + len(names) + len(pairs) + silent
     # Where all names that differ are significant the axis changed, and each state is described by its own effects;
     # where a name is near its threshold, a change has to show with the effects of both.
     both_sets = None if all(one.chance <= rate / family for one in names) else under
     quantities = [*_of_quantities(baseline, state, under, both_sets, allowed, bool(moved))]
-    comparisons = [*quantities, *_missing_now(baseline, state), *pairs, *names]
+    missing = [name for name in baseline.quantities if name not in state.quantities]
+    quantities += [_untold(name, "it is not told now", baseline.quantities[name]) for name in missing]
+    comparisons = [*quantities, *pairs, *names]
     if rig:
         comparisons = [replace(one, chance=1.0, held_back="the rig is not that of the baseline") for one in comparisons]
     chances = holm(np.array([one.chance for one in comparisons]), silent)
     answered = [one.answered(bool(chance <= rate)) for one, chance in zip(comparisons, chances, strict=True)]
     found = Checked.of(answered, baseline, state, effects)
     return replace(found, rig=tuple(rig), conditions=tuple(moved), false_alarm_rate=rate, family=family)
-
-
-def _silent(baseline: State, now: State) -> int:
-    """Number of effects that neither state names: they were searched for too."""
-    return len(set(catalogue()) - {effect.name for effect in (*baseline.effects, *now.effects)})
 
 
 def _of_quantities(
@@ -144,12 +154,13 @@ def _of_quantities(
         allowed: margins and spreads.
         moved: whether motion or sampling differ.
     """
+    beside = OTHER_MOTION if moved else 0.0
     for name, own in now.quantities.items():
         if name not in baseline.quantities or (name == VELOCITY_GAP and under is not None):
             continue  # simulated models with other effects are compared by these
         before, values, least_chance = baseline.quantities[name], [own], 0.0
         if before.unit != own.unit:
-            yield _untold(name, before, f"now in {own.unit}")
+            yield _untold(name, f"now in {own.unit}", before)
             continue
         if name == TORQUE_GAP:  # what the effects of the baseline leave now, whatever else was found
             if under is not None:
@@ -159,23 +170,16 @@ def _of_quantities(
         elif both_sets is not None and name in both_sets.quantities:
             values.append(both_sets.quantities[name])
         between, margin = allowed.between_of(name, before), allowed.margin_of(name, before, baseline)
-        beside = OTHER_MOTION * between if moved else 0.0
-        differences = tuple(Difference.of(before, value, between, beside) for value in values)
+        differences = tuple(Difference.of(before, value, between, beside * between) for value in values)
         held_back = "what a model leaves depends on the motion" if name in GAPS and moved else ""
         found = Comparison(name, before.unit, before.value, values[0].value, differences, margin, held_back=held_back)
         yield found.tested(least_chance)
 
 
-def _missing_now(baseline: State, now: State) -> Iterator[Comparison]:
-    """Quantities of the baseline that the recordings now do not determine."""
-    for name, before in baseline.quantities.items():
-        if name not in now.quantities:
-            yield _untold(name, before, "it is not told now")
-
-
-def _untold(name: str, before: Measured, why: str) -> Comparison:
-    """A quantity of the baseline that has no value now to be held against it."""
-    return Comparison(name, before.unit, before.value, None, (), 0.0, held_back=why)
+def _untold(name: str, why: str, before: Measured | None = None, effect: str = "") -> Comparison:
+    """A quantity, or the torque of an effect, that has no value now to be held against the baseline's."""
+    unit, value = ("", None) if before is None else (before.unit, before.value)
+    return Comparison(name, unit, value, None, (), 0.0, effect, why)
 
 
 def _louder(baseline: State, now: float) -> float:
@@ -193,8 +197,7 @@ class Matched:
     Attributes:
         both: pairs of one name.
         renamed: pairs that a recording cannot distinguish.
-        gone: those of the baseline that are not named now.
-        appeared: those named now that the baseline does not have.
+        gone, appeared: those that only the baseline, only the state now has.
     """
 
     both: tuple[tuple[NamedHere, NamedHere], ...]
@@ -242,14 +245,7 @@ def _paired(
 def _of_both(
     pairs: Sequence[tuple[NamedHere, NamedHere]], allowed: Allowed, state: State, beside: float
 ) -> Iterator[Comparison]:
-    """Comparisons of the quantities of effects that both states name.
-
-    Args:
-        pairs: effects in the baseline and now.
-        allowed: margins and spreads.
-        state: the baseline.
-        beside: factor on the spread between recordings of different motion or sampling; 0 for the same.
-    """
+    """Comparisons of the quantities of effects that both states name; `beside` times the spread for other motion."""
     for before, after in pairs:
         for key in (key for key in before.compared if key in after.compared):
             key_in_full, baseline, now = f"{before.name}.{key}", before.compared[key], after.compared[key]
@@ -263,15 +259,7 @@ def _of_both(
 def _of_names(
     found: Matched, under: Under | None, baseline: State, allowed: Allowed, unlike: str
 ) -> Iterator[Comparison]:
-    """Comparisons of all names that differ between the states.
-
-    Args:
-        found: effects of both states.
-        under: the recording now with the effects of the baseline; None where they are alike.
-        baseline: the state.
-        allowed: margins.
-        unlike: why the motion of the two cannot be compared; empty where it can.
-    """
+    """Comparisons of all names that differ; `unlike` is why the motion of the two cannot be compared, if it cannot."""
     torques = {} if under is None else under.torques
     for before, after in found.renamed:
         yield _of_torque(before, after.torque, allowed, unlike, f"{before.label} or {after.label}")
@@ -287,53 +275,30 @@ def _of_torque(
     """Comparison of the torque of an effect of the baseline, whatever its name is now."""
     was = before.torque
     if was is None or now is None:
-        held_back = "the torque balance does not hold it, so its strength is not told"
-        return Comparison(name, "", None, None, (), 0.0, effect, held_back)
-    difference = Difference.of(was, now, allowed.between_of(before.name, was))
-    return Comparison(
-        name, was.unit, was.value, now.value, (difference,), OF_EFFECTS * was.value, effect, unlike
-    ).tested()
+        return _untold(name, "the torque balance does not hold it, so its strength is not told", effect=effect)
+    difference, margin = Difference.of(was, now, allowed.between_of(before.name, was)), OF_EFFECTS * was.value
+    return Comparison(name, was.unit, was.value, now.value, (difference,), margin, effect, unlike).tested()
 
 
 def _of_appeared(after: NamedHere, baseline: State, allowed: Allowed, unlike: str) -> Comparison:
     """Comparison of the torque of an effect that is new with what the baseline's recording would have shown."""
     torque = after.torque
     if torque is None or baseline.shows is None:
-        held_back = "told by its signals alone, which do not say from when on the baseline would have shown it"
-        return Comparison(after.label, "", None, None, (), 0.0, "appeared", held_back)
+        why = "told by its signals alone, which do not say from when on the baseline would have shown it"
+        return _untold(after.label, why, effect="appeared")
     least = baseline.shows.named_from(max(len(after.quantities), 1))
     nothing = Measured(0.0, torque.unit, torque.std_error)
     difference = Difference.of(nothing, torque, allowed.between_of(after.name, torque))
     return Comparison(after.label, torque.unit, None, torque.value, (difference,), least, "appeared", unlike).tested()
 
 
-_SHARE = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
-#: Default margins, as shares of the baseline's value.
-MARGINS = {INERTIA: 0.005, VISCOUS: 0.15, COULOMB: 0.03, TORQUE_GAP: 0.25, VELOCITY_GAP: 0.5}
-#: Default standard deviations between recordings, as shares of the baseline's value, for an axis that is warm and moves
-#: the same way each time. Used where the rig states none and fewer than `difference.ENOUGH` recordings show them.
-BETWEEN = {INERTIA: 0.001, VISCOUS: 0.03, COULOMB: 0.0075, TORQUE_GAP: 0.04, VELOCITY_GAP: 0.1}
-#: Relative standard deviation of a recording's noise floor: coloured noise is hard to separate from a gap.
-FLOOR = 0.12
-#: Default margin, and standard deviation between recordings, of quantities of effects and of their torque.
-OF_EFFECTS, BETWEEN_OF_EFFECTS = 0.25, 0.05
-#: Share of the effort of a motion below which the contribution of a parameter does not matter.
-LEAST = 1e-3
-#: Factor on these standard deviations for recordings of different motion or sampling. For two recordings at 95 % it
-#: gives what `bench.diagnosis.same_axis` allows (1 % of inertia, 30 % of viscous and 10 % of Coulomb friction).
-OTHER_MOTION = 5.0
-#: The quantity of a motion that a parameter's torque is proportional to.
-_MADE_OF = {INERTIA: "rms_acceleration", VISCOUS: "rms_speed"}
-
-
 @dataclass(frozen=True)
 class Allowed:
-    """Margins and spreads of an axis.
+    """Margins below which no change matters, and spreads between recordings of one axis, by quantity, as its rig has
+    them.
 
-    Attributes:
-        kind: of the axis.
-        margin, between: as the rig states them, by quantity.
-        source: where they are stated, for messages.
+    A quantity is `coulomb_friction_torque`, `cogging_torque.amplitude`, `torque_gap`; its value a share of the
+    baseline's, "2 %", or a number with its unit. `source` is where they are stated, for messages.
     """
 
     kind: AxisKind
@@ -343,15 +308,7 @@ class Allowed:
 
     @classmethod
     def of(cls, rig: Rig | None, kind: AxisKind = ROTARY) -> Allowed:
-        """Those of a rig, or the defaults without one.
-
-        Args:
-            rig: of the axis.
-            kind: of the axis, if there is no rig.
-
-        Raises:
-            InputError: an unknown quantity.
-        """
+        """Those of a rig, or the defaults of a kind of axis without one; InputError where a quantity is not known."""
         if rig is None:
             return cls(kind)
         found = cls(rig.axis_kind)
@@ -365,10 +322,7 @@ class Allowed:
     def margin_of(self, name: str, baseline: Measured, state: State) -> float:
         """Change of a quantity below which it does not matter - its unit.
 
-        Args:
-            name: of the quantity.
-            baseline: its value.
-            state: the baseline, whose motion gives the torque of a parameter.
+        The motion of the baseline, `state`, gives the torque of a parameter, of which some never matters.
         """
         if name in self.margin:
             return _stated(self.margin[name], baseline, f"{self.source}.margin.{name}")

@@ -10,7 +10,7 @@ same.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +24,6 @@ from bench.plant.drive import Cascade, References
 from bench.plant.model_file import SCHEMA, StoredModel, load_model, read_table
 from bench.plant.plant import Plant
 from bench.plant.run import run
-from bench.units import Quantity
 
 #: Margins: of an angle - rad -, and of the torque of the response as a share of its RMS.
 ANGLE, RESPONSE = 0.05, 0.01
@@ -45,11 +44,7 @@ def is_model(path: str | Path) -> bool:
 
 
 def modelled(path: str | Path, baseline: State | None = None) -> State:
-    """The state of a `model.toml` that `bench diagnose` wrote.
-
-    Args:
-        path: of the model.
-        baseline: whose run the response repeats; without one, a run laid out for the model.
+    """The state of a `model.toml` that `bench diagnose` wrote, its response the run of `baseline` if there is one.
 
     Raises:
         InputError: no such model.
@@ -72,15 +67,7 @@ def _effects(stored: StoredModel) -> Iterator[NamedHere]:
 
 
 def response(model: AxisModel, like: Response | None = None) -> Response:
-    """Run a model.
-
-    Args:
-        model: of an axis.
-        like: a run whose drive and speeds are used; without one they are laid out for the model.
-
-    Raises:
-        SimulationError: the model diverged.
-    """
+    """Run a model, with drive and speeds laid out as for `like`, else for itself; SimulationError if it diverged."""
     own = model.parameters
     least = max(OVER_FRICTION * own.coulomb_friction / own.inertia, LEAST[own.kind.turns])
     inertia, acceleration = (own.inertia, least) if like is None else (like.inertia, like.acceleration)
@@ -102,47 +89,25 @@ def _references(acceleration: float) -> References:
 
 
 def compare_models(baseline: State, now: State, allowed: Allowed) -> Checked:
-    """Whether a model is the same: its values, its effects, and how it moves.
-
-    Args:
-        baseline: what it was.
-        now: what it is.
-        allowed: margins.
-    """
+    """Whether a model is the same as that of the baseline: its values, its effects, and how it moves."""
     effects = matched(baseline, now)
-    comparisons = [
-        _of_value(name, *pair, allowed, baseline) for name, pair in _pairs(baseline.quantities, now.quantities)
-    ]
-    for before, after in (*effects.both, *effects.renamed):
-        for key, pair in _pairs(before.quantities, after.quantities):
-            quantity = next(q for q in before.effect.quantities if q.name == key)
-            comparisons.append(_of_value(f"{before.label}.{key}", *pair, allowed, baseline, quantity))
-    comparisons += [_of_presence(effect, "gone") for effect in effects.gone]
-    comparisons += [_of_presence(effect, "appeared") for effect in effects.appeared]
+    pairs = [("", baseline.quantities, now.quantities)]
+    pairs += [(f"{old.label}.", old.quantities, new.quantities) for old, new in (*effects.both, *effects.renamed)]
+    angles = {f"{one.label}.{q.name}" for one in baseline.effects for q in one.effect.quantities if q.angle}
+    comparisons = []
+    for owner, before, after in pairs:
+        for name in (name for name in before if name in after):
+            key, was, value = owner + name, before[name], after[name].value
+            away, margin = value - was.value, allowed.margin_of(key, was, baseline)
+            if key in angles:  # by the shorter way round
+                away, margin = math.remainder(away, 2.0 * math.pi), ANGLE
+            if not math.isfinite(away):
+                away = 0.0 if value == was.value else math.inf
+            comparisons.append(_exact(key, was.unit, (was.value, value), away, margin))
+    for how, changed in (("gone", effects.gone), ("appeared", effects.appeared)):
+        comparisons += [Comparison(e.label, "", None, None, (), 0.0, how, chance=0.0, result=CHANGED) for e in changed]
     comparisons += _of_response(baseline, now)
     return Checked.of(comparisons, baseline, now, effects)
-
-
-def _pairs(
-    before: Mapping[str, Measured], after: Mapping[str, Measured]
-) -> list[tuple[str, tuple[Measured, Measured]]]:
-    return [(name, (before[name], after[name])) for name in before if name in after]
-
-
-def _of_value(
-    name: str, before: Measured, after: Measured, allowed: Allowed, state: State, quantity: Quantity | None = None
-) -> Comparison:
-    """Comparison of an exact value; angles by the shorter way round."""
-    away, margin = after.value - before.value, allowed.margin_of(name, before, state)
-    if quantity is not None and quantity.angle:
-        away, margin = math.remainder(away, 2.0 * math.pi), ANGLE
-    if not math.isfinite(away):
-        away = 0.0 if after.value == before.value else math.inf
-    return _exact(name, before.unit, (before.value, after.value), away, margin)
-
-
-def _of_presence(effect: NamedHere, how: str) -> Comparison:
-    return Comparison(effect.label, "", None, None, (), 0.0, how, chance=0.0, result=CHANGED)
 
 
 def _of_response(baseline: State, now: State) -> Iterator[Comparison]:

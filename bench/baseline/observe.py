@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,7 +14,6 @@ from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.show import Diagnosis
 from bench.fit.estimate import Alone
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
@@ -106,63 +105,46 @@ def observe(
         InputError: rig and recording do not fit together.
     """
     traces = [trace] if isinstance(trace, Trace) else list(trace)
-    return diagnosed(traces, rig, progress) if names else identified(traces, rig)
-
-
-def identified(traces: Sequence[Trace], rig: Rig) -> Observed:
-    """State by `identify`: parameters, and the residual over its noise floor.
-
-    Raises:
-        UndeterminedError: the recordings do not determine a parameter.
-        InputError: as `identify`.
-    """
+    if names:
+        return _diagnosed(traces, rig, progress)
     traces = [passed(trace, rig).trace for trace in traces]
-    found = identify(traces, rig)
-    kind, fitted = rig.axis_kind, balance(join(traces), rig, Hypothesis())
-    names = [*kind.base_parameters()]
+    found, fitted = identify(traces, rig), balance(join(traces), rig, Hypothesis())
     gap = _torque_gap(fitted, found.residual.unit)
-    state = State(
-        source="recordings",
-        names=False,
-        quantities=_parameters(names, found.parameters, found.recordings) | {TORQUE_GAP: gap},
-        gaps={"torque": RemainingGap(gap.value, fitted.floor, gap.unit)},
-        conditions=conditions(traces, rig, found.cutoff),
-        rig=rig_values(rig),
-    )
-    return Observed(state)
+    quantities = _parameters(rig.axis_kind.base_parameters(), found.parameters, found.recordings) | {TORQUE_GAP: gap}
+    gaps = {"torque": RemainingGap(gap.value, fitted.floor, gap.unit)}
+    told = conditions(traces, rig, found.cutoff)
+    return Observed(State("recordings", False, quantities, gaps=gaps, conditions=told, rig=rig_values(rig)))
 
 
-def diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress = lambda share: None) -> Observed:
-    """State by `diagnose`: parameters together with named effects, gaps and verdict.
-
-    Raises:
-        UndeterminedError, InputError: as `diagnose`.
-    """
+def _diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress) -> Observed:
+    """State by `diagnose`: parameters together with named effects, gaps and verdict."""
     found = diagnose(traces, rig, progress=progress)
     traces = [passed(trace, rig).trace for trace in traces]
     recordings = Recordings.of(traces, rig, None)
-    fitted = balance(recordings.corrected, rig, replace(found.balance.hypothesis, hum=()))
-    count = len(fitted.terms)
-    effects = [_named(effect, fitted, index, recordings.unit) for index, effect in enumerate(found.effects[:count])]
+    unit, fitted = recordings.unit, balance(recordings.corrected, rig, replace(found.balance.hypothesis, hum=()))
+    count, gaps = len(fitted.terms), {"torque": found.torque, "velocity": found.velocity}
+    effects = [_named(effect, fitted, index, unit) for index, effect in enumerate(found.effects[:count])]
     effects += [NamedHere(e.effect, _measured(e.parameters)) for e in found.effects[count:]]
-    cutoff = recordings.rows.conditioning.filter.cutoff
+    quantities = _parameters(recordings.base_units, found.parameters, found.recordings)
+    quantities[TORQUE_GAP] = _torque_gap(fitted, unit)
+    if found.velocity.identify is not None:
+        quantities[VELOCITY_GAP] = Measured(found.velocity.identify[1], found.velocity.unit)
     state = State(
         source="recordings",
         names=True,
-        quantities=_parameters(recordings.base_units, found.parameters, found.recordings)
-        | _gaps(found, fitted, recordings.unit),
+        quantities=quantities,
         effects=tuple(effects),
         verdict=found.verdict,
         gaps={
             name: RemainingGap(gap.identify[1], gap.noise_floor, gap.unit)
-            for name, gap in (("torque", found.torque), ("velocity", found.velocity))
+            for name, gap in gaps.items()
             if gap.identify is not None
         },
         shows=_shows(fitted),
-        conditions=conditions(traces, rig, cutoff),
+        conditions=conditions(traces, rig, recordings.rows.conditioning.filter.cutoff),
         rig=rig_values(rig),
     )
-    return Observed(state, fitted, recordings.base_units, recordings.unit)
+    return Observed(state, fitted, recordings.base_units, unit)
 
 
 def balance(trace: Trace, rig: Rig, hypothesis: Hypothesis) -> Fit:
@@ -175,7 +157,7 @@ def balance(trace: Trace, rig: Rig, hypothesis: Hypothesis) -> Fit:
 
 
 def _parameters(
-    names: Sequence[str] | Mapping[str, str], found: Mapping[str, Parameter], recordings: Sequence[Alone]
+    names: Iterable[str], found: Mapping[str, Parameter], recordings: Sequence[Alone]
 ) -> dict[str, Measured]:
     alone = {name: [one.parameters[name] for one in recordings if name in one.parameters] for name in names}
     return {name: Measured.of(found[name], alone[name]) for name in names if name in found}
@@ -223,13 +205,6 @@ def _shows(fitted: Fit) -> Shows:
     return Shows(float(np.sqrt(significant)), float(fitted.floor * np.sqrt(hidden)))
 
 
-def _gaps(found: Diagnosis, fitted: Fit, unit: str) -> dict[str, Measured]:
-    gaps, velocity = {TORQUE_GAP: _torque_gap(fitted, unit)}, found.velocity
-    if velocity.identify is not None:
-        gaps[VELOCITY_GAP] = Measured(velocity.identify[1], velocity.unit)
-    return gaps
-
-
 def _term(effect: NamedHere, mine: NamedHere | None, own: Fit, state: State) -> Term:
     """The term of an effect: the one of this recording, else one of the shape in the other state."""
     if mine is not None:
@@ -249,13 +224,7 @@ BESIDE = {"name", "simulation", "check", "drive", "source"}
 
 
 def conditions(traces: Sequence[Trace], rig: Rig, cutoff: float) -> dict[str, Measured]:
-    """Motion, sampling and cut-off of recordings, their mean where there are several; SI.
-
-    Args:
-        traces: the recordings.
-        rig: of the axis.
-        cutoff: half-power frequency of the filter - Hz.
-    """
+    """Motion, sampling and cut-off - Hz - of recordings, their mean where there are several; SI."""
     kind = rig.axis_kind
     units = {
         "top_speed": kind.speed_unit,

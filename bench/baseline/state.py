@@ -115,13 +115,7 @@ class NamedHere:
 
 @dataclass(frozen=True)
 class RemainingGap:
-    """A gap that remains with the effects found.
-
-    Attributes:
-        after: RMS - unit.
-        noise_floor: RMS from noise alone - unit.
-        unit: of both.
-    """
+    """RMS of a gap that remains with the effects found, and its noise floor, from noise alone - unit."""
 
     after: float
     noise_floor: float
@@ -202,11 +196,7 @@ class State:
 
 
 def write_baseline(path: str | Path, state: State) -> None:
-    """Write a state, whole or not at all.
-
-    Raises:
-        InputError: the place cannot be written to.
-    """
+    """Write a state, whole or not at all; InputError where the place cannot be written to."""
     content: dict[str, Any] = {"schema": SCHEMA, "source": state.source, "names": state.names}
     if state.verdict:
         content["verdict"] = state.verdict
@@ -264,11 +254,7 @@ def _without_none(content: Any) -> Any:  # noqa: ANN401 - TOML has no null
 
 
 def read_baseline(path: str | Path) -> State:
-    """The state that a file holds.
-
-    Raises:
-        InputError: no such file, no TOML, another schema, or a key that is missing or wrong.
-    """
+    """The state of a file; InputError where it is none, its schema is another, or a key is missing or wrong."""
     path = Path(path)
     if not path.exists():
         raise InputError(path, "no such baseline", "run the same command with --update to make one of this state")

@@ -33,8 +33,7 @@ class ClosedLoop:
         compiled: the axis for MuJoCo, what is native in it and its actuator `drive`.
         controller: of the actuator.
         time: of the controller's ticks, from zero - s - (ticks,).
-        position: to start at - rad (m).
-        velocity: to start with - rad/s (m/s).
+        position, velocity: to start with - rad (m), rad/s (m/s).
         substeps: steps of the integration per tick.
         every: ticks from one that is recorded to the next.
         since: first tick from the start of the recording, in which the time of effects counts - s.
@@ -75,8 +74,7 @@ class States:
 
     Attributes:
         time: s - (ticks,).
-        position: rad (m on a linear axis) - (ticks, axes).
-        velocity: rad/s (m/s) - (ticks, axes).
+        position, velocity: rad (m on a linear axis), rad/s (m/s) - (ticks, axes).
         torque: set-point from each tick to the next - N*m (N) - (ticks, axes).
         motor_torque: what the motor makes; less the emulated friction - N*m (N) - (ticks, axes).
     """
@@ -94,23 +92,17 @@ class States:
 
     def axis(self, index: int, ticks: int | None = None) -> States:
         """Motion of one axis, over its first ticks; signals stay two-dimensional."""
-        signals = (signal[:ticks, index : index + 1] for signal in self._signals)
-        return States(self.time[:ticks], *signals)
+        return States(self.time[:ticks], *(signal[:ticks, index : index + 1] for signal in self.signals))
 
     @property
     def diverged(self) -> bool:
         """Whether a value is not finite: runners leave nan where a simulation diverged."""
-        return not all(np.isfinite(signal).all() for signal in self._signals)
+        return not all(np.isfinite(signal).all() for signal in self.signals)
 
     @property
-    def _signals(self) -> tuple[Array, ...]:
+    def signals(self) -> tuple[Array, ...]:
+        """All but the time."""
         return self.position, self.velocity, self.torque, self.motor_torque
-
-
-def side_by_side(states: Sequence[States]) -> States:
-    """Motions of several axes over one time, as one."""
-    signals = (np.concatenate(signal, axis=1) for signal in zip(*(s._signals for s in states), strict=True))
-    return States(states[0].time, *signals)
 
 
 class Controller(ABC):
@@ -119,11 +111,9 @@ class Controller(ABC):
     @classmethod
     @abstractmethod
     def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Ticking:
-        """Controllers of axes of one kind.
+        """Controllers of the axes of loops whose controllers are all of this class.
 
-        Args:
-            loops: of the axes, whose controllers are all of this class.
-            setpoints: inputs of the actuators before the effort, to be written at each tick - (axes, inputs).
+        `setpoints` are the inputs of the actuators before the effort, to be written at each tick - (axes, inputs).
         """
 
 
@@ -131,13 +121,10 @@ class Ticking(Protocol):
     """Controllers of axes side by side, asked at every tick."""
 
     def tick(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
-        """Effort from tick k to the next - N*m (N) - (axes,): reported, and asked of the motor.
+        """Effort from tick k to the next - N*m (N) - (axes,): reported, and asked of the motor. Ticks come in turn.
 
-        Of a lone axis everything may be numbers.
-
-        Args:
-            k: number of the tick; they come in turn.
-            position, velocity: true ones at it - rad (m), rad/s (m/s) - (axes,).
+        Position and velocity are the true ones at it - rad (m), rad/s (m/s) - (axes,). Of a lone axis all may be
+        numbers.
         """
         ...
 
@@ -169,8 +156,7 @@ class Listed(PlannedInputs):
 def blocks(ticks: int, bytes_per_tick: int) -> Iterator[tuple[int, int]]:
     """First tick of each block and the one after its last."""
     size = max(1, BLOCK_BYTES // bytes_per_tick)
-    for start in range(0, ticks, size):
-        yield start, min(start + size, ticks)
+    return ((start, min(start + size, ticks)) for start in range(0, ticks, size))
 
 
 class _PlannedSideBySide:

@@ -53,22 +53,10 @@ class Cascade:
 
     @classmethod
     def from_rig(cls, rig: Rig) -> Cascade:
-        """The drive of a rig.
-
-        Raises:
-            InputError: the rig has no drive.
-        """
-        drive = rig.drive
-        if drive is None:
+        """The drive of a rig; InputError where it has none."""
+        if rig.drive is None:
             raise InputError(f"{rig.source}: drive", "missing", "the closed loop needs a table [drive]")
-        return cls(
-            position_gain=drive.position_gain,
-            velocity_gain=drive.velocity_gain,
-            integral_gain=drive.integral_gain,
-            inertia_feedforward=drive.inertia_feedforward,
-            torque_limit=peak_torque(rig),
-            control_period=drive.control_period,
-        )
+        return cls(torque_limit=peak_torque(rig), **dict(rig.drive))
 
 
 @dataclass(frozen=True)
@@ -102,10 +90,7 @@ def peak_torque(rig: Rig) -> float:
 class CascadeDrive:
     """The cascade ticked in software, for any number of axes at once. It starts at rest on its references.
 
-    Args:
-        cascade: gains.
-        references: what the axes follow, signals of shape (ticks, axes).
-        emulation: friction made in software, or None.
+    References are signals of shape (ticks, axes); friction is made in software where there is an `emulation`.
     """
 
     def __init__(self, cascade: Cascade, references: References, emulation: FrictionEmulation | None = None) -> None:
@@ -123,14 +108,10 @@ class CascadeDrive:
         self._friction = None if emulation is None else _EmulatedFriction(emulation, period, start)
 
     def tick(self, k: int, position: Values, velocity: Values) -> tuple[Values, Values]:
-        """Torque from tick k to the next, as position and velocity are given - N*m (N): set-point, and the motor's.
+        """Torque from tick k to the next of what is measured at it - N*m (N): set-point, and the motor's.
 
         They differ by the emulated friction. The set-point is what the drive reports as current: the torque that moves
         the axis against its friction, whether that sits in the mechanics or in the software.
-
-        Args:
-            k: number of the tick.
-            position, velocity: measured at it - rad (m), rad/s (m/s) - (axes,), or numbers of a lone axis.
         """
         error = self._speed_demand[k] - self._position_gain * position - velocity
         wanted = self._gain * error + self._integral + self._feedforward[k]
@@ -145,12 +126,8 @@ class CascadeDrive:
 
 @dataclass(frozen=True, eq=False)
 class FollowReferences(Controller):
-    """The drive of one axis along its references; it has of the motion what the axis' encoder sees.
-
-    Attributes:
-        cascade: gains and limit, numbers.
-        references: signals of shape (ticks,).
-        emulation: friction made in software, or None.
+    """The drive of one axis along its references (ticks,), friction made in software where there is an `emulation`; it
+    has of the motion what the axis' encoder sees.
     """
 
     cascade: Cascade
@@ -270,9 +247,7 @@ class References:
 
     Attributes:
         time: of the ticks, from zero - s - (ticks,).
-        position: rad (m on a linear axis).
-        velocity: rad/s (m/s).
-        acceleration: rad/s**2 (m/s**2).
+        position, velocity, acceleration: rad, rad/s, rad/s**2 (m, m/s, m/s**2 on a linear axis).
         torque: that is added to the drive's set-point, beside its own feed-forward - N*m (N); None without any.
     """
 

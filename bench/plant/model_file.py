@@ -77,9 +77,9 @@ class StoredModel:
 
     Attributes:
         name: of the axis.
-        model: the axis with its effects.
+        model: the axis with its effects, on the motor's side.
         misalignment: by how much recordings of it report the effort late - s.
-        mounting: how the axis sits in its machine; the model itself is on the motor's side.
+        mounting: how the axis sits in its machine.
     """
 
     name: str
@@ -106,12 +106,7 @@ def model_xml(stored: StoredModel) -> str:
 
 
 def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) -> str:
-    """The whole model as TOML, every value with its unit.
-
-    Args:
-        stored: the model.
-        further: tables of the same file, by name.
-    """
+    """The whole model as TOML, every value with its unit; `further` are tables of the same file, by name."""
     model, kind = stored.model, stored.model.parameters.kind
     content: dict[str, Any] = {"name": stored.name, "misalignment": _determined(stored.misalignment, "s")}
     if math.isfinite(model.peak_effort):
@@ -138,8 +133,7 @@ def tables_toml(kind: AxisKind, tables: Mapping[str, Any]) -> str:
 def load_model(path: str | Path) -> StoredModel:
     """Read a `model.toml`.
 
-    Raises:
-        InputError: no such file, no TOML, another schema, an unknown or missing key, or a value that is none.
+    InputError: no such file, no TOML, another schema, an unknown or missing key, or a value that is none.
     """
     table = read_table(path)
     if table.get("schema") != SCHEMA:

@@ -57,11 +57,7 @@ class Plant:
 
     @classmethod
     def from_rig(cls, rig: Rig, effects: Sequence[Present] = ()) -> Plant:
-        """The simulated axis that a rig describes, with effects.
-
-        Raises:
-            InputError: no `[drive]`, no `[simulation]`, or values in them that do not go together.
-        """
+        """The simulated axis that a rig describes; InputError where `[drive]` or `[simulation]` lack or contradict."""
         parameters, cascade = AxisParameters.from_rig(rig), Cascade.from_rig(rig)
         assert rig.simulation is not None
         timestep = rig.simulation.timestep or cascade.control_period
@@ -89,16 +85,10 @@ class Plant:
         """Whether MuJoCo's own actuator can be the drive, as long as its torque is not limited."""
         return self.substeps == 1 and not self.emulated and self.model.all_native
 
-    def spec(self) -> mujoco.MjSpec:
-        """Model of the mechanics."""
-        return self.model.spec(self.timestep)
-
     def native_loop(self, references: References) -> ClosedLoop:
         """The axis with its drive as MuJoCo's `pid`, which does not hold its integrator while limited."""
-        inputs = Listed(pid_inputs(self.cascade, references))
-        return self._loop(
-            self._with_pid, inputs, self.timestep * np.arange(references.time.size, dtype=np.float64), references
-        )
+        time = self.timestep * np.arange(references.time.size, dtype=np.float64)
+        return self._loop(self._with_pid, Listed(pid_inputs(self.cascade, references)), time, references)
 
     def ticked_loop(self, references: References) -> ClosedLoop:
         """The axis with its drive ticked in Python."""
@@ -112,10 +102,10 @@ class Plant:
 
     @cached_property
     def _mechanics(self) -> mujoco.MjModel:
-        return self.spec().compile()
+        return self.model.spec(self.timestep).compile()
 
     @cached_property
     def _with_pid(self) -> mujoco.MjModel:
-        spec = self.spec()
+        spec = self.model.spec(self.timestep)
         add_pid(spec, self.cascade)
         return spec.compile()

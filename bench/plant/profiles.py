@@ -136,9 +136,9 @@ def slow_reversals(limits: MotionLimits) -> References:
 
 
 def multisine(limits: MotionLimits) -> References:
-    """A sum of sines with Schroeder's phases, faded in and out: many frequencies at once, low peaks.
+    """A sum of sines, faded in and out: many frequencies at once, low peaks.
 
-    Source: M. R. Schroeder, IEEE Trans. Inf. Theory 16 (1970) 85-89.
+    Phases by M. R. Schroeder, IEEE Trans. Inf. Theory 16 (1970) 85-89.
     """
     time = limits.period * np.arange(round(MULTISINE_DURATION / limits.period) + 1, dtype=np.float64)
     order = np.asarray(HARMONICS)[:, None]
@@ -167,10 +167,8 @@ PROFILES: dict[str, Profile] = {
 
 
 def plan(name: str, limits: MotionLimits) -> References:
-    """The motion of a named profile, slowed down until it fits into the travel.
-
-    Raises:
-        InputError: no profile of this name.
+    """The motion of a named profile, slowed down until it fits into the travel; InputError if there is none of the
+    name.
     """
     if name not in PROFILES:
         raise InputError(
@@ -188,10 +186,7 @@ def _through(limits: MotionLimits, speeds: list[float], dwell: float) -> Referen
 
 
 def _fade(share: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Window from 0 to 1 and back with two continuous derivatives, at a share of the time; s = 10u**3-15u**4+6u**5.
-
-    Returns the window and its derivatives by time, `rate` being the derivative of the share - 1/s.
-    """
+    """Window from 0 to 1 and back over a share of the time, s = 10u**3-15u**4+6u**5, and two derivatives by time."""
     rising = share < 0.5
     u = np.clip(np.where(rising, share, 1.0 - share) / FADE, 0.0, 1.0)
     du = np.where(rising, 1.0, -1.0) * rate / FADE
@@ -211,10 +206,7 @@ def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: 
     Args:
         durations: of the pieces, those of zero length are passed over - s - (m,).
         accelerations: at the end of each piece, the first one starting at zero - rad/s**2 (m/s**2) - (m,).
-        period: of the ticks - s.
-
-    Returns:
-        References at ticks from zero to the first at or after the end.
+        period: of the ticks, which go from zero to the first at or after the end - s.
 
     Raises:
         InputError: it takes more than `MOST_TICKS`.
@@ -248,14 +240,10 @@ def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: 
 def through_speeds(
     speeds: Sequence[float], dwell: float, acceleration: float, ramp_time: float, period: float
 ) -> References:
-    """Motion from rest through a sequence of speeds, each held for a while.
+    """Motion from rest through speeds - rad/s (m/s) -, each held for `dwell` - s.
 
-    Args:
-        speeds: to pass through in order - rad/s (m/s).
-        dwell: time at each - s.
-        acceleration: highest on the way - rad/s**2 (m/s**2).
-        ramp_time: in which it builds up, and fades - s.
-        period: of the ticks - s.
+    At most with an acceleration - rad/s**2 (m/s**2) - that builds up and fades in `ramp_time` - s; `period` as
+    `s_curve`.
     """
     durations: list[float] = []
     accelerations: list[float] = []

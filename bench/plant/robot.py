@@ -51,12 +51,8 @@ DISABLED = (
 
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """A robot around one of its joints.
-
-    Attributes:
-        model: without armature, damping and friction of the joint.
-        joint: its name.
-        source: file that it comes from.
+    """A robot around one of its joints: the model without armature, damping and friction of it, and the file it is
+    from.
     """
 
     model: mujoco.MjModel
@@ -65,11 +61,7 @@ class Robot:
 
     @classmethod
     def of(cls, path: Path, joint: str) -> Robot:
-        """From an MJCF file.
-
-        Raises:
-            InputError: no such file or joint, or a joint of more than one coordinate.
-        """
+        """From an MJCF file; InputError if there is no such file or joint, or a joint of more than one coordinate."""
         read_bytes(path, "an MJCF file")
         try:
             model = mujoco.MjModel.from_xml_path(str(path))
@@ -111,8 +103,7 @@ class Robot:
     def rest(self, position: Array, velocity: Array) -> tuple[Array, Array]:
         """What the links ask of the joint beside its own inertia: r - N*m (N) - and p - N*m*s (N*s) -, (n,) each.
 
-        Args:
-            position, velocity: of all joints in the MJCF's order - rad (m), rad/s (m/s) - (n, joints).
+        Of positions and velocities of all joints in the MJCF's order - rad (m), rad/s (m/s) - (n, joints).
         """
         dof = int(self.model.joint(self.joint).dofadr[0])
         torque, momentum = np.empty(len(position)), np.empty(len(position))
@@ -156,16 +147,8 @@ def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) ->
     """A log of a joint with the torque that the rest of the robot asks of it.
 
     The log holds, beside the joint's own signals, `NAME.position` of every other joint and `NAME.velocity` where it is
-    recorded; joints that it does not hold stand where they are stated to.
-
-    Args:
-        path: of the log.
-        rig: of the joint; its gear lies between the log's position and the joint's.
-        robot: around it.
-        stated: position of joints that stand - rad (m).
-
-    Raises:
-        InputError: the log cannot be read, or a joint is neither in it nor stated.
+    recorded; joints that it does not hold stand where they are `stated` to - rad (m). The rig's gear lies between the
+    log's position and the joint's. InputError where the log cannot be read, or a joint is neither in it nor stated.
     """
     recording = read_recording(path)
     own = rig.on_axis(robot.joint) if _holds(recording, robot.joint) and rig.trace.axis is None else rig

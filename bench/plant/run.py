@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from bench.effects.axis import Number
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError, SimulationError
-from bench.plant.closed_loop import DIVERGED, ClosedLoop, PlannedInputs, States, blocks, side_by_side
+from bench.plant.closed_loop import DIVERGED, ClosedLoop, PlannedInputs, States, blocks
 from bench.plant.drive import TORQUE, References
 from bench.plant.plant import Plant
 from bench.plant.stepped_effects import BatchJoints, SteppedEffects, per_axis
@@ -37,14 +37,16 @@ def run(plants: Sequence[Plant], references: Sequence[References], progress: Pro
     pairs = [(same[plant], motion) for plant, motion in zip(plants, references, strict=True)]
     native = [k for k, (plant, _) in enumerate(pairs) if plant.native]
     found = dict(zip(native, run_loops([pairs[k][0].native_loop(pairs[k][1]) for k in native]), strict=True))
-    ticked = [k for k, (plant, _) in enumerate(pairs) if k not in found or _limited(found[k], plant)]
+    limited = {k for k in native if (np.abs(found[k].torque) >= pairs[k][0].cascade.torque_limit).any()}
+    ticked = [k for k in range(len(pairs)) if k not in found or k in limited]
     loops = [pairs[k][0].ticked_loop(pairs[k][1]) for k in ticked]
     found |= zip(ticked, run_loops(loops, progress), strict=True)
     if any(states.diverged for states in found.values()):
         raise SimulationError(DIVERGED)
     if progress is not None:
         progress(1.0)
-    return side_by_side([found[k] for k in range(len(pairs))])
+    signals = zip(*(found[k].signals for k in range(len(pairs))), strict=True)
+    return States(found[0].time, *(np.concatenate(signal, axis=1) for signal in signals))
 
 
 def run_loops(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> list[States]:
@@ -75,10 +77,6 @@ def _check_ticks(plants: Sequence[Plant], references: Sequence[References]) -> N
             raise InputError("drive.control_period", "found different periods", "allowed: axes that tick together")
         if abs(reference.period / period - 1.0) > 1e-6:
             raise InputError("references", f"found a period of {reference.period:g} s", f"allowed: {period:g} s")
-
-
-def _limited(states: States, plant: Plant) -> bool:
-    return bool((np.abs(states.torque) >= plant.cascade.torque_limit).any())
 
 
 @contextmanager
@@ -134,11 +132,8 @@ REPORT_EVERY = 1000
 def run_ticked(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> States:
     """Motion of axes side by side, nan where one diverged; the same arithmetic for one axis and a thousand.
 
-    MuJoCo's warnings are the caller's to silence.
-
-    Args:
-        loops: alike, as `ClosedLoop.alike` has it; all run as long as the longest.
-        progress: called with the share done.
+    Loops are alike, as `ClosedLoop.alike` has it, and run as long as the longest. MuJoCo's warnings are the caller's to
+    silence.
     """
     axes, every = _SideBySide(loops), loops[0].every
     time = max((loop.time for loop in loops), key=len)

@@ -98,27 +98,16 @@ class Sensors:
 
     @classmethod
     def from_rig(cls, rig: Rig) -> Sensors:
-        """The sensors of a rig's `[simulation]`.
-
-        Raises:
-            InputError: the rig has none.
-        """
-        if rig.simulation is None:
+        """The sensors of a rig's `[simulation]`; InputError where it has none."""
+        told = rig.simulation
+        if told is None:
             raise InputError(f"{rig.source}: simulation", "missing", "a simulated axis needs a table [simulation]")
-        return cls(
-            sample_period=rig.simulation.sample_period,
-            encoder_resolution=rig.simulation.encoder_resolution,
-            velocity_noise=rig.simulation.velocity_noise,
-            current_noise=rig.simulation.current_noise,
-            torque_constant=rig.motor.torque_per_ampere,
-            kind=rig.axis_kind,
-        )
+        noise = told.velocity_noise, told.current_noise
+        return cls(told.sample_period, told.encoder_resolution, *noise, rig.motor.torque_per_ampere, rig.axis_kind)
 
     def stride(self, period: float) -> int:
-        """Ticks of a drive with this period - s - from one sample to the next.
-
-        Raises:
-            InputError: the sample period is no multiple of it.
+        """Ticks of a drive with this period - s - from one sample to the next; InputError if there is no whole
+        number.
         """
         stride = max(1, round(self.sample_period / period))
         if abs(stride * period / self.sample_period - 1.0) > 1e-9:
@@ -130,34 +119,27 @@ class Sensors:
         return stride
 
     def record(self, states: States, references: References, random: np.random.Generator, origin: str) -> Trace:
-        """Trace of one axis' motion, position, velocity and current of a row simultaneous.
+        """Trace of one axis' motion along references (ticks,), position, velocity and current of a row simultaneous.
 
         Position is rounded to counts. Velocity is the drive's own, true speed with noise. The drive holds its current
         over each tick; the current of a row is interpolated between the middles of the ticks around it, by a cubic
         that keeps their shape (Fritsch, Carlson, SIAM J. Numer. Anal. 17, 1980, 238-246), so it never exceeds the peak.
-
-        Args:
-            states: of one axis.
-            references: it followed, signals of shape (ticks,).
-            random: source of the noise.
-            origin: name the trace carries.
         """
         rows = slice(None, None, self.stride(references.period))
         time, position, velocity = states.time[rows], states.position[rows, 0], states.velocity[rows, 0]
         noise = random.standard_normal((2, len(time)))
+        if self.encoder_resolution > 0.0:
+            position = np.round(position / self.encoder_resolution) * self.encoder_resolution
+        effort = "current" if self.torque_constant is not None else self.kind.effort
         signals = {
-            "position": _counted(position, self.encoder_resolution),
+            "position": position,
             "velocity": velocity + self.velocity_noise * noise[0],
-            self._effort_name: self._effort(states, time) + self.current_noise * noise[1],
+            effort: self._effort(states, time) + self.current_noise * noise[1],
             "position_reference": references.position[rows],
             "velocity_reference": references.velocity[rows],
         }
         units = {name: unit_on(self.kind, name) for name in signals}
         return Trace(time, signals, units, origin)
-
-    @property
-    def _effort_name(self) -> str:
-        return "current" if self.torque_constant is not None else self.kind.effort
 
     def _effort(self, states: States, time: Array) -> Array:
         """Current (torque) of one axis at some times - (n,)."""
@@ -167,7 +149,3 @@ class Sensors:
         held = torque if self.torque_constant is None else self.torque_constant.current(torque)
         middles = states.time + (states.time[1] - states.time[0]) / 2.0
         return PchipInterpolator(middles, held)(np.maximum(time, middles[0]))
-
-
-def _counted(position: Array, resolution: float) -> Array:
-    return np.round(position / resolution) * resolution if resolution > 0.0 else position

@@ -29,13 +29,8 @@ SCHEMA = "bench.truth/1"
 
 @dataclass(frozen=True)
 class Simulated:
-    """One simulated recording.
-
-    Attributes:
-        trace: what the sensors recorded.
-        truth: what it was simulated from.
-        states: the true motion at the drive's ticks, signals of shape (ticks, 1).
-        references: what the drive followed.
+    """One simulated recording: what the sensors recorded, what it was simulated from, the true motion at the drive's
+    ticks - (ticks, 1) - and what the drive followed.
     """
 
     trace: Trace
@@ -83,17 +78,7 @@ def simulate(
 
 @dataclass(frozen=True)
 class Truth:
-    """What a trace was simulated from.
-
-    Attributes:
-        rig: name of the axis.
-        parameters: of its equation of motion.
-        friction: `mechanics`, or `drive` where the drive's software makes it.
-        sensors: that recorded it.
-        profile: name of the motion.
-        seed: of the sensors' noise.
-        effects: beyond the equation of motion.
-    """
+    """What a trace was simulated from; `friction` is `mechanics`, or `drive` where the drive's software makes it."""
 
     rig: str
     parameters: AxisParameters
@@ -144,11 +129,7 @@ def truth_path(trace: str | Path) -> Path:
 
 
 def write_truth(trace: str | Path, truth: Truth) -> Path:
-    """Write the truth beside a trace, whole or not at all; returns its path.
-
-    Raises:
-        InputError: the folder cannot be written to.
-    """
+    """Write the truth beside a trace, whole or not at all, and return its path; InputError where that cannot be."""
     path = truth_path(trace)
     write_text(path, truth.as_json())
     return path

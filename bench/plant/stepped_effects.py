@@ -47,13 +47,7 @@ Kind = TypeVar("Kind", bound=Effect)
 
 
 class SteppedEffects:
-    """Ticked effects of axes side by side.
-
-    Args:
-        joints: where MuJoCo has the axes.
-        models: one for each of them.
-        velocity: they start with - rad/s (m/s) - (axes,), or a number of a lone axis.
-    """
+    """Ticked effects of axes side by side, a model for each; they start with a velocity - rad/s (m/s)."""
 
     def __init__(self, joints: Joints, models: Sequence[AxisModel], velocity: Number) -> None:
         self._joints, self._step = joints, joints.step
@@ -178,8 +172,7 @@ class EffectOnAxes(Generic[Kind]):
         effect: what it is.
         index: of the axes that have it, None where all do.
         values: of its quantities, (k,) each, or numbers of a lone axis.
-        axis: constants of these axes, alike.
-        memory: of the effect, alike.
+        axis, memory: constants of these axes, and what the effect remembers, alike.
     """
 
     effect: Kind
@@ -210,10 +203,7 @@ class EffectOnAxes(Generic[Kind]):
 def on_axes(models: Sequence[AxisModel], kind: type[Kind], ticked: bool = False) -> list[EffectOnAxes[Kind]]:
     """Effects of a kind, in the order of their names; an effect that an axis has twice makes two of them.
 
-    Args:
-        models: of the axes side by side.
-        kind: of the effects.
-        ticked: only those that MuJoCo does not make by itself.
+    With `ticked` only those that MuJoCo does not make by itself.
     """
     found: dict[tuple[str, int], list[int]] = {}
     values: dict[tuple[str, int], list[dict[str, float]]] = {}

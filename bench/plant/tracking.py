@@ -20,7 +20,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import mujoco
 import numpy as np
 
 from bench.arrays import Array
@@ -57,7 +56,7 @@ class SoftTracking:
     Attributes:
         model: with effects.
         trace: the recording, with velocity or position.
-        effort: (n,) torque - N*m (force - N) that the rig makes of it.
+        effort: torque - N*m (force - N) - that the rig makes of it, (n,).
         misalignment: by how much the effort is reported late - s.
         inertia: that the cascade is laid out for, the model's if None - kg*m**2 (kg).
     """
@@ -71,11 +70,10 @@ class SoftTracking:
 
 @dataclass(frozen=True)
 class Tracked:
-    """What a held model reports at the samples of its recording, (n,) each; nan outside of `stretches_of`.
+    """What a held model reports at the samples of its recording - rad (m), rad/s (m/s) - (n,); nan outside
+    `stretches_of`.
 
-    Attributes:
-        position: rad (m); where the recording holds none, that of each stretch counts from zero.
-        velocity: rad/s (m/s).
+    Where the recording holds no position, that of each stretch counts from zero.
     """
 
     position: Array
@@ -83,16 +81,10 @@ class Tracked:
 
 
 def track(held: SoftTracking, bandwidth: float = BANDWIDTH) -> Tracked:
-    """Motion that a model reports, held to its recording.
+    """Motion that a model reports, held to its recording by a cascade of a bandwidth - rad/s.
 
     Each stretch without holes starts from the recording; time of effects counts from the recording's start.
-
-    Args:
-        held: the model and its recording.
-        bandwidth: of the cascade that holds the model - rad/s.
-
-    Raises:
-        SimulationError: the model diverged, or MuJoCo refuses it, for an inertia too small for one.
+    SimulationError where the model diverged, or MuJoCo refuses it, for an inertia too small for one.
     """
     (found,) = track_all([held], bandwidth)
     if found is None:
@@ -101,23 +93,17 @@ def track(held: SoftTracking, bandwidth: float = BANDWIDTH) -> Tracked:
 
 
 def track_all(held: Sequence[SoftTracking], bandwidth: float = BANDWIDTH) -> list[Tracked | None]:
-    """The same of several models, each held to its recording; None where one diverged.
-
-    Raises:
-        SimulationError: MuJoCo refuses a model, for an inertia too small for one.
-    """
-    stretches = [(row, stretch) for row, one in enumerate(held) for stretch in _stretches(one, bandwidth)]
-    motions = run_loops([stretch.loop for _, stretch in stretches])
-    found = [Tracked(*np.full((2, len(one.trace)), np.nan)) for one in held]
-    diverged = set()
-    for (row, stretch), states in zip(stretches, motions, strict=True):
-        if states.diverged:
-            diverged.add(row)
-            continue
-        step, skip = stretch.loop.compiled.opt.timestep, stretch.substeps // stretch.loop.every
-        position, velocity = reported(held[row].model, states.position[:, 0], states.velocity[:, 0], step)
-        found[row].position[stretch.part], found[row].velocity[stretch.part] = position[::skip], velocity[::skip]
-    return [None if row in diverged else each for row, each in enumerate(found)]
+    """The same of several models, each held to its recording; None where one diverged."""
+    stretches = [(row, *stretch) for row, one in enumerate(held) for stretch in _loops(one, bandwidth)]
+    motions = run_loops([loop for _, _, loop, _ in stretches])
+    found: list[Tracked | None] = [Tracked(*np.full((2, len(one.trace)), np.nan)) for one in held]
+    for (row, part, loop, substeps), states in zip(stretches, motions, strict=True):
+        tracked = found[row] = None if states.diverged else found[row]
+        if tracked is not None:
+            step, skip = loop.compiled.opt.timestep, substeps // loop.every
+            position, velocity = reported(held[row].model, states.position[:, 0], states.velocity[:, 0], step)
+            tracked.position[part], tracked.velocity[part] = position[::skip], velocity[::skip]
+    return found
 
 
 def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDTH) -> Cascade:
@@ -125,14 +111,7 @@ def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDT
 
     With them the loop J*s + K_v + K_i/s has its zero a sixth, its position loop a fifth of the bandwidth below it.
     """
-    return Cascade(
-        position_gain=bandwidth / 5.0,
-        velocity_gain=inertia * bandwidth,
-        integral_gain=inertia * bandwidth**2 / 6.0,
-        inertia_feedforward=0.0,
-        torque_limit=math.inf,
-        control_period=timestep,
-    )
+    return Cascade(bandwidth / 5.0, inertia * bandwidth, inertia * bandwidth**2 / 6.0, 0.0, math.inf, timestep)
 
 
 def step_of(trace: Trace) -> tuple[float, int]:
@@ -141,21 +120,16 @@ def step_of(trace: Trace) -> tuple[float, int]:
     return trace.sample_period / substeps, substeps
 
 
-@dataclass(frozen=True)
-class _Stretch:
-    """One stretch without holes of a recording: its samples, the loop along it, and steps per sample."""
-
-    part: slice
-    loop: ClosedLoop
-    substeps: int
-
-
-def _stretches(held: SoftTracking, bandwidth: float) -> Iterator[_Stretch]:
-    """The stretches of a recording, each with its model in the loop that holds it."""
+def _loops(held: SoftTracking, bandwidth: float) -> Iterator[tuple[slice, ClosedLoop, int]]:
+    """Samples of each stretch of a recording, the loop that holds the model along it, and steps per sample."""
     model, trace = held.model, held.trace
     (timestep, substeps), velocity = step_of(trace), measured_velocity(trace)
-    cascade = holding_cascade(held.inertia or model.parameters.inertia, timestep, bandwidth)
-    compiled, mechanics = _compiled(model, cascade), model.with_effects(model.of_kind(Mechanism))
+    spec, mechanics = model.spec(timestep), model.with_effects(model.of_kind(Mechanism))
+    add_pid(spec, holding_cascade(held.inertia or model.parameters.inertia, timestep, bandwidth))
+    try:
+        compiled = spec.compile()
+    except ValueError as error:
+        raise SimulationError(f"MuJoCo refuses the model: {str(error).splitlines()[0]}") from error
     for part in stretches_of(trace):
         inputs = _HoldingInputs(held, part, velocity[part], timestep, substeps)
         start = trace.start_of(part)
@@ -169,28 +143,13 @@ def _stretches(held: SoftTracking, bandwidth: float) -> Iterator[_Stretch]:
             since=float(trace.time[part.start]) - start,
             began=start - float(trace.time[0]),
         )
-        yield _Stretch(part, loop, substeps)
-
-
-def _compiled(model: AxisModel, cascade: Cascade) -> mujoco.MjModel:
-    """The model with the cascade, effort being its feed-forward; SimulationError where MuJoCo refuses it."""
-    spec = model.spec(cascade.control_period)
-    add_pid(spec, cascade)
-    try:
-        return spec.compile()
-    except ValueError as error:
-        raise SimulationError(f"MuJoCo refuses the model: {str(error).splitlines()[0]}") from error
+        yield part, loop, substeps
 
 
 class _HoldingInputs(PlannedInputs):
     """Position, velocity and effort that the cascade of a held model gets along one stretch.
 
-    Args:
-        held: the model and its recording.
-        part: samples of the stretch.
-        velocity: reported in it - rad/s (m/s) - (n,).
-        timestep: of the model - s.
-        substeps: timesteps that make a sample period.
+    Of velocities reported in it - rad/s (m/s) - (n,), at timesteps - s -, `substeps` of which make a sample period.
     """
 
     def __init__(self, held: SoftTracking, part: slice, velocity: Array, timestep: float, substeps: int) -> None:
@@ -202,11 +161,7 @@ class _HoldingInputs(PlannedInputs):
         self._since, self._timestep = float(trace.time[part.start]) - trace.start_of(part), timestep
         self._losses = model.acting(TorqueLoss)
         self.ticks = (velocity.size - 1) * substeps + 1
-
-    @property
-    def start(self) -> tuple[float, float]:
-        """Position and velocity - rad (m), rad/s (m/s) - that the model starts with."""
-        return float(self._position[0]), float(self._velocity[0])
+        self.start = float(self._position[0]), float(self._velocity[0])
 
     def between(self, start: int, stop: int) -> Array:
         """See `PlannedInputs`: read between samples."""
@@ -242,12 +197,9 @@ class _HoldingInputs(PlannedInputs):
 
 @dataclass(frozen=True)
 class Followed:
-    """What a model under its drive reports at the samples of a recording, (n,) each.
+    """What a model under its drive reports at the samples of a recording - rad (m), rad/s (m/s), N*m (N) - (n,) each.
 
-    Attributes:
-        position: rad (m).
-        velocity: rad/s (m/s).
-        effort: reported torque, of the tick that begins with the sample - N*m (N).
+    The effort is that of the tick which begins with the sample.
     """
 
     position: Array
@@ -284,11 +236,7 @@ def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> Followed:
 
 
 def references_of(trace: Trace, period: float, stride: int) -> References:
-    """References of a recording at the drive's ticks, `stride` of which make a sample.
-
-    Raises:
-        InputError: the recording holds none.
-    """
+    """References of a recording at the drive's ticks - s -, `stride` a sample; InputError where it holds none."""
     from scipy.interpolate import CubicSpline  # 0.1 s, which only the drive's own loop has to pay
 
     ticks: Array = period * np.arange((len(trace) - 1) * stride + 1, dtype=np.float64)

@@ -176,7 +176,8 @@ def test_what_is_not_determined_now_is_not_called_the_same():
     observed = {name: one for name, one in now.quantities.items() if name != "coulomb_friction_torque"}
     found = checked(state(), replace(now, quantities=observed))
     assert found.result == "undecided"
-    assert results(found)["coulomb_friction_torque"] == "undecided"
+    (missing,) = (one for one in found.comparisons if one.name == "coulomb_friction_torque")
+    assert (missing.result, missing.now, missing.margin) == ("undecided", None, 0.0)
     assert "it is not told now" in headline(found)
 
 
