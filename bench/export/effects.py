@@ -56,8 +56,7 @@ class Effects:
     def step(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Advance a simulation by one step with the effects, instead of `mujoco.mj_step(model, data)`.
 
-        Raises:
-            InputError: the model has no such joint, or a Runge-Kutta integrator.
+        InputError where the model has no such joint, or a Runge-Kutta integrator.
         """
         running = self._run(model, data)
         if self.stored.model.stepped:
@@ -98,11 +97,9 @@ class Effects:
         return running
 
     def on(self, batch: Batch, models: Sequence[StoredModel] | None = None) -> Copies:
-        """The effects on many copies at once.
+        """The effects on many copies at once: a `mujoco.batch.Batch` of a model that has the joint.
 
-        Args:
-            batch: `mujoco.batch.Batch` of a model that has the joint.
-            models: of each copy; None: this one for all.
+        With models, one for each copy, theirs.
         """
         return Copies(batch, [self.stored] * batch.nsim if models is None else models, self.joint)
 
@@ -110,13 +107,7 @@ class Effects:
 class Copies:
     """Effects on all simulations of a batch; `step` instead of `batch.step()`.
 
-    Args:
-        batch: of copies.
-        models: one for each.
-        joint: of all.
-
-    Raises:
-        InputError: not a model for each, gears that differ, no such joint, or a Runge-Kutta integrator.
+    InputError: not a model for each, gears that differ, no such joint, or a Runge-Kutta integrator.
     """
 
     def __init__(self, batch: Batch, models: Sequence[StoredModel], joint: str) -> None:
@@ -198,9 +189,8 @@ class Actuators:
     @classmethod
     def of(cls, model: mujoco.MjModel, joint: str, ratio: float) -> Actuators:
         """All actuators with an input on a joint."""
-        at_joint = (model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT) & (
-            model.actuator_trnid[:, 0] == model.joint(joint).id
-        )
+        at_joint = model.actuator_trnid[:, 0] == model.joint(joint).id
+        at_joint &= model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT
         chosen = np.flatnonzero(at_joint & (model.actuator_ctrlnum > 0))
         fixed = model.actuator_gaintype[chosen] == mujoco.mjtGain.mjGAIN_FIXED
         plain = fixed & (model.actuator_biastype[chosen] == mujoco.mjtBias.mjBIAS_NONE)

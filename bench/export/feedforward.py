@@ -21,7 +21,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
@@ -29,7 +28,7 @@ from bench.arrays import Array, rms
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel
-from bench.plant.drive import Cascade, References
+from bench.plant.drive import Cascade, References, csv_text
 from bench.plant.plant import Plant
 from bench.plant.run import run
 from bench.plant.stepped_effects import BatchJoints, SteppedEffects
@@ -53,11 +52,10 @@ TIMESTEP = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class TorqueTable:
-    """Torque over a coordinate, linear between its points and held beyond them.
+    """Torque - N*m (N) - (n,) over an increasing coordinate - rad/s or rad (m/s, m): linear between points, held beyond
+    them.
 
     Attributes:
-        coordinate: rad/s or rad (m/s, m), increasing - (n,).
-        torque: N*m (N) - (n,).
         period: after which it repeats itself - rad (m); None where it does not.
     """
 
@@ -72,13 +70,8 @@ class TorqueTable:
 
 @dataclass(frozen=True, eq=False)
 class Feedforward:
-    """What a drive is told.
-
-    Attributes:
-        inertia: J - kg*m**2 (kg).
-        friction: F over speed.
-        cogging: C over position.
-        left: effects that neither table holds anything of.
+    """What a drive is told: J - kg*m**2 (kg), F over speed, C over position, and effects that neither holds anything
+    of.
     """
 
     inertia: float
@@ -107,9 +100,7 @@ def feedforward(model: AxisModel, fastest: float, travelled: tuple[float, float]
         raise InputError("the motion", "found no speed in it", "allowed: one that moves")
     turn = _SteadyTorque(model, fastest, (0.0, 2.0 * math.pi))
     ends = resisting_torque(model, np.array(turn.span), np.full(2, SLOWLY * fastest))
-    repeats = model.parameters.kind.turns and abs(ends[1] - ends[0]) <= OPEN * max(
-        np.abs(turn.over_speed).max(), 1e-300
-    )
+    repeats = model.parameters.kind.turns and abs(ends[1] - ends[0]) <= OPEN * turn.largest
     asked = turn if repeats else replace(turn, span=travelled)
     return Feedforward(
         model.parameters.inertia,
@@ -120,17 +111,10 @@ def feedforward(model: AxisModel, fastest: float, travelled: tuple[float, float]
 
 
 def tracking(model: AxisModel, rig: Rig, references: References, feedforward: Feedforward | None = None) -> Tracking:
-    """Errors of a rig's drive on an axis.
+    """Errors of a rig's drive on an axis along references at its ticks.
 
-    Args:
-        model: of the axis, with effects.
-        rig: with `[drive]`.
-        references: the motion, at the drive's ticks.
-        feedforward: what the drive feeds forward; None: what its rig file says.
-
-    Raises:
-        InputError: a rig without drive.
-        SimulationError: the simulation diverged.
+    It feeds forward what it is given, else what its rig file says. InputError where the rig has no drive,
+    SimulationError where the simulation diverged.
     """
     cascade = Cascade.from_rig(rig)
     motion = references
@@ -143,11 +127,8 @@ def tracking(model: AxisModel, rig: Rig, references: References, feedforward: Fe
 
 @dataclass(frozen=True)
 class Tracking:
-    """Errors of a drive along a motion, RMS: reference less motion.
-
-    Attributes:
-        position: rad (m).
-        velocity: rad/s (m/s).
+    """RMS errors of a drive along a motion, reference less motion: of position - rad (m) - and velocity - rad/s
+    (m/s).
     """
 
     position: float
@@ -156,12 +137,8 @@ class Tracking:
 
 @dataclass(frozen=True)
 class _SteadyTorque:
-    """What a model is asked for: torque over speed and position.
-
-    Attributes:
-        model: with effects.
-        fastest: speed of the table - rad/s (m/s).
-        span: first and last position - rad (m).
+    """What a model is asked for: torque over speed, up to a fastest - rad/s (m/s) -, and position, within a span -
+    rad (m).
     """
 
     model: AxisModel
@@ -194,18 +171,19 @@ class _SteadyTorque:
         q, w = (grid.ravel() for grid in np.meshgrid(some, self.speeds, indexing="ij"))
         return resisting_torque(self.model, q, w).reshape(some.size, -1).mean(axis=0)
 
+    @property
+    def largest(self) -> float:
+        """Of F - N*m (N) -, above zero."""
+        return max(float(np.abs(self.over_speed).max()), 1e-300)
+
 
 def _left(asked: _SteadyTorque) -> list[str]:
     """Effects without which both tables would be the same."""
     model, left = asked.model, []
-    least = NOTHING * max(float(np.abs(asked.over_speed).max()), 1e-300)
     for present in model.effects:
         without = replace(asked, model=model.with_effects([other for other in model.effects if other is not present]))
-        moved = max(
-            float(np.abs(without.over_speed - asked.over_speed).max()),
-            float(np.abs(without.over_position - asked.over_position).max()),
-        )
-        if moved < least:
+        changes = without.over_speed - asked.over_speed, without.over_position - asked.over_position
+        if max(float(np.abs(change).max()) for change in changes) < NOTHING * asked.largest:
             left.append(present.name)
     return left
 
@@ -213,14 +191,12 @@ def _left(asked: _SteadyTorque) -> list[str]:
 def resisting_torque(model: AxisModel, position: Array, velocity: Array) -> Array:
     """Motor torque that a steady motion takes - N*m (N) - (n,), dry friction against its direction and none at rest.
 
-    Args:
-        model: with effects.
-        position, velocity: of the motor - rad (m), rad/s (m/s) - (n,).
+    Position and velocity are the motor's - rad (m), rad/s (m/s) - (n,).
     """
     spec = model.spec(TIMESTEP)
-    spec.joint(AXIS).frictionloss = dry_friction(model)
     bristles = spec.actuator(BRISTLES)
-    if bristles is not None:  # steady, they have bent as far as dry friction bends them
+    if bristles is not None:  # steady, they have bent as far as dry friction, their level, bends them
+        spec.joint(AXIS).frictionloss = float(bristles.biasprm[3])
         spec.delete(bristles)
     batch = Batch(spec.compile(), position.size)
     joint = batch.model.joint(AXIS)
@@ -233,20 +209,10 @@ def resisting_torque(model: AxisModel, position: Array, velocity: Array) -> Arra
     return batch.expand("dof_frictionloss")[:, dof] * np.sign(velocity) - applied - passive - made
 
 
-def dry_friction(model: AxisModel) -> float:
-    """Level of dry friction that is native in a model - N*m (N)."""
-    spec = model.spec(TIMESTEP)
-    bristles: mujoco.MjsActuator | None = spec.actuator(BRISTLES)
-    return float(spec.joint(AXIS).frictionloss) if bristles is None else float(bristles.biasprm[3])
-
-
 @dataclass(frozen=True)
 class Unit:
-    """How a drive counts a signal.
-
-    Attributes:
-        text: its unit, as written.
-        factor: SI per one of it, negative where it counts the other way round.
+    """How a drive counts a signal: its unit, as written, and SI per one of it, negative where it counts the other
+    way round.
     """
 
     text: str
@@ -254,10 +220,8 @@ class Unit:
 
     @classmethod
     def of(cls, rig: Rig, signal: str) -> Unit:
-        """Of a signal: as the rig's `[trace.columns]` has it, else SI.
-
-        Raises:
-            InputError: the rig's column has a unit that is none of the signal's.
+        """Of a signal: as the rig's `[trace.columns]` has it, else SI; InputError where that is none of the
+        signal's.
         """
         label = rig.trace.columns.get(signal, "")
         unit = split_label(label)[1] or unit_on(rig.axis_kind, signal)
@@ -267,12 +231,7 @@ class Unit:
 
 @dataclass(frozen=True)
 class DriveUnits:
-    """Units of a drive.
-
-    Attributes:
-        rig: of the axis, whose torque constant makes currents of torques.
-        position, velocity, current: how the drive counts them.
-    """
+    """How a drive counts position, velocity and current, of which the rig's torque constant makes torques."""
 
     rig: Rig
     position: Unit
@@ -295,8 +254,7 @@ class DriveUnits:
         columns = [coordinate, table.torque] + ([] if currents is None else [currents])
         head = [f"{name} [{unit.text}]", f"{self.rig.axis_kind.effort} [{self.rig.effort_unit}]"]
         head += [] if currents is None else [f"current [{self.current.text}]"]
-        rows = np.column_stack(columns)[np.argsort(coordinate, kind="stable")]
-        return "\n".join([",".join(head), *(",".join(f"{value:.9g}" for value in row) for row in rows.tolist())]) + "\n"
+        return csv_text(head, np.column_stack(columns)[np.argsort(coordinate, kind="stable")])
 
     def inertia(self, feedforward: Feedforward) -> Iterator[tuple[str, float, str]]:
         """The inertia's feed-forward: name, value and unit."""

@@ -52,12 +52,7 @@ class ArmatureShare(StrEnum):
 
 @dataclass(frozen=True)
 class Armature:
-    """Inertia of a joint beside that of its links.
-
-    Attributes:
-        value: on the joint's side - kg*m**2 (kg).
-        origin: what of the model's inertia it is.
-    """
+    """Inertia of a joint beside that of its links, on its side - kg*m**2 (kg) -, and what of the model's it is."""
 
     value: float
     origin: str
@@ -86,9 +81,8 @@ class Carried:
     @property
     def lines(self) -> tuple[str, ...]:
         """All of it in sentences."""
-        native = (
-            f"native: {', '.join(self.native)}" if self.native else "no effect beyond friction and inertia is native"
-        )
+        native = "no effect beyond friction and inertia is native"
+        native = f"native: {', '.join(self.native)}" if self.native else native
         left = [f"not carried: {name} ({instead})" for name, instead in self.left]
         return f"{self.joint}: {native}", *left, *self.notes
 
@@ -125,9 +119,8 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
     turns = model.parameters.kind.turns
     joint = body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_HINGE if turns else mujoco.mjtJoint.mjJNT_SLIDE)
     joint.axis = [1.0, 0.0, 0.0]
-    armature = UNKNOWN
-    if model.parameters.motor_inertia > 0.0 or mounting.link_inertia:
-        armature = armature_of(stored)
+    known = model.parameters.motor_inertia > 0.0 or mounting.link_inertia
+    armature = armature_of(stored) if known else UNKNOWN
     beyond = model.parameters.inertia * mounting.gear_ratio**2 - armature.value
     body.explicitinertial, body.ipos, body.iquat = True, [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
     body.mass = (mounting.load_mass or NO_MASS) if turns else beyond
@@ -142,11 +135,7 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
 
 
 def read_mjcf(path: Path) -> mujoco.MjSpec:
-    """Editable model of an MJCF file.
-
-    Raises:
-        InputError: no such file, or MuJoCo does not read it.
-    """
+    """Editable model of an MJCF file; InputError if there is no such file, or MuJoCo does not read it."""
     read_bytes(path, "an MJCF file")
     try:
         return mujoco.MjSpec.from_file(str(path))
@@ -156,16 +145,10 @@ def read_mjcf(path: Path) -> mujoco.MjSpec:
 
 
 def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature | None = None) -> Carried:
-    """Put a model onto a joint of a robot, instead of the joint's own armature, damping and friction.
+    """Put a model onto a joint of a robot, which is changed, instead of the joint's own armature, damping and friction.
 
-    Args:
-        spec: of the robot; changed.
-        name: of the joint.
-        stored: the model.
-        armature: of the joint; None: what the model tells.
-
-    Raises:
-        InputError: no such joint, one of another kind, a coupling on a body of several joints, or no armature is left.
+    Without an armature given it is what the model tells. InputError where there is no such joint, one of another kind,
+    a coupling on a body of several joints, or no armature is left.
     """
     joint, model, ratio = joint_of(spec, name, stored.model), stored.model, stored.mounting.gear_ratio
     links = link_inertia(spec, name)
@@ -186,19 +169,18 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature
     driven = f"driven by {', '.join(moving)} as before"
     if not moving:
         spec.add_actuator(name=f"{name} motor", target=name, trntype=TRANSMISSION, gear=[ratio, 0, 0, 0, 0, 0])
-        driven = (
-            f"the joint had no actuator: '{name} motor' takes the motor's {model.parameters.kind.effort} as control"
-        )
+        effort = model.parameters.kind.effort
+        driven = f"the joint had no actuator: '{name} motor' takes the motor's {effort} as control"
     unit = model.parameters.kind.inertia_unit
     geared = f", behind a gear of {ratio:g}: all values are those of the joint" if ratio != 1.0 else ""
     inertia = (
         f"armature {armature.value:.4g} {unit}, {armature.origin}; the links beyond the joint have {links:.4g} {unit} "
         f"where the MJCF stands{geared}"
     )
-    between = [
-        f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in joint.parent.joints[1:]
-    ]
-    return Carried(name, model.structure, _left(model), (inertia, driven, *(between if model.coupled else [])))
+    behind = joint.parent.joints[1:] if model.coupled else []
+    between = [f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in behind]
+    left = [(p.name, STEPPED if p in model.stepped else SEEN) for p in model.effects if p not in model.native]
+    return Carried(name, model.structure, tuple(left), (inertia, driven, *between))
 
 
 def _mass_of(body: mujoco.MjsBody, stored: StoredModel) -> str:
@@ -222,28 +204,22 @@ def commented(spec: mujoco.MjSpec, lines: tuple[str, ...]) -> str:
 
 
 def joint_of(spec: mujoco.MjSpec, name: str, model: AxisModel) -> mujoco.MjsJoint:
-    """The joint of a name, of the model's kind.
-
-    Raises:
-        InputError: there is none, or it turns where the model slides.
-    """
+    """The joint of a name, of the model's kind; InputError if there is none, or it turns where the model slides."""
     joint, names = spec.joint(name), [each.name for each in spec.joints if each.name]
     if joint is None:
         found = f"found no joint of that name{nearest(name, names)}"
         raise InputError(f"--joint {name}", found, f"allowed: {', '.join(names) or 'an MJCF with a named joint'}")
     if TURNS.get(joint.type) is not model.parameters.kind.turns:
         found = f"found a joint of type {joint.type.name.removeprefix('mjJNT_').lower()}"
-        raise InputError(
-            f"--joint {name}", found, f"allowed: one that moves as the model does, {model.parameters.kind.name}"
-        )
+        allowed = f"allowed: one that moves as the model does, {model.parameters.kind.name}"
+        raise InputError(f"--joint {name}", found, allowed)
     return joint
 
 
 def armature_of(stored: StoredModel, share: ArmatureShare | None = None) -> Armature:
     """Armature of the joint: a share of the model's inertia, or what the model tells.
 
-    Raises:
-        InputError: the model tells no inertia of the motor, or none is left beside the links.
+    InputError where the model tells no inertia of the motor, or none is left beside the links.
     """
     parameters, mounting = stored.model.parameters, stored.mounting
     if share is None:
@@ -262,11 +238,7 @@ def armature_of(stored: StoredModel, share: ArmatureShare | None = None) -> Arma
 
 
 def link_inertia(spec: mujoco.MjSpec, name: str) -> float:
-    """Inertia about a joint of all that it carries, its armature aside, where the MJCF stands - kg*m**2 (kg).
-
-    Raises:
-        InputError: MuJoCo does not compile the MJCF.
-    """
+    """Inertia about a joint of all that it carries, its armature aside, where the MJCF stands - kg*m**2 (kg)."""
     model = compiled(spec)
     data, whole = mujoco.MjData(model), np.zeros((model.nv, model.nv))
     mujoco.mj_forward(model, data)
@@ -292,11 +264,8 @@ def _scaled(values: np.ndarray, ratio: float) -> np.ndarray:
 def _couple(joint: mujoco.MjsJoint, axis: mujoco.MjSpec, name: str, ratio: float) -> None:
     """Join motor and link by a second joint of the link, along the first: the sum of both is the link's position."""
     if len(joint.parent.joints) > 1:
-        found, allowed = (
-            "found a body of several joints",
-            "allowed: one that has its body alone, as motor and load part",
-        )
-        raise InputError(f"--joint {name}", found, allowed)
+        allowed = "allowed: one that has its body alone, as motor and load part"
+        raise InputError(f"--joint {name}", "found a body of several joints", allowed)
     for between in axis.body(LOAD).joints:
         added = joint.parent.add_joint(name=f"{name} {between.name}", type=joint.type, axis=joint.axis, pos=joint.pos)
         added.stiffness, added.damping = _scaled(between.stiffness, ratio), _scaled(between.damping, ratio)
@@ -310,12 +279,3 @@ def _add(spec: mujoco.MjSpec, like: mujoco.MjsActuator, name: str, joint: str, r
     added = spec.add_actuator(name=name, target=joint, trntype=TRANSMISSION, gear=[ratio, 0, 0, 0, 0, 0])
     for key in ACTUATOR:
         setattr(added, key, getattr(like, key))
-
-
-def _left(model: AxisModel) -> tuple[tuple[str, str], ...]:
-    """Effects that are not native, with what makes them instead."""
-    return tuple(
-        (present.name, STEPPED if present in model.stepped else SEEN)
-        for present in model.effects
-        if present not in model.native
-    )

@@ -38,13 +38,10 @@ PLANNED = tuple(name for name, profile in PROFILES.items() if profile is not ful
 
 @dataclass(frozen=True, eq=False)
 class PlannedMotion:
-    """A motion, and the errors to expect from its recording.
+    """A motion at the drive's ticks, repeated until it is long enough, and quantities with the errors to expect from
+    it.
 
-    Attributes:
-        profile: its name.
-        motion: at the drive's ticks, repeated until it is long enough.
-        expected: quantities with the errors to expect, by name.
-        reason: why it determines nothing; empty if it does.
+    `reason` says why it determines nothing; empty if it does.
     """
 
     profile: str
@@ -104,9 +101,6 @@ def _planned(name: str, motion: References, trace: Trace, rig: Rig, effect: Effe
     if not tried:
         return PlannedMotion(name, motion, {}, "the motion cannot show it")
     fitted = shaped(rows, Hypothesis().plus(tried[0].term), 0)
-
-    def unit_of(owner: Effect, key: str) -> str:
-        known = (*owner.quantities, *owner.derived, *(shape.quantity for shape in owner.shapes))
-        return kind.unit(next(quantity for quantity in known if quantity.name == key))
-
-    return PlannedMotion(name, motion, uncertain(fitted).quantities(0, unit_of))
+    known = (*effect.quantities, *effect.derived, *(shape.quantity for shape in effect.shapes))
+    own = {quantity.name: kind.unit(quantity) for quantity in reversed(known)}
+    return PlannedMotion(name, motion, uncertain(fitted).quantities(0, lambda _, key: own[key]))

@@ -26,26 +26,17 @@ SOURCES = ("bench.identify/1", "bench.diagnose/1")
 
 
 def ranges_json(stored: StoredModel, result: Path) -> str:
-    """Ranges of a model's values.
+    """Ranges of a model's values, from the JSON that `identify` or `diagnose` wrote of the same axis.
 
-    Args:
-        stored: the model.
-        result: JSON that `identify` or `diagnose` wrote of the same axis.
-
-    Raises:
-        InputError: the JSON cannot be read, or is none of these.
+    InputError where that cannot be read, or is none of these.
     """
     content = parse_json(read_text(result, "a JSON that identify or diagnose wrote"), result)
     if not isinstance(content, dict) or content.get("schema") not in SOURCES:
         found = content.get("schema") if isinstance(content, dict) else type(content).__name__
         raise InputError(f"{result}: schema", f"found {found!r}", f"allowed: {', '.join(SOURCES)}")
     try:
-        between = content.get("between") or {}
-        parameters = {
-            name: _range(table, between.get(name))
-            for name, table in content["parameters"].items()
-            if _has_interval(table)
-        }
+        between, told = content.get("between") or {}, _with_interval(content["parameters"])
+        parameters = {name: _range(table, between.get(name)) for name, table in told.items()}
         effects = [_effect(entry) for entry in content.get("effects", [])]
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         found = f"found a damaged one ({type(error).__name__}: {error})"
@@ -54,8 +45,8 @@ def ranges_json(stored: StoredModel, result: Path) -> str:
     return json_text({"schema": SCHEMA, "name": stored.name, **kept}) + "\n"
 
 
-def _has_interval(table: Mapping[str, Any]) -> bool:
-    return table["ci95"] is not None
+def _with_interval(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: table for name, table in parameters.items() if table["ci95"] is not None}
 
 
 def _range(table: Mapping[str, Any], between: Mapping[str, Any] | None, lower: float = float("-inf")) -> dict[str, Any]:
@@ -73,7 +64,7 @@ def _effect(entry: Mapping[str, Any]) -> dict[str, Any]:
     """Ranges of an effect's quantities within their bounds."""
     effect: Effect = named(str(entry["name"]), "effects")
     bounds = {quantity.name: quantity.lower for quantity in (*effect.quantities, *effect.derived)}
-    known = {key: table for key, table in entry["parameters"].items() if _has_interval(table)}
+    known = _with_interval(entry["parameters"])
     ranges = {key: _range(table, None, bounds.get(key, float("-inf"))) for key, table in known.items()}
     return {"name": effect.name, "parameters": ranges}
 

@@ -44,14 +44,10 @@ Plain = dict[str, Any]
 
 @dataclass(frozen=True)
 class Job:
-    """One recording to be evaluated.
+    """One recording to be evaluated: its path, or URL of a storage that fsspec knows.
 
-    Attributes:
-        place: path, or URL of a storage that fsspec knows.
-        axis: to be read, where the file holds several and one has this name.
-        rig: of the axis.
-        diagnose: whether effects are sought too.
-        bounds: on the size of files.
+    The axis of this name is read where the file holds several and one has it; `diagnose`: whether effects are sought
+    too.
     """
 
     place: str
@@ -70,7 +66,9 @@ def evaluate(job: Job) -> Plain:
             if "://" in job.place:
                 path = fetched(job.place, Path(stack.enter_context(tempfile.TemporaryDirectory())))
             digest = sha256(path)
-            found = _found(_read(path, job), job)
+            recording = replace(read_recording(path), origin=CALLED)
+            axis = job.axis if job.axis in axes_of(recording.channels) else None
+            found = _found(assemble(recording, job.rig.on_axis(axis).trace), job)
         except RefusedEstimateError as refusal:
             found = {**_estimated(refusal.estimate), **refused(str(refusal))}
         except BenchError as error:
@@ -84,15 +82,10 @@ def refused(reason: str) -> Plain:
     return {"status": "refused", "reason": reason}
 
 
-def _read(path: Path, job: Job) -> Trace:
-    recording = replace(read_recording(path), origin=CALLED)
-    axis = job.axis if job.axis in axes_of(recording.channels) else None
-    return assemble(recording, job.rig.on_axis(axis).trace)
-
-
 def _found(trace: Trace, job: Job) -> Plain:
     if not job.diagnose:
         return _estimated(identify(cut(trace), job.rig))
+
     from bench.diagnosis.diagnosis import diagnose  # MuJoCo: 0.7 s
 
     found = diagnose(trace, job.rig)
@@ -151,8 +144,7 @@ def _known(value: Any) -> Any:  # noqa: ANN401 - whatever JSON has
 def marked(url: str) -> str:
     """What the storage calls this version of a file, without reading it: changes whenever the file does.
 
-    Raises:
-        InputError: no such file, or a storage that cannot be reached or is not known.
+    InputError where there is no such file, or a storage that cannot be reached or is not known.
     """
     with _errors_as_input(url):
         storage, path = url_to_fs(url)
@@ -162,8 +154,7 @@ def marked(url: str) -> str:
 def fetched(url: str, folder: Path) -> Path:
     """A copy of a file in a folder, under its own name, which may tell its format.
 
-    Raises:
-        InputError: as `marked`, or it is too large.
+    InputError as `marked`, or where it is too large.
     """
     copy, size = folder / (PurePosixPath(url).name or "trace"), 0
     with _errors_as_input(url):
@@ -206,16 +197,7 @@ class PlannedRecording:
 
 
 def plan(manifest: Manifest, diagnose: bool, progress: Callable[[float], None]) -> list[PlannedRecording]:
-    """Every recording of the manifest, in its order.
-
-    Args:
-        manifest: of the fleet.
-        diagnose: whether effects are sought too.
-        progress: called with the share done.
-
-    Raises:
-        InputError: an effect of another package is none.
-    """
+    """Every recording of the manifest, in its order; InputError where an effect of another package is none."""
     options: Plain = {"diagnose": diagnose, "bounds": [str(value) for value in asdict(bounds()).values()]}
     if diagnose:
         from bench.effects.catalogue import catalogue
@@ -277,9 +259,5 @@ class Store:
         return found if isinstance(found, dict) and found.get("schema") == SCHEMA else None
 
     def put(self, key: str, result: Mapping[str, Any]) -> None:
-        """Keep a result.
-
-        Raises:
-            InputError: the folder cannot be written to.
-        """
+        """Keep a result; InputError where the folder cannot be written to."""
         write_text(self.path(key), json_text({"schema": SCHEMA, **result}) + "\n")

@@ -28,13 +28,7 @@ PLANNING = 0.05
 
 @dataclass(frozen=True)
 class Fleet:
-    """What was found of a fleet.
-
-    Attributes:
-        manifest: of it.
-        summary: of them.
-        evaluated: how many were evaluated now; the others' results were there.
-    """
+    """What was found of a fleet; `evaluated` is how many were evaluated now, the others' results were there."""
 
     manifest: Manifest
     summary: Summary
@@ -73,13 +67,13 @@ def fleet(
         planned = plan(manifest, diagnose, lambda share: progress(PLANNING * share))
         store = Store(out / "results")
         missing = _missing(store, planned, retry)
-        keys, jobs = list(missing), list(missing.values())
-        for count, (place, result) in enumerate(each(evaluate, jobs, limits, workers, scheduler), 1):
+        keys = list(missing)
+        for count, (place, result) in enumerate(each(evaluate, missing.values(), limits, workers, scheduler), 1):
             store.put(keys[place], asdict(result) if isinstance(result, Failure) else result)
-            progress(PLANNING + (1.0 - PLANNING) * count / len(jobs))
+            progress(PLANNING + (1.0 - PLANNING) * count / len(keys))
         results = [one.refusal or store.get(one.key) or {} for one in planned]
         write_table(out / TABLE, tabulate(manifest, planned, results))
-        found = Fleet(manifest, summarise(manifest, planned, results), len(jobs))
+        found = Fleet(manifest, summarise(manifest, planned, results), len(keys))
         finish(found)
     return found
 
@@ -102,10 +96,8 @@ OF_GAP = {"": "after", "_before": "before", "_noise_floor": "noise_floor", "_uni
 
 
 def tabulate(manifest: Manifest, planned: Sequence[PlannedRecording], results: Sequence[Plain]) -> pa.Table:
-    """The manifest's columns, and behind them what was found (n rows).
-
-    Raises:
-        InputError: the manifest has a column of a name that the table needs.
+    """The manifest's columns, and behind them what was found (n rows); InputError where a name of the two is the
+    same.
     """
     table = manifest.table.replace_schema_metadata(None)
     for name, kind, values in _columns(planned, results):
@@ -143,10 +135,6 @@ def _columns(
 
 
 def write_table(path: Path, table: pa.Table) -> None:
-    """Write it as Parquet, whole or not at all.
-
-    Raises:
-        InputError: the place cannot be written to.
-    """
+    """Write it as Parquet, whole or not at all; InputError where the place cannot be written to."""
     with whole(path) as temporary:
         pq.write_table(table, temporary)

@@ -22,12 +22,7 @@ _MAGIC = b"PAR1"
 
 @dataclass(frozen=True)
 class Manifest:
-    """Recordings of a fleet.
-
-    Attributes:
-        path: of the manifest.
-        table: as the manifest has it, with columns `axis` and `time` added where it has none (n,).
-    """
+    """Recordings of a fleet: the table of a manifest, with columns `axis` and `time` added where it has none (n,)."""
 
     path: Path
     table: pa.Table
@@ -68,8 +63,7 @@ class Manifest:
 def read_manifest(path: Path) -> Manifest:
     """Read and check a manifest, CSV or Parquet.
 
-    Raises:
-        InputError: it cannot be read, has no recording, a column is missing or twice, or a cell is empty or no time.
+    InputError: it cannot be read, has no recording, a column is missing or twice, or a cell is empty or no time.
     """
     content = read_bytes(path, "a manifest, CSV or Parquet")
     try:
@@ -86,12 +80,12 @@ def read_manifest(path: Path) -> Manifest:
         raise InputError(f"{path}: {double}", "found this column twice", "allowed: each column once")
     for name in REQUIRED:
         if name not in names:
-            found = f"found the columns {', '.join(names) or 'none'}"
-            raise InputError(
-                path, found, f"allowed: {', '.join(REQUIRED)}, axis, time and any others; {name} is missing"
-            )
+            allowed = f"allowed: {', '.join(REQUIRED)}, axis, time and any others; {name} is missing"
+            raise InputError(path, f"found the columns {', '.join(names) or 'none'}", allowed)
         _require_text(path, table, name)
-        _require_filled(path, table, name)
+        empty = next((row for row, value in enumerate(table[name].to_pylist(), 1) if not value), None)
+        if empty is not None:
+            raise InputError(f"{path}: row {empty}: {name}", "found nothing", f"allowed: a {name} in every row")
     if not table.num_rows:
         raise InputError(path, "found no recording", "allowed: a row for each")
     if "axis" in names:
@@ -127,20 +121,13 @@ def _require_text(path: Path, table: pa.Table, name: str) -> None:
         raise InputError(f"{path}: {name}", f"found values of type {kind}", "allowed: text")
 
 
-def _require_filled(path: Path, table: pa.Table, name: str) -> None:
-    """InputError naming the row if a cell of a column is empty."""
-    empty = next((row for row, value in enumerate(table[name].to_pylist(), 1) if not value), None)
-    if empty is not None:
-        raise InputError(f"{path}: row {empty}: {name}", "found nothing", f"allowed: a {name} in every row")
-
-
 def _timed(path: Path, table: pa.Table) -> pa.Table:
     """The table with times as moments or numbers."""
-    kind = table["time"].type
+    column, kind = table["time"], table["time"].type
     if pa.types.is_null(kind):
-        return table.set_column(table.column_names.index("time"), "time", table["time"].cast(pa.float64()))
+        return table.set_column(table.column_names.index("time"), "time", column.cast(pa.float64()))
     kinds = (pa.types.is_timestamp, pa.types.is_date, pa.types.is_integer, pa.types.is_floating)
     if any(is_one(kind) for is_one in kinds):
         return table
-    example = next((value for value in table["time"].to_pylist() if value is not None), None)
+    example = next((value for value in column.to_pylist() if value is not None), None)
     raise InputError(f"{path}: time", f"found {example!r}", "allowed: ISO 8601 (2026-03-01T12:00:00), or a number")

@@ -34,10 +34,9 @@ KINDS = ("failed", "timed_out", "refused", "unexplained", "checks")
 
 @dataclass(frozen=True)
 class History:
-    """What the recordings of one axis tell of one quantity, in the order of time.
+    """What the recordings of one axis tell of one quantity, by the name of the contract, in the order of time.
 
     Attributes:
-        axis, quantity, unit: what it is of, the quantity by the name of the contract.
         rows: of the manifest (n,).
         values, errors: with standard errors (n,).
     """
@@ -55,10 +54,8 @@ class Changed:
     """A quantity of one axis that is not what it was.
 
     Attributes:
-        history: that it was found in.
         step: by how much, and how sure.
-        since: time of the first recording after the change, as the manifest has it.
-        file: of that recording.
+        since: time of the first recording after the change, as the manifest has it; `file`: that recording.
         chance: that a fleet without a change shows one like it anywhere, at most.
     """
 
@@ -76,14 +73,8 @@ class Changed:
 
 @dataclass(frozen=True)
 class ShownEffect:
-    """An effect that recordings of an axis show.
-
-    Attributes:
-        axis: of the manifest.
-        name: of the effect.
-        recordings: that show it.
-        of: recordings of the axis that were diagnosed.
-        since: time of the first of them, as the manifest has it.
+    """An effect that so many recordings of an axis show, `of` those that were diagnosed, `since` a time of the
+    manifest.
     """
 
     axis: str
@@ -95,15 +86,8 @@ class ShownEffect:
 
 @dataclass(frozen=True)
 class Concern:
-    """Why a person should look at an axis.
-
-    Attributes:
-        axis: of the manifest.
-        kind: one of `KINDS`.
-        recordings: that it holds for.
-        of: recordings of the axis.
-        file: the latest of them.
-        reason: of that one.
+    """Why a person should look at an axis: one of `KINDS`, in so many recordings `of` the axis, the latest and its
+    reason.
     """
 
     axis: str
@@ -136,13 +120,7 @@ class Summary:
 
 
 def summarise(manifest: Manifest, planned: Sequence[PlannedRecording], results: Sequence[Plain]) -> Summary:
-    """Look over a fleet.
-
-    Args:
-        manifest: of the fleet (n rows).
-        planned: its recordings (n,).
-        results: theirs (n,).
-    """
+    """Look over a fleet: its recordings as planned and their results, (n,) each as the manifest's rows."""
     order = np.argsort(manifest.times, kind="stable").tolist()  # recordings without a time come last
     rows: dict[str, list[int]] = {}
     axes, files, times = (manifest.text(column) for column in ("axis", "file", "time"))
@@ -170,12 +148,11 @@ def _changes(
     steps = [(one, found) for one in histories if (found := change_point(one.values, one.errors)) is not None]
     files, times = manifest.text("file"), manifest.text("time")
     chances = holm(np.array([step.chance for _, step in steps])).tolist()
-    by_chance = sorted(zip(steps, chances, strict=True), key=lambda each: each[0][1].chance)
-    changed = [
-        Changed(one, step, times[one.rows[step.place]], files[one.rows[step.place]], chance)
-        for (one, step), chance in by_chance
-        if chance < ALARM
-    ]
+    changed = []
+    for (one, step), chance in sorted(zip(steps, chances, strict=True), key=lambda each: each[0][1].chance):
+        first = one.rows[step.place]
+        if chance < ALARM:
+            changed.append(Changed(one, step, times[first], files[first], chance))
     return len(steps), tuple(changed)
 
 

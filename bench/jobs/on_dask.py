@@ -41,17 +41,10 @@ def on_dask(
     workers: int,
     scheduler: str | None,
 ) -> Iterator[tuple[int, Result | Failure]]:
-    """Results by the items' numbers, in the order in which they come.
+    """Results by the items' numbers, in the order in which they come; other arguments as `bench.jobs.each.each` has
+    them.
 
-    Args:
-        work: a picklable function of one item.
-        numbered: items, each with its number.
-        limits: of one piece of work.
-        workers: processes on this machine, where no scheduler is given.
-        scheduler: address of a cluster's.
-
-    Raises:
-        InputError: there is no such cluster, or its workers have no servobench of this version.
+    InputError where there is no such cluster, or its workers have no servobench of this version.
     """
     with ExitStack() as stack:
         client = stack.enter_context(_client(workers, limits, scheduler))
@@ -104,12 +97,7 @@ def _equipped(client: Client, plugin: WorkerProcesses, scheduler: str | None) ->
 
 
 class WorkerProcesses(WorkerPlugin):
-    """The processes beside a worker, one for each of its threads that works.
-
-    Args:
-        name: by which tasks find it.
-        work, limits: see `WorkerProcess`.
-    """
+    """The processes beside a worker, one for each of its threads that works; tasks find it by its name."""
 
     def __init__(self, name: str, work: Callable[..., object], limits: Limits) -> None:
         self.name, self._work, self._limits = name, work, limits

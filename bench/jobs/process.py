@@ -42,12 +42,7 @@ _SERVE = "import sys; from bench.jobs.process import serve; serve(int(sys.argv[1
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of one piece of work.
-
-    Attributes:
-        deadline: after which it is stopped - s.
-        memory: of its process, beyond which it is stopped - bytes.
-    """
+    """Limits of one piece of work, at which it is stopped: a deadline - s - and the memory of its process - bytes."""
 
     deadline: float = 120.0
     memory: float = 4.0 * 1024**3
@@ -69,9 +64,7 @@ class Failure:
 class WorkerProcess(Generic[Item, Result]):
     """The process, started with the first piece of work and again after it had to be stopped.
 
-    Args:
-        work: a picklable function of one item; neither prints nor writes.
-        limits: of one piece of work.
+    The work is a picklable function of one item, and neither prints nor writes.
     """
 
     def __init__(self, work: Callable[[Item], Result], limits: Limits) -> None:
@@ -146,11 +139,7 @@ def _how(status: int) -> str:
 
 
 def serve(handle: int) -> None:
-    """Do the work that comes through a pipe, in the worker process, until the other end is closed.
-
-    Args:
-        handle: of the pipe.
-    """
+    """Do the work that comes through a pipe of this handle, in the worker process, until the other end is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of the terminal: the waiting process decides
     with Connection(handle) as calls, Path(os.devnull).open("w") as nowhere:
         try:

@@ -11,7 +11,7 @@ which does not hold, and serves wherever the limit is not reached.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -23,7 +23,7 @@ from bench.effects.mjcf import DRIVE
 from bench.errors import InputError
 from bench.plant.axis_model import AxisParameters
 from bench.plant.closed_loop import ClosedLoop, Controller
-from bench.plant.stepped_effects import on_axes, per_axis
+from bench.plant.stepped_effects import abreast, on_axes, per_axis
 from bench.rig.rig import Rig
 
 Values = float | Array
@@ -144,15 +144,13 @@ class _Following:
     """Drives of axes side by side."""
 
     def __init__(self, loops: Sequence[ClosedLoop], drives: Sequence[FollowReferences]) -> None:
-        names = ("position_gain", "velocity_gain", "integral_gain", "inertia_feedforward", "torque_limit")
-        gains = {name: per_axis([float(getattr(drive.cascade, name)) for drive in drives]) for name in names}
-        cascade = Cascade(**gains, control_period=drives[0].cascade.control_period)
-        emulation = None
+        cascades, emulation = [drive.cascade for drive in drives], None
+        period = cascades[0].control_period
+        cascade = Cascade(**abreast(cascades, without="control_period"), control_period=period)
         if any(drive.emulation is not None for drive in drives):  # null on axes that have friction in their mechanics
             null = [FrictionEmulation.of(loop.axis.parameters.frictionless) for loop in loops]
             made = [drive.emulation or none for drive, none in zip(drives, null, strict=True)]
-            names = tuple(field.name for field in fields(FrictionEmulation))
-            emulation = FrictionEmulation(*(per_axis([float(getattr(one, name)) for one in made]) for name in names))
+            emulation = FrictionEmulation(**abreast(made))
         self._drive = CascadeDrive(cascade, side_by_side([drive.references for drive in drives]), emulation)
         self._encoders = on_axes([loop.axis for loop in loops], MisreadMotion)
 
@@ -219,7 +217,8 @@ def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
     takes kp*T/2 off kv; `pid_inputs` sends the position reference ahead alike.
     """
     actuator = spec.actuator(DRIVE)
-    kp, kv = _pid_gains(cascade)
+    kp = float(cascade.velocity_gain * cascade.position_gain + cascade.integral_gain)
+    kv = float(cascade.velocity_gain) - kp * cascade.control_period / 2.0
     ki = float(cascade.integral_gain * cascade.position_gain)
     inputs = mujoco.mjtCtrlInput.mjINPUT_POS | mujoco.mjtCtrlInput.mjINPUT_VEL | mujoco.mjtCtrlInput.mjINPUT_FF
     actuator.set_to_pid(kp=kp, kv=kv, ki=ki if ki > 0.0 else -1.0, ctrlspec=int(inputs))
@@ -234,11 +233,6 @@ def pid_inputs(cascade: Cascade, references: References) -> Array:
     lead = cascade.control_period / 2.0 * references.velocity
     feedforward = references.feedforward(cascade.inertia_feedforward)
     return np.stack([references.position + lead, references.velocity, feedforward], axis=-1)
-
-
-def _pid_gains(cascade: Cascade) -> tuple[float, float]:
-    kp = float(cascade.velocity_gain * cascade.position_gain + cascade.integral_gain)
-    return kp, float(cascade.velocity_gain) - kp * cascade.control_period / 2.0
 
 
 @dataclass(frozen=True)
@@ -291,17 +285,16 @@ class References:
         rows = slice(None, None, max(1, round(period / self.period)))
         (length, per_length), (speed, per_speed) = position, velocity
         moved = self.position / per_length, self.velocity / per_speed, self.acceleration / per_speed
-        table = np.stack([signal[rows] for signal in (self.time, *moved)], axis=-1)
-        head = f"time [s],position [{length}],velocity [{speed}],acceleration [{speed}/s]"
-        return "\n".join([head, *(",".join(f"{value:.9g}" for value in row) for row in table.tolist())]) + "\n"
+        head = "time [s]", f"position [{length}]", f"velocity [{speed}]", f"acceleration [{speed}/s]"
+        return csv_text(head, np.stack([signal[rows] for signal in (self.time, *moved)], axis=-1))
+
+
+def csv_text(head: Sequence[str], rows: Array) -> str:
+    """A table (n, m) as CSV, nine digits a number."""
+    return "\n".join([",".join(head), *(",".join(f"{value:.9g}" for value in row) for row in rows.tolist())]) + "\n"
 
 
 def side_by_side(references: list[References]) -> References:
     """Motions of several axes over one time, as one of shape (ticks, axes)."""
-    return References(
-        references[0].time,
-        np.stack([r.position for r in references], axis=1),
-        np.stack([r.velocity for r in references], axis=1),
-        np.stack([r.acceleration for r in references], axis=1),
-        np.stack([r.feedforward(0.0) for r in references], axis=1),
-    )
+    signals = [(r.position, r.velocity, r.acceleration, r.feedforward(0.0)) for r in references]
+    return References(references[0].time, *(np.stack(signal, axis=1) for signal in zip(*signals, strict=True)))

@@ -99,9 +99,8 @@ def model_xml(stored: StoredModel) -> str:
     rest = f"; not in it, but in model.toml: {', '.join(missing)}" if missing else ""
     notes = [f"Axis at steps of {TIMESTEP:g} s, torque as input{rest}.", mass]
     if mounting.gear_ratio != 1.0:
-        notes.append(
-            f"All of it is on the motor's side of a gear of {mounting.gear_ratio:g}: the joint is the motor's shaft."
-        )
+        gear = f"a gear of {mounting.gear_ratio:g}"
+        notes.append(f"All of it is on the motor's side of {gear}: the joint is the motor's shaft.")
     return "".join(f"<!-- {note} -->\n" for note in notes if note) + spec.to_xml()
 
 
@@ -150,9 +149,9 @@ def load_model(path: str | Path) -> StoredModel:
     winding = None
     if "winding" in table:
         winding = Winding(**_values(table["winding"], _winding_units(kind), f"{path}: winding"))
-    peak = (
-        _number(table["peak_effort"], kind.effort_unit, f"{path}: peak_effort") if "peak_effort" in table else math.inf
-    )
+    peak = math.inf
+    if "peak_effort" in table:
+        peak = _number(table["peak_effort"], kind.effort_unit, f"{path}: peak_effort")
     effects = _effects(table.get("effects", []), kind, f"{path}: effects")
     misalignment = _number(table.get("misalignment", 0.0), "s", f"{path}: misalignment")
     model = AxisModel(parameters, effects, peak, winding)
@@ -195,19 +194,16 @@ def _effect_table(present: Present, kind: AxisKind) -> dict[str, float | str]:
 def _effects(entries: object, kind: AxisKind, where: str) -> tuple[Present, ...]:
     if not isinstance(entries, list):
         raise InputError(where, f"found {entries!r}", "allowed: a list of tables with a name")
-    return tuple(_effect(entry, kind, where) for entry in entries)
-
-
-def _effect(entry: object, kind: AxisKind, where: str) -> Present:
-    if not isinstance(entry, dict) or "name" not in entry:
-        raise InputError(where, f"found {entry!r}", "allowed: tables with a name")
-    effect = named(str(entry["name"]), where)
-    values = {}
-    for key, value in entry.items():
-        if key != "name":
-            unit = kind.unit(known_quantity(effect, key, where))
-            values[key] = _number(value, unit, f"{where}: {effect.name}.{key}")
-    return Present.of(effect.name, values, where)
+    found = []
+    for entry in entries:
+        if not isinstance(entry, dict) or "name" not in entry:
+            raise InputError(where, f"found {entry!r}", "allowed: tables with a name")
+        effect = named(str(entry["name"]), where)
+        given = {key: value for key, value in entry.items() if key != "name"}
+        units = {key: kind.unit(known_quantity(effect, key, where)) for key in given}
+        values = {key: _number(value, units[key], f"{where}: {effect.name}.{key}") for key, value in given.items()}
+        found.append(Present.of(effect.name, values, where))
+    return tuple(found)
 
 
 def _number(value: object, unit: str, where: str) -> float:

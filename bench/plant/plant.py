@@ -41,19 +41,14 @@ class Plant:
     winding: Winding | None = None
 
     def __post_init__(self) -> None:
-        if abs(self.substeps * self.timestep / self.cascade.control_period - 1.0) > 1e-9:
-            raise InputError(
-                "simulation.timestep",
-                f"found {self.timestep:g} s",
-                f"allowed: the control period of {self.cascade.control_period:g} s or a whole part of it",
-            )
-        friction = [present.name for present in self.model.of_kind(Friction)]
+        period = self.cascade.control_period
+        if abs(self.substeps * self.timestep / period - 1.0) > 1e-9:
+            allowed = f"allowed: the control period of {period:g} s or a whole part of it"
+            raise InputError("simulation.timestep", f"found {self.timestep:g} s", allowed)
+        friction = self.model.of_kind(Friction)
         if self.emulated and friction:
-            raise InputError(
-                f"effect {friction[0]}",
-                "found friction made by the drive",
-                'allowed: friction = "mechanics" in [simulation], where friction has its effects',
-            )
+            allowed = 'allowed: friction = "mechanics" in [simulation], where friction has its effects'
+            raise InputError(f"effect {friction[0].name}", "found friction made by the drive", allowed)
 
     @classmethod
     def from_rig(cls, rig: Rig, effects: Sequence[Present] = ()) -> Plant:
@@ -85,6 +80,10 @@ class Plant:
         """Whether MuJoCo's own actuator can be the drive, as long as its torque is not limited."""
         return self.substeps == 1 and not self.emulated and self.model.all_native
 
+    def spec(self) -> mujoco.MjSpec:
+        """Model of the mechanics."""
+        return self.model.spec(self.timestep)
+
     def native_loop(self, references: References) -> ClosedLoop:
         """The axis with its drive as MuJoCo's `pid`, which does not hold its integrator while limited."""
         time = self.timestep * np.arange(references.time.size, dtype=np.float64)
@@ -102,10 +101,10 @@ class Plant:
 
     @cached_property
     def _mechanics(self) -> mujoco.MjModel:
-        return self.model.spec(self.timestep).compile()
+        return self.spec().compile()
 
     @cached_property
     def _with_pid(self) -> mujoco.MjModel:
-        spec = self.model.spec(self.timestep)
+        spec = self.spec()
         add_pid(spec, self.cascade)
         return spec.compile()

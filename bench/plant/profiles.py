@@ -81,13 +81,14 @@ class MotionLimits:
         standing = parameters.coulomb_friction + abs(parameters.load_torque)
         full = (torque - standing) / parameters.inertia
         if standing >= RESISTING_SHARE * torque:
-            raise InputError(
-                f"{rig.source}: simulation",
-                f"found friction and load of {standing:.3g} {rig.effort_unit}",
-                f"allowed: below half of the peak torque, {RESISTING_SHARE * torque:.3g} {rig.effort_unit}",
-            )
+            found = f"found friction and load of {standing:.3g} {rig.effort_unit}"
+            allowed = f"allowed: below half of the peak torque, {RESISTING_SHARE * torque:.3g} {rig.effort_unit}"
+            raise InputError(f"{rig.source}: simulation", found, allowed)
         viscous = parameters.viscous_friction_coefficient
-        speed = _stated_speed(rig) or RUN_UP * full
+        speeds = [speed for speed in (rig.motor.maximum_speed or rig.motor.rated_speed,) if speed is not None]
+        if rig.motor.supply_voltage is not None and rig.motor.back_emf_constant is not None:
+            speeds.append(rig.motor.supply_voltage / rig.motor.back_emf_constant)
+        speed = SPEED_SHARE * min(speeds) if speeds else RUN_UP * full
         if viscous > 0.0:
             speed = min(speed, (RESISTING_SHARE * torque - standing) / viscous)
         acceleration = ACCELERATION_SHARE * (torque - standing - viscous * speed) / parameters.inertia
@@ -98,14 +99,6 @@ class MotionLimits:
     def ramp_time(self) -> float:
         """Time in which acceleration builds up - s; at least four ticks."""
         return max(RAMP_SHARE * self.speed / self.acceleration, 4.0 * self.period)
-
-
-def _stated_speed(rig: Rig) -> float | None:
-    motor = rig.motor
-    speeds = [speed for speed in (motor.maximum_speed or motor.rated_speed,) if speed is not None]
-    if motor.supply_voltage is not None and motor.back_emf_constant is not None:
-        speeds.append(motor.supply_voltage / motor.back_emf_constant)
-    return SPEED_SHARE * min(speeds) if speeds else None
 
 
 Profile = Callable[[MotionLimits], References]
@@ -171,9 +164,8 @@ def plan(name: str, limits: MotionLimits) -> References:
     name.
     """
     if name not in PROFILES:
-        raise InputError(
-            "--profile", f"found '{name}'{nearest(name, list(PROFILES))}", f"allowed: {', '.join(PROFILES)}"
-        )
+        found = f"found '{name}'{nearest(name, list(PROFILES))}"
+        raise InputError("--profile", found, f"allowed: {', '.join(PROFILES)}")
     references = PROFILES[name](limits)
     while np.ptp(references.position) > limits.travel:
         limits = replace(limits, speed=0.9 * limits.speed)
@@ -245,8 +237,7 @@ def through_speeds(
     At most with an acceleration - rad/s**2 (m/s**2) - that builds up and fades in `ramp_time` - s; `period` as
     `s_curve`.
     """
-    durations: list[float] = []
-    accelerations: list[float] = []
+    durations, accelerations = [], []
     for change in np.diff([0.0, *speeds]):
         lengths, knots = speed_change(float(change), acceleration, ramp_time)
         durations += [*lengths, dwell]

@@ -111,11 +111,8 @@ class Sensors:
         """
         stride = max(1, round(self.sample_period / period))
         if abs(stride * period / self.sample_period - 1.0) > 1e-9:
-            raise InputError(
-                "simulation.sample_period",
-                f"found {self.sample_period:g} s",
-                f"allowed: a multiple of the control period of {period:g} s",
-            )
+            allowed = f"allowed: a multiple of the control period of {period:g} s"
+            raise InputError("simulation.sample_period", f"found {self.sample_period:g} s", allowed)
         return stride
 
     def record(self, states: States, references: References, random: np.random.Generator, origin: str) -> Trace:

@@ -91,15 +91,14 @@ class Truth:
     def as_json(self) -> str:
         """Truth as text, quantities under the names that `bench identify --json` gives them."""
         kind = self.parameters.kind
-        parameters = {
-            q.name: (getattr(self.parameters, field), q.unit) for field, q in parameter_quantities(kind).items()
+        own = {q.name: (getattr(self.parameters, field), q.unit) for field, q in parameter_quantities(kind).items()}
+        units = {
+            "sample_period": "s",
+            "encoder_resolution": kind.length_unit,
+            "velocity_noise": kind.speed_unit,
+            "current_noise": "A" if self.sensors.torque_constant else kind.effort_unit,
         }
-        sensors = {
-            "sample_period": (self.sensors.sample_period, "s"),
-            "encoder_resolution": (self.sensors.encoder_resolution, kind.length_unit),
-            "velocity_noise": (self.sensors.velocity_noise, kind.speed_unit),
-            "current_noise": (self.sensors.current_noise, "A" if self.sensors.torque_constant else kind.effort_unit),
-        }
+        sensors = {name: (getattr(self.sensors, name), unit) for name, unit in units.items()}
         content = {
             "schema": SCHEMA,
             "rig": self.rig,
@@ -107,7 +106,7 @@ class Truth:
             "profile": self.profile,
             "seed": self.seed,
             "friction": self.friction,
-            "parameters": _with_units(parameters),
+            "parameters": _with_units(own),
             "sensors": _with_units(sensors),
             "effects": [{"name": p.name, "parameters": _with_units(_parameters(p, kind))} for p in self.effects],
         }

@@ -13,10 +13,11 @@ Values are arrays of axes side by side; of a lone axis they are numbers, of whic
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import mujoco
 import numpy as np
@@ -41,6 +42,7 @@ from bench.effects.acting import (
 from bench.effects.axis import Axis, Moment, Number, Winding
 from bench.effects.effect import Effect
 from bench.effects.mjcf import AXIS, BRISTLES
+from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
 
 Kind = TypeVar("Kind", bound=Effect)
@@ -127,7 +129,7 @@ class _FrictionLevels:
         self._differences = on_axes(models, DirectedFriction, ticked=True)
         self._loads = on_axes(models, LoadTorque) if on_axes(models, FollowsLoad) else []
         self._joints = joints
-        self._changes = bool(self._excesses or self._factors or self._differences)
+        self._changes = self._excesses or self._factors or self._differences
 
     def offset(self, at: Moment) -> Number:
         """Set the level; returns half the difference of the two directions' levels - N*m (N) - (axes,)."""
@@ -135,7 +137,10 @@ class _FrictionLevels:
             return 0.0
         level = self._coulomb
         if self._loads:
-            at = replace(at, load=self._load(at))
+            load = self._none  # that the transmission carries
+            for some in self._loads:
+                load = some.with_these(load, some.of(load) + some.effect.load_torque(some.values, some.moment(at)))
+            at = replace(at, load=load)
         for some in self._excesses:
             excess = some.effect.friction_excess(some.values, some.axis, some.moment(at))
             level = some.with_these(level, some.of(level) + excess)
@@ -155,13 +160,6 @@ class _FrictionLevels:
             return 0.0
         self._joints.set_friction(0.5 * (forward + backward))
         return 0.5 * (forward - backward)
-
-    def _load(self, at: Moment) -> Number:
-        """Torque of the load that the transmission carries - N*m (N) - (axes,)."""
-        load = self._none
-        for some in self._loads:
-            load = some.with_these(load, some.of(load) + some.effect.load_torque(some.values, some.moment(at)))
-        return load
 
 
 @dataclass
@@ -205,45 +203,37 @@ def on_axes(models: Sequence[AxisModel], kind: type[Kind], ticked: bool = False)
 
     With `ticked` only those that MuJoCo does not make by itself.
     """
-    found: dict[tuple[str, int], list[int]] = {}
-    values: dict[tuple[str, int], list[dict[str, float]]] = {}
+    found: dict[tuple[str, int], dict[int, Present]] = {}
     for row, model in enumerate(models):
-        count: dict[str, int] = {}
+        count: Counter[str] = Counter()
         for present in model.of_kind(kind):
-            if ticked and present not in model.ticked:
-                continue
-            count[present.name] = count.get(present.name, -1) + 1
-            key = present.name, count[present.name]
-            found.setdefault(key, []).append(row)
-            values.setdefault(key, []).append(dict(present.values))
-    return [_gathered(models, key[0], found[key], values[key], kind) for key in sorted(found)]
+            if not ticked or present in model.ticked:
+                found.setdefault((present.name, count[present.name]), {})[row] = present
+                count[present.name] += 1
+    return [_gathered(models, found[key], kind) for key in sorted(found)]
 
 
-def _gathered(
-    models: Sequence[AxisModel], name: str, index: list[int], values: list[dict[str, float]], kind: type[Kind]
-) -> EffectOnAxes[Kind]:
-    effect = next(p.effect for p in models[index[0]].effects if p.name == name)
+def _gathered(models: Sequence[AxisModel], having: Mapping[int, Present], kind: type[Kind]) -> EffectOnAxes[Kind]:
+    """An effect on the axes that have it."""
+    index, values = list(having), [dict(present.values) for present in having.values()]
+    effect = having[index[0]].effect
     assert isinstance(effect, kind)
     axes = [models[row].axis for row in index]
-    constants = {
-        key: per_axis([float(getattr(axis, key)) for axis in axes])
-        for key in ("inertia", "motor_inertia", "viscous", "coulomb", "peak_effort")
-    }
+    windings = [axis.winding for axis in axes if axis.winding is not None]
+    winding = Winding(**abreast(windings)) if len(windings) == len(axes) else None
     return EffectOnAxes(
         effect,
         None if len(index) == len(models) else np.array(index),
         {key: per_axis([value[key] for value in values]) for key in values[0]},
-        Axis(**constants, winding=_windings(axes)),
+        Axis(**abreast(axes, without="winding"), winding=winding),
         per_axis([0.0] * len(index)),
     )
 
 
-def _windings(axes: Sequence[Axis]) -> Winding | None:
-    known = [axis.winding for axis in axes if axis.winding is not None]
-    if len(known) < len(axes):
-        return None
-    names = ("torque_constant", "resistance", "inductance", "back_emf_constant")
-    return Winding(**{name: per_axis([float(getattr(winding, name)) for winding in known]) for name in names})
+def abreast(ones: Sequence[Any], without: str = "") -> dict[str, Any]:
+    """Fields of dataclasses of numbers, but for one, as `per_axis` has them of all."""
+    names = [field.name for field in fields(ones[0]) if field.name != without]
+    return {name: per_axis([float(getattr(one, name)) for one in ones]) for name in names}
 
 
 def per_axis(values: Sequence[float] | Array) -> Number:

@@ -222,15 +222,13 @@ def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> Followed:
     cascade = Cascade.from_rig(rig)
     if len(trace.segments) > 1:
         raise InputError(trace.origin, f"found {len(trace.segments) - 1} holes", "allowed: a recording without holes")
-    stride = round(trace.sample_period / cascade.control_period)
-    if stride < 1 or abs(stride * cascade.control_period / trace.sample_period - 1.0) > 1e-3:
-        raise InputError(
-            trace.origin,
-            f"found samples every {trace.sample_period:g} s",
-            f"allowed: a multiple of the control period of {cascade.control_period:g} s",
-        )
+    sampled, period = trace.sample_period, cascade.control_period
+    stride = round(sampled / period)
+    if stride < 1 or abs(stride * period / sampled - 1.0) > 1e-3:
+        allowed = f"allowed: a multiple of the control period of {period:g} s"
+        raise InputError(trace.origin, f"found samples every {sampled:g} s", allowed)
     plant = Plant.of(model, cascade)
-    states = reported_states(plant.model, run([plant], [references_of(trace, cascade.control_period, stride)]))
+    states = reported_states(plant.model, run([plant], [references_of(trace, period, stride)]))
     rows = slice(None, None, stride)
     return Followed(states.position[rows, 0], states.velocity[rows, 0], states.torque[rows, 0])
 

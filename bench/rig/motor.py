@@ -182,10 +182,10 @@ class Motor(RigTable):
         """Values told for effective currents, as values for peaks, which are sqrt(2) times as high."""
         if self.current == "peak":
             return self
-        factors = dict.fromkeys(("torque_constant", "force_constant"), 1.0 / math.sqrt(2.0))
-        factors |= dict.fromkeys(("continuous_stall_current", "peak_current"), math.sqrt(2.0))
-        told = {name: getattr(self, name) for name in factors}
-        converted = {name: times(value, factors[name]) for name, value in told.items() if value is not None}
+        factors = {1.0 / math.sqrt(2.0): ("torque_constant", "force_constant")}
+        factors[math.sqrt(2.0)] = ("continuous_stall_current", "peak_current")
+        told = [(name, getattr(self, name), factor) for factor, names in factors.items() for name in names]
+        converted = {name: times(value, factor) for name, value, factor in told if value is not None}
         return self.model_copy(update={**converted, "current": "peak"})
 
     @property

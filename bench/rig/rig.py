@@ -279,8 +279,9 @@ def _input_error(path: Path, error: ValidationError) -> InputError:
     detail = error.errors()[0]
     keys = [str(key) for key in detail["loc"]]
     where = f"{path}: {'.'.join(keys) or 'rig'}"
+    told: dict[str, Any] = detail.get("ctx", {})
     if detail["type"] == "unit":
-        return InputError(where, detail["ctx"]["found"], detail["ctx"]["allowed"])
+        return InputError(where, told["found"], told["allowed"])
     if detail["type"] == "extra_forbidden":
         known = _known_keys(keys[:-1])
         return InputError(where, f"unknown key{nearest(keys[-1], known)}", f"allowed: {', '.join(known)}")
