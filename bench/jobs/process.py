@@ -91,7 +91,9 @@ class WorkerProcess(Generic[Item, Result]):
             if failure is None:
                 return pickle.loads(calls.recv_bytes())
         except (EOFError, ConnectionError):
-            failure = Failure("failed", f"its worker was killed ({_how(process.wait())})")
+            status = process.wait()
+            how = signal.Signals(-status).name if status < 0 else f"exit status {status}"
+            failure = Failure("failed", f"its worker was killed ({how})")
         self.close()
         return failure
 
@@ -131,11 +133,6 @@ def _memory(number: int) -> int:
         return psutil.Process(number).memory_info().rss
     except psutil.NoSuchProcess:
         return 0
-
-
-def _how(status: int) -> str:
-    """How a process ended."""
-    return signal.Signals(-status).name if status < 0 else f"exit status {status}"
 
 
 def serve(handle: int) -> None:

@@ -7,9 +7,8 @@ bring it back, so that positions in and out of them are those of the velocities 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import mujoco
 import numpy as np
@@ -21,6 +20,9 @@ from bench.plant.stepped_effects import per_axis
 
 #: Bytes of inputs and states that a simulation holds at once, however long it is.
 BLOCK_BYTES = 8 * 2**20
+#: Of the number of a tick, which come in turn, and true position and velocity at it - rad (m), rad/s (m/s) - (axes,):
+#: effort from it to the next - N*m (N) - (axes,), reported and asked of the motor. Of a lone axis all may be numbers.
+Tick = Callable[[int, Number, Number], tuple[Number, Number]]
 DIVERGED = "the simulation diverged: lower the drive's gains or its control period"
 
 
@@ -110,23 +112,11 @@ class Controller(ABC):
 
     @classmethod
     @abstractmethod
-    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Ticking:
-        """Controllers of the axes of loops whose controllers are all of this class.
+    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Tick:
+        """What controls the axes of loops whose controllers are all of this class.
 
         `setpoints` are the inputs of the actuators before the effort, to be written at each tick - (axes, inputs).
         """
-
-
-class Ticking(Protocol):
-    """Controllers of axes side by side, asked at every tick."""
-
-    def tick(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
-        """Effort from tick k to the next - N*m (N) - (axes,): reported, and asked of the motor. Ticks come in turn.
-
-        Position and velocity are the true ones at it - rad (m), rad/s (m/s) - (axes,). Of a lone axis all may be
-        numbers.
-        """
-        ...
 
 
 class PlannedInputs(Controller):
@@ -137,9 +127,17 @@ class PlannedInputs(Controller):
         """Inputs from a tick to before another, held from each to the next - (ticks, inputs); the last is an effort."""
 
     @classmethod
-    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Ticking:
+    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Tick:
         """Read in blocks; after the end of a loop its last inputs are held."""
-        return _PlannedSideBySide(loops, setpoints)
+        rows = _rows_of(loops, setpoints.shape[1] + 1)
+
+        def tick(k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
+            inputs = next(rows)
+            setpoints[:] = inputs[:, :-1]
+            effort = per_axis(inputs[:, -1])
+            return effort, effort
+
+        return tick
 
 
 class Listed(PlannedInputs):
@@ -159,28 +157,13 @@ def blocks(ticks: int, bytes_per_tick: int) -> Iterator[tuple[int, int]]:
     return ((start, min(start + size, ticks)) for start in range(0, ticks, size))
 
 
-class _PlannedSideBySide:
-    """Planned inputs of several axes, read block by block."""
-
-    def __init__(self, loops: Sequence[ClosedLoop], setpoints: Array) -> None:
-        self._loops, self._setpoints = loops, setpoints
-        inputs = setpoints.shape[1] + 1
-        self._blocks = blocks(max(loop.ticks for loop in loops), 8 * inputs * len(loops))
-        self._start, self._stop, self._inputs = 0, 0, np.empty((0, len(loops), inputs))
-
-    def tick(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
-        """See `Ticking`."""
-        if k == self._stop:
-            self._start, self._stop = next(self._blocks)
-            self._inputs = np.stack([self._held(loop) for loop in self._loops], axis=1)
-        inputs = self._inputs[k - self._start]
-        self._setpoints[:] = inputs[:, :-1]
-        effort = per_axis(inputs[:, -1])
-        return effort, effort
-
-    def _held(self, loop: ClosedLoop) -> Array:
-        assert isinstance(loop.controller, PlannedInputs)
-        last = loop.ticks - 1
-        first = min(self._start, last)
-        known = loop.controller.between(first, min(self._stop, loop.ticks))
-        return known[np.minimum(np.arange(self._start, self._stop), last) - first]
+def _rows_of(loops: Sequence[ClosedLoop], inputs: int) -> Iterator[Array]:
+    """Planned inputs at each tick of the longest loop - (axes, inputs)."""
+    for start, stop in blocks(max(loop.ticks for loop in loops), 8 * inputs * len(loops)):
+        held = []
+        for loop in loops:
+            assert isinstance(loop.controller, PlannedInputs)
+            first = min(start, loop.ticks - 1)
+            known = loop.controller.between(first, min(stop, loop.ticks))
+            held.append(known[np.minimum(np.arange(start, stop), loop.ticks - 1) - first])
+        yield from np.stack(held, axis=1)

@@ -22,7 +22,7 @@ from bench.effects.axis import Number
 from bench.effects.mjcf import DRIVE
 from bench.errors import InputError
 from bench.plant.axis_model import AxisParameters
-from bench.plant.closed_loop import ClosedLoop, Controller
+from bench.plant.closed_loop import ClosedLoop, Controller, Tick
 from bench.plant.stepped_effects import abreast, on_axes, per_axis
 from bench.rig.rig import Rig
 
@@ -135,15 +135,9 @@ class FollowReferences(Controller):
     emulation: FrictionEmulation | None = None
 
     @classmethod
-    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> _Following:
+    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Tick:
         """See `Controller`."""
-        return _Following(loops, [each.controller for each in loops if isinstance(each.controller, cls)])
-
-
-class _Following:
-    """Drives of axes side by side."""
-
-    def __init__(self, loops: Sequence[ClosedLoop], drives: Sequence[FollowReferences]) -> None:
+        drives = [each.controller for each in loops if isinstance(each.controller, cls)]
         cascades, emulation = [drive.cascade for drive in drives], None
         period = cascades[0].control_period
         cascade = Cascade(**abreast(cascades, without="control_period"), control_period=period)
@@ -151,15 +145,16 @@ class _Following:
             null = [FrictionEmulation.of(loop.axis.parameters.frictionless) for loop in loops]
             made = [drive.emulation or none for drive, none in zip(drives, null, strict=True)]
             emulation = FrictionEmulation(**abreast(made))
-        self._drive = CascadeDrive(cascade, side_by_side([drive.references for drive in drives]), emulation)
-        self._encoders = on_axes([loop.axis for loop in loops], MisreadMotion)
+        together = CascadeDrive(cascade, side_by_side([drive.references for drive in drives]), emulation)
+        encoders = on_axes([loop.axis for loop in loops], MisreadMotion)
 
-    def tick(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
-        """See `Ticking`."""
-        for some in self._encoders:
-            turned, moving = some.effect.seen(some.values, some.of(position), some.of(velocity))
-            position, velocity = some.with_these(position, turned), some.with_these(velocity, moving)
-        return self._drive.tick(k, position, velocity)
+        def tick(k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
+            for some in encoders:
+                turned, moving = some.effect.seen(some.values, some.of(position), some.of(velocity))
+                position, velocity = some.with_these(position, turned), some.with_these(velocity, moving)
+            return together.tick(k, position, velocity)
+
+        return tick
 
 
 def _by_ticks(values: Array) -> Array:

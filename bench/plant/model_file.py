@@ -155,8 +155,13 @@ def load_model(path: str | Path) -> StoredModel:
     effects = _effects(table.get("effects", []), kind, f"{path}: effects")
     misalignment = _number(table.get("misalignment", 0.0), "s", f"{path}: misalignment")
     model = AxisModel(parameters, effects, peak, winding)
-    mounting = _mounting(table.get("mounting", {}), f"{path}: mounting")
-    return StoredModel(str(table.get("name", "axis")), model, misalignment, mounting)
+    mounted = table.get("mounting", {})
+    given = {key: unit for key, unit in MOUNTED.items() if not isinstance(mounted, dict) or key in mounted}
+    mounting = _values(mounted, given, f"{path}: mounting")
+    for key, value in mounting.items():
+        if value <= 0.0:
+            raise InputError(f"{path}: mounting.{key}", f"found {value:g}", "allowed: above zero")
+    return StoredModel(str(table.get("name", "axis")), model, misalignment, Mounting(**mounting))
 
 
 def read_table(path: str | Path) -> dict[str, Any]:
@@ -175,15 +180,6 @@ def _values(table: object, units: Mapping[str, str], where: str) -> dict[str, fl
         if key not in table:
             raise InputError(f"{where}.{key}", "missing", "this key is required")
     return {key: _number(table[key], unit, f"{where}.{key}") for key, unit in units.items()}
-
-
-def _mounting(table: object, where: str) -> Mounting:
-    given = {key: unit for key, unit in MOUNTED.items() if not isinstance(table, dict) or key in table}
-    values = _values(table, given, where)
-    for key, value in values.items():
-        if value <= 0.0:
-            raise InputError(f"{where}.{key}", f"found {value:g}", "allowed: above zero")
-    return Mounting(**values)
 
 
 def _effect_table(present: Present, kind: AxisKind) -> dict[str, float | str]:

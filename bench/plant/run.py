@@ -21,6 +21,13 @@ from bench.plant.drive import TORQUE, References
 from bench.plant.plant import Plant
 from bench.plant.stepped_effects import BatchJoints, SteppedEffects, per_axis
 
+Progress = Callable[[float], None]
+
+#: Axes from which it pays to share a step between threads: calling them costs some 10 to 50 us, an axis 2 to 4.
+SHARED_FROM = 64
+#: Ticks between two reports of progress.
+REPORT_EVERY = 1000
+
 
 def run(plants: Sequence[Plant], references: Sequence[References], progress: Progress | None = None) -> States:
     """Axes under their drives along their references, one each, all over the same ticks.
@@ -32,7 +39,12 @@ def run(plants: Sequence[Plant], references: Sequence[References], progress: Pro
         InputError: references of another period than the drive's, or drives of different periods.
         SimulationError: a simulation diverged.
     """
-    _check_ticks(plants, references)
+    period = plants[0].cascade.control_period
+    for plant, reference in zip(plants, references, strict=True):
+        if plant.cascade.control_period != period or plant.timestep != plants[0].timestep:
+            raise InputError("drive.control_period", "found different periods", "allowed: axes that tick together")
+        if abs(reference.period / period - 1.0) > 1e-6:
+            raise InputError("references", f"found a period of {reference.period:g} s", f"allowed: {period:g} s")
     same = {plant: plant for plant in plants}
     pairs = [(same[plant], motion) for plant, motion in zip(plants, references, strict=True)]
     native = [k for k, (plant, _) in enumerate(pairs) if plant.native]
@@ -68,15 +80,6 @@ def run_loops(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> 
             for column, k in enumerate(group):
                 found[k] = together.axis(column, -(-loops[k].ticks // loops[k].every))
     return [found[k] for k in range(len(loops))]
-
-
-def _check_ticks(plants: Sequence[Plant], references: Sequence[References]) -> None:
-    period = plants[0].cascade.control_period
-    for plant, reference in zip(plants, references, strict=True):
-        if plant.cascade.control_period != period or plant.timestep != plants[0].timestep:
-            raise InputError("drive.control_period", "found different periods", "allowed: axes that tick together")
-        if abs(reference.period / period - 1.0) > 1e-6:
-            raise InputError("references", f"found a period of {reference.period:g} s", f"allowed: {period:g} s")
 
 
 @contextmanager
@@ -121,14 +124,6 @@ def run_native(loop: ClosedLoop) -> States:
     return States.of_one(time, *found)
 
 
-Progress = Callable[[float], None]
-
-#: Axes from which it pays to share a step between threads: calling them costs some 10 to 50 us, an axis 2 to 4.
-SHARED_FROM = 64
-#: Ticks between two reports of progress.
-REPORT_EVERY = 1000
-
-
 def run_ticked(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> States:
     """Motion of axes side by side, nan where one diverged; the same arithmetic for one axis and a thousand.
 
@@ -140,7 +135,7 @@ def run_ticked(loops: Sequence[ClosedLoop], progress: Progress | None = None) ->
     recorded = States(time[::every], *np.zeros((4, -(-time.size // every), len(loops))))
     for k in range(time.size):
         position, velocity = axes.state()
-        setpoint, motor = axes.controller.tick(k, position, velocity)
+        setpoint, motor = axes.tick(k, position, velocity)
         reported, made = axes.advance(time[k], setpoint, motor)
         if k % every == 0:
             row = k // every
@@ -166,7 +161,7 @@ class _SideBySide:
         at = batch.model.actuator_ctrladr[actuator]
         inputs = batch.bind("ctrl")[:, at : at + batch.model.actuator_ctrlnum[actuator]]
         self._effort = inputs[:, -1]
-        self.controller = type(first.controller).side_by_side(loops, inputs[:, :-1])
+        self.tick = type(first.controller).side_by_side(loops, inputs[:, :-1])
         self._since, self._began = (per_axis([getattr(loop, name) for loop in loops]) for name in ("since", "began"))
         self._effects = None
         if not all(loop.axis.all_native for loop in loops):

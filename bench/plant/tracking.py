@@ -114,16 +114,11 @@ def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDT
     return Cascade(bandwidth / 5.0, inertia * bandwidth, inertia * bandwidth**2 / 6.0, 0.0, math.inf, timestep)
 
 
-def step_of(trace: Trace) -> tuple[float, int]:
-    """Timestep - s - that divides the sample period and is at most LONGEST_STEP, and how many make a period."""
-    substeps = math.ceil(trace.sample_period / LONGEST_STEP * (1.0 - 1e-9))
-    return trace.sample_period / substeps, substeps
-
-
 def _loops(held: SoftTracking, bandwidth: float) -> Iterator[tuple[slice, ClosedLoop, int]]:
     """Samples of each stretch of a recording, the loop that holds the model along it, and steps per sample."""
     model, trace = held.model, held.trace
-    (timestep, substeps), velocity = step_of(trace), measured_velocity(trace)
+    substeps = math.ceil(trace.sample_period / LONGEST_STEP * (1.0 - 1e-9))
+    timestep, velocity = trace.sample_period / substeps, measured_velocity(trace)
     spec, mechanics = model.spec(timestep), model.with_effects(model.of_kind(Mechanism))
     add_pid(spec, holding_cascade(held.inertia or model.parameters.inertia, timestep, bandwidth))
     try:

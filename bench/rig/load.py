@@ -10,7 +10,8 @@ from pydantic import Field, model_validator
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
-from bench.rig.values import Angle, Density, Inertia, Length, Mass, RigTable
+from bench.rig import values
+from bench.rig.values import RigTable
 
 #: Standard acceleration of free fall - m/s**2. ISO 80000-3: g_n.
 STANDARD_GRAVITY = 9.80665
@@ -30,18 +31,18 @@ class Load(RigTable):
         link_inertia: part of the inertia that a robot's own model has, on the load's side - kg*m**2.
     """
 
-    outer_diameter: Length | None = None
-    inner_diameter: Length | None = None
-    thickness: Length | None = None
-    density: Density | None = None
-    mass: Mass | None = None
+    outer_diameter: values.Length | None = None
+    inner_diameter: values.Length | None = None
+    thickness: values.Length | None = None
+    density: values.Density | None = None
+    mass: values.Mass | None = None
     gear_ratio: Annotated[float, Field(gt=0.0)] = 1.0
-    gear_inertia: Inertia | None = None
-    stroke: Length | None = None
-    eccentric_mass: Mass | None = None
-    eccentric_radius: Length | None = None
-    hanging_position: Angle = 0.0
-    link_inertia: Inertia | None = None
+    gear_inertia: values.Inertia | None = None
+    stroke: values.Length | None = None
+    eccentric_mass: values.Mass | None = None
+    eccentric_radius: values.Length | None = None
+    hanging_position: values.Angle = 0.0
+    link_inertia: values.Inertia | None = None
 
     @model_validator(mode="after")
     def _one_disk(self) -> Load:

@@ -18,27 +18,8 @@ from bench.arrays import Array
 from bench.assets import asset
 from bench.errors import InputError
 from bench.names import nearest
-from bench.rig.values import (
-    BackEmf,
-    Current,
-    Force,
-    ForcePerAmpere,
-    ForcePerVolt,
-    Inductance,
-    Inertia,
-    Mass,
-    Resistance,
-    RigTable,
-    Speed,
-    Temperature,
-    Time,
-    Torque,
-    TorquePerAmpere,
-    TorquePerVolt,
-    Voltage,
-    times,
-    tolerance_of,
-)
+from bench.rig import values
+from bench.rig.values import RigTable, times, tolerance_of
 
 #: Of constants whose tolerance is not stated, as datasheets have it.
 USUAL_TOLERANCE = 0.1
@@ -99,9 +80,9 @@ class PeakCurve(RigTable):
         no_load_speed: at which the back-EMF takes all the voltage and torque is zero - rad/s (m/s).
     """
 
-    mains_voltage: Voltage
-    corner_speed: Speed
-    no_load_speed: Speed
+    mains_voltage: values.Voltage
+    corner_speed: values.Speed
+    no_load_speed: values.Speed
 
     @model_validator(mode="after")
     def _falls(self) -> PeakCurve:
@@ -137,30 +118,30 @@ class Motor(RigTable):
 
     model: str | None = None
     current: Literal["peak", "effective"] = "peak"
-    rotor_inertia: Inertia | None = None
-    moving_mass: Mass | None = None
-    torque_constant: TorquePerAmpere | None = None
-    force_constant: ForcePerAmpere | None = None
-    continuous_stall_torque: Torque | None = None
-    continuous_stall_current: Current | None = None
-    peak_torque: Torque | None = None
-    peak_current: Current | None = None
-    torque_per_volt: TorquePerVolt | None = None
-    force_per_volt: ForcePerVolt | None = None
-    rated_torque: Torque | None = None
-    rated_force: Force | None = None
-    rated_speed: Speed | None = None
-    maximum_speed: Speed | None = None
-    resistance: Resistance | None = None
-    inductance: Inductance | None = None
-    back_emf_constant: BackEmf | None = None
-    supply_voltage: Voltage | None = None
-    temperature: Temperature | None = None
+    rotor_inertia: values.Inertia | None = None
+    moving_mass: values.Mass | None = None
+    torque_constant: values.TorquePerAmpere | None = None
+    force_constant: values.ForcePerAmpere | None = None
+    continuous_stall_torque: values.Torque | None = None
+    continuous_stall_current: values.Current | None = None
+    peak_torque: values.Torque | None = None
+    peak_current: values.Current | None = None
+    torque_per_volt: values.TorquePerVolt | None = None
+    force_per_volt: values.ForcePerVolt | None = None
+    rated_torque: values.Torque | None = None
+    rated_force: values.Force | None = None
+    rated_speed: values.Speed | None = None
+    maximum_speed: values.Speed | None = None
+    resistance: values.Resistance | None = None
+    inductance: values.Inductance | None = None
+    back_emf_constant: values.BackEmf | None = None
+    supply_voltage: values.Voltage | None = None
+    temperature: values.Temperature | None = None
     peak_curves: tuple[PeakCurve, ...] = ()
     continuous_torque_loss: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
     cold_resistance_share: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
-    electrical_time_constant: Time | None = None
-    thermal_time_constant: Time | None = None
+    electrical_time_constant: values.Time | None = None
+    thermal_time_constant: values.Time | None = None
 
     @model_validator(mode="after")
     def _datasheet_is_consistent(self) -> Motor:
@@ -218,11 +199,6 @@ class Motor(RigTable):
             f"({self.back_emf_constant:.4g}) disagree: by the second the first would be {self.of_back_emf:.4g}; "
             "intervals reach as far"
         )
-
-    @property
-    def rated_effort(self) -> float | None:
-        """What 100 % of a relative torque means - N*m (N); None when the rig does not tell."""
-        return self.rated_torque if self.rated_torque is not None else self.rated_force
 
     @property
     def torque_per_ampere(self) -> TorqueConstant | None:

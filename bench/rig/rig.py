@@ -13,26 +13,10 @@ from bench.arrays import Array
 from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
 from bench.names import nearest, short
+from bench.rig import values
 from bench.rig.load import Load
 from bench.rig.motor import Motor, catalogue_motor
-from bench.rig.values import (
-    Coulomb,
-    CurrentNoise,
-    Effort,
-    Feedforward,
-    Inertia,
-    IntegralGain,
-    Mass,
-    Period,
-    Rate,
-    Resolution,
-    RigTable,
-    Time,
-    VelocityNoise,
-    Viscous,
-    Wrap,
-    tolerance_of,
-)
+from bench.rig.values import RigTable, tolerance_of
 from bench.structured import read_toml
 from bench.trace.known_torque import less_known
 from bench.trace.plausible import require_plausible
@@ -51,8 +35,8 @@ class TraceNotes(RigTable):
     """
 
     columns: dict[str, str] = Field(default_factory=dict)
-    sample_period: Time | None = None
-    position_period: Wrap | None = None
+    sample_period: values.Time | None = None
+    position_period: values.Wrap | None = None
     axis: str | None = None
 
 
@@ -80,11 +64,11 @@ class Drive(RigTable):
         control_period: of the loop - s.
     """
 
-    position_gain: Rate
-    velocity_gain: Viscous
-    integral_gain: IntegralGain = 0.0
-    inertia_feedforward: Feedforward = 0.0
-    control_period: Period = 250e-6
+    position_gain: values.Rate
+    velocity_gain: values.Viscous
+    integral_gain: values.IntegralGain = 0.0
+    inertia_feedforward: values.Feedforward = 0.0
+    control_period: values.Period = 250e-6
 
     @model_validator(mode="after")
     def _samples_fast_enough(self) -> Drive:
@@ -115,17 +99,17 @@ class Simulation(RigTable):
         timestep: of the integration - s; the drive's control period if not given.
     """
 
-    moment_of_inertia: Inertia | None = None
-    moving_mass: Mass | None = None
-    viscous_friction_coefficient: Viscous = 0.0
-    coulomb_friction: Coulomb = 0.0
+    moment_of_inertia: values.Inertia | None = None
+    moving_mass: values.Mass | None = None
+    viscous_friction_coefficient: values.Viscous = 0.0
+    coulomb_friction: values.Coulomb = 0.0
     friction: Literal["mechanics", "drive"] = "mechanics"
-    load_torque: Effort = 0.0
-    encoder_resolution: Resolution = 0.0
-    velocity_noise: VelocityNoise = 0.0
-    current_noise: CurrentNoise = 0.0
-    sample_period: Period = 1e-3
-    timestep: Period | None = None
+    load_torque: values.Effort = 0.0
+    encoder_resolution: values.Resolution = 0.0
+    velocity_noise: values.VelocityNoise = 0.0
+    current_noise: values.CurrentNoise = 0.0
+    sample_period: values.Period = 1e-3
+    timestep: values.Period | None = None
 
 
 class Rig(RigTable):
@@ -185,7 +169,7 @@ class Rig(RigTable):
             raise InputError(trace.origin, found, f"allowed: a {self.kind} one, as {self.source} says")
         direct = self.axis_kind.effort
         if direct in trace:
-            rated = self.motor.rated_effort
+            rated = self.motor.rated_torque or self.motor.rated_force  # what 100 % of a relative torque means
             if trace.units[direct] == "dimensionless" and rated is not None:
                 return trace[direct] * rated, self.effort_unit
             return trace[direct], trace.units[direct]
