@@ -14,8 +14,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import require_friction, require_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
-from bench.fit.last_digit import plain
-from bench.fit.layout import lay_out
+from bench.fit.layout import lay_out, plain
 from bench.fit.rows import Rows, clear_motion
 from bench.fit.solution import equations_of
 from bench.rig.rig import Rig

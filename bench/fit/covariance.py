@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 
 from bench.arrays import Array, symmetric_inverse
@@ -81,8 +82,8 @@ def left_out(columns: Array, residual: Array) -> Array:
     accelerated, moved = np.argsort(power[:, 0]), np.argsort(power[:, 1])
     cuts = [(accelerated, power[:, 0], LEVELS), (moved, power[:, 1], LEVELS)]
     cuts.append((np.arange(residual.size), np.sum(power, axis=1), QUARTERS))
-    reaches = [_without_each(scaled[order], residual[order], _parts(mass[order], count)) for order, mass, count in cuts]
-    return np.max(reaches, axis=0) / np.where(scale > 0.0, scale, 1.0)
+    reaches = _without_each(scaled, residual, [(order, _parts(mass[order], count)) for order, mass, count in cuts])
+    return reaches / np.where(scale > 0.0, scale, 1.0)
 
 
 def _parts(power: Array, count: int) -> list[slice]:
@@ -93,16 +94,21 @@ def _parts(power: Array, count: int) -> list[slice]:
     return [slice(start, stop) for start, stop in pairwise(edges) if stop > start]
 
 
-def _without_each(columns: Array, residual: Array, parts: list[slice]) -> Array:
-    """Reach of intervals (p,) by coefficients without each part of the rows (m,)."""
-    count = len(parts)
-    if count < 2:
+def _without_each(columns: Array, residual: Array, cuts: list[tuple[NDArray[np.intp], list[slice]]]) -> Array:
+    """The furthest reach of intervals (p,) by coefficients without each part of the rows (m,) in their order."""
+    counts = [len(parts) for _, parts in cuts]
+    if min(counts) < 2:
         return np.full(columns.shape[1], np.inf)
-    grams = np.stack([columns[part].T @ columns[part] for part in parts])
-    scores = np.stack([columns[part].T @ residual[part] for part in parts])
-    inverses = symmetric_inverse(grams.sum(axis=0) - grams, 1e-10)
-    moved = np.einsum("gij,gj->gi", inverses, scores)
-    return special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * np.sum(moved**2, axis=0))
+    table = np.column_stack([columns, residual])
+    sums = np.array([table[order[part]].T @ table[order[part]] for order, parts in cuts for part in parts])
+    grams, scores = sums[:, :-1, :-1], sums[:, :-1, -1]
+    whole = np.repeat([part.sum(axis=0) for part in np.split(grams, np.cumsum(counts)[:-1])], counts, axis=0)
+    moved = np.einsum("gij,gj->gi", symmetric_inverse(whole - grams, 1e-10), scores) ** 2
+    reaches = [
+        special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * squares.sum(axis=0))
+        for count, squares in zip(counts, np.split(moved, np.cumsum(counts)[:-1]), strict=True)
+    ]
+    return np.max(reaches, axis=0)
 
 
 def long_run_covariance(scores: Array) -> tuple[Array, float]:

@@ -9,9 +9,9 @@ has a clearly narrower interval. If some were rejected, the interval includes th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from functools import cached_property
 
 import numpy as np
 
@@ -19,11 +19,10 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS, AxisKind
 from bench.errors import UndeterminedError
 from bench.fit.determined import left_open, only_direction
-from bench.fit.hum import mains
+from bench.fit.hum import mains, passes
 from bench.fit.hypothesis import Hypothesis
-from bench.fit.last_digit import plain
-from bench.fit.layout import lay_out
-from bench.fit.normal_equations import BLOCKS, NormalEquations
+from bench.fit.layout import lay_out, plain
+from bench.fit.normal_equations import BLOCKS
 from bench.fit.rows import Rows
 from bench.fit.solution import Solution, equations_of, solve
 from bench.rig.rig import Rig
@@ -43,83 +42,59 @@ TERMS = (INERTIA, VISCOUS, COULOMB)
 
 @dataclass(frozen=True, eq=False)
 class Tried:
-    """An estimate at one cut-off.
+    """An estimate at one cut-off: J, K_w and K_0, nan where undetermined.
 
     Attributes:
         cutoff: half-power frequency - Hz.
-        theta, half_widths: J, K_w and K_0 with half widths of their intervals of 95 % (3,); nan if undetermined.
+        theta, by_noise: values, and half widths of their intervals of 95 % as noise alone makes them (3,).
+        misfit: half widths from what stands above the noise (3,); asked only where they may decide, as they take long.
     """
 
     cutoff: float
     theta: Array
-    half_widths: Array
+    by_noise: Array
+    misfit: Callable[[], Array]
 
-    @property
-    def determines_inertia(self) -> bool:
-        """Whether it determines the inertia."""
-        return bool(np.isfinite(self.half_widths[0]))
+    @classmethod
+    def of(cls, found: Solution, kind: AxisKind) -> Tried:
+        """The estimate of a solution."""
+        unknown = left_open(found.whole, kind)
+        places = [found.names.index(term) for term in TERMS]
+        known = np.where([term in unknown for term in TERMS], np.nan, 1.0)
+        by_noise = found.reach * found.errors[places] * known
+        cutoff = found.rows.conditioning.filter.cutoff
+        return cls(cutoff, found.theta[places] * known, by_noise, lambda: found.misfit[places])
+
+    @cached_property
+    def half_widths(self) -> Array:
+        """Of the intervals of 95 % (3,)."""
+        return np.hypot(self.by_noise, self.misfit())
 
     def agrees(self, other: Tried) -> bool:
         """Whether the parameters that both determine agree within their intervals."""
         away = np.abs(self.theta - other.theta) - ROUNDING * np.abs(self.theta)
-        return not bool(np.any(away > np.hypot(self.half_widths, other.half_widths)))  # nan: undetermined
-
-
-@dataclass(frozen=True, eq=False)
-class Solved(Tried):
-    """An estimate at one cut-off, and how it came about.
-
-    Attributes:
-        equations: of the recording's first part, every column and a constant.
-        solution: of these.
-    """
-
-    equations: NormalEquations
-    solution: Solution
-
-    @classmethod
-    def of(cls, rows: Rows, rig: Rig) -> Solved:
-        """The estimate of these rows, the hum of the mains that they show taken out."""
-        found, equations = _solved(rows, plain(rows), rig)
-        hum = mains(rows, found.residual)
-        if hum:
-            found, equations = _solved(rows, replace(found.hypothesis, hum=hum), rig)
-        unknown = left_open(equations, rig.axis_kind)
-        theta, half_widths = np.full(3, np.nan), np.full(3, np.nan)
-        for place, term in enumerate(TERMS):
-            if term not in unknown:
-                theta[place] = found.of(term, found.theta)
-                half_widths[place] = np.hypot(found.reach * found.of(term, found.errors), found.of(term, found.misfit))
-        return cls(rows.conditioning.filter.cutoff, theta, half_widths, equations, found)
-
-
-def _solved(rows: Rows, hypothesis: Hypothesis, rig: Rig) -> tuple[Solution, NormalEquations]:
-    laid = lay_out(rows, hypothesis)
-    equations = equations_of(rows, laid).coarsened(BLOCKS)
-    return solve(rows, hypothesis, laid, equations, rig.offset and only_direction(equations) is None), equations
-
-
-#: An estimate with or without how it came about.
-Estimated = TypeVar("Estimated", bound=Tried)
+        if not np.any(away > np.hypot(self.by_noise, other.by_noise)):  # nan: undetermined
+            return True
+        return not np.any(away > np.hypot(self.half_widths, other.half_widths))
 
 
 @dataclass(frozen=True)
-class Chosen(Generic[Estimated]):
-    """The chosen cut-off, and what the others imply.
+class Chosen:
+    """The chosen of several cut-offs, and what the others imply.
 
     Attributes:
-        tried: the estimate there, of the recording's first part.
+        place: of the chosen one.
         doubt: possible bias of J, K_w and K_0 (3,) as the estimate moves with the cut-off; 0 at the highest.
         warnings: that the estimate moves with the cut-off.
     """
 
-    tried: Estimated
+    place: int
     doubt: Array
     warnings: tuple[str, ...] = ()
 
 
-def choose(first: Trace, rig: Rig, cutoff: float | None) -> Chosen[Solved]:
-    """Choose the cut-off, unless one is given.
+def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Chosen]:
+    """The solution at the chosen cut-off, unless one is given.
 
     Args:
         first: the recording, or its first part.
@@ -130,25 +105,40 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> Chosen[Solved]:
         UndeterminedError: the recording is too short, or never moves clearly.
         InputError: a signal is missing, or rig and recording do not fit together.
     """
-    highest = Solved.of(Rows.of(first, rig, cutoff=cutoff), rig)
-    if cutoff is not None:
-        return Chosen(highest, np.zeros(3))
-    usable = [tried for tried in (highest, *_lower(highest, rig)) if tried.determines_inertia]
-    return among(usable, rig.axis_kind) if usable else Chosen(highest, np.zeros(3))
+    rows = Rows.of(first, rig, cutoff=cutoff)
+    highest = _solved(rows, plain(rows), rig)
+    hum = mains(rows, highest.residual)
+    if hum:
+        highest = _solved(rows, replace(highest.hypothesis, hum=hum), rig)
+    if cutoff is None:
+        every = [(found, Tried.of(found, rig.axis_kind)) for found in (highest, *_lower(highest, rig))]
+        usable = [(found, tried) for found, tried in every if np.isfinite(tried.theta[0])]
+        if usable:
+            chosen = among([tried for _, tried in usable], rig.axis_kind)
+            return usable[chosen.place][0], chosen
+    return highest, Chosen(0, np.zeros(3))
 
 
-def _lower(highest: Solved, rig: Rig) -> Iterator[Solved]:
-    """Estimates at lower cut-offs, until the filter is too long for the motion."""
-    rows = highest.solution.rows
+def _lower(highest: Solution, rig: Rig) -> Iterator[Solution]:
+    """Solutions at lower cut-offs, until the filter is too long for the motion."""
+    rows = highest.rows
     for share in BELOW:
-        smooth = GaussianFilter.from_cutoff(highest.cutoff * float(share), rows.scope.sample_period)
+        smooth = GaussianFilter.from_cutoff(rows.conditioning.filter.cutoff * float(share), rows.scope.sample_period)
         try:
-            yield Solved.of(rows.through(smooth), rig)
+            through = rows.through(smooth)
         except UndeterminedError:
             return
+        hum = tuple(line for line in highest.hypothesis.hum if passes(line, smooth.width))
+        yield _solved(through, replace(plain(through), hum=hum), rig)
 
 
-def among(usable: Sequence[Estimated], kind: AxisKind) -> Chosen[Estimated]:
+def _solved(rows: Rows, hypothesis: Hypothesis, rig: Rig) -> Solution:
+    laid = lay_out(rows, hypothesis)
+    equations = equations_of(rows, laid).coarsened(BLOCKS)
+    return solve(rows, hypothesis, laid, equations, rig.offset and only_direction(equations) is None)
+
+
+def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
     """The choice among estimates.
 
     Args:
@@ -161,6 +151,8 @@ def among(usable: Sequence[Estimated], kind: AxisKind) -> Chosen[Estimated]:
             break
         accepted.append(tried)
     rejected = usable[: len(usable) - len(accepted)]
+    if not rejected and all(one.by_noise[0] >= NARROWER * usable[0].half_widths[0] for one in usable[1:]):
+        return Chosen(0, np.zeros(3))
     beyond = rejected[-1] if rejected else accepted[-1]
     doubts = [_doubt(tried, beyond, accepted[:k]) for k, tried in enumerate(accepted)]
     wide = [float(np.hypot(tried.half_widths[0], off[0])) for tried, off in zip(accepted, doubts, strict=True)]
@@ -168,7 +160,7 @@ def among(usable: Sequence[Estimated], kind: AxisKind) -> Chosen[Estimated]:
     if not rejected and wide[best] >= NARROWER * wide[-1]:
         best = len(accepted) - 1
     warnings = (_moves(accepted[best], usable, kind),) if rejected else ()
-    return Chosen(accepted[best], doubts[best], warnings)
+    return Chosen(len(usable) - 1 - best, doubts[best], warnings)
 
 
 def _doubt(taken: Tried, beyond: Tried, lower: Sequence[Tried]) -> Array:

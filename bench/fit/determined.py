@@ -52,16 +52,15 @@ def left_open(equations: NormalEquations, kind: AxisKind) -> frozenset[str]:
 
 def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
     """Raise UndeterminedError if the rows are too few or do not determine the inertia."""
-    for refusal in _too_few(equations, kind), _not_excited(equations, INERTIA, kind):
-        if refusal is not None:
-            raise refusal
+    refusal = _refusals(equations, kind).get(INERTIA)
+    if refusal is not None:
+        raise refusal
 
 
 def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
     """Raise UndeterminedError if the rows do not determine viscous or Coulomb friction."""
-    for term in (VISCOUS, COULOMB):
-        refusal = _not_excited(equations, term, kind)
-        if refusal is not None:
+    for term, refusal in _not_excited(equations, kind).items():
+        if term != INERTIA:
             raise refusal
 
 
@@ -76,37 +75,34 @@ def only_direction(equations: NormalEquations) -> str | None:
 
 def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
     """Why each term that the rows leave open is, in the order in which it is told; the inertia's alone if it is one."""
-    refusal = _too_few(equations, kind) or _not_excited(equations, INERTIA, kind)
-    if refusal is not None:
-        return {INERTIA: refusal}
-    found: dict[str, UndeterminedError] = {}
+    least, open_terms = ROWS_PER_COLUMN * len(equations.names), _not_excited(equations, kind)
+    if equations.count < least:
+        reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
+        return {INERTIA: UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])}
+    if INERTIA in open_terms:
+        return {INERTIA: open_terms[INERTIA]}
     side = only_direction(equations)
-    if side is not None:
-        name = f"{kind.in_words(COULOMB)} apart from {kind.in_words(OFFSET)}"
-        found[COULOMB] = UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
-        found[OFFSET] = found[COULOMB]
-    for term in (VISCOUS, COULOMB):
-        refusal = _not_excited(equations, term, kind)
-        if refusal is not None:
-            found.setdefault(term, refusal)
-    return found
+    if side is None:
+        return open_terms
+    name = f"{kind.in_words(COULOMB)} apart from {kind.in_words(OFFSET)}"
+    one_way = UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
+    open_terms.pop(COULOMB, None)
+    return {COULOMB: one_way, OFFSET: one_way, **open_terms}
 
 
-def _too_few(equations: NormalEquations, kind: AxisKind) -> UndeterminedError | None:
-    least = ROWS_PER_COLUMN * len(equations.names)
-    if equations.count >= least:
-        return None
-    reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"
-    return UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
-
-
-def _not_excited(equations: NormalEquations, term: str, kind: AxisKind) -> UndeterminedError | None:
-    """Why a term is not determined if too little of its column is independent of noise and of the others."""
-    share = equations.independent_share(term, [other for other in (INERTIA, VISCOUS, COULOMB) if other != term])
-    if share >= INDEPENDENT_SHARE:
-        return None
-    reason = f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise"
-    return UndeterminedError(kind.in_words(term), reason, RECORD[term])
+def _not_excited(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
+    """Why each term is not determined of whose column too little is independent of noise and of the others."""
+    terms = (INERTIA, VISCOUS, COULOMB)
+    shares = dict(zip(terms, equations.independent_shares(terms).tolist(), strict=True))
+    return {
+        term: UndeterminedError(
+            kind.in_words(term),
+            f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise",
+            RECORD[term],
+        )
+        for term, share in shares.items()
+        if not share >= INDEPENDENT_SHARE
+    }
 
 
 def require_significant(inertia: Parameter, kind: AxisKind, suspicions: Sequence[str]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +16,7 @@ from bench.effects.effect import Columns, Contact, Coupling, Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.interplay import hang_together, in_line, with_friction, with_load
-from bench.fit.last_digit import rounding
-from bench.fit.layout import DIGIT, Layout, delays, lay_out, seen_by
+from bench.fit.layout import DIGIT, Layout, delays, lay_out, rounding, seen_by
 from bench.fit.noise import Floor, noise_power
 from bench.fit.normal_equations import bounded, solved
 from bench.fit.rows import Rows
@@ -183,6 +183,22 @@ class Fit:
             columns if self.determined.all() else columns * self.determined[:, None], width, self.residual, self.span
         )
 
+    def worth(self, effects: Sequence[Columns]) -> list[float]:
+        """Squares that effects without shapes would each take - (N*m)**2 (N**2)."""
+        widths: list[int] = []
+
+        def every(signals: Signals) -> list[Column]:
+            made = [effect.columns(signals, ()) for effect in effects]
+            widths[:] = map(len, made)
+            return list(chain.from_iterable(made))
+
+        table = self.seen(every, False)
+        owner, found = np.repeat(np.arange(len(effects)), widths), np.zeros(len(effects))
+        for width in set(widths):
+            alike = np.equal(widths, width)
+            found[alike] = self.gains(table[:, alike[owner]], width)
+        return found.tolist()
+
     def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
         """Shapes of an effect with what each would take: by its columns, or fitted anew where it has none."""
         if not isinstance(effect, Columns):
@@ -197,8 +213,10 @@ class Fit:
     def _by_columns(self, effect: Columns, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
         if isinstance(effect, Coupling):  # of the motion alone, which most terms leave as it is
             lag = delays(self.rows, self.hypothesis)[0]
-            key = ("tried", effect.name, tuple(shapes), lag, self.beside.motion)
-            columns = self.rows.memory.get(key, lambda: self.beside.table(lambda s: effect.columns_of(s, shapes), lag))
+            made_of = (effect.columns_of, tuple(shapes), lag, self.beside.motion)
+            columns = self.rows.memory.get(
+                made_of, lambda: self.beside.table(lambda s: effect.columns_of(s, shapes), lag)
+            )
         else:
             columns = self.seen(lambda s: [one for shape in shapes for one in effect.columns(s, shape)], False)
         worth = self.gains(columns, columns.shape[1] // len(shapes))
@@ -231,8 +249,9 @@ def _determined(fitted: Fit) -> NDArray[np.bool_] | None:
     determined = None
     for index, term in enumerate(fitted.terms):
         if isinstance(term.effect, Contact):
-            made_of = ("open", term.key, delays(fitted.rows, fitted.hypothesis), fitted.beside.motion)
-            moved = fitted.rows.memory.get(made_of, partial(term.effect.open_torque, fitted, term.shape))
+            torque, lags = term.effect.open_torque, delays(fitted.rows, fitted.hypothesis)
+            made_of = (torque, term.shape, lags, fitted.beside.motion)
+            moved = fitted.rows.memory.get(made_of, partial(torque, fitted, term.shape))
             sure = moved * abs(fitted.strengths(index)[0]) < OPEN_SHARE * fitted.floor
             determined = sure if determined is None else determined & sure
     return determined

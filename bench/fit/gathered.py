@@ -96,12 +96,11 @@ def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Ga
     parts = iter([trace] if isinstance(trace, Trace) else trace)
     gated = passed(next(parts), rig)
     first = gated.trace
-    chosen = choose(first, rig, cutoff)
-    found = chosen.tried.solution
+    found, chosen = choose(first, rig, cutoff)
 
     def gathered(part: Trace) -> tuple[NormalEquations, int, tuple[Check, ...]]:
         if part is first:
-            return chosen.tried.equations, len(part), gated.checks
+            return found.whole, len(part), gated.checks
         sound = gate(part, rig, PARTS)
         rows = Rows.of(sound.trace, rig, conditioning=found.rows.conditioning, begins=float(first.time[0]))
         return equations_of(rows, lay_out(rows, found.hypothesis)), len(sound.trace), sound.checks

@@ -42,7 +42,7 @@ def mains(rows: Rows, residual: Array, known: tuple[float, ...] = ()) -> tuple[f
     width, duration, recordings = rows.conditioning.filter.width, rows.scope.duration, _by_recording(rows, residual)
     found = list(known)
     for line in LINES:
-        if any(abs(line - other) < 1.0 for other in found) or np.exp(-((2.0 * np.pi * line * width) ** 2)) < PASSED:
+        if any(abs(line - other) < 1.0 for other in found) or not passes(line, width):
             continue
         offsets, power = _around(recordings, line)
         step = 0.5 / duration
@@ -53,6 +53,11 @@ def mains(rows: Rows, residual: Array, known: tuple[float, ...] = ()) -> tuple[f
         if near[best] and power[best] > STANDS_OUT * np.median(power[clear]):
             found.append(float(line + offsets[best]))
     return tuple(found)
+
+
+def passes(line: float, width: float) -> bool:
+    """Whether a filter of a width - s - lets a line - Hz - be seen."""
+    return bool(np.exp(-((2.0 * np.pi * line * width) ** 2)) >= PASSED)
 
 
 def _by_recording(rows: Rows, residual: Array) -> list[_Turned]:

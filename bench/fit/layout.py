@@ -1,4 +1,17 @@
-"""Columns of a hypothesis: the recording as it sees it, laid out for least squares."""
+"""Columns of a hypothesis: the recording as it sees it, laid out for least squares.
+
+Among them is the last digit of a current that is reported in coarse steps. A current that is rounded errs by up to half
+a step, evenly; one whose fraction is cut off stands half a step nearer to zero on average, which a balance of torque
+takes for friction or saturation. So half a step at most, in the direction of the torque, is a nuisance of the recording
+wherever a step could be seen. What is left is noise, white where noise of the sensor moves the signal over the steps;
+where it does not, the error follows the signal's slow way through them and passes the filter: it is then read off the
+modelled torque, rounded in the same steps.
+
+    e = q*round(M/q) - M, of which noise of a deviation s leaves exp(-2*(pi*s/q)**2)
+
+q - step; M - modelled torque - N*m (N).
+Source: B. Widrow, I. Kollar, Quantization Noise, 2008 (characteristic function of a dithered quantiser).
+"""
 
 from __future__ import annotations
 
@@ -8,14 +21,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.effects.acting import FollowsLoad
-from bench.effects.effect import Columns, Coupling, Distortion, EffortLag, Load, MotionLag
+from bench.effects.effect import Columns, Coupling, Distortion, EffortLag, MotionLag
 from bench.effects.signals import Signals
-from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.hypothesis import Hypothesis
 from bench.fit.interplay import loads_of, with_friction, with_load
-from bench.fit.last_digit import cut_off
+from bench.fit.normal_equations import Name
 from bench.fit.rows import Rows, known_of
 from bench.trace.filter import Column
 
@@ -26,6 +39,8 @@ BASE = (INERTIA, VISCOUS, COULOMB, MISALIGNMENT)
 HUM, DIGIT = "hum", "last digit"
 #: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
 FREQUENCIES, REACH = 400, 4.0
+#: Share of the filtered white noise below which half a step is not seen.
+UNSEEN = 0.1
 
 
 @dataclass(frozen=True)
@@ -51,6 +66,13 @@ class Layout:
     def of_effects(self) -> NDArray[np.bool_]:
         """Which columns are those of an effect (p,)."""
         return np.array([isinstance(owner, int) for owner in self.owners])
+
+
+def plain(rows: Rows) -> Hypothesis:
+    """The hypothesis without an effect: with the effort's last digit where half a step of it could be seen."""
+    conditioning = rows.conditioning
+    noise = conditioning.effort_noise * conditioning.filter.noise_gain(0)
+    return Hypothesis(step=conditioning.effort_step if 0.5 * conditioning.effort_step > UNSEEN * noise else 0.0)
 
 
 def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:
@@ -82,105 +104,86 @@ def effort_lag(hypothesis: Hypothesis) -> float:
 
 def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
     """Columns of a hypothesis."""
-    seen, (moving, resting) = seen_by(rows, hypothesis), delays(rows, hypothesis)
-    made_of, late = _made_of(rows, hypothesis), effort_lag(hypothesis)
-    order = 1 if rows.conditioning.source == "position" else 0
-
-    def motion(signals: Signals) -> list[Column]:
-        values = getattr(signals, rows.conditioning.source)
-        return [[(values, order + 1)], [(values, order)]]
-
-    parts = [
-        rows.memory.get(("motion", *made_of), lambda: seen.table(motion, moving, of_signals=True)),
-        rows.memory.get(("sign", *made_of), lambda: seen.table(lambda s: [[(s.sign, 0)]], resting, of_signals=True)),
-        -rows.memory.get(
-            ("rate", late, *made_of),
-            lambda: seen.table(lambda s: [[(s.effort, 1)]], resting + late, of_signals=True),
-        ),
-    ]
-    owners: list[str | int] = [*BASE]
-    bounds = {owners.index(MISALIGNMENT): (-rows.scope.latched, rows.scope.latched)}
+    seen, late = seen_by(rows, hypothesis), effort_lag(hypothesis)
+    moving, resting = delays(rows, hypothesis)
+    lags = moving, moving, resting, resting + late
+    parts = [rows.memory.get((_axis, lags, seen.made_by), lambda: _axis(seen, lags))]
+    owners: list[Name] = [*BASE]
+    bounds = {BASE.index(MISALIGNMENT): (-rows.scope.latched, rows.scope.latched)}
     if hypothesis.step:
-        parts.append(rows.memory.get(("digit", resting, *made_of), lambda: seen.table(cut_off, resting)))
+        parts.append(seen.kept(_cut_off, _cut_off, resting))
         bounds[len(owners)] = (0.0, 0.5 * hypothesis.step)
         owners.append(DIGIT)
     if hypothesis.hum:
-        made = ("hum", hypothesis.hum, resting)
-        parts.append(rows.memory.get(made, lambda: seen.table(lambda s: _hum(s, hypothesis.hum, rows.starts), resting)))
-        owners += [HUM] * 2 * len(hypothesis.hum) * len(rows.starts)
-    for index in range(len(hypothesis.terms)):
-        table = term_columns(rows, seen, hypothesis, index)
-        parts.append(table)
-        effect = hypothesis.terms[index].effect
-        if isinstance(effect, Columns):
-            bounds |= {len(owners) + place: most for place, most in effect.bounded.items()}
-        owners += [index] * table.shape[1]
-    columns = np.concatenate(parts, axis=1)
+        lines, starts = hypothesis.hum, rows.starts
+        parts.append(seen.kept((_of_hum, lines), lambda s: _of_hum(s, lines, starts), resting))
+        owners += [HUM] * parts[-1].shape[1]
+    for index, term in enumerate(hypothesis.terms):
+        parts.append(_of_term(seen, hypothesis, index, moving if isinstance(term.effect, Coupling) else resting))
+        if isinstance(term.effect, Columns):
+            bounds |= {len(owners) + place: most for place, most in term.effect.bounded.items()}
+        owners += [index] * parts[-1].shape[1]
+    columns = np.concatenate(parts, axis=1) if len(parts) > 1 else parts[0]
     held_by = np.array(owners, dtype=object)
-    effort = seen.effort
-    if late:
-        effort = rows.memory.get(
-            ("effort", late, *made_of), lambda: seen.table(lambda s: [[(s.effort, 0)]], late)[:, 0]
-        )
-    if moving or late:
-        effort = effort - rows.memory.get(("known", late, *made_of), lambda: _known(seen, moving, late))
+    effort = seen.kept(_of_effort, _of_effort, late, of_signals=True)[:, 0] if late else seen.effort
+    if (moving or late) and seen.stretches[0].signals.known:
+        # as the motion tells it, whose lag is undone; all of it of an effort that was made anew
+        known = seen.kept(known_of, known_of, moving)[:, 0]
+        effort = effort - (known if late else known - seen.kept(known_of, known_of)[:, 0])
     return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds)
 
 
-def _known(seen: Rows, moving: float, late: float) -> Array:
-    """What more is known to act (m,) - N*m (N): as the motion tells it, whose lag is undone; all of it of an effort
-    that was made anew.
-    """
-    if not seen.stretches[0].signals.known:
-        return np.zeros(seen.effort.size)
-    known = seen.table(known_of, moving)[:, 0]
-    return known if late else known - seen.table(known_of)[:, 0]
-
-
-def term_columns(rows: Rows, seen: Rows, hypothesis: Hypothesis, index: int) -> Array:
-    """Columns (m, k) of one term; none of one that only changes how the recording is seen."""
-    term = hypothesis.terms[index]
-    friction = with_friction(seen, hypothesis, index)
-    if isinstance(term.effect, FollowsLoad):
-        friction = with_load(friction, ((other, other.pull) for other in hypothesis.terms))
-    couples = isinstance(term.effect, Coupling)
-    loads = loads_of(hypothesis) if couples else ()
-    lag = delays(rows, hypothesis)[0 if couples else 1]
-    if loads or friction is not seen:
-        return filtered(friction, term, loads, lag)
-    return rows.memory.get((term.key, *_made_of(rows, hypothesis)), lambda: filtered(seen, term, loads, lag))
-
-
-def filtered(seen: Rows, term: Term, loads: tuple[Load, ...], lag: float) -> Array:
-    """Columns (m, k) of a term in a recording as it is seen.
+def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float) -> Array:
+    """Columns (m, k) of one term; none of one that only changes how the recording is seen.
 
     What follows the motion behind a coupling is integrated at length, and only once where nothing but a lag differs.
     """
-    effect = term.effect
+    term, effect = hypothesis.terms[index], hypothesis.terms[index].effect
     if not isinstance(effect, Columns):
         return np.empty((seen.effort.size, 0))
+    seen = with_friction(seen, hypothesis, index)
+    if isinstance(effect, FollowsLoad):
+        seen = with_load(seen, ((other, other.pull) for other in hypothesis.terms))
     if not isinstance(effect, Coupling):
-        return seen.table(lambda s: effect.columns(s, term.shape), lag)
+        return seen.kept((effect.columns, term.shape), lambda s: effect.columns(s, term.shape), lag)
+    loads = loads_of(hypothesis)
     if loads:
         return seen.table(lambda s: effect.columns_of(s, [term.shape], loads), lag)
 
-    def kept(signals: Signals) -> Sequence[Column]:
-        made_of = ("raw", term.key, seen.motion, signals.began, float(signals.time[0]))
-        return seen.memory.columns(made_of, lambda: effect.columns_of(signals, [term.shape]))
+    def integrated(signals: Signals) -> Sequence[Column]:
+        made_of = (effect.columns_of, term.shape, seen.motion, signals.began, float(signals.time[0]))
+        return seen.memory.get(made_of, lambda: effect.columns_of(signals, [term.shape]))
 
-    return seen.table(kept, lag)
+    return seen.kept((effect.columns_of, term.shape), integrated, lag)
 
 
-def _hum(signals: Signals, lines: tuple[float, ...], starts: tuple[float, ...]) -> list[Column]:
+def _axis(seen: Rows, lags: tuple[float, ...]) -> Array:
+    """Columns (m, 4) of BASE."""
+    order = 1 if seen.conditioning.source == "position" else 0
+
+    def columns(signals: Signals) -> list[Column]:
+        values = getattr(signals, seen.conditioning.source)
+        return [[(values, order + 1)], [(values, order)], [(signals.sign, 0)], [(signals.effort, 1)]]
+
+    table = seen.table(columns, lags, of_signals=True)
+    table[:, BASE.index(MISALIGNMENT)] *= -1.0
+    return table
+
+
+def _of_effort(signals: Signals) -> list[Column]:
+    return [[(signals.effort, 0)]]
+
+
+def _cut_off(signals: Signals) -> list[Column]:
+    """What a fraction that is cut off takes from the effort, per unit of half a step."""
+    return [[(-np.sign(signals.effort), 0)]]
+
+
+def _of_hum(signals: Signals, lines: tuple[float, ...], starts: tuple[float, ...]) -> list[Column]:
     """Sine and cosine of every line in every recording: no two of them start at the same phase of the mains."""
     angles = [2.0 * np.pi * line * signals.time for line in lines]
     waves = [wave(angle) for angle in angles for wave in (np.sin, np.cos)]
     return [[(values if start == signals.began else np.zeros_like(values), 0)] for start in starts for values in waves]
-
-
-def _made_of(rows: Rows, hypothesis: Hypothesis) -> tuple[object, ...]:
-    seen = tuple(sorted(term.key for term in hypothesis.terms if isinstance(term.effect, Distortion)))
-    return *delays(rows, hypothesis), seen
 
 
 def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], moving: float) -> Array:
@@ -208,3 +211,39 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], movi
     step = omega[1] - omega[0]
     noise[np.ix_(places, places)] = step * ((spectra * weight) @ spectra.conj().T).real
     return noise
+
+
+def cut_beforehand(step: float) -> tuple[float, float]:
+    """What is known of what is cut off before it is measured, no more than a half of a step - N*m (N).
+
+    Args:
+        step: of the digit - N*m (N).
+
+    Returns:
+        The middle of that range, and the variance of a value that lies anywhere in it.
+    """
+    return 0.25 * step, (0.5 * step) ** 2 / 12.0
+
+
+def rounding(rows: Rows, step: float, modelled: Array, cut: float) -> float:
+    """RMS of what the last digit of an effort leaves in a residual, through the filter - N*m (N).
+
+    Args:
+        rows: the recording.
+        step: of the digit - N*m (N); 0 where it does not matter.
+        modelled: reported effort at the used rows - N*m (N) - (m,).
+        cut: what was found to be cut off - N*m (N): from a quarter of a step on it was, below it was rounded.
+    """
+    if not step:
+        return 0.0
+    conditioning = rows.conditioning
+    free = max(conditioning.effort_noise**2 - step**2 / 12.0, 0.0)
+    followed = np.exp(-2.0 * np.pi**2 * free / step**2)
+    whole = np.trunc if cut > 0.25 * step else np.round
+    errors = []
+    for part in rows.stretches:
+        torque = np.interp(part.signals.time, rows.time, modelled + cut * np.sign(modelled))
+        reported = step * whole(torque / step)
+        (error,) = conditioning.filter(reported + cut * np.sign(reported) - torque, 0)
+        errors.append(error[part.used])
+    return float(followed) * rms(np.concatenate(errors))

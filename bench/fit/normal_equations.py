@@ -92,11 +92,16 @@ class NormalEquations:
         theta, inverse, _ = bounded(self.total, self.moment.sum(axis=0), self.count * self.noise, limits)
         return theta, inverse
 
-    def independent_share(self, name: Name, others: Iterable[Name]) -> float:
-        """Share of a column's power that is neither noise nor explained by others; negative if it is noise alone."""
-        places = [self.place(one) for one in (name, *others)]
-        matrix = self._scaled[places][:, places]
-        return float(matrix[0, 0] - matrix[0, 1:] @ symmetric_inverse(matrix[1:, 1:], DEPENDENT) @ matrix[1:, 0])
+    def independent_shares(self, names: Sequence[Name]) -> Array:
+        """Share of the power of each of some columns that is neither noise nor explained by the others (k,).
+
+        Negative where it is noise alone.
+        """
+        places, at = [self.place(name) for name in names], np.arange(len(names))
+        others = np.argsort(np.eye(len(names), dtype=bool), axis=1, kind="stable")[:, :-1]
+        matrix = self._scaled[np.ix_(places, places)]
+        beside, between = matrix[others, at[:, None]], matrix[others[:, :, None], others[:, None, :]]
+        return np.diag(matrix) - np.einsum("ki,kij,kj->k", beside, symmetric_inverse(between, DEPENDENT), beside)
 
     def knowing(self, name: Name, value: float, weight: float) -> NormalEquations:
         """The same equations and, as if it had been measured, what is known of one coefficient beforehand.

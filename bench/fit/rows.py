@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypedDict
+from typing import Any, TypedDict, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,6 @@ from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.effects.signals import Scope, Signals
 from bench.errors import UndeterminedError
-from bench.fit.memory import Memory
 from bench.rig.rig import Rig
 from bench.trace.conditioning import Conditioning, condition, known_sign, raw_speed
 from bench.trace.filter import Column, GaussianFilter, Spectra
@@ -29,6 +29,39 @@ SIGN_WIDTHS = 6.0
 SIGN_REACH = 3.1
 #: Share of the motion in the weaker direction below which friction and a constant torque are one number.
 ONE_WAY = 0.02
+
+
+#: Bytes of columns kept: on a recording of 8 s at 1 kHz some hundred, of 600 s what one hypothesis needs. With 96 MB
+#: less than that was kept there, and 600 s took 2.8 times as long as 300 s; with 160 MB 2.0 times.
+KEPT = 160 * 2**20
+#: Columns of raw signals; a lag of all of them, or of each - s.
+ColumnsOf = Callable[[Signals], Sequence[Column]]
+Lag = float | tuple[float, ...]
+Made = TypeVar("Made", Array, Sequence[Column])
+
+
+class Memory:
+    """Columns that were made last, up to KEPT bytes: fits of one search differ in one effect and share all others."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[Hashable, tuple[Any, int]] = OrderedDict()
+        self._bytes = 0
+
+    def get(self, made_of: Hashable, make: Callable[[], Made]) -> Made:
+        """Columns, filtered or raw, by what they are made of - a function and its values -; not to be written to."""
+        if made_of in self._kept:
+            self._kept.move_to_end(made_of)
+            return self._kept[made_of][0]
+        made = make()
+        if isinstance(made, np.ndarray):
+            made.flags.writeable, size = False, made.nbytes
+        else:
+            size = sum(values.nbytes for column in made for values, _ in column)
+        self._kept[made_of] = made, size
+        self._bytes += size
+        while self._bytes > KEPT and len(self._kept) > 1:
+            self._bytes -= self._kept.popitem(last=False)[1][1]
+        return made
 
 
 @dataclass(frozen=True)
@@ -75,7 +108,7 @@ class Rows:
         origin: of the recording.
         scope: what it is able to show.
         effort: filtered motor torque at the used rows, less what is known to act - N*m (N) - (m,).
-        motion: what tells its motion from that of the recording as reported; () as reported.
+        made_by, motion: what tells its signals, and its motion alone, from those reported; () as reported.
         memory: columns made before.
         still: whether what follows the motion behind a coupling is kept while the motion is corrected a little.
     """
@@ -85,6 +118,7 @@ class Rows:
     origin: str
     scope: Scope
     effort: Array
+    made_by: Hashable = ()
     motion: Hashable = ()
     memory: Memory = field(default_factory=Memory, compare=False)
     still: bool = False
@@ -169,8 +203,9 @@ class Rows:
         if any(new.effort is not old.effort for new, old in pairs):
             effort = _explained(stretches, self.conditioning.filter)
         memory = self.memory if made_by is not None else Memory()
-        motion = (made_by if made_by is not None else object()) if moved and not self.still else self.motion
-        return replace(self, stretches=stretches, effort=effort, motion=motion, memory=memory)
+        made_by = object() if made_by is None else made_by
+        motion = made_by if moved and not self.still else self.motion
+        return replace(self, stretches=stretches, effort=effort, made_by=made_by, motion=motion, memory=memory)
 
     def selected(self, kept: Callable[[Array], NDArray[np.bool_]]) -> Rows:
         """Those of the rows that are kept, by their times (r,) - s."""
@@ -210,17 +245,20 @@ class Rows:
         smooth = self.conditioning.filter
         return values[smooth.margin : -smooth.margin : smooth.stride][: part.used.size]
 
-    def table(
-        self, columns: Callable[[Signals], Sequence[Column]], lag: float = 0.0, *, of_signals: bool = False
-    ) -> Array:
+    def table(self, columns: ColumnsOf, lag: Lag = 0.0, *, of_signals: bool = False) -> Array:
         """Filtered columns at the used rows (m, k).
 
         Args:
             columns: of the raw signals.
-            lag: time constant of a first-order lag to undo, 1 + j*omega*lag - s.
+            lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
             of_signals: whether they are sums of signals themselves, whose transforms are kept.
         """
         return _table(self.stretches, self.conditioning.filter, columns, lag, of_signals)
+
+    def kept(self, made_of: Hashable, columns: ColumnsOf, lag: Lag = 0.0, *, of_signals: bool = False) -> Array:
+        """The same, made once of what tells these columns from others."""
+        key = made_of, lag, self.made_by
+        return self.memory.get(key, lambda: self.table(columns, lag, of_signals=of_signals))
 
 
 def clear_motion(conditioning: Conditioning, kind: AxisKind) -> str:
@@ -262,8 +300,8 @@ def _explained(stretches: Sequence[Stretch], smooth: GaussianFilter) -> Array:
 def _table(
     stretches: Sequence[Stretch],
     smooth: GaussianFilter,
-    columns: Callable[[Signals], Sequence[Column]],
-    lag: float = 0.0,
+    columns: ColumnsOf,
+    lag: Lag = 0.0,
     of_signals: bool = False,
 ) -> Array:
     parts = [

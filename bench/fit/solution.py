@@ -12,8 +12,7 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
 from bench.fit.covariance import NOISE_ALONE, estimated, misfit
 from bench.fit.determined import INDEPENDENT_SHARE
 from bench.fit.hypothesis import Hypothesis
-from bench.fit.last_digit import cut_beforehand, rounding
-from bench.fit.layout import DIGIT, Layout
+from bench.fit.layout import DIGIT, Layout, cut_beforehand, rounding
 from bench.fit.noise import Floor, noise_power
 from bench.fit.normal_equations import Name, NormalEquations, normal_equations
 from bench.fit.rows import Rows
@@ -36,7 +35,7 @@ class Solution:
     Attributes:
         rows: of the recording, or of its first part, which determines filter and noise floor.
         hypothesis, laid: of these rows, and its columns.
-        equations: of the fitted columns over the whole recording.
+        whole, equations: of every column and a constant over the whole recording, and of the fitted columns.
         theta: (p,).
         covariance: (p, p).
         reach: of an interval of 95 % in standard errors.
@@ -47,6 +46,7 @@ class Solution:
     rows: Rows
     hypothesis: Hypothesis
     laid: Layout
+    whole: NormalEquations
     equations: NormalEquations
     theta: Array
     covariance: Array
@@ -127,14 +127,16 @@ def solve(rows: Rows, hypothesis: Hypothesis, laid: Layout, equations: NormalEqu
     covariance = covariance + unknown
     at, tick = measured.place(MISALIGNMENT), rows.scope.latched
     shift, error = float(theta[at]), float(np.sqrt(max(covariance[at, at], 0.0)))
-    apart = equations.independent_share(MISALIGNMENT, (INERTIA, VISCOUS, COULOMB)) >= INDEPENDENT_SHARE
+    apart = abs(shift) > min(tick, rows.scope.sample_period) and bool(
+        equations.independent_shares((MISALIGNMENT, INERTIA, VISCOUS, COULOMB))[0] >= INDEPENDENT_SHARE
+    )
     held = abs(shift) > tick and not (apart and abs(shift) > tick + SURE * error)
     if held:
         theta, _ = informed.solve({MISALIGNMENT: (-tick, tick)})
         covariance, reach = estimated(measured.scores(theta), inverse, least)
         covariance = covariance + unknown
     told = (shift, error) if apart else (0.0, error)
-    return Solution(rows, hypothesis, laid, measured, theta, covariance, reach, told, held)
+    return Solution(rows, hypothesis, laid, equations, measured, theta, covariance, reach, told, held)
 
 
 def with_digit(equations: NormalEquations, step: float) -> tuple[NormalEquations, Array]:

@@ -71,7 +71,7 @@ def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
         if isinstance(effect, Columns) and not effect.shapes
         if effect.sought(fitted.scope) and fitted.hypothesis.admits(effect)
     ]
-    gains = {effect: fitted.tried(effect, [()])[0].gain for effect in linear}
+    gains = dict(zip(linear, fitted.worth(linear), strict=True))
     least = SURE**2 * fitted.rows.correlation * fitted.floor**2
     for effect in sorted((effect for effect in linear if gains[effect] > least), key=lambda effect: -gains[effect]):
         beside = fit(fitted.rows, fitted.hypothesis.plus(Term(effect)))

@@ -82,7 +82,9 @@ class GaussianFilter:
         """
         return self.columns([[(values, order)] for order in orders], lag)
 
-    def columns(self, columns: Sequence[Column], lag: float = 0.0, spectra: Spectra | None = None) -> Array:
+    def columns(
+        self, columns: Sequence[Column], lag: float | Sequence[float] = 0.0, spectra: Spectra | None = None
+    ) -> Array:
         """Filtered sums of derivatives of several signals; a signal that occurs again is transformed once.
 
         The line between the ends of a signal is filtered by itself, in closed form: a transform takes the stretch for
@@ -93,36 +95,38 @@ class GaussianFilter:
 
         Args:
             columns: each a sum of terms, samples (n,) and the order of the derivative to be taken of them.
-            lag: time constant of a first-order lag to undo, 1 + j*omega*lag - s.
+            lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
             spectra: transforms of signals that other filters want, too.
 
         Returns:
             (columns, m), at the samples of `__call__`.
         """
-        distinct = {id(values): values for column in columns for values, _ in column}
-        place = {key: row for row, key in enumerate(distinct)}
-        signals = list(distinct.values())
+        signals = list({id(values): values for column in columns for values, _ in column}.values())
         count = signals[0].size
         size = self.stride * fast_length(math.ceil(count / self.stride))
         kept = size // self.stride // 2 + 1
         omega = 2.0 * math.pi / (size * self.sample_period) * np.arange(kept)
         gain = np.exp(-0.5 * (omega * self.width) ** 2) / self.stride
-        gain = gain * (1.0 + 1j * omega * lag) if lag else gain
-        transformed = transformed_of(signals, size) if spectra is None else spectra.of(signals, size)
-        slope = (np.array([values[-1] for values in signals]) - [values[0] for values in signals]) / (count - 1)
+        gains = {order: (1j * omega) ** order * gain if order else gain for column in columns for _, order in column}
+        spectra = Spectra() if spectra is None else spectra
         first, last = self.margin // self.stride, -(-(count - self.margin) // self.stride)
         at = self.stride * np.arange(first, last)
-        sums = np.zeros((len(columns), kept), dtype=complex)
-        lines = np.zeros((len(columns), at.size))
-        filtered = [spectrum[:kept] * gain for spectrum in transformed]
-        for row, column in enumerate(columns):
+        found = np.empty((len(columns), at.size))
+        for row, column, late in zip(found, columns, np.broadcast_to(lag, len(columns)).tolist(), strict=True):
+            total = np.zeros(kept, dtype=complex)
+            constant, slope = 0.0, 0.0
             for values, order in column:
-                k = place[id(values)]
-                sums[row] += filtered[k] * (1j * omega) ** order if order else filtered[k]
+                total += spectra.of(values, size)[:kept] * gains[order]
                 if order < 2:
-                    rate = float(slope[k]) / self.sample_period
-                    lines[row] += rate if order else values[0] + slope[k] * at + lag * rate
-        return lines + np.asarray(scipy.fft.irfft(sums, size // self.stride))[:, first:last]
+                    rise = float(values[-1] - values[0]) / (count - 1)
+                    rate = rise / self.sample_period
+                    constant += rate if order else float(values[0]) + late * rate
+                    slope += 0.0 if order else rise
+            if late:
+                total *= 1.0 + 1j * omega * late
+            row[:] = np.asarray(scipy.fft.irfft(total, size // self.stride))[first:last]
+            row += constant + slope * at
+        return found
 
 
 class Spectra:
@@ -131,23 +135,15 @@ class Spectra:
     def __init__(self) -> None:
         self._known: dict[tuple[int, int], tuple[Array, NDArray[np.complex128]]] = {}
 
-    def of(self, signals: Sequence[Array], size: int) -> list[NDArray[np.complex128]]:
-        """Transforms of signals (n,) as of `transformed_of`, those that are new made and kept with their signals."""
-        new = [values for values in signals if (id(values), size) not in self._known]
-        if new:
-            for values, spectrum in zip(new, transformed_of(new, size), strict=True):
-                self._known[id(values), size] = values, spectrum
-        return [self._known[id(values), size][1] for values in signals]
+    def of(self, values: Array, size: int) -> NDArray[np.complex128]:
+        """Transform (size//2 + 1,) of a signal (n,) less the line between its ends, followed by zeros up to a size.
 
-
-def transformed_of(signals: Sequence[Array], size: int) -> NDArray[np.complex128]:
-    """Transforms (k, size//2 + 1) of signals (n,) less the line between their ends, followed by zeros up to a size."""
-    table, count = np.zeros((len(signals), size)), signals[0].size
-    at = np.arange(count)
-    for row, values in zip(table, signals, strict=True):
-        slope = (values[-1] - values[0]) / (count - 1)
-        np.subtract(values, values[0] + slope * at, out=row[:count])
-    return np.asarray(scipy.fft.rfft(table, overwrite_x=True))
+        It is kept with its signal. One at a time: tables of several are so large that each is paged in anew.
+        """
+        if (id(values), size) not in self._known:
+            straight = np.linspace(values[0], values[-1], values.size)
+            self._known[id(values), size] = values, np.asarray(scipy.fft.rfft(values - straight, size))
+        return self._known[id(values), size][1]
 
 
 def fast_length(length: int) -> int:

@@ -31,12 +31,12 @@ def alike(first, second, share):
 
 @pytest.mark.parametrize("share", [0.5, 0.02, 0.008])
 def test_the_share_is_what_the_others_do_not_explain(share):
-    assert equations(alike(0, 1, share)).independent_share(INERTIA, (VISCOUS,)) == pytest.approx(share)
+    assert equations(alike(0, 1, share)).independent_shares((INERTIA, VISCOUS))[0] == pytest.approx(share)
 
 
 def test_noise_of_a_column_is_no_share_of_it():
     noise = np.diag([0.75, 0.0, 0.0, 0.0, 0.0])
-    assert equations(np.eye(PLACES), noise=noise).independent_share(INERTIA, (VISCOUS,)) == pytest.approx(0.25)
+    assert equations(np.eye(PLACES), noise=noise).independent_shares((INERTIA, VISCOUS))[0] == pytest.approx(0.25)
 
 
 @pytest.mark.parametrize(("share", "sure"), [(0.0105, True), (0.0095, False)])

@@ -8,8 +8,7 @@ import pytest
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.identify import identify
-from bench.fit.last_digit import cut_beforehand, plain, rounding
-from bench.fit.layout import DIGIT
+from bench.fit.layout import DIGIT, cut_beforehand, plain, rounding
 from bench.fit.rows import Rows
 from bench.trace.noise import resolution
 from bench.trace.trace import Trace

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bench.fit.last_digit import plain
-from bench.fit.layout import lay_out
+from bench.fit.layout import lay_out, plain
 from bench.fit.normal_equations import BLOCKS, normal_equations
 from bench.fit.rows import Rows
 from tests.fit.motions import RIG, recording

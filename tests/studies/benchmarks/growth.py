@@ -19,8 +19,7 @@ from bench.fit.estimate import Estimate
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.identify import identify
 from bench.fit.layout import Layout, lay_out
-from bench.fit.memory import Memory
-from bench.fit.rows import Rows
+from bench.fit.rows import Memory, Rows
 from bench.plant.run import run, run_ticked
 from bench.trace.read import read
 from bench.trace.stream import stream
