@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from bench.errors import InputError
-from bench.trace.readers.catalogue import GROUP, readers
+from bench.trace.read import GROUP, readers
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -86,7 +86,7 @@ def test_a_reader_is_among_the_formats_that_a_refusal_lists(extras):
 
 def test_what_is_no_reader_is_refused(monkeypatch):
     entry = EntryPoint("sum", "builtins:sum", GROUP)
-    monkeypatch.setattr("bench.trace.readers.catalogue.entry_points", lambda group: [entry])
+    monkeypatch.setattr("bench.trace.read.entry_points", lambda group: [entry])
     with pytest.raises(InputError, match=r"servobench.readers: builtins:sum: found .*; allowed: a reader of the bench"):
         readers.__wrapped__()
 

@@ -19,7 +19,7 @@ from bench.bounds import read_bounded
 from bench.course.text import text_of
 from bench.errors import InputError
 from bench.files import read_bytes
-from bench.trace.readers.mat import load
+from bench.trace.readers.named_arrays import load_mat
 from bench.units import convert, dimensionality
 from bench.units.text import spelled_for_pint
 
@@ -184,7 +184,7 @@ def flights_of_mat(content: bytes, where: str) -> FoundFlights:
     Raises:
         InputError: a damaged file, or none of these in it.
     """
-    variables = load(content, where)
+    variables = load_mat(content, where)
     arrays = {name: value for name, value in variables.items() if not name.startswith("__")}
     pairs = _pairs({name.lower(): np.asarray(value) for name, value in arrays.items()})
     points = [_complete(np.stack([y, z], axis=1)) for y, z in pairs]

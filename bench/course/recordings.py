@@ -25,8 +25,7 @@ from bench.rig.rig import Rig, load_rig
 from bench.structured import parse_json
 from bench.trace.channel import Recording
 from bench.trace.choose import choose
-from bench.trace.read import read_recording
-from bench.trace.readers.catalogue import readers
+from bench.trace.read import read_recording, readers
 from bench.trace.reading_options import reading_options
 from bench.trace.trace import Trace, assemble
 

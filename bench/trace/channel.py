@@ -86,12 +86,11 @@ def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:
     times: list[Channel] = []
     shared: list[Channel] = []
     for channel in channels:
-        assert channel.time is not None
-        own = channel.time.values
-        time = next((known for known in times if np.array_equal(known.values, own)), None)
-        if time is None:
-            times.append(time := channel.time)
-        shared.append(replace(channel, time=time))
+        if (own := channel.time) is not None:
+            time = next((known for known in times if np.array_equal(known.values, own.values)), own)
+            times += [time] if time is own else []
+            channel = replace(channel, time=time)
+        shared.append(channel)
     return tuple(shared)
 
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from bench.errors import InputError
 from bench.names import nearest
 from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.readers.columns import channel_of
+from bench.trace.readers.arrow import channel_of
 from bench.trace.signals import SI_UNITS, signal_of
 from bench.units import parse
 

@@ -1,22 +1,111 @@
-"""Read a recording of an axis from a file of any known format."""
+"""Read a recording of an axis from a file of any known format, by the bench's readers and those of other packages.
+
+Another package offers readers as entry points of the group `servobench.readers`, each an object with what `Reader`
+tells:
+
+    [project.entry-points."servobench.readers"]
+    flight_recorder = "their_package.flight_recorder:READER"
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
+from importlib.metadata import entry_points
 from pathlib import Path
+from typing import Protocol, runtime_checkable
 
+from bench.errors import InputError
 from bench.trace.channel import Recording
-from bench.trace.readers.catalogue import reader_of
+from bench.trace.readers.arrow import PARQUET
+from bench.trace.readers.bam import BAM
+from bench.trace.readers.codesys import CODESYS_CSV, CODESYS_TEXT, CODESYS_XML
+from bench.trace.readers.epos import EPOS
+from bench.trace.readers.mcap import MCAP
+from bench.trace.readers.measurement import MDF, TDMS
+from bench.trace.readers.named_arrays import HDF5, MAT, NUMPY
+from bench.trace.readers.table import TABLE
+from bench.trace.readers.twincat import TWINCAT
+from bench.trace.readers.xml import SINUMERIK
 from bench.trace.reading_options import ReadingOptions
-from bench.trace.source import open_source
+from bench.trace.source import Source, open_source
 from bench.trace.trace import Trace, assemble
+
+GROUP = "servobench.readers"
+
+
+@runtime_checkable
+class Reader(Protocol):
+    """Reads one format: whatever stands in a file, as named columns with their units, and no meaning given to any."""
+
+    @property
+    def format(self) -> str:
+        """The format in words, for messages."""
+        ...
+
+    @property
+    def endings(self) -> tuple[str, ...]:
+        """Of file names, in lower case, e.g. `(".mat",)`: they count where no content tells."""
+        ...
+
+    def recognises(self, source: Source, /) -> bool:
+        """Whether the content is of this format; looks at its beginning alone, and raises nothing."""
+        ...
+
+    def read(self, source: Source, /) -> Recording:
+        """Channels of the content.
+
+        Raises:
+            InputError: truncated, damaged, or without samples; names file, line or column.
+        """
+        ...
+
+
+#: The surest to tell first. The plain table is asked last: many a format looks like one.
+OWN: tuple[Reader, ...] = (
+    *(PARQUET, MAT, HDF5, NUMPY, TDMS, MCAP, MDF),
+    *(CODESYS_XML, SINUMERIK, CODESYS_CSV, CODESYS_TEXT, TWINCAT, EPOS, BAM),
+)
+
+
+@cache
+def readers() -> tuple[Reader, ...]:
+    """All readers, in the order in which they are asked: the bench's, those of other packages, the plain table.
+
+    Raises:
+        InputError: what another package offers is no reader.
+    """
+    offered = []
+    for entry in entry_points(group=GROUP):
+        reader = entry.load()
+        if not isinstance(reader, Reader):
+            raise InputError(f"{GROUP}: {entry.value}", f"found {reader!r}", "allowed: a reader of the bench")
+        offered.append(reader)
+    return (*OWN, *offered, TABLE)
+
+
+def reader_of(source: Source) -> Reader:
+    """The reader whose format the content shows; failing that, the one that the file's ending names.
+
+    Raises:
+        InputError: neither tells.
+    """
+    for reader in readers():
+        if reader.recognises(source):
+            return reader
+    marked_up = source.head.lstrip().startswith(("<", "{"))
+    for reader in readers() if "\0" not in source.head else ():
+        if source.ending in reader.endings and not (reader is TABLE and marked_up):
+            return reader
+    formats = ", ".join(reader.format for reader in readers())
+    raise InputError(source.path, "not a trace in any format the bench reads", f"allowed: {formats}")
 
 
 def read(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = None) -> Trace:
     """Trace of a file: signals in SI units on one regular time base.
 
     Args:
-        path: file of any format in `bench.trace.readers`, told by its content first and its ending second.
+        path: file of any format, told by its content first and its ending second.
         columns: signal -> column name with unit, as in a rig's `[trace.columns]`, see `assemble`; or all that
             a rig's `[trace]` tells, as `rig.trace`.
 
@@ -27,10 +116,6 @@ def read(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = 
 
 
 def read_recording(path: str | Path) -> Recording:
-    """Channels of a file as they stand in it, before any mapping to signals.
-
-    Raises:
-        InputError: no such file, an unknown format, or a damaged one.
-    """
+    """Channels of a file as they stand in it, before any mapping to signals; raises as `open_source` and `Reader`."""
     source = open_source(path)
     return reader_of(source).read(source)

@@ -1,4 +1,4 @@
-"""A file to be read as a trace: its content, out of gzip if need be, and its text whatever Unicode it is in."""
+"""A file to be read as a trace: its content, out of gzip if need be, its text whatever Unicode it is in, its format."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import codecs
 import gzip
 import io
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,6 +15,7 @@ from bench.bounds import read_bounded
 from bench.errors import InputError
 from bench.files import read_bytes
 from bench.names import readable
+from bench.trace.channel import Recording
 
 _GZIP = b"\x1f\x8b"
 #: Byte order marks, and how XML without one begins in UTF-16 (XML 1.0, appendix F).
@@ -51,6 +53,21 @@ class Source:
     def text(self) -> str:
         """The whole content as text."""
         return decode(self.content)
+
+
+@dataclass(frozen=True)
+class FileFormat:
+    """A `bench.trace.read.Reader` made of functions."""
+
+    format: str
+    endings: tuple[str, ...]
+    recognises: Callable[[Source], bool]
+    read: Callable[[Source], Recording]
+
+
+def begins(*marks: bytes) -> Callable[[Source], bool]:
+    """Whether a file begins with one of these bytes, as a function of it."""
+    return lambda source: source.content.startswith(marks)
 
 
 def decode(content: bytes) -> str:
@@ -106,7 +123,6 @@ def _as_utf8(content: bytes, path: Path) -> bytes:
             try:
                 return content.decode(encoding).removeprefix("\ufeff").encode()
             except UnicodeDecodeError as error:
-                raise InputError(
-                    path, f"the {encoding.upper()} text is truncated or damaged ({error.reason})", "allowed: whole text"
-                ) from error
+                found = f"the {encoding.upper()} text is truncated or damaged ({error.reason})"
+                raise InputError(path, found, "allowed: whole text") from error
     return content

@@ -18,9 +18,8 @@ from bench.trace.channel import Recording
 from bench.trace.choose import choose
 from bench.trace.in_si import in_si
 from bench.trace.read import read
-from bench.trace.readers.columns import channel_of, is_moment
+from bench.trace.readers.arrow import DAMAGE, MAGIC, PARQUET, WIDTH, channel_of, is_moment
 from bench.trace.readers.containers import reading
-from bench.trace.readers.parquet import DAMAGE, MAGIC, WIDTH, Parquet
 from bench.trace.reading_options import ReadingOptions, reading_options
 from bench.trace.trace import Trace, on_time_base
 from bench.trace.wraps import Unwrapping
@@ -105,10 +104,10 @@ def cut(trace: Trace, chunk: int = CHUNK) -> Iterator[Trace]:
 
 def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
     keep_freed_memory()
-    with reading(path, Parquet.format, DAMAGE), pq.ParquetFile(path, memory_map=True) as file:
+    with reading(path, PARQUET.format, DAMAGE), pq.ParquetFile(path, memory_map=True) as file:
         fields = list(file.schema_arrow)
         empty = Recording(
-            tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), Parquet.format, readable(path)
+            tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), PARQUET.format, readable(path)
         )
         chosen, notes = choose(empty, how)
         field_of = {name: fields[empty.channels.index(choice.channel)] for name, choice in chosen.items()}

@@ -2,6 +2,7 @@
 
 `load` is the share of the supply that the bridge applies, as a signed 16-bit number with 885 for full; so the motor's
 voltage is load/885 * input_volts (Robotis XL330 manual, present PWM; github.com/Rhoban/bam).
+Scalars beside the entries (mass, length, kp, ...) become metadata.
 """
 
 from __future__ import annotations
@@ -15,53 +16,45 @@ from bench.errors import InputError
 from bench.names import short
 from bench.structured import parse_json
 from bench.trace.channel import Channel, Recording
-from bench.trace.source import Source
+from bench.trace.source import FileFormat, Source
 
 _FULL_LOAD = 885.0
 _LARGEST_LOAD = 65535
 _KEYS = ("timestamp", "position", "speed", "load", "input_volts", "temp", "goal_position")
 
 
-class Bam:
-    """Recordings of small servos by the BAM project, see the module."""
+def _recognises(source: Source) -> bool:
+    head = source.head.lstrip()
+    return head.startswith("{") and '"entries"' in head and '"input_volts"' in head
 
-    format = "BAM servo JSON"
-    endings = (".json",)
 
-    def recognises(self, source: Source) -> bool:
-        """Whether the head is JSON with entries that tell a servo's load."""
-        head = source.head.lstrip()
-        return head.startswith("{") and '"entries"' in head and '"input_volts"' in head
+def _read(source: Source) -> Recording:
+    content = parse_json(source.text(), source.path)
+    entries = content.get("entries") if isinstance(content, dict) else None
+    if not isinstance(entries, list) or not entries:
+        raise InputError(f"{source.path}: entries", "found none", "allowed: a list of samples")
+    raw = {key: _numbers(entries, key, source.path) for key in _KEYS}
+    if not np.abs(raw["load"]).max() <= _LARGEST_LOAD:  # nor nan
+        sample = int(np.abs(raw["load"]).argmax())
+        place = f"{source.path}: entries[{sample}].load"
+        raise InputError(place, f"found {raw['load'][sample]:g}", "allowed: a number of 16 bits")
+    load = raw["load"].astype(np.int64).astype(np.uint16).view(np.int16)
+    columns = {
+        "position": ("rad", raw["position"]),
+        "velocity": ("rad/s", raw["speed"]),
+        "voltage": ("V", load / _FULL_LOAD * raw["input_volts"]),
+        "temperature": ("degC", raw["temp"]),
+        "position_reference": ("rad", raw["goal_position"]),
+    }
+    time = Channel("time", "s", raw["timestamp"], source.path)
+    channels = tuple(Channel(name, *column, source.path, time=time) for name, column in columns.items())
+    metadata = {key: str(value) for key, value in content.items() if isinstance(value, str | int | float)}
+    off = sum(entry.get("torque_enable") is False for entry in entries)
+    notes = (f"the motor is switched off in {off} of {len(entries)} samples",) if off else ()
+    return Recording(channels, BAM.format, source.path, metadata, notes)
 
-    def read(self, source: Source) -> Recording:
-        """Recording of a BAM file; scalars beside the entries (mass, length, kp, ...) become metadata.
 
-        Raises:
-            InputError: not JSON, no entries, or an entry without one of the keys or with text in a number.
-        """
-        content = parse_json(source.text(), source.path)
-        entries = content.get("entries") if isinstance(content, dict) else None
-        if not isinstance(entries, list) or not entries:
-            raise InputError(f"{source.path}: entries", "found none", "allowed: a list of samples")
-        raw = {key: _numbers(entries, key, source.path) for key in _KEYS}
-        if not np.abs(raw["load"]).max() <= _LARGEST_LOAD:  # nor nan
-            sample = int(np.abs(raw["load"]).argmax())
-            place = f"{source.path}: entries[{sample}].load"
-            raise InputError(place, f"found {raw['load'][sample]:g}", "allowed: a number of 16 bits")
-        load = raw["load"].astype(np.int64).astype(np.uint16).view(np.int16)
-        columns = {
-            "position": ("rad", raw["position"]),
-            "velocity": ("rad/s", raw["speed"]),
-            "voltage": ("V", load / _FULL_LOAD * raw["input_volts"]),
-            "temperature": ("degC", raw["temp"]),
-            "position_reference": ("rad", raw["goal_position"]),
-        }
-        time = Channel("time", "s", raw["timestamp"], source.path)
-        channels = tuple(Channel(name, *column, source.path, time=time) for name, column in columns.items())
-        metadata = {key: str(value) for key, value in content.items() if isinstance(value, str | int | float)}
-        off = sum(entry.get("torque_enable") is False for entry in entries)
-        notes = (f"the motor is switched off in {off} of {len(entries)} samples",) if off else ()
-        return Recording(channels, self.format, source.path, metadata, notes)
+BAM = FileFormat("BAM servo JSON", (".json",), _recognises, _read)
 
 
 def _numbers(entries: list, key: str, path: str) -> Array:

@@ -1,4 +1,4 @@
-"""What readers of containers share: libraries that are extras, damage, compressed blocks, arrays under names."""
+"""What readers of containers share: libraries that are extras, damage, what libraries say, compressed blocks."""
 
 from __future__ import annotations
 
@@ -10,18 +10,21 @@ from contextlib import contextmanager
 from io import BytesIO
 from typing import Any
 
-import numpy as np
-
 from bench.errors import InputError
-from bench.trace.channel import Channel
 
 #: Compressions by the bytes they begin with: zlib with its usual window, Zstandard, an LZ4 frame.
 _ZLIB, _ZSTD, _LZ4 = b"\x78", b"\x28\xb5\x2f\xfd", b"\x04\x22\x4d\x18"
-#: Signals that a matrix may hold, beside its samples.
-MOST_SIGNALS = 1000
+#: Package and extra of servobench by which a module is installed.
+_EXTRAS = {
+    "asammdf": ("asammdf", "mdf"),
+    "h5py": ("h5py", "hdf5"),
+    "mcap": ("mcap", "mcap"),
+    "mcap_ros2": ("mcap-ros2-support", "mcap"),
+    "nptdms": ("npTDMS", "tdms"),
+}
 
 
-def library(module: str, package: str, extra: str, path: str, container: str) -> Any:  # noqa: ANN401
+def library(module: str, path: str, container: str) -> Any:  # noqa: ANN401
     """A module of a library that reads a container.
 
     Raises:
@@ -30,11 +33,9 @@ def library(module: str, package: str, extra: str, path: str, container: str) ->
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
-        raise InputError(
-            path,
-            f"{container} is read by {package}, which is not installed",
-            f"install it: pip install 'servobench[{extra}]'",
-        ) from error
+        package, extra = _EXTRAS[module.partition(".")[0]]
+        found = f"{container} is read by {package}, which is not installed"
+        raise InputError(path, found, f"install it: pip install 'servobench[{extra}]'") from error
 
 
 @contextmanager
@@ -96,40 +97,3 @@ def unpack(packed: bytes, size: int) -> bytes:
     if len(content) > size:
         raise ValueError(f"a block holds more than the {size} bytes it declares")
     return content
-
-
-def is_samples(value: object) -> bool:
-    """Whether a value is an array of samples: numbers, moments or fields of them, in one or two dimensions."""
-    if not isinstance(value, np.ndarray) or value.size < 2 or value.ndim > 2:
-        return False
-    return value.dtype.kind in "fiubmM" or (value.dtype.names is not None and value.ndim == 1)
-
-
-def channels_of(name: str, value: np.ndarray, path: str, unit: str | None = None) -> Iterator[Channel]:
-    """Channels of an array: `name`; of a matrix `name(:,1)` with a signal a column, `name(1,:)` with a signal a row.
-
-    The longer side of a matrix is taken for its samples.
-    """
-    if value.dtype.names is not None:
-        for field in value.dtype.names:
-            if value[field].dtype.kind in "fiubmM" and value[field].ndim == 1:
-                yield from channels_of(f"{name}.{field}" if name else field, value[field], path)
-        return
-    if value.ndim == 1 or 1 in value.shape:
-        yield _channel(name, value.reshape(-1), path, unit)
-        return
-    by_rows = value.shape[0] < value.shape[1]
-    signals = value if by_rows else value.T
-    if signals.shape[0] > MOST_SIGNALS:
-        return
-    for number, signal in enumerate(signals, 1):
-        yield _channel(f"{name}({number},:)" if by_rows else f"{name}(:,{number})", signal, path, unit)
-
-
-def _channel(name: str, values: np.ndarray, path: str, unit: str | None) -> Channel:
-    if values.dtype.kind in "mM":
-        known = values[~np.isnat(values)]
-        first = known[0] if known.size else values[0]
-        passed = (values - first) / np.timedelta64(1, "ns") * 1e-9
-        return Channel(name, "s", np.asarray(passed, dtype=np.float64), path, moments=True)
-    return Channel(name, unit, np.ascontiguousarray(values, dtype=np.float64), path)

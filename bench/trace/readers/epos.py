@@ -11,46 +11,37 @@ from collections.abc import Iterable
 
 from bench.errors import InputError
 from bench.trace.channel import Recording
-from bench.trace.readers.layout import layout_of
 from bench.trace.readers.table import read_timed
-from bench.trace.source import Source
+from bench.trace.source import FileFormat, Source
 
 _HEAD = re.compile(r"^(EPOS Studio Version|Sampling period|Recorded samples):;", re.MULTILINE)
 _TOLD = ("Date", "Firmware Version", "EPOS Studio Version", "Sampling period")
 
 
-class Epos:
-    """Files of maxon's recorder, see the module."""
+def _recognises(source: Source) -> bool:
+    return _HEAD.search(source.head) is not None
 
-    format = "maxon EPOS recorder CSV"
-    endings = ()
 
-    def recognises(self, source: Source) -> bool:
-        """Whether the head names a recorder's settings."""
-        return _HEAD.search(source.head) is not None
+def _read(source: Source) -> Recording:
+    lines = source.text().splitlines()
+    head = next((number for number, line in enumerate(lines) if line.startswith(";")), None)
+    if head is None or head + 2 >= len(lines):
+        raise InputError(source.path, "found no line of names, units and samples", "allowed: a complete recording")
+    names, units = ([cell.strip() for cell in line.rstrip(",").split(";")] for line in lines[head : head + 2])
+    if len(names) != len(units):
+        place = f"{source.path}: line {head + 2}"
+        raise InputError(place, f"found {len(units)} units", f"allowed: {len(names)}, as there are names")
+    samples, notes = _measured(lines[head + 2 :], head + 3)
+    if not any(samples):
+        raise InputError(source.path, "found a header and no samples", "allowed: at least two samples")
+    labels = [f"{name or 'time'} [{unit}]" for name, unit in zip(names, units, strict=True)]
+    channels = read_timed(samples, head + 3, labels, ";", source.path)
+    told = (line.rstrip(",").strip('"').split(":;", 1) for line in lines[:head] if ":;" in line)
+    metadata = {key: value for key, value in told if key in _TOLD}
+    return Recording(tuple(channels), EPOS.format, source.path, metadata, tuple(notes))
 
-    def read(self, source: Source) -> Recording:
-        """Recording of an EPOS file.
 
-        Raises:
-            InputError: no names, units or samples; a line with too few or too many values.
-        """
-        lines = source.text().splitlines()
-        head = next((number for number, line in enumerate(lines) if line.startswith(";")), None)
-        if head is None or head + 2 >= len(lines):
-            raise InputError(source.path, "found no line of names, units and samples", "allowed: a complete recording")
-        names, units = ([cell.strip() for cell in line.rstrip(",").split(";")] for line in lines[head : head + 2])
-        if len(names) != len(units):
-            place = f"{source.path}: line {head + 2}"
-            raise InputError(place, f"found {len(units)} units", f"allowed: {len(names)}, as there are names")
-        samples, notes = _measured(lines[head + 2 :], head + 3)
-        if not any(samples):
-            raise InputError(source.path, "found a header and no samples", "allowed: at least two samples")
-        labels = (f"{name or 'time'} [{unit}]" for name, unit in zip(names, units, strict=True))
-        channels = read_timed(samples, head + 3, layout_of(tuple(labels), ";"), source.path)
-        told = (line.rstrip(",").strip('"').split(":;", 1) for line in lines[:head] if ":;" in line)
-        metadata = {key: value for key, value in told if key in _TOLD}
-        return Recording(channels, self.format, source.path, metadata, tuple(notes))
+EPOS = FileFormat("maxon EPOS recorder CSV", (), _recognises, _read)
 
 
 def _measured(lines: Iterable[str], first: int) -> tuple[list[str], list[str]]:

@@ -21,9 +21,8 @@ from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
 from bench.trace.readers.containers import library, reading, unpack
-from bench.trace.source import Source
+from bench.trace.source import FileFormat, Source, begins
 
-_MAGIC = b"\x89MCAP0\r\n"
 _JOINT_STATE = ("sensor_msgs/msg/JointState", "sensor_msgs/JointState")
 _JOINT_UNITS = {"position": "rad", "velocity": "rad/s", "effort": "N*m"}
 #: Numbers of a message, and messages in one another; a scope has fewer, a point cloud more.
@@ -43,54 +42,48 @@ class _Column:
     values: array[float] = field(default_factory=lambda: array("d"))
 
 
-class Mcap:
-    """MCAP, see the module."""
-
-    format = "MCAP"
-    endings = (".mcap",)
-
-    def recognises(self, source: Source) -> bool:
-        """Whether the file begins as MCAP does."""
-        return source.content.startswith(_MAGIC)
-
-    def read(self, source: Source) -> Recording:
-        """Recording of an MCAP file.
-
-        Raises:
-            InputError: the libraries are not installed; damaged, or without a message of numbers.
-        """
-        columns: dict[tuple[str, str], _Column] = {}
-        unread: dict[str, str] = {}
-        numbers = 0
-        with reading(source.path, self.format):
-            for topic, schema, logged, message in _messages(source, self.format, unread):
-                numbers += _gather(columns, topic, schema, logged, message)
-                require_expansion(source.path, numbers * _WIDTH, len(source.content))
-        notes = tuple(f"{topic} left out: messages in {encoding}" for topic, encoding in unread.items())
-        first = min((column.times[np.argmin(column.logged)] for column in columns.values()), default=0)
-        several = len({topic for topic, _ in columns if columns[topic, _].axis is not None}) > 1
-        channels = [
-            _channel(topic, name, column, first, several, source.path)
-            for (topic, name), column in columns.items()
-            if len(column.values) > 1
-        ]
-        if not channels:
-            raise InputError(
-                source.path,
-                f"holds no message of numbers ({'; '.join(notes) or 'no messages'})",
-                "allowed: joint states or numbers, in ROS 2's encoding (cdr) or JSON",
-            )
-        return Recording(with_shared_times(channels), self.format, source.path, notes=notes)
+def _read(source: Source) -> Recording:
+    columns: dict[tuple[str, str], _Column] = {}
+    unread: dict[str, str] = {}
+    numbers = 0
+    with reading(source.path, MCAP.format):
+        for topic, schema, logged, message in _messages(source, unread):
+            stamp = _stamp(message, logged)
+            for path, value, unit, joint in _fields(schema, message):
+                column = columns.setdefault((topic, path), _Column(unit, joint))
+                column.logged.append(logged)
+                column.times.append(stamp)
+                column.values.append(value)
+                numbers += 1
+            require_expansion(source.path, numbers * _WIDTH, len(source.content))
+    notes = tuple(f"{topic} left out: messages in {encoding}" for topic, encoding in unread.items())
+    first = min((column.times[np.argmin(column.logged)] for column in columns.values()), default=0)
+    several = len({topic for (topic, _), column in columns.items() if column.axis is not None}) > 1
+    channels = [
+        _channel(topic, name, column, first, several, source.path)
+        for (topic, name), column in columns.items()
+        if len(column.values) > 1
+    ]
+    if not channels:
+        raise InputError(
+            source.path,
+            f"holds no message of numbers ({'; '.join(notes) or 'no messages'})",
+            "allowed: joint states or numbers, in ROS 2's encoding (cdr) or JSON",
+        )
+    return Recording(with_shared_times(channels), MCAP.format, source.path, notes=notes)
 
 
-def _messages(source: Source, container: str, unread: dict[str, str]) -> Iterator[tuple[str, str, int, Any]]:
+MCAP = FileFormat("MCAP", (".mcap",), begins(b"\x89MCAP0\r\n"), _read)
+
+
+def _messages(source: Source, unread: dict[str, str]) -> Iterator[tuple[str, str, int, Any]]:
     """Topic, schema's name, time - ns - and content of each message that can be decoded."""
-    ros2 = library("mcap_ros2.decoder", "mcap-ros2-support", "mcap", source.path, container).DecoderFactory()
-    records = library("mcap.records", "mcap", "mcap", source.path, container)
+    ros2 = library("mcap_ros2.decoder", source.path, MCAP.format).DecoderFactory()
+    records = library("mcap.records", source.path, MCAP.format)
     schemas: dict[int, Any] = {}
     channels: dict[int, Any] = {}
     decoders: dict[int, Callable[[bytes], Any] | None] = {}
-    for record in _records(source, container):
+    for record in _records(source):
         if isinstance(record, records.Schema):
             schemas[record.id] = record
         elif isinstance(record, records.Channel):
@@ -99,17 +92,18 @@ def _messages(source: Source, container: str, unread: dict[str, str]) -> Iterato
             channel = channels[record.channel_id]
             schema = schemas[channel.schema_id] if channel.schema_id else None  # 0: none
             if channel.id not in decoders:
-                decoders[channel.id] = _decoder(ros2, schema, channel)
+                encoding = channel.message_encoding
+                decoders[channel.id] = json.loads if encoding == "json" else ros2.decoder_for(encoding, schema)
                 if decoders[channel.id] is None:
-                    unread[channel.topic] = channel.message_encoding or "an unknown encoding"
+                    unread[channel.topic] = encoding or "an unknown encoding"
             decode = decoders[channel.id]
             if decode is not None:
                 yield channel.topic, schema.name if schema is not None else "", record.log_time, decode(record.data)
 
 
-def _records(source: Source, container: str) -> Iterator[Any]:
+def _records(source: Source) -> Iterator[Any]:
     """Records in the file's order, those of chunks too, which are unpacked one at a time within the bounds."""
-    reader = library("mcap.stream_reader", "mcap", "mcap", source.path, container)
+    reader = library("mcap.stream_reader", source.path, MCAP.format)
     size = 0
     for record in reader.StreamReader(BytesIO(source.content), emit_chunks=True).records:
         if not isinstance(record, reader.Chunk):
@@ -121,41 +115,22 @@ def _records(source: Source, container: str) -> Iterator[Any]:
         yield from reader.breakup_chunk(replace(record, compression="", data=data))
 
 
-def _decoder(ros2: Any, schema: Any, channel: Any) -> Callable[[bytes], Any] | None:  # noqa: ANN401
-    if channel.message_encoding == "json":
-        return json.loads
-    return ros2.decoder_for(channel.message_encoding, schema)
-
-
-def _gather(columns: dict[tuple[str, str], _Column], topic: str, schema: str, logged: int, message: Any) -> int:  # noqa: ANN401
-    """Append a message's numbers to their columns; how many they are."""
-    stamp, count = _stamp(message, logged), 0
-    if schema in _JOINT_STATE:
-        for number, joint in enumerate(message.name):
-            for name, unit in _JOINT_UNITS.items():
-                values = getattr(message, name)
-                if len(values) == len(message.name):
-                    column = columns.setdefault((topic, f"{joint}.{name}"), _Column(unit, joint))
-                    _append(column, logged, stamp, values[number])
-                    count += 1
-        return count
-    for path, value in islice(_numbers(message, "", 0), _MOST):
-        _append(columns.setdefault((topic, path), _Column()), logged, stamp, value)
-        count += 1
-    return count
-
-
-def _append(column: _Column, logged: int, stamp: int, value: float) -> None:
-    column.logged.append(logged)
-    column.times.append(stamp)
-    column.values.append(value)
+def _fields(schema: str, message: Any) -> Iterator[tuple[str, float, str | None, str | None]]:  # noqa: ANN401
+    """Path and value of each number of a message; of a joint state with its unit and the joint."""
+    if schema not in _JOINT_STATE:
+        yield from ((path, value, None, None) for path, value in islice(_numbers(message, "", 0), _MOST))
+        return
+    for number, joint in enumerate(message.name):
+        for name, unit in _JOINT_UNITS.items():
+            values = getattr(message, name)
+            if len(values) == len(message.name):
+                yield f"{joint}.{name}", values[number], unit, joint
 
 
 def _stamp(message: Any, logged: int) -> int:  # noqa: ANN401
     """Time of a message - ns: of its header where that tells one."""
-    header = _part(message, "header")
-    stamp = _part(header, "stamp") if header is not None else None
-    seconds = _part(stamp, "sec") if stamp is not None else None
+    stamp = _part(_part(message, "header"), "stamp")
+    seconds = _part(stamp, "sec")
     if not isinstance(seconds, int):
         return logged
     nanoseconds = _part(stamp, "nanosec") or _part(stamp, "nsec") or 0

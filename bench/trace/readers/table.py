@@ -1,31 +1,73 @@
-"""Reader of tables in text, however they are laid out: one line of numbers per sample, and mostly names above them."""
+"""Reader of tables in text, however they are laid out: one line of numbers per sample, and mostly names above them.
+
+The samples tell the layout: of the separators, the one that cuts the most numbers out of the last lines of the head.
+The first line that is like them begins the samples; above it stand, in this order and each if at all, a preamble, the
+header and a row of units.
+"""
 
 from __future__ import annotations
 
+import csv
 import re
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 import pyarrow as pa
-from pyarrow import csv
+import pyarrow.csv
 
-from bench.arrays import Array
 from bench.errors import InputError
 from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.readers.columns import floats
-from bench.trace.readers.layout import BLANKS, EMPTY, HEAD, TableLayout, cells_of, find_layout, is_number
-from bench.trace.readers.moments import compute, seconds
-from bench.trace.source import Source, decode, utf8
+from bench.trace.readers.arrow import compute, floats, seconds, speaks_of_moment
+from bench.trace.signals import signal_of, unit_of
+from bench.trace.source import FileFormat, Source, decode, utf8
+from bench.units.text import UnitError, is_unit, scale_of
 
+BLANKS = " "
+SEPARATORS = ("\t", ";", ",", BLANKS)
+#: Texts that stand for no number.
+EMPTY = (
+    *("", " ", "-", "--", "---", "?", "*", "null", "NULL", "None", "NA", "N/A", "#N/A", "n/a"),
+    *("nan", "NaN", "NAN", "Nan", "-nan", "-NaN", "nan(ind)", "-nan(ind)", "1.#QNAN"),
+)
+#: Characters of the head that are looked at, and lines at its end that show what samples are like.
+HEAD, SHOWN = 1 << 18, 60
 #: Columns of a table; a recorder has some hundred channels at most.
 MOST_COLUMNS = 10_000
-_COMMENT = re.compile(rb"^[ \t]*(?:#|//)")
-
 #: Of the kinds of columns; `exact` are epochs in ns with more digits than a float holds, and seconds to the ns.
 TYPES = {"number": pa.float64(), "exact": pa.decimal128(30, 9), "text": pa.string()}
+
+_NUMBER = re.compile(r"[+-]?(?:\d[\d.,'’\u00a0\u202f]*|[.,]\d+)(?:[eE][+-]?\d+)?")
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?|[+-]?\d{1,3}(?:[.'’\u00a0\u202f]\d{3})+,\d*")
+_WORDS = frozenset(("true", "false", "inf", "-inf", "+inf", "infinity", "-infinity"))
+_LEADING = re.compile(r"^\s*(?:#+|//+|!+|%+(?=\s))\s*")
+_EXACT = re.compile(r"[+-]?\d{16,}|[+-]?\d{9,}[.,]\d{4,9}")
+_COMMENT = re.compile(rb"^[ \t]*(?:#|//)")
+
+
+@dataclass(frozen=True)
+class TableLayout:
+    """How a table is written.
+
+    Attributes:
+        labels: of the columns, with their units.
+        separator, decimal: characters between columns and in numbers; BLANKS: any run of them.
+        start: line of the first samples, counted from 0.
+        kinds: of each column: `number`, `exact` (instants of more digits than a float holds), `text`.
+    """
+
+    labels: tuple[str, ...]
+    separator: str
+    decimal: str
+    start: int
+    kinds: tuple[str, ...]
+
+    @property
+    def delimiter(self) -> str:
+        """The one character between columns, once runs of blanks are tabs."""
+        return "\t" if self.separator == BLANKS else self.separator
 
 
 @dataclass(frozen=True)
@@ -33,133 +75,108 @@ class SampleLines:
     """Lines of samples in a text.
 
     Attributes:
-        text: as UTF-8.
+        text: the lines, as UTF-8.
         line: number of the first of them in the file; None where lines were left out.
         notes: what the user should know.
-        start: where in the text they start. A long text is not copied to be rid of its head.
     """
 
     text: bytes
     line: int | None
     notes: tuple[str, ...] = ()
-    start: int = 0
-
-    @cached_property
-    def content(self) -> bytes:
-        """The lines alone."""
-        return self.text[self.start :]
-
-    def parsed(self, kinds: Sequence[pa.DataType], layout: TableLayout, nulls: tuple[str, ...] = ()) -> pa.Table:
-        """Columns of these types, named 0, 1, ...; ArrowInvalid where a line has another count of cells, or a cell is
-        not of its type."""
-        types = {str(number): kind for number, kind in enumerate(kinds)}
-        return csv.read_csv(
-            pa.py_buffer(memoryview(self.text)[self.start :]),
-            read_options=csv.ReadOptions(column_names=list(types)),
-            parse_options=csv.ParseOptions(delimiter=layout.delimiter, quote_char='"'),
-            convert_options=csv.ConvertOptions(
-                column_types=types, null_values=list(nulls), strings_can_be_null=False, decimal_point=layout.decimal
-            ),
-        )
 
 
-class TextTable:
-    """Tables in text, see the module."""
+def _recognises(source: Source) -> bool:
+    marked_up = "\0" in source.head or source.head.lstrip().startswith(("{", "[{", "<"))
+    return not marked_up and _layout_of(source) is not None
 
-    format = "CSV table"
-    endings = (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", ".lvm")
 
-    def recognises(self, source: Source) -> bool:
-        """Whether lines of numbers follow one another in a text."""
-        if "\0" in source.head or source.head.lstrip().startswith(("{", "[{", "<")):
-            return False
-        return _layout(source) is not None
+def _read(source: Source) -> Recording:
+    layout = _layout_of(source)
+    if layout is None:
+        lines = [line for line in source.head.splitlines() if line.strip()]
+        if len(lines) > 1 and all(is_number(line.strip()) for line in lines[1:10]):
+            allowed = "allowed: at least two, one of them velocity or position"
+            raise InputError(f"{source.path}: line 1", "found one column", allowed)
+        raise InputError(source.path, "found a header and no samples", "allowed: at least two samples")
+    content, start = utf8(source.content), 0
+    for _ in range(layout.start):
+        start = content.find(b"\n", start) + 1
+    channels, notes = read_lines(SampleLines(content[start:], layout.start + 1), layout, source.path)
+    return Recording(channels, TABLE.format, source.path, notes=notes)
 
-    def read(self, source: Source) -> Recording:
-        """Recording of a table.
 
-        Raises:
-            InputError: no samples, or a line with too few or too many cells.
-        """
-        layout = _layout(source)
-        if layout is None:
-            raise _no_table(source)
-        content = utf8(source.content)
-        lines = SampleLines(content, layout.start + 1, start=_offset(content, layout.start))
-        channels, notes = read_lines(lines, layout, source.path)
-        return Recording(channels, self.format, source.path, notes=notes)
+TABLE = FileFormat("CSV table", (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", ".lvm"), _recognises, _read)
 
 
 def read_lines(lines: SampleLines, layout: TableLayout, path: str) -> tuple[tuple[Channel, ...], tuple[str, ...]]:
     """Channels of lines of samples, of whatever preamble they stand under, and what the user should know.
 
     Raises:
-        InputError: too many columns, or a line with too few or too many cells; names `path` and the line.
+        InputError: too many columns, a line with too few or too many cells, or a quote that is not closed; names
+            `path` and the line.
     """
     if len(layout.labels) > MOST_COLUMNS:
         raise InputError(path, f"found {len(layout.labels)} columns", f"allowed: {MOST_COLUMNS}")
     if layout.separator == BLANKS:
-        lines = SampleLines(_between_tabs(lines.content), lines.line)
+        bare = re.sub(rb"(?m)^[ \t]+|[ \t]+\r?$", b"", lines.text)
+        lines = replace(lines, text=re.sub(rb"[ \t]+", b"\t", bare))
     table, lines = parsed(lines, layout, path)
     rows = _filled_rows(table)
     gaps = _has_blank_lines(lines, table.num_rows) or (rows is not None and not rows[: int(rows.sum())].all())
     line = None if gaps else lines.line
     table = table if rows is None else table.filter(pa.array(rows))
-    return tuple(_channels(table, layout, line, path)), lines.notes
+    unnamed = [label == f"column {number}" for number, label in enumerate(layout.labels, 1)]
+    channels = [
+        channel_of_cells(label, column, layout.decimal, path, line)
+        for label, column in zip(layout.labels, table.columns, strict=True)
+    ]
+    kept = tuple(
+        channel
+        for channel, plain in zip(channels, unnamed, strict=True)
+        if not plain or all(unnamed) or channel.defect is not None or np.isfinite(channel.values).any()
+    )
+    return kept, lines.notes
 
 
-def read_timed(lines: Sequence[str], line: int, layout: TableLayout, path: str) -> tuple[Channel, ...]:
-    """Channels of lines whose column called `time` is the time of the others; a decimal comma is a point.
+def read_timed(lines: Sequence[str], line: int, labels: Sequence[str], separator: str, path: str) -> list[Channel]:
+    """Channels of lines of numbers whose column called `time` is the time of the others; a decimal comma is a point.
 
     Args:
         lines: of samples, without what stands above them.
         line: number of the first of them in the file.
-        layout: of them.
+        labels: of the columns, with their units.
+        separator: of them.
         path: of the file.
 
     Raises:
         InputError: as `read_lines`, or a text among the times.
     """
-    text = "\n".join(lines).replace(",", ".").encode()
-    channels, _ = read_lines(SampleLines(text, line), layout, path)
+    layout = TableLayout(tuple(labels), separator, ".", 0, ("number",) * len(labels))
+    channels, _ = read_lines(SampleLines("\n".join(lines).replace(",", ".").encode(), line), layout, path)
     time = next(channel for channel in channels if channel.name == "time")
     if time.defect is not None:
         raise time.defect
-    return tuple(replace(channel, time=time) for channel in channels if channel is not time)
+    return [replace(channel, time=time) for channel in channels if channel is not time]
 
 
 def _has_blank_lines(lines: SampleLines, rows: int) -> bool:
     """Whether a line between samples is blank; where every line is a row none is, and to count lines takes no time."""
-    if lines.text.count(b"\n", lines.start) + (not lines.text.endswith(b"\n")) == rows:
+    if lines.text.count(b"\n") + (not lines.text.endswith(b"\n")) == rows:
         return False
-    return re.search(rb"\n[ \t\r]*\n", lines.content.rstrip()) is not None
+    return re.search(rb"\n[ \t\r]*\n", lines.text.rstrip()) is not None
 
 
-def _layout(source: Source) -> TableLayout | None:
-    head = utf8(source.content[:HEAD]).decode("utf-8", errors="replace")
-    lines = head.split("\n")
-    return find_layout([line.rstrip("\r") for line in (lines if len(source.content) <= HEAD else lines[:-1])])
-
-
-def _no_table(source: Source) -> InputError:
-    lines = [line for line in source.head.splitlines() if line.strip()]
-    if len(lines) > 1 and all(is_number(line.strip()) for line in lines[1:10]):
-        return InputError(
-            f"{source.path}: line 1", "found one column", "allowed: at least two, one of them velocity or position"
-        )
-    return InputError(source.path, "found a header and no samples", "allowed: at least two samples")
-
-
-def _offset(content: bytes, line: int) -> int:
-    start = 0
-    for _ in range(line):
-        start = content.find(b"\n", start) + 1
-    return start
-
-
-def _between_tabs(body: bytes) -> bytes:
-    """Columns between runs of blanks as columns between tabs."""
-    return re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+\r?$", b"", body))
+def _arrow_table(text: bytes, kinds: Sequence[pa.DataType], layout: TableLayout, nulls: Sequence[str]) -> pa.Table:
+    """Columns of these types; ArrowInvalid where a line has another count of cells, or a cell is not of its type."""
+    types = {str(number): kind for number, kind in enumerate(kinds)}
+    return pyarrow.csv.read_csv(
+        pa.py_buffer(text),
+        read_options=pyarrow.csv.ReadOptions(column_names=list(types)),
+        parse_options=pyarrow.csv.ParseOptions(delimiter=layout.delimiter, quote_char='"'),
+        convert_options=pyarrow.csv.ConvertOptions(
+            column_types=types, null_values=list(nulls), strings_can_be_null=False, decimal_point=layout.decimal
+        ),
+    )
 
 
 def parsed(lines: SampleLines, layout: TableLayout, path: str) -> tuple[pa.Table, SampleLines]:
@@ -169,54 +186,39 @@ def parsed(lines: SampleLines, layout: TableLayout, path: str) -> tuple[pa.Table
         InputError: a line with too few or too many cells, or a quote that is not closed.
     """
     try:
-        return lines.parsed([TYPES[kind] for kind in layout.kinds], layout, EMPTY), lines
+        return _arrow_table(lines.text, [TYPES[kind] for kind in layout.kinds], layout, EMPTY), lines
     except pa.ArrowInvalid:
         lines = _cleaned(lines, layout, path)
     try:
-        return lines.parsed([pa.string()] * len(layout.labels), layout), lines
+        return _arrow_table(lines.text, [pa.string()] * len(layout.labels), layout, ()), lines
     except pa.ArrowInvalid as error:
         first = lines.line or 1
-        numbered = enumerate(lines.content.splitlines(), first)
+        numbered = enumerate(lines.text.splitlines(), first)
         quoted = next((number for number, line in numbered if line.count(b'"') % 2), first)
         raise InputError(f"{path}: line {quoted}", "found a quote that is not closed", "allowed: numbers") from error
 
 
 def _cleaned(lines: SampleLines, layout: TableLayout, path: str) -> SampleLines:
-    """Lines of samples without comments and blank lines among them, and without what a recorder writes below.
-
-    Raises:
-        InputError: a line with too few or too many cells.
-    """
+    """Lines of samples without comments and blank lines among them, and without what a recorder writes below."""
     separator, width = layout.delimiter, len(layout.labels)
-    numbered = list(enumerate(lines.content.splitlines(), lines.line or 1))
-    kept = [(number, line) for number, line in numbered if line.strip(b' \t\r"') and not _COMMENT.match(line)]
-    comments = sum(1 for _, line in numbered if _COMMENT.match(line))
-    while kept and not _holds_number(kept[-1][1], separator):
+    numbered = list(enumerate(lines.text.splitlines(), lines.line or 1))
+    written = [(number, line) for number, line in numbered if line.strip() and not _COMMENT.match(line)]
+    comments = sum(_COMMENT.match(line) is not None for _, line in numbered)
+    kept = [(number, line) for number, line in written if line.strip(b' \t\r"')]
+    while kept and not any(map(is_number, cells_of(kept[-1][1].decode("utf-8", errors="replace"), separator))):
         kept.pop()
-    below = sum(
-        1 for number, line in numbered if kept and number > kept[-1][0] and line.strip() and not _COMMENT.match(line)
-    )
+    below = sum(number > kept[-1][0] for number, _ in written) if kept else 0
     for number, line in kept:
         found = line.count(separator.encode()) + 1
+        if found != width and b'"' in line:
+            found = len(cells_of(decode(line), separator))
         if found != width:
-            cells = cells_of(decode(line), separator) if b'"' in line else [""] * found
-            if len(cells) != width:
-                raise InputError(
-                    f"{path}: line {number}",
-                    f"found {len(cells)} cell{'s' * (len(cells) > 1)}",
-                    f"allowed: {width}, as the header has",
-                )
-    left_out = {"comment": comments, "line below the samples": below}
-    notes = tuple(
-        f"{count} {what}{'s' * (count > 1 and what == 'comment')} left out" for what, count in left_out.items() if count
-    )
-    whole = not kept or kept[-1][0] - kept[0][0] == len(kept) - 1
-    text = b"\n".join(line for _, line in kept) + b"\n"
-    return SampleLines(text, kept[0][0] if whole and kept else None, notes)
-
-
-def _holds_number(line: bytes, separator: str) -> bool:
-    return any(is_number(cell) for cell in cells_of(line.decode("utf-8", errors="replace"), separator))
+            cells = f"found {found} cell{'s' * (found > 1)}"
+            raise InputError(f"{path}: line {number}", cells, f"allowed: {width}, as the header has")
+    left_out = {f"comment{'s' * (comments > 1)}": comments, "line below the samples": below}
+    notes = tuple(f"{count} {what} left out" for what, count in left_out.items() if count)
+    whole = kept and kept[-1][0] - kept[0][0] == len(kept) - 1
+    return SampleLines(b"\n".join(line for _, line in kept) + b"\n", kept[0][0] if whole else None, notes)
 
 
 def _filled_rows(table: pa.Table) -> np.ndarray | None:
@@ -225,8 +227,7 @@ def _filled_rows(table: pa.Table) -> np.ndarray | None:
     for column in table.columns:
         if pa.types.is_string(column.type):
             pc = compute()
-            blank = pc.equal(pc.utf8_trim_whitespace(column), "").to_numpy()
-            filled |= ~blank.astype(bool)
+            filled |= ~pc.equal(pc.utf8_trim_whitespace(column), "").to_numpy().astype(bool)
         elif not column.null_count:
             return None
         else:
@@ -236,32 +237,15 @@ def _filled_rows(table: pa.Table) -> np.ndarray | None:
     return filled
 
 
-def _channels(table: pa.Table, layout: TableLayout, line: int | None, path: str) -> Iterator[Channel]:
-    unnamed = [label == f"column {number}" for number, label in enumerate(layout.labels, 1)]
-    for label, column, plain in zip(layout.labels, table.columns, unnamed, strict=True):
-        channel = channel_of_cells(label, column, layout.decimal, path, line)
-        holds = channel.defect is not None or np.isfinite(channel.values).any()
-        if holds or not plain or all(unnamed):
-            yield channel
-
-
 def channel_of_cells(label: str, column: pa.ChunkedArray, decimal: str, path: str, line: int | None) -> Channel:
     """Channel of a column as `parsed` returns it; a defect where it holds a cell that is no number."""
-    name, unit = split_label(label)
-    channel = Channel(name, unit, np.empty(0), path, line=line)
+    channel = Channel(*split_label(label), np.empty(0), path, line=line)
     if pa.types.is_string(column.type):
         return _of_text(channel, column, decimal)
-    if pa.types.is_decimal(column.type):
-        return replace(channel, values=_from_first(column))
+    if pa.types.is_decimal(column.type):  # of many digits: what they exceed the first one by, exactly
+        first = column.drop_null()[:1].to_pylist()
+        column = compute().subtract(column, pa.scalar(first[0], column.type)) if first else column
     return replace(channel, values=floats(column))
-
-
-def _from_first(column: pa.ChunkedArray) -> Array:
-    """Numbers of many digits as what they exceed the first one by, exactly."""
-    first = column.drop_null()[0] if column.null_count < len(column) else None
-    if first is None:
-        return np.full(len(column), np.nan)
-    return floats(compute().subtract(column, first))
 
 
 def _of_text(channel: Channel, column: pa.ChunkedArray, decimal: str) -> Channel:
@@ -278,7 +262,7 @@ def _of_text(channel: Channel, column: pa.ChunkedArray, decimal: str) -> Channel
     try:
         return replace(channel, values=floats(pc.cast(plain, pa.float64())))
     except pa.ArrowInvalid:
-        sample = next(n for n, text in enumerate(plain.to_pylist()) if not _is_float(text))
+        sample = next(number for number, text in enumerate(plain) if not _is_float(text))
         found = f"found {short(texts[sample].as_py())!r}"
         return replace(channel, defect=InputError(channel.place(sample), found, "allowed: a number"))
 
@@ -295,9 +279,146 @@ def _without_groups(texts: pa.ChunkedArray, decimal: str) -> pa.ChunkedArray:
     return pc.replace_substring(plain, ",", ".") if decimal == "," else plain
 
 
-def _is_float(text: str) -> bool:
+def _is_float(text: pa.Scalar) -> bool:
     try:
-        float(text)
-    except ValueError:
+        text.cast(pa.float64())
+    except pa.ArrowInvalid:
         return False
     return True
+
+
+def _layout_of(source: Source) -> TableLayout | None:
+    lines = utf8(source.content[:HEAD]).decode("utf-8", errors="replace").split("\n")
+    return find_layout([line.rstrip("\r") for line in (lines if len(source.content) <= HEAD else lines[:-1])])
+
+
+def find_layout(lines: list[str]) -> TableLayout | None:
+    """The layout of a table that begins with these lines; None where they show none."""
+    shown = [line for line in lines if line.strip()][-SHOWN:]
+    separator, width = _separator(shown)
+    if not width:
+        return None
+    rows = [row for row in (cells_of(line, separator) for line in shown) if len(row) == width]
+    kinds = [_kind(column) for column in zip(*rows, strict=True)]
+    start = next((number for number in range(len(lines)) if _begins(lines, number, separator, kinds)), None)
+    if start is None or not {"number", "exact"} & set(kinds):
+        return None
+    decimal = "," if any(_DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row) else "."
+    labels = _labels(lines[:start], separator, width)
+    for place, label in enumerate(labels):
+        if kinds[place] == "exact" and not _may_be_time(label):
+            kinds[place] = "number"
+    return TableLayout(labels, separator, decimal, start, tuple(kinds))
+
+
+def cells_of(line: str, separator: str) -> list[str]:
+    """Cells of a line, without quotes."""
+    text = " ".join(line.split()) if separator == BLANKS else line.replace("\r", "")
+    try:
+        row = next(csv.reader([text], delimiter=separator, skipinitialspace=True), [])
+    except csv.Error:  # longer than any cell of a recording
+        return []
+    return [cell.strip() for cell in row]
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell holds a number in any of the usual ways of writing one."""
+    return _NUMBER.fullmatch(cell) is not None or cell.lower() in _WORDS
+
+
+def _may_be_time(label: str) -> bool:
+    """Whether a column may hold instants, of which only the distances count: not one of a signal or another unit."""
+    name, unit = split_label(label)
+    if signal_of(name) not in (None, "time"):
+        return False
+    try:
+        return unit_of(unit) is None or scale_of(str(unit), ("s",)) is not None
+    except UnitError:
+        return False
+
+
+def _separator(shown: list[str]) -> tuple[str, int]:
+    """Separator that cuts out the most numbers, and how many cells it makes; 0 where none makes two."""
+    best, found = 0.0, (",", 0)
+    for separator in SEPARATORS if shown else ():
+        rows = [cells_of(line, separator) for line in shown]
+        width, often = Counter(map(len, rows)).most_common(1)[0]
+        if width < 2 or often < 0.5 * len(rows):
+            continue
+        cells = [cell for row in rows if len(row) == width for cell in row]
+        values = sum(cell in EMPTY or is_number(cell) or speaks_of_moment(cell) for cell in cells)
+        score = values / often * values / len(cells) * often / len(rows)
+        if score > best:
+            best, found = score, (separator, width)
+    return found
+
+
+def _kind(cells: tuple[str, ...]) -> str:
+    filled = [cell for cell in cells if cell not in EMPTY]
+    if filled and sum(map(is_number, filled)) < 0.5 * len(filled):
+        return "text"
+    return "exact" if filled and all(map(_EXACT.fullmatch, filled)) else "number"
+
+
+def _begins(lines: list[str], number: int, separator: str, kinds: Sequence[str]) -> bool:
+    """Whether a line and the next one that is not blank are samples."""
+    ahead = [line for line in lines[number : number + 8] if line.strip()][:2]
+    return bool(lines[number].strip()) and all(_is_sample(cells_of(line, separator), kinds) for line in ahead)
+
+
+def _is_sample(cells: list[str], kinds: Sequence[str]) -> bool:
+    if len(cells) != len(kinds):
+        return False
+    numeric = [cell for cell, kind in zip(cells, kinds, strict=True) if kind != "text"]
+    numbers = sum(cell in EMPTY or is_number(cell) for cell in numeric)
+    return numbers > 0.5 * len(numeric) and any(map(is_number, numeric))
+
+
+def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:
+    """Labels of the columns from the lines above the samples; `column 1`, ... where there is no header."""
+    rows: list[list[str]] = []
+    for line in reversed([line for line in above if line.strip()]):
+        row = _header_row(line, separator, width)
+        if row is None or len(rows) == 2:
+            break
+        rows.append(row)
+    names = rows[0] if rows else [""] * width
+    if len(rows) == 2 and _is_unit_row(rows[0]) and not _is_unit_row(rows[1]):
+        names = [_with_unit(name, unit) for name, unit in zip(rows[1], map(_bare, rows[0]), strict=True)]
+    return tuple(
+        name if split_label(name)[0] else f"column {number} {name}".strip() for number, name in enumerate(names, 1)
+    )
+
+
+def _with_unit(name: str, unit: str) -> str:
+    return f"{name} [{unit}]" if unit_of(unit) is not None and split_label(name)[1] is None else name
+
+
+def _header_row(line: str, separator: str, width: int) -> list[str] | None:
+    """Cells of a line of names; None where it is none: another count of cells, or numbers among them."""
+    for text in (line, _LEADING.sub("", line)):
+        for row in _cuts(text, separator):
+            row = row[:-1] if len(row) == width + 1 and not row[-1] else row
+            row = [*row, ""] if len(row) == width - 1 and separator != BLANKS and row[0] else row
+            row[:1] = [_LEADING.sub("", row[0])] if row else []
+            if len(row) == width and any(row) and not any(map(is_number, row)):
+                return row
+    return None
+
+
+def _cuts(line: str, separator: str) -> list[list[str]]:
+    """A line cut in the ways in which headers are: as the samples, at other marks, at blanks before no bracket."""
+    cuts = [cells_of(line, separator)]
+    cuts += [cells_of(line, other) for other in SEPARATORS[:3] if other != separator and other in line]
+    if separator in (BLANKS, "\t"):
+        cuts += [re.split(r"\s{2,}", line.strip()), re.split(r"\s+(?![\[(])", line.strip())]
+    return cuts
+
+
+def _is_unit_row(cells: list[str]) -> bool:
+    filled = [cell for cell in map(_bare, cells) if unit_of(cell) is not None]
+    return bool(filled) and all(map(is_unit, filled))
+
+
+def _bare(cell: str) -> str:
+    return cell.strip("[](){} ")

@@ -19,9 +19,8 @@ import pyarrow as pa
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
-from bench.trace.readers.layout import TableLayout
-from bench.trace.readers.table import SampleLines, channel_of_cells, parsed
-from bench.trace.source import Source, decode
+from bench.trace.readers.table import SampleLines, TableLayout, channel_of_cells, parsed
+from bench.trace.source import FileFormat, Source, decode
 
 _HEAD = re.compile(r"\AName[\t;,].*^(Starttime of export|Data-Type|SymbolName)[\t;,]", re.DOTALL | re.MULTILINE)
 _NUMBER = re.compile(r"\s*[+-]?\d")
@@ -31,40 +30,37 @@ _LAST_MOMENT = 2.6e17  # us; a date of Python ends with the year 9999
 _NO_SCALING = {"Offset": "0", "ScaleFactor": "1", "Unit Offset": "0", "Unit ScaleFactor": "1"}
 
 
-class TwinCat:
-    """TwinCAT Scope CSV, see the module."""
+def _recognises(source: Source) -> bool:
+    return _HEAD.match(source.head) is not None
 
-    format = "TwinCAT Scope CSV"
-    endings = ()
 
-    def recognises(self, source: Source) -> bool:
-        """Whether the head is that of an export."""
-        return _HEAD.match(source.head) is not None
+def _read(source: Source) -> Recording:
+    separator = source.head[len("Name")]
+    header, body, line = _split(source, separator)
+    names = _names(header, source)
+    rows = _filled(body, separator.encode(), len(names))
+    instants = _FILETIME.match(body) is not None  # in steps of 100 ns, from the first of all
+    kinds = tuple("exact" if instants and name == "Name" else "number" for name in names)
+    decimal = "," if separator != "," and re.search(rb"\d,\d", body) else "."
+    layout = TableLayout(tuple(names), separator, decimal, 0, kinds)
+    table, lines = parsed(SampleLines(b"\n".join(rows), line), layout, source.path)
+    start = min((_first(column) for column in table.columns if pa.types.is_decimal(column.type)), default=0)
+    time = np.empty(0)
+    channels: list[Channel] = []
+    for number, (name, column) in enumerate(zip(names, table.columns, strict=True)):
+        cells = channel_of_cells(name, column, decimal, source.path, lines.line)
+        if cells.defect is not None:
+            raise cells.defect
+        if name == "Name":
+            exact = pa.types.is_decimal(column.type)
+            time = (cells.values + (_first(column) - start)) / 1e4 if exact else cells.values
+        elif number > 0:
+            channel = _described(name, number, header, source)
+            channels.append(_sampled(replace(channel, line=lines.line), time, cells.values))
+    return Recording(with_shared_times(channels), TWINCAT.format, source.path, _metadata(header))
 
-    def read(self, source: Source) -> Recording:
-        """Recording of an export.
 
-        Raises:
-            InputError: no channels, no samples, a line with too many cells, text in a number.
-        """
-        separator = source.head[len("Name")]
-        header, body, line = _split(source, separator)
-        names = _names(header, source)
-        table, lines, layout = _table(body, names, separator, line, source)
-        start = min((_first(column) for column in table.columns if pa.types.is_decimal(column.type)), default=0)
-        time = np.empty(0)
-        channels: list[Channel] = []
-        for number, (name, column) in enumerate(zip(names, table.columns, strict=True)):
-            cells = channel_of_cells(name, column, layout.decimal, source.path, lines.line)
-            if cells.defect is not None:
-                raise cells.defect
-            if name == "Name":
-                moments = pa.types.is_decimal(column.type)  # FILETIME, in steps of 100 ns, from the first of all
-                time = (cells.values + (_first(column) - start)) / 1e4 if moments else cells.values
-            elif number > 0:
-                channel = _described(name, number, header, source)
-                channels.append(_sampled(replace(channel, line=lines.line), time, cells.values))
-        return Recording(with_shared_times(channels), self.format, source.path, _metadata(header))
+TWINCAT = FileFormat("TwinCAT Scope CSV", (), _recognises, _read)
 
 
 def _split(source: Source, separator: str) -> tuple[list[list[str]], bytes, int]:
@@ -87,33 +83,21 @@ def _names(header: list[list[str]], source: Source) -> list[str]:
     """Cells of the row of channel names: the last one that begins with `Name`, as the first names the project."""
     rows = [cells for cells in header if cells[0] == "Name"]
     if len(rows) < 2:
-        raise InputError(
-            source.path, "found no row of channel names", "allowed: a TwinCAT Scope export with its header"
-        )
-    names = rows[-1]
-    while not names[-1]:
-        names = names[:-1]
-    return names
+        allowed = "allowed: a TwinCAT Scope export with its header"
+        raise InputError(source.path, "found no row of channel names", allowed)
+    last = max(number for number, cell in enumerate(rows[-1]) if cell)
+    return rows[-1][: last + 1]
 
 
-def _table(
-    body: bytes, names: list[str], separator: str, line: int, source: Source
-) -> tuple[pa.Table, SampleLines, TableLayout]:
-    """Columns of the samples: rows end with the last channel that still has some, and are filled up."""
-    mark, width = separator.encode(), len(names)
-    rows = [row.rstrip(b"\r") for row in body.split(b"\n")]
-    full = [row + mark * (width - 1 - row.count(mark)) for row in rows if row.strip() and row.strip() != b"EOF"]
-    decimal = "," if separator != "," and re.search(rb"\d,\d", body) else "."
-    moments = "exact" if _FILETIME.match(rows[0]) is not None else "number"
-    kinds = tuple(moments if name == "Name" else "number" for name in names)
-    layout = TableLayout(tuple(names), separator, decimal, 0, kinds)
-    return *parsed(SampleLines(b"\n".join(full), line), layout, source.path), layout
+def _filled(body: bytes, mark: bytes, width: int) -> list[bytes]:
+    """Rows of samples, which end with the last channel that still has some, filled up."""
+    rows = (row.rstrip(b"\r") for row in body.split(b"\n"))
+    return [row + mark * (width - 1 - row.count(mark)) for row in rows if row.strip() not in (b"", b"EOF")]
 
 
 def _first(column: pa.ChunkedArray) -> int:
     """The first number of a column; 0 where it has none."""
-    present = column.drop_null()
-    return int(present[0].as_py()) if len(present) else 0
+    return int(next(iter(column.drop_null()[:1].to_pylist()), 0))
 
 
 def _described(name: str, number: int, header: list[list[str]], source: Source) -> Channel:
@@ -123,11 +107,10 @@ def _described(name: str, number: int, header: list[list[str]], source: Source) 
     scaling = [
         f"{key} {column[key]}" for key, plain in _NO_SCALING.items() if column.get(key, plain) not in (plain, "")
     ]
-    channel = Channel(name, unit, np.empty(0), source.path)
     if not scaling:
-        return channel
+        return Channel(name, unit, np.empty(0), source.path)
     reason = f"has an open unit: the header names '{unit}' and {', '.join(scaling)}, not whether values are scaled"
-    return replace(channel, unit=None, open_unit=reason)
+    return Channel(name, None, np.empty(0), source.path, open_unit=reason)
 
 
 def _sampled(channel: Channel, time: Array, values: Array) -> Channel:
@@ -138,24 +121,20 @@ def _sampled(channel: Channel, time: Array, values: Array) -> Channel:
     gapless = rows.size > 0 and rows[-1] - rows[0] == rows.size - 1
     line = first + int(rows[0]) if gapless else None
     clock = Channel("time", "ms", time[present], channel.origin, line=line)
-    sampled = replace(channel, values=values[present], line=line, time=clock)
     lonely = present != ~np.isnan(values)
-    if not lonely.any():
-        return sampled
-    place = channel.place(int(np.argmax(lonely)))
-    return replace(
-        sampled, defect=InputError(place, "found a time or a value alone", "allowed: both; the file may be truncated")
-    )
+    defect = None
+    if lonely.any():
+        place = channel.place(int(np.argmax(lonely)))
+        defect = InputError(place, "found a time or a value alone", "allowed: both; the file may be truncated")
+    return replace(channel, values=values[present], line=line, time=clock, defect=defect)
 
 
 def _metadata(header: list[list[str]]) -> dict[str, str]:
     metadata = {"project": header[0][1]} if len(header[0]) > 1 else {}
     for cells in header:
         if cells[0].endswith("time of export") and len(cells) > 1 and _TICKS.fullmatch(cells[1]):
-            # Windows FILETIME: steps of 100 ns since 1601
-            microseconds = int(cells[1]) // 10
+            microseconds = int(cells[1]) // 10  # Windows FILETIME: steps of 100 ns since 1601
             if microseconds < _LAST_MOMENT:
-                metadata[cells[0].lower()] = (
-                    datetime(1601, 1, 1, tzinfo=UTC) + timedelta(microseconds=microseconds)
-                ).isoformat()
+                moment = datetime(1601, 1, 1, tzinfo=UTC) + timedelta(microseconds=microseconds)
+                metadata[cells[0].lower()] = moment.isoformat()
     return metadata

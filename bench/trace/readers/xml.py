@@ -1,33 +1,27 @@
-"""XML files of controllers, told apart by their root element."""
+"""XML files of controllers, told apart by their root element.
+
+Sinumerik frequency responses are recognised so that the user learns why they are no trace of a motion.
+"""
 
 from __future__ import annotations
 
 import re
+from typing import NoReturn
 from xml.etree import ElementTree
 
 from bench.errors import InputError
-from bench.trace.source import Source
+from bench.trace.source import FileFormat, Source
 
+#: A comment, which need not be closed.
+_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _ROOT = re.compile(r"<([A-Za-z_][\w:.-]*)")
 
 
 def root_name(source: Source) -> str:
     """Name of the root element without its namespace; empty if the content is no XML."""
     head = source.head.lstrip()
-    match = _ROOT.search(_without_comments(head)) if head.startswith("<") else None
+    match = _ROOT.search(_COMMENT.sub("", head)) if head.startswith("<") else None
     return match[1].rsplit(":", 1)[-1] if match else ""
-
-
-def _without_comments(text: str) -> str:
-    """The text up to the first comment that is not closed."""
-    kept, place = [], 0
-    while (start := text.find("<!--", place)) >= 0:
-        kept.append(text[place:start])
-        end = text.find("-->", start + 4)
-        if end < 0:
-            return "".join(kept)
-        place = end + 3
-    return "".join([*kept, text[place:]])
 
 
 def parse(source: Source) -> ElementTree.Element:
@@ -43,9 +37,23 @@ def parse(source: Source) -> ElementTree.Element:
     try:
         root = ElementTree.fromstring(text)
     except (ElementTree.ParseError, LookupError, ValueError) as error:
-        raise InputError(
-            source.path, f"the XML is truncated or damaged ({error})", "allowed: a complete XML"
-        ) from error
+        found = f"the XML is truncated or damaged ({error})"
+        raise InputError(source.path, found, "allowed: a complete XML") from error
     for element in root.iter():
         element.tag = element.tag.rsplit("}", 1)[-1]
     return root
+
+
+def _is_response(source: Source) -> bool:
+    return root_name(source).startswith("ResponseTest")
+
+
+def _refuse(source: Source) -> NoReturn:
+    raise InputError(
+        source.path,
+        "found a Sinumerik frequency-response measurement, which holds no motion over time",
+        "allowed: a recording of velocity or position and of current or torque over time",
+    )
+
+
+SINUMERIK = FileFormat("Sinumerik frequency response (refused)", (), _is_response, _refuse)
