@@ -21,7 +21,7 @@ from bench.errors import InputError
 from bench.files import read_bytes
 from bench.trace.readers.named_arrays import load_mat
 from bench.units import convert, dimensionality
-from bench.units.text import spelled_for_pint
+from bench.units.conversion import spelled_for_pint
 
 TEXTS = (".csv", ".txt", ".dat", ".tsv")
 ENDINGS = (*TEXTS, ".mat")

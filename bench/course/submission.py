@@ -11,7 +11,7 @@ from bench.course.text import text_of
 from bench.errors import InputError
 from bench.names import nearest
 from bench.structured import parse_json
-from bench.units.text import spelled_for_pint
+from bench.units.conversion import spelled_for_pint
 
 #: Name of the form, and endings of filled ones.
 FORM, ENDINGS = "answers.csv", (".csv", ".json")

@@ -10,7 +10,7 @@ from bench.names import nearest, short
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.reading_options import ReadingOptions
 from bench.trace.signals import SI_UNITS, is_index, plain_name, scale_in, signal_of, unit_of
-from bench.units.text import UnitScale
+from bench.units.conversion import UnitScale
 
 #: Signals of which one that can be read is enough: the others are then left out where they cannot.
 ENOUGH = (("velocity", "position"), ("torque", "force", "current"))

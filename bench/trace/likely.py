@@ -15,7 +15,8 @@ import numpy as np
 from bench.arrays import Array
 from bench.trace.channel import Channel
 from bench.trace.signals import SI_UNITS, is_index, signal_of, unit_of, wanted_units
-from bench.units.text import UnitError, is_unit, scale_of
+from bench.units.conversion import is_unit, scale_of
+from bench.units.grammar import UnitError
 
 #: Words in column names, in the languages of drives, and letters of the field.
 WORDS: dict[str, str] = {

@@ -9,8 +9,8 @@ import re
 
 from bench.axis_kind import KINDS, AxisKind
 from bench.errors import InputError
+from bench.units.conversion import UnitScale, scale_of
 from bench.units.grammar import UnitError
-from bench.units.text import UnitScale, scale_of
 
 #: SI unit of each known signal, one for each of KINDS.
 SI_UNITS: dict[str, tuple[str, str]] = {

@@ -1,8 +1,7 @@
 """Units: SI inside, other units at the edges only (files and command line), where pint reads them."""
 
 from bench.units.conversion import affine, convert, dimensionality, same_dimension
-from bench.units.quantity import Quantity
-from bench.units.value import parse, parse_with_tolerance
+from bench.units.quantity import Quantity, parse, parse_with_tolerance
 
 __all__ = [
     "Quantity",

@@ -1,5 +1,9 @@
 """Dimension of a unit and conversion between units: SI and what is usual by a table, all other names by pint.
 
+Units are read as people and recorders write them: `1/min`, `U/min`, `°/s`, `Nm`, `oz-in`, `Arms`, `0.229 rpm`,
+`turn/4096/s`. An ambiguous one is refused and both meanings are named: a speed in `1/s` or `Hz` may be radians or
+revolutions; what a count is worth, only the user knows.
+
 Importing pint and building its registry costs 0.2 s of CPU, a quarter of the run time of `bench identify`. It is asked
 for single names only, so that no text of a file is an expression that it evaluates.
 """
@@ -7,11 +11,17 @@ for single names only, so that no text of a file is an expression that it evalua
 from __future__ import annotations
 
 import math
+from contextlib import suppress
+from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
+from tokenize import TokenError
+from typing import TYPE_CHECKING, NamedTuple
 
 from bench.arrays import Array
-from bench.units.grammar import UnitProduct, parse_unit
+from bench.units.grammar import UnitError, UnitProduct, allowed, parse_unit
+
+if TYPE_CHECKING:
+    import pint
 
 #: Order in which dimensions are written; pint's own depends on how the unit was composed.
 _ORDER = ("[mass]", "[length]", "[time]", "[current]", "[temperature]", "[substance]", "[luminosity]")
@@ -63,6 +73,11 @@ _KINDS = {
     "share": "percent permille ppm",
     "count": "bit byte particle number count decibel neper",
 }
+#: What pint raises on names that are no unit, beside errors of its own.
+_NO_UNIT = (AttributeError, LookupError, TypeError, ValueError, AssertionError, ArithmeticError)
+#: Efforts and accelerations told by the mass that weighs so much: N*m in kg*cm, m/s**2 in g. ISO 80000-3: g_n.
+_MASS = {"N*m": "kg*m", "N": "kg"}
+_STANDARD_GRAVITY = 9.80665
 
 
 @cache
@@ -73,13 +88,37 @@ def named_unit(name: str) -> NamedUnit:
     if name[:1] in _PREFIXES and name[1:] in _PREFIXED:
         whole = _USUAL[name[1:]]
         return whole._replace(factor=_PREFIXES[name[0]] * whole.factor)
-    from bench.units.registry import by_pint  # 0.2 s
+    return _by_pint(name)
 
-    factor, offset, powers, base = by_pint(name)
+
+@cache
+def _registry() -> pint.UnitRegistry:
+    import pint
+
+    registry = pint.UnitRegistry(cache_folder=None)
+    registry.define("rpm = revolution / minute")
+    return registry
+
+
+def _by_pint(name: str) -> NamedUnit:
+    """As `named_unit`; the factor of a logarithm, such as dB, is nan."""
+    from pint.errors import PintError
+
+    registry = _registry()
+    try:
+        unit = registry.Unit(name)
+        zero, one, two = (float(registry.Quantity(value, unit).to_base_units().magnitude) for value in (0.0, 1.0, 2.0))
+        powers = {dimension: float(str(power)) for dimension, power in unit.dimensionality.items()}
+        ((full, _),) = registry.Quantity(1.0, unit).unit_items()
+        base = registry.parse_unit_name(full)[0][1]
+    except (PintError, TokenError, *_NO_UNIT) as error:
+        raise ValueError(f"'{name}' is not a unit") from error
     known = tuple(powers.pop(dimension, 0.0) for dimension in _ORDER)
     if powers:
         raise ValueError(f"'{name}' measures {', '.join(powers)}")
-    return NamedUnit(factor, known, next((kind for kind, names in _KINDS.items() if base in names.split()), ""), offset)
+    kind = next((kind for kind, names in _KINDS.items() if base in names.split()), "")
+    linear = math.isclose(two - one, one - zero, rel_tol=1e-9)
+    return NamedUnit(one - zero if linear else math.nan, known, kind, zero if linear else 0.0)
 
 
 def powers_of(unit: UnitProduct) -> tuple[float, ...]:
@@ -92,11 +131,6 @@ def powers_of(unit: UnitProduct) -> tuple[float, ...]:
         for place, power in enumerate(named_unit(name).powers):
             total[place] += power * exponent
     return tuple(total)
-
-
-def kinds_of(unit: UnitProduct) -> frozenset[str]:
-    """Kinds of the names that a unit is made of."""
-    return frozenset(named_unit(name).kind for name in unit.powers)
 
 
 def to_si(unit: UnitProduct) -> tuple[float, float]:
@@ -122,10 +156,9 @@ def _parsed(unit: str) -> UnitProduct:
 def dimensionality(unit: str) -> str:
     """Dimension of a unit, e.g. `[length] / [time]`; ValueError if `unit` is no unit."""
     powers = list(zip(_ORDER, powers_of(_parsed(unit)), strict=True))
-    above = " * ".join(f"{name} ** {power:g}" if power != 1.0 else name for name, power in powers if power > 0.0)
-    below = "".join(
-        f" / {name} ** {-power:g}" if power != -1.0 else f" / {name}" for name, power in powers if power < 0.0
-    )
+    raised = [(name if abs(power) == 1.0 else f"{name} ** {abs(power):g}", power) for name, power in powers]
+    above = " * ".join(name for name, power in raised if power > 0.0)
+    below = "".join(f" / {name}" for name, power in raised if power < 0.0)
     return (above or "1") + below if above or below else "dimensionless"
 
 
@@ -149,3 +182,73 @@ def convert(values: Array, unit: str, to: str) -> Array:
     if offset == 0.0:
         return values if factor == 1.0 else values * factor
     return values * factor + offset
+
+
+@dataclass(frozen=True)
+class UnitScale:
+    """How numbers in a unit become SI: `value = number*factor + offset`, in `unit`."""
+
+    unit: str
+    factor: float
+    offset: float = 0.0
+
+
+@cache
+def scale_of(text: str, wanted: tuple[str, ...]) -> UnitScale:
+    """How numbers under a unit text become SI.
+
+    Args:
+        text: as written.
+        wanted: SI units it may stand for, best first, e.g. ("rad/s", "m/s"); `dimensionless` admits a share such as %.
+
+    Raises:
+        UnitError: no unit, none of those wanted, or one of two meanings.
+    """
+    unit = parse_unit(text, wanted)
+    try:
+        powers, kinds = powers_of(unit), {named_unit(name).kind for name in unit.powers}
+    except ValueError as error:
+        raise UnitError(f"found '{text}', which is not a unit", allowed(wanted)) from error
+    for si in wanted:
+        turning = "rad" in si and si.count("/") <= 1
+        if powers_of(parse_unit(si)) == powers and not (turning and kinds & {"share", "count"}):
+            factor, offset = to_si(unit)
+            if len(unit.powers) + (unit.factor != 1.0) > 1 and any(named_unit(name).offset for name in unit.powers):
+                raise UnitError(f"found '{unit.factor:g} {unit}'", f"allowed: {unit} without a factor, or {si}")
+            if not math.isfinite(factor):
+                break  # a logarithm, which has no factor
+            if turning and "angle" not in kinds:
+                if "min" not in unit.powers:
+                    turns = si.replace("rad", "rev")
+                    told = f"allowed: '{si}' where it is radians, '{turns}' where it is revolutions"
+                    raise UnitError(f"found '{text}', which may mean {si} or {turns}", told)
+                factor *= 2.0 * math.pi  # per minute it means revolutions
+            return UnitScale(si, factor, offset)
+        if si in _MASS and powers_of(parse_unit(_MASS[si])) == powers:
+            return UnitScale(si, to_si(unit)[0] * _STANDARD_GRAVITY)
+    if text != text.lower():
+        with suppress(UnitError):
+            return scale_of(text.lower(), wanted)
+    raise UnitError(f"found unit '{text}'", allowed(wanted))
+
+
+@cache
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit, ambiguous ones included."""
+    try:
+        unit = parse_unit(text)
+        powers_of(unit)
+    except UnitError as error:
+        return not error.found.endswith("not a unit")
+    except ValueError:
+        return False
+    return bool(unit.powers)
+
+
+def spelled_for_pint(text: str) -> str:
+    """A unit in pint's spelling, e.g. `N*m` for `Nm`; unchanged if it is no unit or has a factor."""
+    try:
+        unit = parse_unit(text)
+    except UnitError:
+        return text
+    return str(unit) if unit.factor == 1.0 else text

@@ -115,11 +115,9 @@ def parse_unit(text: str, wanted: tuple[str, ...] = ()) -> UnitProduct:
         at, open_ended = match.end(), match["operator"] is not None
         try:
             _add(match, groups, text, wanted)
-        except (ArithmeticError, LookupError) as error:  # 1e200**2, 1/sqrt(0); a bracket that was not opened
-            raise refusal from error
         except UnitError:
             raise
-        except ValueError as error:
+        except (ArithmeticError, LookupError, ValueError) as error:  # 1e200**2, 1/sqrt(0); a bracket that never opened
             raise refusal from error
     found = groups[-1]
     if len(groups) > 1 or open_ended or not (math.isfinite(found.factor) and found.factor > 0.0):

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from bench.units.conversion import UnitScale, scale_of
 from bench.units.grammar import UnitError
-from bench.units.text import UnitScale, scale_of
 
 TURN, RPM, DEG = 2 * math.pi, math.pi / 30, math.pi / 180
 OUNCE, POUND, GRAVITY = 0.028349523125, 0.45359237, 9.80665  # NIST SP 811, appendix B

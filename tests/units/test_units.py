@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from bench.errors import InputError
 from bench.names import nearest
 from bench.units import convert, dimensionality, parse
+from bench.units.conversion import scale_of
 from bench.units.grammar import UnitError
-from bench.units.text import scale_of
 
 
 @pytest.mark.parametrize(

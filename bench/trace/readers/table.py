@@ -23,7 +23,8 @@ from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.arrow import compute, floats, seconds, speaks_of_moment
 from bench.trace.signals import signal_of, unit_of
 from bench.trace.source import FileFormat, Source, decode, utf8
-from bench.units.text import UnitError, is_unit, scale_of
+from bench.units.conversion import is_unit, scale_of
+from bench.units.grammar import UnitError
 
 BLANKS = " "
 SEPARATORS = ("\t", ";", ",", BLANKS)
