@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from statistics import NormalDist
 from types import ModuleType
 
 import array_api_compat
@@ -11,7 +12,8 @@ from numpy.typing import NDArray
 
 #: Numbers of any shape; a docstring says which.
 Array = NDArray[np.float64]
-
+#: Half width of a normal distribution's 95 % interval in standard deviations.
+NORMAL95 = NormalDist().inv_cdf(0.975)
 
 #: Types whose functions are NumPy's. Asked first, as a step asks for each formula: 0.1 to 0.25 us each of the 19 us
 #: that a tick of a lone axis with five ticked effects takes, which asks six times.

@@ -5,8 +5,7 @@ import pytest
 import scipy.signal
 import scipy.special
 
-from bench.arrays import column_rms, recurrence, recursive_filter, rms, symmetric_inverse
-from bench.statistics import NORMAL95
+from bench.arrays import NORMAL95, column_rms, recurrence, recursive_filter, rms, symmetric_inverse
 
 
 def test_rms_of_whole_periods_of_a_sine_is_its_amplitude_over_root_two():

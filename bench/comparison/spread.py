@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special
 
+from bench.arrays import NORMAL95
 from bench.comparison.difference import Estimated
-from bench.statistics import NORMAL95
 
 #: Probability of a false warning that recordings differ, over all quantities together.
 ALARM = 0.01

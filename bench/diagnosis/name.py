@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from bench.arrays import NORMAL95
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.doubts import DOUBTS, Doubt, Evidence, doubted
 from bench.diagnosis.policy import Policy
@@ -20,7 +21,6 @@ from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
 from bench.fit.shapes import unbiased
 from bench.fit.systematic import hint
-from bench.statistics import NORMAL95
 
 
 @dataclass(frozen=True)

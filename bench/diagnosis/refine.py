@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.arrays import NORMAL95, Array
 from bench.diagnosis.model import Stage, present_of
 from bench.diagnosis.name import NamedEffect, Suspects, named
 from bench.diagnosis.recordings import Recordings
@@ -22,7 +22,6 @@ from bench.errors import InputError
 from bench.fit.parameter import Parameter
 from bench.plant.measured_motion import measured_velocity
 from bench.plant.model_file import StoredModel
-from bench.statistics import NORMAL95
 from bench.trace.noise import white_noise
 
 #: Largest velocity gap of a complete model on the shared cases, over the white noise of the recorded speed

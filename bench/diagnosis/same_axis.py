@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from bench.arrays import rms
+from bench.arrays import NORMAL95, rms
 from bench.comparison.difference import Difference
 from bench.effects.effect import Occasional
 from bench.fit.fit import Fit, fit
 from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
-from bench.statistics import NORMAL95
 
 #: Factors by which J, K_w and K_0 of one axis may differ between recordings without a warning.
 REPORTED = (1.01, 1.3, 1.1)

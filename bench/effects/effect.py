@@ -27,12 +27,11 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array, recursive_filter
+from bench.arrays import NORMAL95, Array, recursive_filter
 from bench.effects.axis import Axis, Values
 from bench.effects.shape import LAG, Shape, Shapes, grid_of, is_pitch
 from bench.effects.signals import Base, Scope, Signals
 from bench.rig.rig import Rig
-from bench.statistics import NORMAL95
 from bench.trace.filter import Column
 from bench.trace.trace import Trace
 from bench.units import Quantity

@@ -14,11 +14,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bench.arrays import NORMAL95
 from bench.effects.acting import FilteredSignal
 from bench.effects.effect import Detectable, Detected, MotionLag
 from bench.effects.signals import Scope
 from bench.rig.rig import Rig
-from bench.statistics import NORMAL95
 from bench.trace.filter import GaussianFilter
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace

@@ -13,13 +13,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from bench.arrays import namespace
+from bench.arrays import NORMAL95, namespace
 from bench.effects.acting import DriveLimit
 from bench.effects.axis import Axis, Number, Values, Winding
 from bench.effects.effect import Detected
 from bench.errors import InputError
 from bench.rig.rig import Rig
-from bench.statistics import NORMAL95
 from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
 from bench.units import Quantity

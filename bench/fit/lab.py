@@ -12,13 +12,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.arrays import NORMAL95
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import RECORD
 from bench.fit.estimate import Estimate, Residual, load_inertia
 from bench.fit.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.statistics import NORMAL95
 from bench.trace.trace import Trace
 
 #: The course drops slower samples - rad/s.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from scipy import special
 
-from bench.statistics import NORMAL95
+from bench.arrays import NORMAL95
 
 #: Level of the interval that is reported.
 LEVEL = 0.95

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Contact, Effect, FiltersMotion
 from bench.effects.shape import is_pitch
@@ -22,7 +22,6 @@ from bench.fit.layout import lay_out
 from bench.fit.normal_equations import block_edges, solved
 from bench.fit.parameter import Parameter
 from bench.fit.rows import Rows
-from bench.statistics import NORMAL95
 
 #: Step of a numerical derivative, relative.
 STEP = 1e-4

@@ -21,7 +21,7 @@ from itertools import combinations
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.errors import InputError, UndeterminedError
@@ -34,7 +34,6 @@ from bench.fit.parameter import Parameter
 from bench.fit.solution import Solution
 from bench.gate.gate import joined
 from bench.rig.rig import Rig
-from bench.statistics import NORMAL95
 
 
 def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.arrays import NORMAL95, Array
 from bench.comparison.change_point import expected
 from bench.fleet.fleet import TABLE, Fleet
 from bench.fleet.summary import ALARM, STATUSES, Changed, Summary
@@ -31,7 +31,6 @@ from bench.report.document import (
 )
 from bench.report.numbers import SPACE, number, sentence, share, unit_text
 from bench.report.serial import picked, serialised
-from bench.statistics import NORMAL95
 
 SCHEMA = "bench.fleet/1"
 #: Rows of a table, charts, and recordings in one of them: a page of a large fleet stays small, the table has all.

@@ -16,6 +16,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from pyarrow import csv
 
+from bench.arrays import NORMAL95
 from bench.files import held, whole
 from bench.names import words
 from bench.report.document import (
@@ -36,7 +37,6 @@ from bench.report.numbers import number, sentence, share, unit_text
 from bench.report.parts import origin
 from bench.report.publish import markdown, write_document
 from bench.report.serial import known, picked, serialised
-from bench.statistics import NORMAL95
 from bench.validation.coverage import LEVELS, NOTHING, NOTHING_MISSING, Coverage, Group, Naming, Share
 from bench.validation.run import Run
 from bench.validation.validate import Validation

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from bench.arrays import NORMAL95
 from bench.comparison.spread import Excess, between, excess
 from bench.diagnosis.apart import widened
 from bench.fit.parameter import Parameter
-from bench.statistics import NORMAL95
 
 
 def numbers(values, error):

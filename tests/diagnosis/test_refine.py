@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bench.arrays import NORMAL95
 from bench.diagnosis.model import Stage
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
@@ -13,7 +14,6 @@ from bench.diagnosis.tracking import HeldOut
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.parameter import Parameter
-from bench.statistics import NORMAL95
 from tests.diagnosis.constructed import COULOMB, INERTIA, RIG, VISCOUS, moved, recorded
 from tests.diagnosis.hand_made import term
 

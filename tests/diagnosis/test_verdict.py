@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bench.arrays import rms
+from bench.arrays import NORMAL95, rms
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.gaps import Gap
 from bench.diagnosis.name import NamedEffect
@@ -25,7 +25,6 @@ from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
 from bench.fit.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.statistics import NORMAL95
 from tests.diagnosis.constructed import COULOMB, RIG, bare, moved, offset, recorded
 from tests.diagnosis.hand_made import level, made
 

@@ -6,12 +6,12 @@ import pickle
 import numpy as np
 import pytest
 
+from bench.arrays import NORMAL95
 from bench.errors import InputError
 from bench.fit.identify import identify
 from bench.gate.gate import warnings_of
 from bench.rig.rig import Rig, load_rig
 from bench.rig.values import tolerance_of
-from bench.statistics import NORMAL95
 from bench.units import parse_with_tolerance
 from tests.fit.motions import recording
 
