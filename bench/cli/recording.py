@@ -27,9 +27,9 @@ def inspect(
     from bench.gate.gate import gate
     from bench.report.inspection import inspection, signals_picture
     from bench.report.serial import as_json
+    from bench.trace.choose import GivenOptions
     from bench.trace.inspect import inspect_recording, to_json
     from bench.trace.read import read_recording
-    from bench.trace.reading_options import GivenOptions
     from bench.trace.trace import assemble
 
     axis = bench.load_rig(rig).on_axis(axis_name) if rig else None

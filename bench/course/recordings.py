@@ -24,9 +24,8 @@ from bench.plant.simulate import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.structured import parse_json
 from bench.trace.channel import Recording
-from bench.trace.choose import choose
+from bench.trace.choose import choose, reading_options
 from bench.trace.read import read_recording, readers
-from bench.trace.reading_options import reading_options
 from bench.trace.trace import Trace, assemble
 
 WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"

@@ -28,9 +28,9 @@ from bench.names import nearest
 from bench.rig.load import Load
 from bench.rig.rig import Rig
 from bench.trace.channel import Recording
+from bench.trace.choose import GivenOptions
 from bench.trace.known_torque import with_known
 from bench.trace.read import read_recording
-from bench.trace.reading_options import GivenOptions
 from bench.trace.time_base import interpolate
 from bench.trace.trace import Trace, assemble
 

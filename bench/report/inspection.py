@@ -33,9 +33,8 @@ from bench.report.numbers import number, unit_text
 from bench.report.over_time import Grid
 from bench.report.parts import checks_section, origin
 from bench.trace.channel import Channel, Recording
-from bench.trace.choose import of_axis
+from bench.trace.choose import ReadingOptions, of_axis
 from bench.trace.inspect import ColumnSummary, Inspection
-from bench.trace.reading_options import ReadingOptions
 from bench.trace.trace import Trace, assemble
 
 #: How the signals of one unit are told apart, in their order.

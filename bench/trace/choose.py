@@ -3,18 +3,59 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 from bench.errors import InputError
 from bench.names import nearest, short
 from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.reading_options import ReadingOptions
 from bench.trace.signals import SI_UNITS, is_index, plain_name, scale_in, signal_of, unit_of
 from bench.units.conversion import UnitScale
 
 #: Signals of which one that can be read is enough: the others are then left out where they cannot.
 ENOUGH = (("velocity", "position"), ("torque", "force", "current"))
 _INDEX = UnitScale("samples", 1.0)
+
+
+class ReadingOptions(Protocol):
+    """Options for reading a recording; a rig's `[trace]` has them."""
+
+    @property
+    def columns(self) -> Mapping[str, str]:
+        """Signal (or `time`) -> column of the file with unit; a leading `-` inverts the sign."""
+        ...
+
+    @property
+    def sample_period(self) -> float | None:
+        """Sample period of a file without times, or with a sample index - s."""
+        ...
+
+    @property
+    def position_period(self) -> float | None:
+        """Period by which the position wraps - rad (m)."""
+        ...
+
+    @property
+    def axis(self) -> str | None:
+        """Axis to read from a file with several."""
+        ...
+
+
+@dataclass(frozen=True)
+class GivenOptions:
+    """Options without a rig."""
+
+    columns: Mapping[str, str] = field(default_factory=dict)
+    sample_period: float | None = None
+    position_period: float | None = None
+    axis: str | None = None
+
+
+def reading_options(given: Mapping[str, str] | ReadingOptions | None) -> ReadingOptions:
+    """Options as they are, from columns alone, or empty."""
+    if given is None:
+        return GivenOptions()
+    return GivenOptions(given) if isinstance(given, Mapping) else given
 
 
 @dataclass(frozen=True)

@@ -1,26 +1,78 @@
-"""The channels that were chosen in SI units, each with the clock it was sampled by."""
+"""The channels that were chosen in SI units, each with the clock it was sampled by.
+
+Sample times stand as they were recorded: shared by signals, rounded by the recorder, some duplicate or decreasing.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench.arrays import Array, all_finite
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording
-from bench.trace.choose import SignalColumn, missing
-from bench.trace.clock import FEW, Clock, SampledSignal, between_known, clock_of, require_finite
-from bench.trace.reading_options import ReadingOptions
-from bench.trace.signals import SI_UNITS
+from bench.trace.choose import ReadingOptions, SignalColumn, missing
+from bench.trace.signals import SI_UNITS, scale_in
 from bench.trace.wraps import Unwrapping, Wraps
+
+#: Share of cells that may be empty as lost samples; a column with more of them is sampled by a clock of its own.
+FEW = 0.05
+#: Share by which the sample period of a rig may differ from the mean step of the times in the file.
+PERIOD = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Clock:
+    """Sample times shared by signals.
+
+    Attributes:
+        time: s - (n,).
+        recorded: the same times in the file's unit, as its digits show them - (n,).
+        tick: seconds per file unit.
+        place: where sample i stands in the file, for messages.
+    """
+
+    time: Array
+    recorded: Array
+    tick: float
+    place: Callable[[int | None], str]
+
+    @cached_property
+    def quantum(self) -> float:
+        """Step of the decimal grid that all recorded times lie on - s; 0 if there is none.
+
+        Times printed with k decimals stand on the grid 10**-k.
+        """
+        for decimals in range(7):
+            scaled = self.recorded * 10.0**decimals
+            rounding = max(1e-6, 4.0 * float(np.spacing(np.abs(scaled).max())))
+            if np.abs(scaled - np.rint(scaled)).max() <= rounding:
+                return self.tick * 10.0**-decimals
+        return 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class SampledSignal:
+    """Values of a signal with the clock they were sampled by.
+
+    Attributes:
+        clock: its sample times.
+        values: SI - (n,).
+        unknown: where the file has no value and neighbours were used - (n,); None: nowhere.
+    """
+
+    clock: Clock
+    values: Array
+    unknown: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
 class InSI:
-    """Signals in SI units with the clock each was sampled by, their units, what the user should know, and wraps
-    of the position that were undone."""
+    """Signals in SI units, what the user should know, and wraps of the position that were undone."""
 
     signals: dict[str, SampledSignal]
     units: dict[str, str]
@@ -57,12 +109,11 @@ def in_si(
         choice = chosen[name]
         channel = choice.channel
         if id(channel.time) not in clocks:
-            clocks[id(channel.time)] = clock_of(channel, chosen.get("time"), how, notes)
+            clocks[id(channel.time)] = _clock_of(channel, chosen.get("time"), how, notes)
         clock, values = clocks[id(channel.time)], _values(choice)
         if values.size != clock.time.size:
-            raise InputError(
-                channel.place(), f"found {values.size} values", f"allowed: {clock.time.size}, as its time has"
-            )
+            allowed = f"allowed: {clock.time.size}, as its time has"
+            raise InputError(channel.place(), f"found {values.size} values", allowed)
         signals[name] = _known_samples(name, SampledSignal(clock, values), channel, notes)
     wraps: Wraps | None = None
     for name in ("position", "position_reference"):
@@ -74,41 +125,48 @@ def in_si(
 
 
 def _one_kind_of_axis(units: Mapping[str, str], recording: Recording) -> None:
-    moving = {
-        name: unit for name, unit in units.items() if len(set(SI_UNITS.get(name, ("",)))) == 2 and "N" not in unit
-    }
-    if len({unit.startswith("m") for name, unit in moving.items() if unit != "dimensionless"}) > 1:
+    moving = {name: unit for name, unit in units.items() if len(set(SI_UNITS[name])) == 2 and "N" not in unit}
+    if len({unit.startswith("m") for unit in moving.values() if unit != "dimensionless"}) > 1:
         found = ", ".join(f"{name} in {unit}" for name, unit in moving.items())
         raise InputError(recording.origin, f"found {found}", "allowed: all of a rotary axis or all of a linear one")
 
 
 def _values(choice: SignalColumn) -> Array:
-    channel, scale = choice.channel, choice.scale
-    values = channel.values
-    if not all_finite(values):
-        require_finite(channel)
-    factor = choice.sign * scale.factor
-    if factor != 1.0:
-        values = values * factor
-    return values + choice.sign * scale.offset if scale.offset else values
+    values, factor, offset = choice.channel.values, choice.sign * choice.scale.factor, choice.sign * choice.scale.offset
+    _require_finite(choice.channel)
+    values = values * factor if factor != 1.0 else values
+    return values + offset if offset else values
+
+
+def _require_finite(channel: Channel) -> None:
+    """Raise InputError for an infinite value of a channel."""
+    if not all_finite(channel.values) and (infinite := np.isinf(channel.values)).any():
+        first = int(np.argmax(infinite))
+        raise InputError(channel.place(first), f"found {channel.values[first]}", "allowed: a finite number")
+
+
+def _between_known(values: Array) -> Array:
+    """Values (n,) with nan filled in by the line between their neighbours."""
+    known, place = ~np.isnan(values), np.arange(values.size)
+    return np.interp(place, place[known], values[known])
 
 
 def _known_samples(name: str, sampled: SampledSignal, channel: Channel, notes: list[str]) -> SampledSignal:
     """A signal with its empty cells told: a few are holes; many mean that it was sampled more slowly."""
     if all_finite(sampled.values):
         return sampled
-    unknown = np.isnan(sampled.values)
-    count, clock = int(unknown.sum()), sampled.clock
-    if unknown.size - count < 2:
-        raise InputError(channel.place(), f"found {unknown.size - count} numbers", "allowed: at least two")
+    unknown, clock = np.isnan(sampled.values), sampled.clock
+    count, known = int(unknown.sum()), int((~unknown).sum())
+    if known < 2:
+        raise InputError(channel.place(), f"found {known} numbers", "allowed: at least two")
     if count > FEW * unknown.size:
-        notes.append(f"{name} stands in {unknown.size - count} of {unknown.size} rows; read as sampled there")
+        notes.append(f"{name} stands in {known} of {unknown.size} rows; read as sampled there")
         own = Clock(clock.time[~unknown], clock.recorded[~unknown], clock.tick, clock.place)
         return SampledSignal(own, sampled.values[~unknown])
     cells = "1 cell is" if count == 1 else f"{count} cells are"
     first = channel.place(int(np.argmax(unknown)))
     notes.append(f"{cells} empty or no number, the first at {first}: a hole each")
-    return replace(sampled, values=between_known(sampled.values), unknown=unknown)
+    return replace(sampled, values=_between_known(sampled.values), unknown=unknown)
 
 
 def _unwrapped(
@@ -117,10 +175,64 @@ def _unwrapped(
     sampled = signals[name]
     speed = signals.get(name.replace("position", "velocity"))
     speeds = speed.values if speed is not None and speed.clock is sampled.clock else None
-    values, wraps = unwrapping(
-        sampled.values, sampled.clock.time, speeds, abs(choice.scale.factor), choice.channel.place
-    )
+    count, place = abs(choice.scale.factor), choice.channel.place
+    values, wraps = unwrapping(sampled.values, sampled.clock.time, speeds, count, place)
     if wraps is None:
         return sampled, None
     notes.append(f"{name} wraps {wraps.count} times by {wraps.period:.6g} {choice.scale.unit}; made continuous")
     return replace(sampled, values=values), wraps
+
+
+def _clock_of(channel: Channel, time: SignalColumn | None, how: ReadingOptions, notes: list[str]) -> Clock:
+    """The clock of a channel: its own times, those of its table, `time`, if that has one, or the sample period's."""
+    own = channel.time if channel.time is not None else getattr(time, "channel", None)
+    period = how.sample_period
+    if own is None:
+        assert period is not None  # `choose` asks for it where there is no time
+        count = np.arange(channel.values.size, dtype=np.float64)
+        return Clock(count * period, count, period, channel.place)
+    scale = time.scale if time is not None and own is time.channel else scale_in("time", own.unit or "s", own.place())
+    _require_finite(own)
+    raw = own.values if all_finite(own.values) else _filled(own, notes)
+    if scale.unit == "samples":
+        assert period is not None
+        count = _counts(own, raw)
+        return Clock(count * period, count, period, own.place)
+    clock = Clock(raw * scale.factor if scale.factor != 1.0 else raw, raw, scale.factor, own.place)
+    return clock if period is None else _agreeing(clock, period, own, notes)
+
+
+def _filled(time: Channel, notes: list[str]) -> Array:
+    """Times with those that are empty taken from their neighbours."""
+    unknown = np.isnan(time.values)
+    count, first = int(unknown.sum()), time.place(int(np.argmax(unknown)))
+    if count > FEW * unknown.size:
+        raise InputError(first, f"found {count} of {unknown.size} times empty", f"allowed: {FEW:.0%} of them")
+    notes.append(f"{count} times empty, the first at {first}; taken from their neighbours")
+    return _between_known(time.values)
+
+
+def _counts(time: Channel, index: Array) -> Array:
+    """Samples from the first by an index (n,) that counts them, whatever its usual step."""
+    steps = np.diff(index)
+    if index.size < 2 or not (steps > 0).all():
+        first = int(np.argmax(steps <= 0)) + 1 if index.size > 1 else 0
+        raise InputError(time.place(first), "the sample index does not increase", "allowed: an increasing index")
+    return (index - index[0]) / float(np.median(steps))
+
+
+def _agreeing(clock: Clock, period: float, time: Channel, notes: list[str]) -> Clock:
+    """The clock, checked against the rig's sample period; times by that period if the clock is too coarse."""
+    steps = np.diff(clock.time)
+    coarse = steps.size > 0 and float(np.mean(steps == 0.0)) > FEW
+    mean = float(clock.time[-1] - clock.time[0]) / max(steps.size, 1)
+    slack = float(steps.max(initial=0.0)) / max(steps.size, 1) if coarse else PERIOD * period
+    typical = mean if coarse else float(np.median(steps)) if steps.size else period
+    if abs(typical - period) > slack + PERIOD * period:
+        found = f"steps by {typical:.6g} s, where the rig's [trace] says sample_period = {period:.6g} s"
+        raise InputError(time.place(), found, "allowed: one of them, or both alike")
+    if not coarse:
+        return clock
+    notes.append(f"times are too coarse to tell samples apart; taken every {period:g} s, as the rig says")
+    count = np.arange(clock.time.size, dtype=np.float64)
+    return Clock(clock.time[0] + count * period, count, period, clock.place)

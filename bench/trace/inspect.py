@@ -14,11 +14,10 @@ from bench.arrays import Array, rms
 from bench.errors import InputError
 from bench.structured import json_text
 from bench.trace.channel import Channel, Recording
-from bench.trace.choose import SignalColumn, axes_of, choose, of_axis
+from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis, reading_options
 from bench.trace.in_si import InSI, in_si
 from bench.trace.likely import Guess, likely_signals
 from bench.trace.read import read_recording
-from bench.trace.reading_options import ReadingOptions, reading_options
 from bench.trace.signals import scale_in
 from bench.trace.trace import Trace, on_time_base, unused
 

@@ -17,6 +17,7 @@ from typing import Protocol, runtime_checkable
 
 from bench.errors import InputError
 from bench.trace.channel import Recording
+from bench.trace.choose import ReadingOptions
 from bench.trace.readers.arrow import PARQUET
 from bench.trace.readers.bam import BAM
 from bench.trace.readers.codesys import CODESYS_CSV, CODESYS_TEXT, CODESYS_XML
@@ -27,7 +28,6 @@ from bench.trace.readers.named_arrays import HDF5, MAT, NUMPY
 from bench.trace.readers.table import TABLE
 from bench.trace.readers.twincat import TWINCAT
 from bench.trace.readers.xml import SINUMERIK
-from bench.trace.reading_options import ReadingOptions
 from bench.trace.source import Source, open_source
 from bench.trace.trace import Trace, assemble
 

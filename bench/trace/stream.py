@@ -15,12 +15,11 @@ from bench.bounds import require_ratio
 from bench.errors import InputError
 from bench.names import readable
 from bench.trace.channel import Recording
-from bench.trace.choose import choose
+from bench.trace.choose import ReadingOptions, choose, reading_options
 from bench.trace.in_si import in_si
 from bench.trace.read import read
 from bench.trace.readers.arrow import DAMAGE, MAGIC, PARQUET, WIDTH, channel_of, is_moment
 from bench.trace.readers.containers import reading
-from bench.trace.reading_options import ReadingOptions, reading_options
 from bench.trace.trace import Trace, on_time_base
 from bench.trace.wraps import Unwrapping
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.errors import InputError
-from bench.trace.clock import Clock, SampledSignal, without_duplicates
+from bench.trace.in_si import Clock, SampledSignal
 
 #: A step this many sample periods long is a hole, not jitter: no signal of a servo is known inside it.
 HOLE = 1.5
@@ -37,6 +37,8 @@ STEADY = 1e-3
 _SLOPE = 3.0
 #: Signals whose clock makes the time base, best first.
 LEADING = ("velocity", "position", "current", "torque", "force", "voltage")
+#: Largest share of samples with a time that another sample already has, and other values.
+MOST_DUPLICATES = 0.01
 #: Akima's slopes look at two samples on each side.
 _AKIMA = 5
 
@@ -81,7 +83,7 @@ def regular(signals: Mapping[str, SampledSignal]) -> Regular:
     leader = next((name for name in LEADING if name in signals), next(iter(signals)))
     clocks = {id(signal.clock): signal.clock for signal in signals.values()}
     of_clock = {key: {n: s.values for n, s in signals.items() if id(s.clock) == key} for key in clocks}
-    cleaned = {key: without_duplicates(clocks[key], of_clock[key]) for key in clocks}
+    cleaned = {key: _without_duplicates(clocks[key], of_clock[key]) for key in clocks}
     lead = id(signals[leader].clock)
     clock, values, duplicates = cleaned[lead]
     base = _find(clock, duplicates)
@@ -108,6 +110,34 @@ def regular(signals: Mapping[str, SampledSignal]) -> Regular:
     if time.size < 2:
         raise InputError(clock.place(None), f"found {time.size} samples common to all signals", "allowed: at least two")
     return Regular(time, {name: placed[name] for name in signals}, found, tuple(notes))
+
+
+def _without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Clock, Mapping[str, Array], int]:
+    """The clock and its signals without samples at a time already taken, and how many those were.
+
+    Raises:
+        InputError: time runs backwards, or more than 1 % of samples repeat a time with other values.
+    """
+    time = clock.time
+    if time.size < 2:
+        raise InputError(clock.place(None), f"found {time.size} samples", "allowed: at least two")
+    if (time[1:] > time[:-1]).all():
+        return clock, values, 0
+    step = np.diff(time)
+    if (step < 0).any():
+        first = int(np.argmax(step < 0)) + 1
+        found = f"time runs backwards ({time[first - 1]:g} s, then {time[first]:g} s)"
+        raise InputError(clock.place(first), found, "allowed: increasing times")
+    again = np.concatenate([[False], step == 0])
+    other = again & np.logical_or.reduce([np.concatenate([[False], np.diff(v) != 0]) for v in values.values()])
+    if other.sum() > MOST_DUPLICATES * time.size:
+        raise InputError(
+            clock.place(int(np.argmax(other))),
+            f"{int(other.sum())} of {time.size} samples stand at a time already taken, with other values",
+            "allowed: at most 1 %; record with finer time stamps, or give sample_period in the rig's [trace]",
+        )
+    kept = {name: array[~again] for name, array in values.items()}
+    return Clock(time[~again], clock.recorded[~again], clock.tick, clock.place), kept, int(again.sum())
 
 
 def _empty(signals: Mapping[str, SampledSignal]) -> Array:

@@ -16,9 +16,8 @@ from bench.arrays import Array, all_finite
 from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
 from bench.trace.channel import Recording
-from bench.trace.choose import SignalColumn, choose
+from bench.trace.choose import ReadingOptions, SignalColumn, choose, reading_options
 from bench.trace.in_si import InSI, in_si
-from bench.trace.reading_options import ReadingOptions, reading_options
 from bench.trace.time_base import HOLE, TimeBase, regular
 from bench.trace.wraps import Wraps
 

@@ -12,9 +12,9 @@ from bench.report.over_time import unpacked
 from bench.report.publish import write_html
 from bench.report.simulation import simulation
 from bench.rig.rig import load_rig
+from bench.trace.choose import GivenOptions
 from bench.trace.inspect import inspect_recording
 from bench.trace.read import read_recording
-from bench.trace.reading_options import GivenOptions
 from bench.trace.trace import assemble
 from bench.trace.write import write
 from tests.diagnosis.conftest import bench

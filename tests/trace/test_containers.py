@@ -12,8 +12,8 @@ from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 from scipy.io import savemat
 
 from bench.errors import InputError
+from bench.trace.choose import GivenOptions
 from bench.trace.read import read, read_recording
-from bench.trace.reading_options import GivenOptions
 from tests.trace.recordings import current, velocity
 
 TIME = np.arange(400) * 2e-3

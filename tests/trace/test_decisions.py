@@ -5,9 +5,9 @@ import pytest
 
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.choose import GivenOptions
 from bench.trace.likely import likely_signals
 from bench.trace.plausible import require_plausible
-from bench.trace.reading_options import GivenOptions
 from bench.trace.trace import assemble
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
+from bench.trace.choose import GivenOptions
 from bench.trace.read import read, read_recording
-from bench.trace.reading_options import GivenOptions
 
 SAMPLES = 600
 TIME = np.arange(SAMPLES) * 1e-3

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from bench.errors import InputError
-from bench.trace.clock import Clock, SampledSignal
+from bench.trace.in_si import Clock, SampledSignal
 from bench.trace.time_base import interpolate, regular
 
 
