@@ -22,8 +22,7 @@ from bench.report.html import html
 from bench.report.identification import Moved, identification
 from bench.report.terminal import show
 from bench.rig.rig import Rig, load_rig
-from bench.trace.conditioning import condition
-from bench.trace.motion import motion
+from bench.trace.motion import condition, motion
 from bench.trace.read import read
 from bench.trace.stream import stream
 from bench.trace.trace import Trace

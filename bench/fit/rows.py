@@ -16,9 +16,8 @@ from bench.axis_kind import AxisKind
 from bench.effects.signals import Scope, Signals
 from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
-from bench.trace.conditioning import Conditioning, condition, known_sign, raw_speed
 from bench.trace.filter import Column, GaussianFilter, Spectra
-from bench.trace.known_torque import known_column
+from bench.trace.motion import Conditioning, condition, known_column, known_sign, raw_speed
 from bench.trace.trace import Trace
 
 #: Widest filter - s: shapes of friction live in the milliseconds around a reversal.

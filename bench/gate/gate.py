@@ -11,8 +11,7 @@ from bench.gate import effort, losses, signals, timing, velocity, wraps
 from bench.gate.check import STATUSES, Check
 from bench.gate.seen import Look, Repaired, Seen
 from bench.rig.rig import Rig
-from bench.trace.plausible import require_plausible
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, require_plausible
 
 #: Checks that repair come before those that only judge.
 CHECKS: tuple[Look, ...] = (

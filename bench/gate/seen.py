@@ -12,9 +12,8 @@ from bench.arrays import Array
 from bench.gate.balance import Balanced, Sums, balanced
 from bench.gate.check import Check
 from bench.rig.rig import Rig
-from bench.trace.conditioning import raw_speed
-from bench.trace.known_torque import less_known
-from bench.trace.trace import Trace
+from bench.trace.motion import raw_speed
+from bench.trace.trace import Trace, less_known
 
 #: Samples of a stretch, and stretches of a recording, evenly spaced where there are more: they stand for all of it, so
 #: that a check costs the same for an hour as for a minute.

@@ -5,7 +5,7 @@ robot's mass matrix M and p = row of the joint of M*w,
 
     M_rest = dp/dt + r,  r = bias - passive - (dM/dt*w),
 
-so that no acceleration is needed from the log (`bench.trace.known_torque`). The joint's own inertia at the
+so that no acceleration is needed from the log (`bench.trace.trace`). The joint's own inertia at the
 configuration of the MJCF is left to the balance, together with the armature: noise of its speed is then weighted
 correctly.
 """
@@ -29,10 +29,9 @@ from bench.rig.load import Load
 from bench.rig.rig import Rig
 from bench.trace.channel import Recording
 from bench.trace.choose import GivenOptions
-from bench.trace.known_torque import with_known
 from bench.trace.read import read_recording
 from bench.trace.time_base import interpolate
-from bench.trace.trace import Trace, assemble
+from bench.trace.trace import Trace, assemble, with_known
 
 #: Poses evaluated at once, which bounds memory.
 TOGETHER = 4096

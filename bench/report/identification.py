@@ -27,8 +27,7 @@ from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
 from bench.report.serial import known, picked, serialised
 from bench.rig.rig import Rig
-from bench.trace.conditioning import condition
-from bench.trace.motion import Motion, motion
+from bench.trace.motion import Motion, condition, motion
 from bench.trace.stream import stream
 from bench.trace.trace import Trace
 

@@ -18,9 +18,7 @@ from bench.rig.load import Load
 from bench.rig.motor import Motor, catalogue_motor
 from bench.rig.values import RigTable, tolerance_of
 from bench.structured import read_toml
-from bench.trace.known_torque import less_known
-from bench.trace.plausible import require_plausible
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, less_known, require_plausible
 
 
 class TraceNotes(RigTable):

@@ -1,10 +1,25 @@
-"""White noise of a signal, read from its highest frequencies, where a servo axis no longer moves; its last digit."""
+"""Noise of a signal: white, read from its highest frequencies, where a servo axis no longer moves; and its last digit.
+
+A signal that is reported in steps, as an encoder's position is, has the error
+
+    e = q*round(x/q) - x
+
+q - step; x - the signal. Where x crosses steps at a changing rate the error is white, q**2/12. Where it runs evenly the
+error repeats with the fraction of a step that is left at each sample: lines, which sampling folds to anywhere, and
+which within the band of the motion are many times as strong as white noise of that power, or next to nothing.
+Source: B. Widrow, I. Kollar, Quantization Noise, 2008.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
-from numpy.typing import NDArray
 from scipy import special
+
+from bench.arrays import Array
+from bench.trace.filter import GaussianFilter
 
 #: Samples a window: short enough that most windows of a servo's motion hold no jerk; shorter ones where stretches are.
 WINDOWS = (128, 64, 32)
@@ -17,9 +32,18 @@ TOP = 0.3
 CORRELATION = 35.0 / 18.0
 #: Samples a distinct value at least, on average, in a signal of whose steps anything can be told.
 REPEATED = 4
+#: Share of a step below which a distance is rounding of numbers, not a step.
+TOLERANCE = 1e-3
+#: Widths of the recording's filter over which the way is smoothed, so that lines within its band are not taken for it.
+SMOOTHER = 8.0
+#: Samples of a stretch at least.
+SHORTEST = 64
+#: Samples of a window of the spectrum at most, and fractions of a step at which it is rounded. Windows of 256 smeared
+#: a line over the width of a coupling that takes it away.
+WINDOW, PHASES = 4096, (0.0, 0.25, 0.5, 0.75)
 
 
-def white_noise(*stretches: NDArray[np.floating]) -> float:
+def white_noise(*stretches: Array) -> float:
     """Standard deviation of the white noise in a signal, in the signal's unit.
 
     The median over Hann-weighted windows of the periodogram's mean over its top 30 %: the median keeps jerks and
@@ -28,10 +52,8 @@ def white_noise(*stretches: NDArray[np.floating]) -> float:
     stands still hide their noise below its resolution and are left out.
 
     Args:
-        stretches: regular samples (n,) without a hole, one or several.
-
-    Returns:
-        Standard deviation; 0 when all stretches are shorter than a window, or the signal never changes.
+        stretches: regular samples (n,) without a hole, one or several; 0 comes of them when all are shorter than a
+            window, or the signal never changes.
     """
     samples = sum(values.size for values in stretches)
     cut = {window: _windows(stretches, window) for window in WINDOWS}
@@ -51,20 +73,66 @@ def white_noise(*stretches: NDArray[np.floating]) -> float:
     return float(np.sqrt(np.median(np.mean(power[:, top] / shape, axis=1)) / median))
 
 
-def _windows(stretches: tuple[NDArray[np.floating], ...], window: int) -> NDArray[np.floating]:
+def _windows(stretches: tuple[Array, ...], window: int) -> Array:
     """Second differences of the stretches in whole windows that span no hole (k, window)."""
     parts = [np.diff(values, 2) for values in stretches if values.size >= window + 2]
     rows = [part[: part.size // window * window].reshape(-1, window) for part in parts]
     return np.concatenate(rows) if rows else np.empty((0, window))
 
 
-def resolution(values: NDArray[np.floating]) -> float:
-    """Step between the values that a signal takes, in its unit; 0 where hardly a value occurs twice.
+def resolution(values: Array) -> float:
+    """Step between the values (n,) that a signal takes, in its unit; 0 where hardly a value occurs twice.
 
     The median, as steps that no sample fell on are missing, and a torque of a saturating motor has uneven ones.
-
-    Args:
-        values: (n,) samples.
     """
     levels = np.unique(values)
     return float(np.median(np.diff(levels))) if 1 < levels.size <= values.size / REPEATED else 0.0
+
+
+def common_step(values: Array, least: float) -> float:
+    """The step of which all distances between values (n,) are multiples; 0 where that is no larger than `least`.
+
+    By Euclid's algorithm on all distances at once, so that steps that no sample fell on do no harm.
+    """
+    levels = np.unique(values)
+    distances = np.diff(levels)
+    precise = 8.0 * np.finfo(float).eps * float(np.abs(values).max(initial=0.0))
+    distances = distances[distances > precise]
+    while distances.size:
+        step = float(distances.min())
+        if step <= max(least, precise):
+            return 0.0
+        left = np.abs(distances - step * np.round(distances / step))
+        left = left[left > max(TOLERANCE * step, precise)]
+        if not left.size:
+            return step
+        distances = np.append(left, step)
+    return 0.0
+
+
+def rounding_spectrum(stretches: Sequence[Array], smooth: GaussianFilter, step: float) -> tuple[Array, Array]:
+    """Angular frequencies - rad/s (k,) - and the power of what rounding leaves there - the signal's unit squared (k,).
+
+    White noise of a variance has that value at all frequencies. The way is read from the signal itself, smoothed.
+
+    Args:
+        stretches: regular samples (n,) without a hole.
+        smooth: tells the way from the steps.
+        step: q.
+    """
+    every = replace(smooth, width=SMOOTHER * smooth.width, stride=1)
+    omega = np.pi / smooth.sample_period * np.linspace(0.0, 1.0, WINDOW // 2 + 1)
+    total, samples = np.zeros(omega.size), 0
+    for values in stretches:
+        length = min(WINDOW, values.size - 2 * every.margin)
+        if length < SHORTEST:
+            continue
+        (way,) = every(values, 0)
+        taper = np.hanning(length)
+        for phase in PHASES:
+            steps = way / step + phase
+            error = step * (np.round(steps) - steps)
+            cut = np.lib.stride_tricks.sliding_window_view(error, length)[:: max(1, length // 2)]
+            power = np.abs(np.fft.rfft(cut * taper, WINDOW, axis=1)) ** 2 / np.sum(taper**2)
+            total, samples = total + length * power.sum(axis=0), samples + length * cut.shape[0]
+    return omega, total / max(samples, 1)

@@ -27,7 +27,7 @@ SI_UNITS: dict[str, tuple[str, str]] = {
     "torque_reference": ("N*m", "N"),
 }
 
-#: What is known to act on an axis, which no file holds (`bench.trace.known_torque`).
+#: What is known to act on an axis, which no file holds (`bench.trace.trace.with_known`).
 KNOWN_TORQUE, KNOWN_MOMENTUM = "known_torque", "known_momentum"
 
 #: Torque may also come as a share of the rated torque (EPOS reports %); a rig's `rated_torque` makes it N*m.

@@ -18,11 +18,33 @@ from bench.errors import InputError
 from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, choose, reading_options
 from bench.trace.in_si import InSI, in_si
+from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_TORQUE
 from bench.trace.time_base import HOLE, TimeBase, regular
 from bench.trace.wraps import Wraps
 
 if TYPE_CHECKING:
     from bench.trace.from_arrays import Arrays
+
+#: Magnitudes that no servo axis can have, far beyond any: a value within them may be wrong, one outside them certainly
+#: is, by a wrong unit or a damaged file, or its square overflows or vanishes.
+#: Largest magnitude of a signal - SI; of time it is 30,000 years, of position a spindle's turns in a year.
+LARGEST = {
+    "time": 1e12,
+    "position": 1e12,
+    "velocity": 1e8,
+    "acceleration": 1e12,
+    "current": 1e8,
+    "torque": 1e10,
+    "force": 1e12,
+    "voltage": 1e8,
+    "temperature": 1e8,
+    KNOWN_TORQUE: 1e12,
+    KNOWN_MOMENTUM: 1e12,
+}
+#: A signal that never exceeds this has a square that underflows - SI.
+SMALLEST = 1e-30
+#: Sample periods that a recording can have - s.
+SHORTEST, LONGEST = 1e-9, 1e6
 
 
 @dataclass(frozen=True)
@@ -220,3 +242,53 @@ def unused(chosen: Mapping[str, SignalColumn], recording: Recording) -> list[str
     """Labels of the columns that are no signal of the trace."""
     used = {id(choice.channel) for choice in chosen.values()}
     return [channel.label for channel in recording.channels if id(channel) not in used]
+
+
+def require_plausible(trace: Trace) -> None:
+    """Raise InputError for the first value beyond what a servo axis can have, or for a signal that is nearly zero.
+
+    A reference has the bounds of its signal.
+    """
+    for name, values in {"time": trace.time, **trace.signals}.items():
+        unit, where = trace.units.get(name, "s"), f"{trace.origin}: {name}"
+        largest = LARGEST[name.removesuffix("_reference")]
+        top = max(float(values.max()), -float(values.min()))
+        if top > largest:
+            first = int(np.argmax(np.abs(values) > largest))
+            found = f"found {values[first]:g} {unit} at {trace.time[first]:g} s, which no servo axis has"
+            raise InputError(where, found, f"allowed: up to {largest:g} {unit}; is the unit right?")
+        if 0.0 < top < SMALLEST:
+            found = f"found nothing beyond {top:g} {unit}"
+            raise InputError(where, found, f"allowed: a signal that exceeds {SMALLEST:g} {unit}; is the unit right?")
+    period = trace.sample_period
+    if not SHORTEST <= period <= LONGEST:
+        allowed = f"allowed: {SHORTEST:g} s to {LONGEST:g} s; is the unit right?"
+        raise InputError(f"{trace.origin}: time", f"found a sample every {period:g} s", allowed)
+
+
+def with_known(trace: Trace, torque: Array, momentum: Array, unit: str) -> Trace:
+    """A recording with known torque on its axis in addition to its inertia and friction, e.g. of the rest of a robot.
+
+        M_known = r + dp/dt
+
+    In this form no acceleration is needed: the filter of the torque balance differentiates the momentum.
+
+    Args:
+        trace: the recording.
+        torque: r, not due to acceleration - unit - (n,).
+        momentum: p, whose rate is the torque due to acceleration - unit*s - (n,).
+        unit: N*m (N).
+    """
+    signals = {KNOWN_TORQUE: torque, KNOWN_MOMENTUM: momentum}
+    return trace.with_signals(signals, {KNOWN_TORQUE: unit, KNOWN_MOMENTUM: f"{unit}*s"})
+
+
+def less_known(trace: Trace, effort: Array) -> Array:
+    """An effort less the known torque, unfiltered - (n,)."""
+    if KNOWN_TORQUE not in trace:
+        return effort
+    rate = np.zeros(len(trace))
+    for part in trace.segments:
+        if part.stop - part.start > 1:
+            rate[part] = np.gradient(trace[KNOWN_MOMENTUM][part], trace.sample_period)
+    return effort - trace[KNOWN_TORQUE] - rate

@@ -9,8 +9,7 @@ from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.layout import lay_out
 from bench.fit.rows import Rows
 from bench.rig.rig import Rig
-from bench.trace.known_torque import less_known, with_known
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, less_known, with_known
 
 RIG = Rig.of({"name": "axis", "kind": "rotary"})
 TIME = 1e-3 * np.arange(8000)

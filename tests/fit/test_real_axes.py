@@ -7,8 +7,7 @@ from bench.assets import asset
 from bench.fit.estimate import modelled_effort
 from bench.fit.identify import identify
 from bench.rig.rig import Rig, load_rig
-from bench.trace.conditioning import condition
-from bench.trace.motion import motion
+from bench.trace.motion import condition, motion
 from bench.trace.read import read
 from tests.fit.motions import NAMES
 from tests.shared import SHARED, needs_shared, null_cases

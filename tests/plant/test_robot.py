@@ -10,7 +10,7 @@ import bench
 from bench.errors import InputError
 from bench.plant.robot import Robot, read_log, rig_within
 from bench.rig.rig import Rig
-from bench.trace.known_torque import less_known
+from bench.trace.trace import less_known
 from tests.export.two_links import C2, HIDDEN, I2, M2, MJCF, elbow_torque, log, motion, shoulder_torque, write_log
 
 ELBOW = Rig.of({"name": "elbow", "kind": "rotary"})

@@ -3,9 +3,8 @@ import pytest
 import scipy.signal
 
 from bench.errors import UndeterminedError
-from bench.trace.conditioning import _coherence, condition, moving
-from bench.trace.known_torque import known_column, less_known, with_known
-from bench.trace.trace import Trace
+from bench.trace.motion import _coherence, condition, known_column, moving
+from bench.trace.trace import Trace, less_known, with_known
 
 
 @pytest.mark.parametrize("order", [1, 2])

@@ -7,8 +7,7 @@ from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.choose import GivenOptions
 from bench.trace.likely import likely_signals
-from bench.trace.plausible import require_plausible
-from bench.trace.trace import assemble
+from bench.trace.trace import assemble, require_plausible
 
 
 def recording(**columns):

@@ -8,7 +8,7 @@ from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.rows import Rows
 from bench.trace.filter import GaussianFilter
-from bench.trace.rounding import common_step, rounding_spectrum
+from bench.trace.noise import common_step, rounding_spectrum
 from bench.trace.trace import Trace
 from tests.diagnosis.constructed import COULOMB, INERTIA, RIG, VISCOUS
 
