@@ -19,9 +19,9 @@ from bench.arrays import Array, rms
 from bench.baseline.check import Allowed, Checked, matched
 from bench.baseline.state import INSTANTS, NamedHere, Response, State
 from bench.comparison.difference import CHANGED, SAME, Comparison, Difference, Measured
-from bench.plant.axis_model import AxisModel, parameter_quantities
+from bench.plant.axis_model import AxisModel, effect_values
 from bench.plant.drive import Cascade, References
-from bench.plant.model_file import SCHEMA, StoredModel, load_model, read_table
+from bench.plant.model_file import SCHEMA, load_model, read_table
 from bench.plant.plant import Plant
 from bench.plant.run import run
 
@@ -51,19 +51,15 @@ def modelled(path: str | Path, baseline: State | None = None) -> State:
         SimulationError: the model diverged.
     """
     stored = load_model(path)
-    own, kind = stored.model.parameters, stored.model.parameters.kind
-    quantities = {q.name: Measured(getattr(own, f), q.unit) for f, q in parameter_quantities(kind).items()}
-    moves = response(stored.model, None if baseline is None else baseline.response)
-    return State("model", True, quantities, tuple(_effects(stored)), rig={"kind": kind.name}, response=moves)
-
-
-def _effects(stored: StoredModel) -> Iterator[NamedHere]:
-    kind = stored.model.parameters.kind
+    kind, effects = stored.model.parameters.kind, []
     for present in stored.model.effects:
-        values, known = dict(present.values), {q.name: q for q in present.effect.quantities}
-        found = {key: Measured(value, kind.unit(known[key])) for key, value in values.items()}
-        shape = [values.get(slot.quantity.name, math.nan) for slot in present.effect.shapes]
-        yield NamedHere(present.effect, found, tuple(shape))
+        values = effect_values(present, kind)
+        shape = [values.get(slot.quantity.name, (math.nan,))[0] for slot in present.effect.shapes]
+        found = {key: Measured(*pair) for key, pair in values.items()}
+        effects.append(NamedHere(present.effect, found, tuple(shape)))
+    quantities = {name: Measured(*pair) for name, pair in stored.model.parameters.values.items()}
+    moves = response(stored.model, None if baseline is None else baseline.response)
+    return State("model", True, quantities, tuple(effects), rig={"kind": kind.name}, response=moves)
 
 
 def response(model: AxisModel, like: Response | None = None) -> Response:

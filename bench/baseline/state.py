@@ -39,6 +39,8 @@ from bench.structured import read_toml
 
 #: Quantities that are not parameters: gaps over their noise floors.
 GAPS = TORQUE_GAP, VELOCITY_GAP = "torque_gap", "velocity_gap"
+#: What a file tells of each gap.
+OF_GAP = "after", "noise_floor"
 #: Share by which the harmonics of two waves may differ and still be one: the pitch of a linear axis is fitted.
 SAME_WAVE = 0.01
 #: Number of instants at which the torque of a model's run is kept.
@@ -93,9 +95,8 @@ class NamedHere:
     def same(self, other: NamedHere) -> bool:
         """Whether it is the same effect of the same harmonic."""
         pairs = zip(self.whole, other.whole, strict=False)
-        return self.effect is other.effect and all(
-            bool(np.isclose(a[1], b[1], rtol=SAME_WAVE, atol=0.0)) for a, b in pairs
-        )
+        alike = all(bool(np.isclose(a[1], b[1], rtol=SAME_WAVE, atol=0.0)) for a, b in pairs)
+        return self.effect is other.effect and alike
 
     def indistinguishable_from(self, other: NamedHere) -> bool:
         """Whether a recording cannot distinguish the two."""
@@ -105,12 +106,9 @@ class NamedHere:
     def compared(self) -> dict[str, Measured]:
         """Quantities that are compared: no angles and instants, whose zero is arbitrary, and no integers."""
         whole = {slot.quantity.name for slot, _ in self.whole}
-        names = [q.name for q in self.effect.quantities if not (q.angle or q.instant or q.name in whole)]
-        return {
-            name: self.quantities[name]
-            for name in names
-            if name in self.quantities and np.isfinite(self.quantities[name].std_error)
-        }
+        kept = [q.name for q in self.effect.quantities if not (q.angle or q.instant or q.name in whole)]
+        known = {name: self.quantities[name] for name in kept if name in self.quantities}
+        return {name: found for name, found in known.items() if math.isfinite(found.std_error)}
 
 
 @dataclass(frozen=True)
@@ -197,49 +195,48 @@ class State:
 
 def write_baseline(path: str | Path, state: State) -> None:
     """Write a state, whole or not at all; InputError where the place cannot be written to."""
-    content: dict[str, Any] = {"schema": SCHEMA, "source": state.source, "names": state.names}
-    if state.verdict:
-        content["verdict"] = state.verdict
-    content["provenance"] = _without_none(state.provenance)
-    content["quantities"] = {name: _measured(found) for name, found in state.quantities.items()}
-    if state.gaps:
-        content["gap"] = {
-            name: {"after": _text(gap.after, gap.unit), "noise_floor": _text(gap.noise_floor, gap.unit)}
-            for name, gap in state.gaps.items()
-        }
-    if state.shows is not None:
-        unit = state.gaps["torque"].unit
-        content["shows"] = {key: _text(value, unit) for key, value in asdict(state.shows).items()}
-    if state.conditions:
-        content["conditions"] = {key: _text(one.value, one.unit) for key, one in state.conditions.items()}
-    if state.rig:
-        content["rig"] = dict(state.rig)
-    if state.response is not None:
-        content["response"] = asdict(state.response)
-    content["effects"] = [_effect(effect) for effect in state.effects]
-    write_text(path, HEAD + tomli_w.dumps(content))
+    gaps, shows = state.gaps, {} if state.shows is None else asdict(state.shows)
+    content = {
+        "schema": SCHEMA,
+        "source": state.source,
+        "names": state.names,
+        "verdict": state.verdict or None,
+        "provenance": state.provenance,
+        "quantities": {name: _measured(found) for name, found in state.quantities.items()},
+        "gap": {k: {key: _text(getattr(one, key), one.unit) for key in OF_GAP} for k, one in gaps.items()} or None,
+        "shows": {key: _text(value, gaps["torque"].unit) for key, value in shows.items()} or None,
+        "conditions": {key: _text(one.value, one.unit) for key, one in state.conditions.items()} or None,
+        "rig": state.rig or None,
+        "response": None if state.response is None else asdict(state.response),
+        "effects": [_effect(effect) for effect in state.effects],
+    }
+    write_text(path, HEAD + tomli_w.dumps(_without_none(content)))
 
 
 def _measured(found: Measured) -> dict[str, Any]:
     """A quantity; one that is exact has a value alone."""
-    table: dict[str, Any] = {"value": _text(found.value, found.unit)}
+    table = {"value": _text(found.value, found.unit)}
     if not found.std_error:
         return table
-    table["std_error"] = _text(found.std_error, found.unit)
-    if math.isfinite(found.degrees):
-        table["degrees"] = round(found.degrees, 1)
-    table["recordings"] = found.recordings
-    table["spread"] = NO_SPREAD if found.spread is None else _text(found.spread, found.unit)
-    return table
+    return table | {
+        "std_error": _text(found.std_error, found.unit),
+        "degrees": round(found.degrees, 1) if math.isfinite(found.degrees) else None,
+        "recordings": found.recordings,
+        "spread": NO_SPREAD if found.spread is None else _text(found.spread, found.unit),
+    }
 
 
 def _effect(effect: NamedHere) -> dict[str, Any]:
-    table: dict[str, Any] = {"name": effect.name, "ambiguous_with": list(effect.ambiguous_with)}
-    if effect.shape is not None:
-        table |= {"shape": list(effect.shape), "on_load": effect.on_load}
-    if effect.torque is not None:
-        table |= {"torque": _measured(effect.torque), "gain": effect.gain}
-    return table | {"quantities": {key: _measured(found) for key, found in effect.quantities.items()}}
+    torque = effect.torque
+    return {
+        "name": effect.name,
+        "ambiguous_with": effect.ambiguous_with,
+        "shape": effect.shape,
+        "on_load": None if effect.shape is None else effect.on_load,
+        "torque": None if torque is None else _measured(torque),
+        "gain": None if torque is None else effect.gain,
+        "quantities": {key: _measured(found) for key, found in effect.quantities.items()},
+    }
 
 
 def _text(value: float, unit: str) -> str:
@@ -292,8 +289,7 @@ class _Table:
 
     def number(self, key: str) -> tuple[float, str]:
         """A number with its unit."""
-        text = self.one(key, str)
-        match = _NUMBER.fullmatch(text)
+        match = _NUMBER.fullmatch(text := self.one(key, str))
         if match is None or not math.isfinite(float(match[1])):
             raise self.error(key, f"found {text!r}", "allowed: a number and its unit")
         return float(match[1]), match[2] or "dimensionless"
@@ -315,7 +311,7 @@ class _Table:
         entries = self.content.get("effects", [])
         effects = [_Table(self.source, f"effects[{k}]", entry).effect() for k, entry in enumerate(entries)]
         shows, conditions, rig = self.table("shows"), self.table("conditions"), self.table("rig")
-        gaps = {name: (one.number("after"), one.number("noise_floor")) for name, one in self.tables("gap").items()}
+        gaps = {name: [one.number(key) for key in OF_GAP] for name, one in self.tables("gap").items()}
         return State(
             source=self.one("source", str),
             names=self.one("names", bool),

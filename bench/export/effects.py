@@ -27,7 +27,7 @@ from bench.effects.axis import Number
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.errors import InputError
 from bench.plant.model_file import StoredModel, load_model
-from bench.plant.stepped_effects import BatchJoints, Joints, SimulationJoint, SteppedEffects, per_axis
+from bench.plant.stepped_effects import Joints, SimulationJoint, SteppedEffects, per_axis
 
 #: Integrators whose step is one evaluation; a Runge-Kutta step has four, between which effects would have to act.
 ONE_STAGE = (
@@ -92,7 +92,7 @@ class Effects:
         running = self._running
         if running is None or running.data is not data or running.model is not model or data.time < running.time:
             if running is not None:
-                running.joint.restore()
+                running.joint.set_added_inertia(0.0)  # the inertia that the model had
             self._running = running = _Running(model, data, self.stored, self.joint)
         return running
 
@@ -118,7 +118,7 @@ class Copies:
         if len(ratios) > 1:
             raise InputError("models", f"found gear ratios of {sorted(ratios)}", "allowed: copies of one joint")
         self._batch, self._time = batch, batch.bind("time")
-        joints = BatchJoints(batch, joint, ratios.pop(), _bristles(batch.model, joint))
+        joints = Joints.of(batch, joint, ratios.pop(), _bristles(batch.model, joint))
         self._effects = _AtJoint(joints, batch.model, joint, models, batch.bind)
 
     def step(self) -> None:

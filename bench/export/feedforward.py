@@ -31,7 +31,7 @@ from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade, References, csv_text
 from bench.plant.plant import Plant
 from bench.plant.run import run
-from bench.plant.stepped_effects import BatchJoints, SteppedEffects
+from bench.plant.stepped_effects import Joints, SteppedEffects
 from bench.rig.rig import Rig
 from bench.trace.channel import split_label
 from bench.trace.signals import scale_in, unit_on
@@ -203,7 +203,7 @@ def resisting_torque(model: AxisModel, position: Array, velocity: Array) -> Arra
     dof = joint.dofadr[0]
     batch.bind("qpos")[:, joint.qposadr[0]], batch.bind("qvel")[:, dof] = position, velocity
     applied, passive, made = (batch.bind(f"qfrc_{part}")[:, dof] for part in ("applied", "passive", "actuator"))
-    effects = SteppedEffects(BatchJoints(batch), [model] * position.size, velocity)
+    effects = SteppedEffects(Joints.of(batch), [model] * position.size, velocity)
     effects.act(np.full(position.size, np.inf), position, velocity, np.zeros(position.size))
     batch.forward()
     return batch.expand("dof_frictionloss")[:, dof] * np.sign(velocity) - applied - passive - made

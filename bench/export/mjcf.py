@@ -18,6 +18,7 @@ import re
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -32,10 +33,9 @@ from bench.plant.model_file import StoredModel
 #: The body of a file that holds the joint alone.
 BODY = "load"
 #: What makes an actuator what it is, but for its name, its joint and its gear.
-FORCE_LAW = ("gaintype", "biastype", "dyntype", "gainprm", "biasprm", "dynprm")
-ACTIVATION = ("actdim", "actearly", "actlimited", "actrange")
-INPUT = ("ctrllimited", "ctrlrange", "ctrlspec", "forcelimited", "forcerange", "nsample", "interp", "delay")
-ACTUATOR = (*FORCE_LAW, *ACTIVATION, *INPUT)
+ACTUATOR = ("gaintype", "biastype", "dyntype", "gainprm", "biasprm", "dynprm")
+ACTUATOR += ("actdim", "actearly", "actlimited", "actrange")
+ACTUATOR += ("ctrllimited", "ctrlrange", "ctrlspec", "forcelimited", "forcerange", "nsample", "interp", "delay")
 TRANSMISSION = mujoco.mjtTrn.mjTRN_JOINT
 #: Whether a joint of a type turns.
 TURNS = {mujoco.mjtJoint.mjJNT_HINGE: True, mujoco.mjtJoint.mjJNT_SLIDE: False}
@@ -126,7 +126,7 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
     body.mass = (mounting.load_mass or NO_MASS) if turns else beyond
     body.inertia = disk_inertia(beyond) if turns else [NO_MASS] * 3
     carried = onto(spec, name, stored, armature)
-    kept = spec.add_default(class_of(stored.name), spec.default)
+    kept = spec.add_default(re.sub(r"\W+", "_", stored.name).strip("_") or "axis", spec.default)
     for key in ("armature", "damping", "stiffness", "frictionloss", "solimp_friction", "solref_friction"):
         setattr(kept.joint, key, getattr(joint, key))
     joint.classname = kept
@@ -163,22 +163,25 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature
     joint.frictionloss = alone.frictionloss * ratio
     joint.solimp_friction, joint.solref_friction = STICKING_IMPEDANCE, [2.0 * spec.option.timestep, 1.0]
     moving = [actuator.name or "an actuator without a name" for actuator in spec.actuators if actuator.target == name]
+    geared: dict[str, Any] = {"target": name, "trntype": TRANSMISSION, "gear": [ratio, 0, 0, 0, 0, 0]}
     for actuator in axis.actuators:
         if actuator.name != DRIVE and (actuator.name != LOAD_TORQUE or actuator.biasprm[0] != 0.0):
-            _add(spec, actuator, f"{name} {actuator.name}", name, ratio)
+            added = spec.add_actuator(name=f"{name} {actuator.name}", **geared)
+            for key in ACTUATOR:
+                setattr(added, key, getattr(actuator, key))
     driven = f"driven by {', '.join(moving)} as before"
     if not moving:
-        spec.add_actuator(name=f"{name} motor", target=name, trntype=TRANSMISSION, gear=[ratio, 0, 0, 0, 0, 0])
+        spec.add_actuator(name=f"{name} motor", **geared)
         effort = model.parameters.kind.effort
         driven = f"the joint had no actuator: '{name} motor' takes the motor's {effort} as control"
     unit = model.parameters.kind.inertia_unit
-    geared = f", behind a gear of {ratio:g}: all values are those of the joint" if ratio != 1.0 else ""
+    behind = f", behind a gear of {ratio:g}: all values are those of the joint" if ratio != 1.0 else ""
     inertia = (
         f"armature {armature.value:.4g} {unit}, {armature.origin}; the links beyond the joint have {links:.4g} {unit} "
-        f"where the MJCF stands{geared}"
+        f"where the MJCF stands{behind}"
     )
-    behind = joint.parent.joints[1:] if model.coupled else []
-    between = [f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in behind]
+    couplings = joint.parent.joints[1:] if model.coupled else []
+    between = [f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in couplings]
     left = [(p.name, STEPPED if p in model.stepped else SEEN) for p in model.effects if p not in model.native]
     return Carried(name, model.structure, tuple(left), (inertia, driven, *between))
 
@@ -190,11 +193,6 @@ def _mass_of(body: mujoco.MjsBody, stored: StoredModel) -> str:
     known = stored.mounting.load_mass is not None
     origin = "of the rig's disk" if known else "stands in for one that is not known: give the body its own"
     return f"inertia of a flat disk; mass {body.mass:.4g} kg {origin}"
-
-
-def class_of(name: str) -> str:
-    """A name as that of a default class: letters, digits and _."""
-    return re.sub(r"\W+", "_", name).strip("_") or "axis"
 
 
 def commented(spec: mujoco.MjSpec, lines: tuple[str, ...]) -> str:
@@ -272,10 +270,3 @@ def _couple(joint: mujoco.MjsJoint, axis: mujoco.MjSpec, name: str, ratio: float
         angle = np.rad2deg(1.0) if joint.compiler.degree and joint.type == mujoco.mjtJoint.mjJNT_HINGE else 1.0
         added.range, added.limited = np.asarray(between.range) / ratio * angle, between.limited
         added.solref_limit, added.solimp_limit = between.solref_limit, between.solimp_limit
-
-
-def _add(spec: mujoco.MjSpec, like: mujoco.MjsActuator, name: str, joint: str, ratio: float) -> None:
-    """Add an actuator like another one to a joint behind a gear."""
-    added = spec.add_actuator(name=name, target=joint, trntype=TRANSMISSION, gear=[ratio, 0, 0, 0, 0, 0])
-    for key in ACTUATOR:
-        setattr(added, key, getattr(like, key))

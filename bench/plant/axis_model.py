@@ -117,6 +117,11 @@ class AxisParameters:
         )
 
     @property
+    def values(self) -> dict[str, tuple[float, str]]:
+        """Its quantities by their names in files, each with its unit."""
+        return {q.name: (getattr(self, field), q.unit) for field, q in parameter_quantities(self.kind).items()}
+
+    @property
     def frictionless(self) -> AxisParameters:
         """The same axis without friction in its mechanics."""
         return replace(self, viscous_friction_coefficient=0.0, coulomb_friction=0.0)
@@ -132,6 +137,12 @@ def parameter_quantities(kind: AxisKind) -> dict[str, Quantity]:
         "load_torque": Quantity(f"load_{kind.effort}", "M_L", kind.effort_unit),
         "motor_inertia": Quantity(f"motor_{kind.inertia}", "J_m", kind.inertia_unit, lower=0.0),
     }
+
+
+def effect_values(present: Present, kind: AxisKind) -> dict[str, tuple[float, str]]:
+    """Quantities of an effect on a kind of axis by their names, each with its unit."""
+    units = {quantity.name: kind.unit(quantity) for quantity in present.effect.quantities}
+    return {key: (value, units[key]) for key, value in present.values}
 
 
 def half_step_inertia(inertia: float, damping: float, timestep: float) -> float:

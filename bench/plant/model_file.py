@@ -29,7 +29,7 @@ from bench.effects.mjcf import LOAD, MOTOR
 from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.errors import InputError
 from bench.names import nearest
-from bench.plant.axis_model import FLOOR, NO_MASS, AxisModel, AxisParameters, parameter_quantities
+from bench.plant.axis_model import FLOOR, NO_MASS, AxisModel, AxisParameters, effect_values, parameter_quantities
 from bench.rig.load import Load
 from bench.rig.rig import Rig
 from bench.structured import read_toml
@@ -106,21 +106,18 @@ def model_xml(stored: StoredModel) -> str:
 
 def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) -> str:
     """The whole model as TOML, every value with its unit; `further` are tables of the same file, by name."""
-    model, kind = stored.model, stored.model.parameters.kind
-    content: dict[str, Any] = {"name": stored.name, "misalignment": _determined(stored.misalignment, "s")}
+    model, kind, mounted = stored.model, stored.model.parameters.kind, stored.mounting.stated
+    content: dict[str, Any] = {"name": stored.name, **_texts({"misalignment": (stored.misalignment, "s")})}
     if math.isfinite(model.peak_effort):
-        content["peak_effort"] = _determined(model.peak_effort, kind.effort_unit)
-    content["parameters"] = {
-        quantity.name: _determined(getattr(model.parameters, field), quantity.unit)
-        for field, quantity in parameter_quantities(kind).items()
-    }
+        content |= _texts({"peak_effort": (model.peak_effort, kind.effort_unit)})
+    content["parameters"] = _texts(model.parameters.values)
     if model.winding is not None:
         units = _winding_units(kind)
-        content["winding"] = {key: _determined(getattr(model.winding, key), unit) for key, unit in units.items()}
+        content["winding"] = _texts({key: (getattr(model.winding, key), unit) for key, unit in units.items()})
     if model.effects:
-        content["effects"] = [_effect_table(present, kind) for present in model.effects]
-    if stored.mounting.stated:
-        content["mounting"] = {key: _determined(value, MOUNTED[key]) for key, value in stored.mounting.stated.items()}
+        content["effects"] = [{"name": one.name, **_texts(effect_values(one, kind))} for one in model.effects]
+    if mounted:
+        content["mounting"] = _texts({key: (value, MOUNTED[key]) for key, value in mounted.items()})
     return tables_toml(kind, {**content, **(further or {})})
 
 
@@ -182,11 +179,6 @@ def _values(table: object, units: Mapping[str, str], where: str) -> dict[str, fl
     return {key: _number(table[key], unit, f"{where}.{key}") for key, unit in units.items()}
 
 
-def _effect_table(present: Present, kind: AxisKind) -> dict[str, float | str]:
-    units = {quantity.name: kind.unit(quantity) for quantity in present.effect.quantities}
-    return {"name": present.name, **{key: _determined(value, units[key]) for key, value in present.values}}
-
-
 def _effects(entries: object, kind: AxisKind, where: str) -> tuple[Present, ...]:
     if not isinstance(entries, list):
         raise InputError(where, f"found {entries!r}", "allowed: a list of tables with a name")
@@ -211,8 +203,10 @@ def _winding_units(kind: AxisKind) -> dict[str, str]:
     return dict(zip(names, (kind.translated("N*m/A"), "ohm", "H", kind.translated("V*s/rad")), strict=True))
 
 
-def _determined(value: float, unit: str) -> float | str:
-    return float(value) if unit == "dimensionless" else f"{float(value)!r} {unit}"
+def _texts(values: Mapping[str, tuple[float, str]]) -> dict[str, float | str]:
+    """Values with their units, in all their digits."""
+    pairs = ((key, float(value), unit) for key, (value, unit) in values.items())
+    return {key: value if unit == "dimensionless" else f"{value!r} {unit}" for key, value, unit in pairs}
 
 
 def _set_masses(spec: mujoco.MjSpec, kind: AxisKind, mounting: Mounting) -> str:

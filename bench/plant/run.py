@@ -19,7 +19,7 @@ from bench.errors import InputError, SimulationError
 from bench.plant.closed_loop import DIVERGED, ClosedLoop, PlannedInputs, States, blocks
 from bench.plant.drive import TORQUE, References
 from bench.plant.plant import Plant
-from bench.plant.stepped_effects import BatchJoints, SteppedEffects, per_axis
+from bench.plant.stepped_effects import Joints, SteppedEffects, per_axis
 
 Progress = Callable[[float], None]
 
@@ -166,7 +166,7 @@ class _SideBySide:
         self._effects = None
         if not all(loop.axis.all_native for loop in loops):
             axes = [loop.axis for loop in loops]
-            self._effects = SteppedEffects(BatchJoints(batch), axes, per_axis(self._velocity))
+            self._effects = SteppedEffects(Joints.of(batch), axes, per_axis(self._velocity))
 
     def state(self) -> tuple[Number, Number]:
         """True position and velocity as they are now - rad (m), rad/s (m/s) - (axes,), or numbers of a lone axis."""

@@ -8,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.axis_kind import AxisKind
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.files import write_text
-from bench.plant.axis_model import AxisParameters, parameter_quantities
+from bench.plant.axis_model import AxisParameters, effect_values
 from bench.plant.closed_loop import States
 from bench.plant.drive import References
 from bench.plant.plant import Plant
@@ -91,7 +90,6 @@ class Truth:
     def as_json(self) -> str:
         """Truth as text, quantities under the names that `bench identify --json` gives them."""
         kind = self.parameters.kind
-        own = {q.name: (getattr(self.parameters, field), q.unit) for field, q in parameter_quantities(kind).items()}
         units = {
             "sample_period": "s",
             "encoder_resolution": kind.length_unit,
@@ -106,16 +104,11 @@ class Truth:
             "profile": self.profile,
             "seed": self.seed,
             "friction": self.friction,
-            "parameters": _with_units(own),
+            "parameters": _with_units(self.parameters.values),
             "sensors": _with_units(sensors),
-            "effects": [{"name": p.name, "parameters": _with_units(_parameters(p, kind))} for p in self.effects],
+            "effects": [{"name": p.name, "parameters": _with_units(effect_values(p, kind))} for p in self.effects],
         }
         return json_text(content) + "\n"
-
-
-def _parameters(present: Present, kind: AxisKind) -> dict[str, tuple[float, str]]:
-    units = {quantity.name: kind.unit(quantity) for quantity in present.effect.quantities}
-    return {key: (value, units[key]) for key, value in present.values}
 
 
 def _with_units(values: dict[str, tuple[float, str]]) -> dict[str, dict[str, float | str]]:

@@ -12,9 +12,8 @@ Values are arrays of axes side by side; of a lone axis they are numbers, of whic
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, Generic, TypeVar
@@ -46,6 +45,9 @@ from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel
 
 Kind = TypeVar("Kind", bound=Effect)
+
+#: Places of the two friction levels among the parameters of a passive motor with bristles.
+BRISTLE_LEVELS = slice(3, 5)
 
 
 class SteppedEffects:
@@ -244,11 +246,7 @@ def per_axis(values: Sequence[float] | Array) -> Number:
     return np.float64(values[0]) if len(values) == 1 else np.array(values, dtype=np.float64)
 
 
-#: Places of the two friction levels among the parameters of a passive motor with bristles.
-BRISTLE_LEVELS = slice(3, 5)
-
-
-class Joints(ABC):
+class Joints:
     """A joint of simulations side by side, all values on the motor's side, (axes,) each, or numbers of a lone axis.
 
     Attributes:
@@ -257,21 +255,31 @@ class Joints(ABC):
 
     Args:
         model: of all simulations.
+        field: gives a field of the model that each simulation may have for itself, to be written - (axes, ...).
+        applied: torques that are applied to the joints beside the drive's, to be written - (axes, nv).
         joint: of the axis.
         ratio: of the gear before it, motor turns per turn of the joint.
         bristles: actuator whose bristles are the friction, if the model has one of this name.
-        applied: torque that is applied to the joint beside the drive's, to be written - (axes,).
     """
 
-    def __init__(self, model: mujoco.MjModel, joint: str, ratio: float, bristles: str, applied: Array) -> None:
-        self._ratio, self._applied = ratio, applied
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        field: Callable[[str], Array],
+        applied: Array,
+        joint: str = AXIS,
+        ratio: float = 1.0,
+        bristles: str = BRISTLES,
+    ) -> None:
         self._dof = int(model.joint(joint).dofadr[0])
+        self._field, self._applied, self._ratio = field, applied[:, self._dof], ratio
         self._bristles = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, bristles)
         self.step, self.bristled = float(model.opt.timestep), self._bristles >= 0
 
-    @abstractmethod
-    def _field(self, name: str) -> Array:
-        """A field of the model that each simulation may have for itself, to be written - (axes, ...)."""
+    @classmethod
+    def of(cls, batch: Batch, joint: str = AXIS, ratio: float = 1.0, bristles: str = BRISTLES) -> Joints:
+        """Those of a batch."""
+        return cls(batch.model, batch.expand, batch.bind("qfrc_applied"), joint, ratio, bristles)
 
     def set_torque(self, torque: Number) -> None:
         """Torque that is applied beside the drive's - N*m (N)."""
@@ -304,28 +312,14 @@ class Joints(ABC):
         return self._field("dof_frictionloss")[:, self._dof : self._dof + 1].T
 
 
-class BatchJoints(Joints):
-    """The joints of a batch; arguments as of `Joints`."""
-
-    def __init__(self, batch: Batch, joint: str = AXIS, ratio: float = 1.0, bristles: str = BRISTLES) -> None:
-        dof = int(batch.model.joint(joint).dofadr[0])
-        super().__init__(batch.model, joint, ratio, bristles, batch.bind("qfrc_applied")[:, dof])
-        self._batch = batch
-
-    def _field(self, name: str) -> Array:
-        return self._batch.expand(name)
-
-
 class SimulationJoint(Joints):
     """One joint of a simulation, beside whatever else is applied to it; what effects change is changed in its model."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, joint: str, ratio: float, bristles: str) -> None:
-        dof = int(model.joint(joint).dofadr[0])
-        super().__init__(model, joint, ratio, bristles, data.qfrc_applied[dof : dof + 1])
-        self._model, self._given = model, 0.0
-
-    def _field(self, name: str) -> Array:
-        return getattr(self._model, name)[None]
+        super().__init__(
+            model, lambda name: getattr(model, name)[None], data.qfrc_applied[None], joint, ratio, bristles
+        )
+        self._given = 0.0
 
     def set_torque(self, torque: Number) -> None:
         """In the place of what was set before; what others apply stays."""
@@ -335,7 +329,3 @@ class SimulationJoint(Joints):
         """See `Joints`."""
         super().add_torque(torque)
         self._given += float(torque)
-
-    def restore(self) -> None:
-        """Give the model back the inertia it had."""
-        self.set_added_inertia(0.0)
