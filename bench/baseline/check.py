@@ -115,9 +115,7 @@ class Checked:
 
 
 def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Checked:
-    """Whether the axis is the same: what it was, what it is by recordings, and the rate of false alarms as `check`
-    has it.
-    """
+    """Whether the axis is what it was, by recordings, at a rate of false alarms as `check` has it."""
     state = now.state
     rig, moved = differing(baseline.rig, state.rig), unlike(baseline.conditions, state.conditions)
     effects = matched(baseline, state)

@@ -52,8 +52,7 @@ TIMESTEP = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class TorqueTable:
-    """Torque - N*m (N) - (n,) over an increasing coordinate - rad/s or rad (m/s, m): linear between points, held beyond
-    them.
+    """Torque - N*m (N) - (n,) over an increasing coordinate - rad/s or rad (m/s, m) -, linear between, held beyond.
 
     Attributes:
         period: after which it repeats itself - rad (m); None where it does not.
@@ -70,9 +69,7 @@ class TorqueTable:
 
 @dataclass(frozen=True, eq=False)
 class Feedforward:
-    """What a drive is told: J - kg*m**2 (kg), F over speed, C over position, and effects that neither holds anything
-    of.
-    """
+    """What a drive is told: J - kg*m**2 (kg), F over speed, C over position, and effects that are in neither."""
 
     inertia: float
     friction: TorqueTable
@@ -127,9 +124,7 @@ def tracking(model: AxisModel, rig: Rig, references: References, feedforward: Fe
 
 @dataclass(frozen=True)
 class Tracking:
-    """RMS errors of a drive along a motion, reference less motion: of position - rad (m) - and velocity - rad/s
-    (m/s).
-    """
+    """RMS of reference less motion along a motion: of position - rad (m) - and velocity - rad/s (m/s)."""
 
     position: float
     velocity: float
@@ -137,9 +132,7 @@ class Tracking:
 
 @dataclass(frozen=True)
 class _SteadyTorque:
-    """What a model is asked for: torque over speed, up to a fastest - rad/s (m/s) -, and position, within a span -
-    rad (m).
-    """
+    """What a model is asked for: torque up to a fastest speed - rad/s (m/s) -, and within a span - rad (m)."""
 
     model: AxisModel
     fastest: float
@@ -211,18 +204,14 @@ def resisting_torque(model: AxisModel, position: Array, velocity: Array) -> Arra
 
 @dataclass(frozen=True)
 class Unit:
-    """How a drive counts a signal: its unit, as written, and SI per one of it, negative where it counts the other
-    way round.
-    """
+    """How a drive counts a signal: its unit, as written, and SI per one of it, negative where it counts backwards."""
 
     text: str
     factor: float
 
     @classmethod
     def of(cls, rig: Rig, signal: str) -> Unit:
-        """Of a signal: as the rig's `[trace.columns]` has it, else SI; InputError where that is none of the
-        signal's.
-        """
+        """As the rig's `[trace.columns]` has a signal, else SI; InputError where that is no unit of it."""
         label = rig.trace.columns.get(signal, "")
         unit = split_label(label)[1] or unit_on(rig.axis_kind, signal)
         factor = scale_in(signal, unit, f"{rig.source}: trace.columns.{signal}").factor

@@ -38,8 +38,7 @@ PLANNED = tuple(name for name, profile in PROFILES.items() if profile is not ful
 
 @dataclass(frozen=True, eq=False)
 class PlannedMotion:
-    """A motion at the drive's ticks, repeated until it is long enough, and quantities with the errors to expect from
-    it.
+    """A motion at the drive's ticks, repeated until it is long enough, and quantities with the errors to expect of it.
 
     `reason` says why it determines nothing; empty if it does.
     """

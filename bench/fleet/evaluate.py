@@ -44,10 +44,10 @@ Plain = dict[str, Any]
 
 @dataclass(frozen=True)
 class Job:
-    """One recording to be evaluated: its path, or URL of a storage that fsspec knows.
-
-    The axis of this name is read where the file holds several and one has it; `diagnose`: whether effects are sought
+    """One recording to be evaluated: its path, or URL of a storage that fsspec knows; `diagnose`: are effects sought
     too.
+
+    The axis of this name is read where the file holds several and one has it.
     """
 
     place: str

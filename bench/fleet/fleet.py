@@ -96,9 +96,7 @@ OF_GAP = {"": "after", "_before": "before", "_noise_floor": "noise_floor", "_uni
 
 
 def tabulate(manifest: Manifest, planned: Sequence[PlannedRecording], results: Sequence[Plain]) -> pa.Table:
-    """The manifest's columns, and behind them what was found (n rows); InputError where a name of the two is the
-    same.
-    """
+    """The manifest's columns, and behind them what was found (n rows); InputError where both have one name."""
     table = manifest.table.replace_schema_metadata(None)
     for name, kind, values in _columns(planned, results):
         if name in manifest.table.column_names:

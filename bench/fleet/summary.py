@@ -73,9 +73,7 @@ class Changed:
 
 @dataclass(frozen=True)
 class ShownEffect:
-    """An effect that so many recordings of an axis show, `of` those that were diagnosed, `since` a time of the
-    manifest.
-    """
+    """An effect that so many recordings show, `of` those of the axis that were diagnosed, `since` a time."""
 
     axis: str
     name: str
@@ -86,9 +84,7 @@ class ShownEffect:
 
 @dataclass(frozen=True)
 class Concern:
-    """Why a person should look at an axis: one of `KINDS`, in so many recordings `of` the axis, the latest and its
-    reason.
-    """
+    """Why a person should look, one of `KINDS`: in so many recordings `of` the axis, the latest and its reason."""
 
     axis: str
     kind: str

@@ -41,8 +41,7 @@ def on_dask(
     workers: int,
     scheduler: str | None,
 ) -> Iterator[tuple[int, Result | Failure]]:
-    """Results by the items' numbers, in the order in which they come; other arguments as `bench.jobs.each.each` has
-    them.
+    """Results by the items' numbers, in the order in which they come; other arguments as of `bench.jobs.each.each`.
 
     InputError where there is no such cluster, or its workers have no servobench of this version.
     """

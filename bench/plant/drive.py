@@ -126,9 +126,7 @@ class CascadeDrive:
 
 @dataclass(frozen=True, eq=False)
 class FollowReferences(Controller):
-    """The drive of one axis along its references (ticks,), friction made in software where there is an `emulation`; it
-    has of the motion what the axis' encoder sees.
-    """
+    """The drive of one axis along references (ticks,), which sees what the encoder does and may emulate friction."""
 
     cascade: Cascade
     references: References

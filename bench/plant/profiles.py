@@ -160,9 +160,7 @@ PROFILES: dict[str, Profile] = {
 
 
 def plan(name: str, limits: MotionLimits) -> References:
-    """The motion of a named profile, slowed down until it fits into the travel; InputError if there is none of the
-    name.
-    """
+    """The motion of a named profile, slowed down until it fits into the travel; InputError where there is none."""
     if name not in PROFILES:
         found = f"found '{name}'{nearest(name, list(PROFILES))}"
         raise InputError("--profile", found, f"allowed: {', '.join(PROFILES)}")
@@ -232,10 +230,9 @@ def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: 
 def through_speeds(
     speeds: Sequence[float], dwell: float, acceleration: float, ramp_time: float, period: float
 ) -> References:
-    """Motion from rest through speeds - rad/s (m/s) -, each held for `dwell` - s.
+    """Motion from rest through speeds - rad/s (m/s) -, each held for `dwell` - s; `period` as of `s_curve`.
 
-    At most with an acceleration - rad/s**2 (m/s**2) - that builds up and fades in `ramp_time` - s; `period` as
-    `s_curve`.
+    At most with an acceleration - rad/s**2 (m/s**2) - that builds up and fades in `ramp_time` - s.
     """
     durations, accelerations = [], []
     for change in np.diff([0.0, *speeds]):

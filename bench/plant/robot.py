@@ -50,9 +50,7 @@ DISABLED = (
 
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """A robot around one of its joints: the model without armature, damping and friction of it, and the file it is
-    from.
-    """
+    """A robot around one of its joints: a model without armature, damping and friction of it, and its file."""
 
     model: mujoco.MjModel
     joint: str

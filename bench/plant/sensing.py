@@ -106,9 +106,7 @@ class Sensors:
         return cls(told.sample_period, told.encoder_resolution, *noise, rig.motor.torque_per_ampere, rig.axis_kind)
 
     def stride(self, period: float) -> int:
-        """Ticks of a drive with this period - s - from one sample to the next; InputError if there is no whole
-        number.
-        """
+        """Ticks of a drive with this period - s - from a sample to the next; InputError if there is no whole number."""
         stride = max(1, round(self.sample_period / period))
         if abs(stride * period / self.sample_period - 1.0) > 1e-9:
             allowed = f"allowed: a multiple of the control period of {period:g} s"

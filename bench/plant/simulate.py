@@ -28,8 +28,8 @@ SCHEMA = "bench.truth/1"
 
 @dataclass(frozen=True)
 class Simulated:
-    """One simulated recording: what the sensors recorded, what it was simulated from, the true motion at the drive's
-    ticks - (ticks, 1) - and what the drive followed.
+    """What the sensors recorded, what of, the true motion at the drive's ticks - (ticks, 1) - and what the drive
+    followed.
     """
 
     trace: Trace

@@ -70,8 +70,7 @@ class SoftTracking:
 
 @dataclass(frozen=True)
 class Tracked:
-    """What a held model reports at the samples of its recording - rad (m), rad/s (m/s) - (n,); nan outside
-    `stretches_of`.
+    """What a held model reports at its recording's samples - rad (m), rad/s (m/s) - (n,); nan outside `stretches_of`.
 
     Where the recording holds no position, that of each stretch counts from zero.
     """
