@@ -8,10 +8,9 @@ from pathlib import Path
 import pytest
 
 from bench.assets import asset
-from bench.course.handin import Cover
 from bench.course.recordings import LabRecordings
-from bench.course.report import lab_document
-from bench.course.result import DoneTask
+from bench.course.report import Cover, lab_document
+from bench.course.result import TaskResult
 from bench.files import write_text
 from bench.fit.identify import identify
 from bench.names import cell, readable
@@ -102,7 +101,7 @@ def test_names_are_no_formulas_in_a_spreadsheet():
 
 
 def test_names_are_text_in_html():
-    results = [DoneTask(f"t{place}", name, (f"axis: {name}",)) for place, name in enumerate(NAMES)]
+    results = [TaskResult((f"axis: {name}",), key=f"t{place}", title=name) for place, name in enumerate(NAMES)]
     page = html(
         lab_document(results, LabRecordings.in_folder(None), Cover(NAMES[0], tuple((name, name) for name in NAMES)))
     )

@@ -45,8 +45,7 @@ def lab(
 
 
 def _record(folder: Path, students: int | None, seed: int) -> None:
-    from bench.course.record import record
-    from bench.course.students import record_class
+    from bench.course.record import record, record_class
     from bench.report.terminal import progress
 
     with progress("recording") as done:
@@ -54,8 +53,7 @@ def _record(folder: Path, students: int | None, seed: int) -> None:
 
 
 def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
-    from bench.course.grade import grade_class
-    from bench.course.grades import grades_table, write_grades
+    from bench.course.grade import grade_class, grades_table, write_grades
 
     if truth is None:
         raise typer.BadParameter("--grade needs --truth FILE, which --record --students wrote")

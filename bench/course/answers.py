@@ -8,60 +8,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.arrays import Array
-from bench.course.axis import KG_CM2, RPM, rotor_inertia, torque_constant
-from bench.course.corner import decline
+from bench.course.axis import KG_CM2, RPM, motor_value, torque_constant
+from bench.course.catapult import fit_path
+from bench.course.friction import DELAY, WIDTH, filtered_acceleration
+from bench.course.peak_torque import decline
 from bench.course.recordings import LabRecordings, LabRun
-from bench.course.t01_catapult import fit_path
-from bench.course.t03_torque_constants import torque_constants
-from bench.course.t04_torque_constant_curve import coefficients
-from bench.course.t08_fast_samples import DELAY, WIDTH, filtered_acceleration
-from bench.course.t10_peak_torque import LEAST_TORQUE
+from bench.course.torque_constants import coefficients, datasheet_points
 from bench.errors import UndeterminedError
 from bench.fit.lab import LEAST_SPEED, backward_difference, least_squares, mean_inertia
 from bench.rig.rig import Rig
 
-
-@dataclass(frozen=True)
-class Question:
-    """A quantity that a student hands in.
-
-    Attributes:
-        task: number in the course.
-        name: of the quantity in the form.
-        unit: as pint reads it; of the form, answers in another one are converted.
-        tolerance: share by which a right answer may be off: other filters, thresholds and ways to read a corner are
-            right too. None where they make any value; it then only helps to recognise a mistake.
-        near_zero: what stands for the value in that share where it is zero.
-    """
-
-    task: str
-    name: str
-    unit: str
-    tolerance: float | None
-    near_zero: float = 0.0
-
-
-QUESTIONS = (
-    Question("1", "catapult_a", "1/m", 0.02),
-    Question("1", "catapult_b", "dimensionless", 0.02),
-    Question("1", "catapult_c", "m", 0.02),
-    Question("1", "catapult_E", "m**2", 0.05),
-    Question("3", "kT_stall", "N*m/A", 0.005),
-    Question("3", "kT_peak", "N*m/A", 0.005),
-    Question("4", "kT_a", "N*m/A**3", 0.01),
-    Question("4", "kT_b", "N*m/A**2", 0.01, near_zero=0.1),
-    Question("4", "kT_c", "N*m/A", 0.005),
-    Question("6", "alpha_max", "rad/s**2", 0.2),
-    Question("6", "J_without_friction", "kg*cm**2", 0.02),
-    Question("6", "J_load_without_friction", "kg*cm**2", 0.02),
-    Question("9", "J", "kg*cm**2", 0.02),
-    Question("9", "K_fric_w", "N*m*s/rad", 0.1),
-    Question("9", "K_fric_0", "N*m", 0.08),
-    Question("9", "E", "(N*m)**2", None),
-    Question("9", "J_load", "kg*cm**2", 0.02),
-    Question("10", "M_max", "N*m", 0.03),
-    Question("10", "corner", "rpm", 0.05),
-)
+#: The corner is looked for from the first sample above this share of the largest torque on.
+AT_THE_TOP = 0.8
 
 
 @dataclass(frozen=True)
@@ -82,6 +40,9 @@ class Way:
     width: int = WIDTH
     set_back: int = DELAY
     rpm: float = 1.0
+
+
+RIGHT = Way()
 
 
 @dataclass(frozen=True)
@@ -164,15 +125,14 @@ class Worked:
         """
         rig = recordings.rig
         theta, error = fit_path(*np.concatenate(recordings.flights.points).T)
-        stall, peak = torque_constants(rig)
-        unchanged = {f"catapult_{name}": float(value) for name, value in zip("abc", theta, strict=True)}
+        stall, peak = datasheet_points(rig)[1].tolist()
+        unchanged = {f"catapult_{name}": value for name, value in zip("abc", theta.tolist(), strict=True)}
         unchanged |= {"catapult_E": error, "kT_stall": stall, "kT_peak": peak}
-        unchanged |= {f"kT_{name}": float(value) for name, value in zip("abc", coefficients(rig), strict=True)}
+        unchanged |= {f"kT_{name}": value for name, value in zip("abc", coefficients(rig).tolist(), strict=True)}
         return cls(recordings, _corner(recordings.fastest), unchanged)
 
-    def answers(self, way: Way | None = None) -> dict[str, float]:
+    def answers(self, way: Way = RIGHT) -> dict[str, float]:
         """Every quantity of the form, in its unit, in one way; those are left out that it gives no value of."""
-        way = way or Way()
         rig = self.recordings.rig
         return {
             **self.unchanged,
@@ -185,7 +145,7 @@ class Worked:
 
 def _corner(run: LabRun) -> float:
     """The corner, read from the torque's top on, whatever unit or constant is made of it."""
-    start = int(np.argmax(run.torque > (1.0 - LEAST_TORQUE) * run.torque.max()))
+    start = int(np.argmax(run.torque > AT_THE_TOP * run.torque.max()))
     try:
         return decline(run.velocity[start:], run.current[start:], run.sample_period).corner
     except UndeterminedError:
@@ -202,18 +162,15 @@ def _seen(run: LabRun, rig: Rig, way: Way) -> LabRun:
 def _torque(rig: Rig, current: Array, way: Way) -> Array:
     if not way.constant:
         return torque_constant(rig).torque(current * way.current)
-    stall, peak = torque_constants(rig)
+    stall, peak = datasheet_points(rig)[1]
     constants = {"stall": stall, "peak": peak, "zero": torque_constant(rig).constant}
     return constants[way.constant] * current * way.current
 
 
 def _task6(run: LabRun, rig: Rig) -> dict[str, float]:
     inertia, largest, _ = mean_inertia(run.acceleration, run.torque)
-    return {
-        "alpha_max": largest,
-        "J_without_friction": inertia * KG_CM2,
-        "J_load_without_friction": (inertia - rotor_inertia(rig)) * KG_CM2,
-    }
+    load = (inertia - motor_value(rig, "rotor_inertia")) * KG_CM2
+    return {"alpha_max": largest, "J_without_friction": inertia * KG_CM2, "J_load_without_friction": load}
 
 
 def _task9(run: LabRun, rig: Rig, way: Way) -> dict[str, float]:
@@ -225,10 +182,5 @@ def _task9(run: LabRun, rig: Rig, way: Way) -> dict[str, float]:
     except UndeterminedError:  # as with speeds so small by a wrong unit that none reaches the threshold
         return {}
     inertia, viscous, coulomb = theta.tolist()
-    return {
-        "J": inertia * KG_CM2,
-        "K_fric_w": viscous,
-        "K_fric_0": coulomb,
-        "E": error,
-        "J_load": (inertia - rotor_inertia(rig)) * KG_CM2,
-    }
+    load = (inertia - motor_value(rig, "rotor_inertia")) * KG_CM2
+    return {"J": inertia * KG_CM2, "K_fric_w": viscous, "K_fric_0": coulomb, "E": error, "J_load": load}

@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from bench.assets import asset
 from bench.errors import InputError
@@ -22,10 +22,10 @@ LAB = asset("data", "rigs", "lab.toml")
 MAINS = 230.0
 #: rpm in one rad/s, kg*cm**2 in one kg*m**2.
 RPM, KG_CM2 = 30.0 / math.pi, 1e4
-#: Where a value comes from.
-RIG_FILE, DATASHEET, ASSUMED, COURSE, EMBEDDED = "rig file", "datasheet", "assumed", "course", "embedded rig"
-#: Words that a source in the motor catalogue begins with, and what they are called in a report.
-_CATALOGUE = (("assumed", ASSUMED), ("datasheet", DATASHEET), ("the course", COURSE))
+#: Words that a source in the motor catalogue begins with, which a report calls it by.
+_CATALOGUE = ("assumed", "datasheet", "the course")
+#: What values of the motor are needed for.
+_NEEDED = {"rotor_inertia": "J_load = J - J_motor needs it", "peak_current": "the run-up is limited by it"}
 
 
 def lab_rig() -> Rig:
@@ -55,45 +55,23 @@ def without_friction(rig: Rig) -> Rig:
 
 
 def torque_constant(rig: Rig) -> TorqueConstant:
-    """kT(Iq) of a rig.
-
-    Raises:
-        InputError: the rig gives none.
-    """
+    """kT(Iq) of a rig; raises InputError where it gives none."""
     constant = rig.motor.torque_per_ampere
     if constant is None:
         raise InputError(f"{rig.source}: motor", "found no torque constant", "give the four datasheet values")
     return constant
 
 
-def rotor_inertia(rig: Rig) -> float:
-    """J_motor - kg*m**2.
-
-    Raises:
-        InputError: the rig does not give it.
-    """
-    if rig.motor.rotor_inertia is None:
-        raise InputError(f"{rig.source}: motor.rotor_inertia", "missing", "J_load = J - J_motor needs it")
-    return rig.motor.rotor_inertia
-
-
-def peak_current(rig: Rig) -> float:
-    """Imax - A.
-
-    Raises:
-        InputError: the rig does not give it.
-    """
-    if rig.motor.peak_current is None:
-        raise InputError(f"{rig.source}: motor.peak_current", "missing", "the run-up is limited by it")
-    return rig.motor.peak_current
+def motor_value(rig: Rig, name: Literal["rotor_inertia", "peak_current"]) -> float:
+    """J_motor - kg*m**2 - or Imax - A; raises InputError where the rig does not give it."""
+    value = getattr(rig.motor, name)
+    if value is None:
+        raise InputError(f"{rig.source}: motor.{name}", "missing", _NEEDED[name])
+    return value
 
 
 def circuit(rig: Rig) -> Circuit:
-    """The motor's winding as its peak curve at MAINS has it.
-
-    Raises:
-        InputError: the motor lacks that curve, or what its circuit needs.
-    """
+    """The motor's winding as its peak curve at MAINS has it; raises InputError where it lacks what that needs."""
     return Circuit.from_motor(rig.motor, peak_curve(rig.motor, MAINS, rig.source), rig.source)
 
 
@@ -118,12 +96,12 @@ class Sources:
     def __call__(self, table: str, key: str) -> str:
         """Source of `[table] key`."""
         if key in self.given.get(table, {}):
-            return RIG_FILE
+            return "rig file"
         entry = motor_sources(self.model) if table == "motor" and self.model is not None else {}
         if key in entry:
             text = entry[key][1]
-            return next((word for start, word in _CATALOGUE if text.startswith(start)), "motor catalogue")
-        return EMBEDDED
+            return next((word.removeprefix("the ") for word in _CATALOGUE if text.startswith(word)), "motor catalogue")
+        return "embedded rig"
 
 
 def joined(*sources: str) -> str:

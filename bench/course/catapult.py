@@ -1,4 +1,4 @@
-"""The catapult in MuJoCo: flights with scatter in launch and sensor, and the parabola that each of them truly is."""
+"""The catapult: flights simulated in MuJoCo, and task 1, the path z = a*y**2 + b*y + c through all their points."""
 
 from __future__ import annotations
 
@@ -11,18 +11,27 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.assets import asset
-from bench.errors import SimulationError
+from bench.course.recordings import LabRecordings
+from bench.course.result import Number, TaskResult, chart, curve, panel
+from bench.errors import SimulationError, UndeterminedError
 from bench.files import write_text
 from bench.plant.closed_loop import DIVERGED
+from bench.report.document import Chart
 from bench.structured import json_text
 
 FLIGHTS, POINTS = 10, 20
+#: Units of a, b and c.
+UNITS = {"a": "1/m", "b": "1", "c": "m"}
 #: Angles of the arm from the forward horizontal when it is let go, and when the ball is - rad.
 COCKED, RELEASE = math.radians(200.0), math.radians(135.0)
 #: Scatter of a launch: of the spring's stiffness - share, and of the release - rad; of the sensor: in y and z - m.
 STIFFNESS_SCATTER, RELEASE_SCATTER, SENSOR_SCATTER = 0.015, math.radians(0.5), 0.004
 #: The flight is seen from its release until this height - m.
 LOWEST = 0.05
+#: Distances by which y is measured from further away, to see when the normal equations fail - m.
+SHIFTS = (0.0, 1.0, 10.0, 100.0, 1000.0, 10000.0)
+#: Paths further apart than this are not the same - m.
+APART = 1e-3
 
 
 @dataclass(frozen=True)
@@ -30,12 +39,11 @@ class Flight:
     """A flight from its release on.
 
     Attributes:
-        y, z: path, POINTS evenly in time - m.
+        points: (POINTS, 2) y and z evenly in time - m.
         coefficients: a - 1/m, b, c - m of z = a*y**2 + b*y + c, from the state at the release alone.
     """
 
-    y: Array
-    z: Array
+    points: Array
     coefficients: Array
 
 
@@ -68,8 +76,7 @@ def fly(stiffness_factor: float = 1.0, release: float = RELEASE) -> Flight:
         if data.time > 10.0:
             raise SimulationError(DIVERGED)
     seen = np.linspace(0, len(path) - 2, POINTS).round().astype(int)
-    y, z = np.array(path)[seen].T
-    return Flight(y, z, coefficients)
+    return Flight(np.array(path)[seen], coefficients)
 
 
 def _ball(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float, float, float]:
@@ -85,35 +92,97 @@ def _parabola(y: float, z: float, speed_y: float, speed_z: float, gravity: float
     return np.array([a, slope - 2.0 * a * y, z - slope * y + a * y**2])
 
 
-def scattered_flights(random: np.random.Generator) -> tuple[list[Flight], list[Array]]:
-    """Flights as they were, and (POINTS, 2) points of each as the sensor saw them - m."""
-    flights, seen = [], []
-    for _ in range(FLIGHTS):
-        factor = 1.0 + STIFFNESS_SCATTER * random.standard_normal()
-        flight = fly(factor, RELEASE + RELEASE_SCATTER * random.standard_normal())
-        points = np.stack([flight.y, flight.z], axis=1)
-        flights.append(flight)
-        seen.append(points + SENSOR_SCATTER * random.standard_normal(points.shape))
-    return flights, seen
-
-
 def record_flights(folder: Path, random: np.random.Generator) -> list[Path]:
-    """Write the flights as CSV, one each, and the truth; returns the paths written."""
-    flights, seen = scattered_flights(random)
-    paths = []
-    for number, points in enumerate(seen, start=1):
-        path = folder / f"experiment-{number:02}.csv"
-        rows = "\n".join(f"{y:.4f},{z:.4f}" for y, z in points)
-        write_text(path, f"y [m],z [m]\n{rows}\n")
-        paths.append(path)
-    nominal = fly().coefficients.tolist()
-    units = {"a": "1/m", "b": "1", "c": "m"}
+    """Write flights as a sensor sees them as CSV, one each, and the truth; returns the paths written."""
+    flights, paths = [], []
+    for number in range(1, FLIGHTS + 1):
+        factor = 1.0 + STIFFNESS_SCATTER * random.standard_normal()
+        flights.append(fly(factor, RELEASE + RELEASE_SCATTER * random.standard_normal()))
+        seen = flights[-1].points + SENSOR_SCATTER * random.standard_normal((POINTS, 2))
+        paths.append(folder / f"experiment-{number:02}.csv")
+        rows = "\n".join(f"{y:.4f},{z:.4f}" for y, z in seen)
+        write_text(paths[-1], f"y [m],z [m]\n{rows}\n")
+    nominal = zip(UNITS, fly().coefficients.tolist(), strict=True)
     content = {
         "schema": "bench.truth/1",
-        "parameters": {name: {"value": v, "unit": units[name]} for name, v in zip(units, nominal, strict=True)},
+        "parameters": {name: {"value": value, "unit": UNITS[name]} for name, value in nominal},
         "flights": [flight.coefficients.tolist() for flight in flights],
         "sensor_scatter": {"value": SENSOR_SCATTER, "unit": "m"},
     }
     truth = folder / "truth.json"
     write_text(truth, json_text(content) + "\n")
     return [*paths, truth]
+
+
+def columns(y: Array) -> Array:
+    """A = [y**2, y, 1], (n, 3)."""
+    return np.stack([y**2, y, np.ones_like(y)], axis=1)
+
+
+def by_normal_equations(matrix: Array, b: Array) -> Array:
+    """(A'A)^-1 A'b. Its error grows with the condition number's square, as A'A has that."""
+    return np.linalg.inv(matrix.T @ matrix) @ (matrix.T @ b)
+
+
+def by_orthogonal_solver(matrix: Array, b: Array) -> Array:
+    """R^-1 Q'b with A = QR: its error grows with the condition number itself.
+
+    Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 5.3.
+    """
+    q, r = np.linalg.qr(matrix)
+    return np.asarray(np.linalg.solve(r, q.T @ b), dtype=np.float64)
+
+
+def fit_path(y: Array, z: Array) -> tuple[Array, float]:
+    """Coefficients (3,) - 1/m, 1, m - and remaining quadratic error E - m**2 - of points (n,) - m.
+
+    Raises:
+        UndeterminedError: all points at fewer than three places y.
+    """
+    matrix = columns(y)
+    if np.linalg.matrix_rank(matrix) < matrix.shape[1]:
+        reason = "the points lie at fewer than three places y"
+        raise UndeterminedError("path of the throw", reason, "points all along the path")
+    theta = by_orthogonal_solver(matrix, z)
+    return theta, float(np.sum((z - matrix @ theta) ** 2))
+
+
+def path(recordings: LabRecordings) -> TaskResult:
+    """Coefficients and remaining quadratic error; path and points in one diagram; both solvers compared."""
+    flights = recordings.flights
+    y, z = np.concatenate(flights.points).T
+    theta, error = fit_path(y, z)
+    along = np.linspace(y.min(), y.max(), 300)
+    dots = [
+        curve(flight[:, 0], flight[:, 1], f"experiment {k}", "dots") for k, flight in enumerate(flights.points, start=1)
+    ]
+    fitted = curve(along, columns(along) @ theta, "least squares")
+    coefficients = zip(UNITS, theta.tolist(), strict=True)
+    count = (
+        f"{len(flights.points)} experiments, {y.size} points; RMS distance in z {np.sqrt(error / y.size) * 1e3:.2g} mm."
+    )
+    solvers, comparison = compare_solvers(y, z)
+    return TaskResult(
+        (count, solvers, *flights.notes),
+        (*(Number(k, value, UNITS[k], flights.truth.get(k)) for k, value in coefficients), Number("E", error, "m²")),
+        (chart("Task 1: path and all points", panel("y / m", "z / m", *dots, fitted)), comparison),
+    )
+
+
+def compare_solvers(y: Array, z: Array) -> tuple[str, Chart]:
+    """How far the two solvers' paths are apart as y is measured from further away, which leaves the path as it is."""
+    matrices = [columns(y + shift) for shift in SHIFTS]
+    condition = [float(np.linalg.cond(matrix)) for matrix in matrices]
+    apart = [
+        float(np.max(np.abs(matrix @ by_normal_equations(matrix, z) - matrix @ by_orthogonal_solver(matrix, z))))
+        for matrix in matrices
+    ]
+    worst = next((k for k, value in enumerate(apart) if value > APART), len(SHIFTS) - 1)
+    finding = (
+        f"(AᵀA)⁻¹Aᵀb and QR agree within {apart[0]:.1g} m here (condition number {condition[0]:.0f}). They part when "
+        f"A is badly conditioned, for AᵀA has its square: with y measured from {SHIFTS[worst]:g} m away "
+        f"({condition[worst]:.1g}) the paths are {apart[worst]:.1g} m apart."
+    )
+    measured = curve(np.array(condition), np.maximum(apart, 1e-17), "measured", "large dots")
+    axes = panel("condition number of A", "largest difference of the paths / m", measured, log=True)
+    return finding, chart("Task 1: normal equations against an orthogonal solver", axes)

@@ -3,69 +3,76 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
 
-from bench.course import (
-    emulated_friction,
-    equation_of_motion,
-    estimators,
-    operating_range,
-    t01_catapult,
-    t02_difference,
-    t03_torque_constants,
-    t04_torque_constant_curve,
-    t05_run_without_friction,
-    t06_inertia,
-    t07_run_with_friction,
-    t08_fast_samples,
-    t09_least_squares,
-    t10_peak_torque,
-    t11_corner,
-    tracking,
-)
+from bench.course import catapult, difference, examples, friction, inertia, peak_torque, torque_constants, winding
 from bench.course.recordings import LabRecordings
-from bench.course.result import DoneTask, NotDone
+from bench.course.result import EXAMPLE, TaskResult
+from bench.course.tracking import tracking
 from bench.errors import BenchError
+
+
+@dataclass(frozen=True)
+class Task:
+    """A task of the course.
+
+    Attributes:
+        key: its number, or a name for what stands around the tasks.
+        title: of it.
+        do: does it; raises BenchError where something is missing.
+        recorded: whether it needs a recording.
+        example: whether it is about the embedded example, whatever was recorded.
+    """
+
+    key: str
+    title: str
+    do: Callable[[LabRecordings], TaskResult]
+    recorded: bool = True
+    example: bool = False
+
+    def result(self, recordings: LabRecordings) -> TaskResult:
+        """What it comes to, or why it cannot be done."""
+        try:
+            found = self.do(recordings)
+        except BenchError as reason:
+            found = TaskResult(reason=reason)
+        if self.example:
+            found = replace(found, numbers=tuple(replace(number, source=EXAMPLE) for number in found.numbers))
+        return replace(found, key=self.key, title=found.title or self.title, example=self.example)
+
 
 #: Tasks in their order, and what stands around them.
 TASKS = (
-    t01_catapult,
-    t02_difference,
-    t03_torque_constants,
-    t04_torque_constant_curve,
-    t05_run_without_friction,
-    t06_inertia,
-    t07_run_with_friction,
-    t08_fast_samples,
-    t09_least_squares,
-    t10_peak_torque,
-    t11_corner,
-    estimators,
-    operating_range,
-    tracking,
-    equation_of_motion,
-    emulated_friction,
+    Task("1", "Catapult", catapult.path),
+    Task("2", "Backward difference", difference.backward_difference_of_a_sine, recorded=False),
+    Task("3", "Torque constant from the datasheet", torque_constants.at_both_points, recorded=False),
+    Task("4", "Torque constant over current", torque_constants.over_current, recorded=False),
+    Task("5", "Recording without friction", inertia.signals_without_friction),
+    Task("6", "Moment of inertia without friction", inertia.inertia_without_friction),
+    Task("7", "Recording with friction", inertia.signals_with_friction),
+    Task("8", "Filtered acceleration, slow samples removed", friction.samples_that_remain),
+    Task("9", "Moment of inertia and friction by least squares", friction.inertia_and_friction),
+    Task("10", "Peak torque over speed", peak_torque.over_speed),
+    Task("11", "Why the measured corner lies higher", winding.why_the_corner_lies_higher, recorded=False),
+    Task("estimators", "The course's estimators and the bench's", examples.estimators, recorded=False, example=True),
+    Task("range", "Operating range", peak_torque.operating_range),
+    Task("tracking", "Tracking with three load inertias in the feed-forward", tracking),
+    Task("equation", "Load torque and gearbox", examples.equation_of_motion, recorded=False, example=True),
+    Task(
+        "emulation",
+        "Friction in the drive's software and in the mechanics",
+        examples.emulated_friction,
+        recorded=False,
+        example=True,
+    ),
 )
-#: Those that are done on the rig file or the embedded example alone.
-WITHOUT_RECORDING = (
-    t02_difference,
-    t03_torque_constants,
-    t04_torque_constant_curve,
-    t11_corner,
-    estimators,
-    equation_of_motion,
-    emulated_friction,
-)
-#: Keys of tasks that are done on recordings.
-RECORDED = {task.KEY for task in TASKS if task not in WITHOUT_RECORDING}
-
-Results = list[DoneTask | NotDone]
 
 
 def course(
     recordings: LabRecordings,
     progress: Callable[[float], None] = lambda share: None,
     keys: Collection[str] | None = None,
-) -> Results:
+) -> list[TaskResult]:
     """Do every task in order.
 
     Args:
@@ -73,12 +80,9 @@ def course(
         progress: called with the share done.
         keys: of the tasks to do; all without.
     """
-    asked = [task for task in TASKS if keys is None or task.KEY in keys]
-    done: Results = []
+    asked = [task for task in TASKS if keys is None or task.key in keys]
+    results = []
     for number, task in enumerate(asked, 1):
-        try:
-            done.append(task.task(recordings))
-        except BenchError as reason:
-            done.append(NotDone(task.KEY, task.TITLE, reason))
+        results.append(task.result(recordings))
         progress(number / len(asked))
-    return done
+    return results

@@ -16,7 +16,6 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.bounds import read_bounded
-from bench.course.text import text_of
 from bench.errors import InputError
 from bench.files import read_bytes
 from bench.trace.readers.named_arrays import load_mat
@@ -38,6 +37,7 @@ _LAYOUTS: tuple[tuple[Callable[[str], Cells], str], ...] = (
     (lambda line: re.split(r",?\s+", line.strip()), ","),
 )
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|nan", re.IGNORECASE)
+_NAN, _LETTER = re.compile(r"\bnan\b", re.IGNORECASE), re.compile(r"[^\W\dEe_]")
 #: Name of a column, with the flight's number where several stand side by side, and its unit.
 _LABEL = re.compile(r"\W*([^\W\d_]+)[ _]*(\d*)\s*(?:(?:[\[(/]|\bin\b)\s*([^\])]*?)[\])]?)?\W*")
 #: Between the names of columns that blanks separate; a unit belongs to the name before it.
@@ -49,6 +49,18 @@ LEAST = 3
 _ADVICE = "y and z on each line, named in the first one: y [m],z [m]"
 
 Cells = list[str]
+#: Points of each flight, (n, 2) y and z - m, and whether the file told their unit.
+FoundFlights = tuple[list[Array], bool]
+
+
+def text_of(content: bytes) -> str:
+    """A file that a student saved as text: UTF-16 with a byte order mark, UTF-8, else Latin-1."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return content.decode("utf-16", errors="replace")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")
 
 
 @dataclass(frozen=True)
@@ -104,10 +116,12 @@ def read_flights(path: Path) -> Flights:
             notes.append(f"{plain} passed over, as its name says that it holds no flight.")
             continue
         read = flights_of_mat if name.lower().endswith(".mat") else flights_of_text
-        found = read(content, name)
-        if not found.has_units:
-            _require_metres(found.points, name)
-        points += found.points
+        found, has_units = read(content, name)
+        farthest = max(float(np.ptp(flight, axis=0).max()) for flight in found)
+        if not has_units and farthest > FARTHEST:
+            spans = f"found lengths that span {farthest:.4g} without a unit"
+            raise InputError(name, spans, "name it in the first line: y [mm],z [mm]")
+        points += found
     if not points:
         raise InputError(path, "found no table of points", f"allowed: files ending in {', '.join(ENDINGS)}")
     return Flights(points, tuple(notes))
@@ -134,22 +148,6 @@ def _files(path: Path) -> Iterator[tuple[str, bytes]]:
         yield str(path), read_bytes(path, "a table of points")
 
 
-def _require_metres(points: list[Array], where: str) -> None:
-    farthest = max(float(np.ptp(flight, axis=0).max()) for flight in points)
-    if farthest > FARTHEST:
-        raise InputError(
-            where, f"found lengths that span {farthest:.4g} without a unit", "name it in the first line: y [mm],z [mm]"
-        )
-
-
-@dataclass(frozen=True)
-class FoundFlights:
-    """Points of each flight, (n, 2) y and z - m, and whether the file told their unit."""
-
-    points: list[Array]
-    has_units: bool
-
-
 @dataclass(frozen=True)
 class ColumnLabel:
     """Name in lower case, number of the flight or an empty text, and unit or None."""
@@ -167,15 +165,12 @@ def flights_of_text(content: bytes, where: str) -> FoundFlights:
     """
     text = text_of(content).splitlines()
     lines = [(k, line.strip("\r\n")) for k, line in enumerate(text, 1) if line.strip(" ;,\t\r")]
-    header = next((k for k, (_, line) in enumerate(lines) if not re.search(r"[^\W\dEe_]", _without_nan(line))), None)
+    header = next((k for k, (_, line) in enumerate(lines) if not _LETTER.search(_NAN.sub("", line))), None)
     if header is None:
         raise InputError(where, "found no line of numbers", f"allowed: at least three points, {_ADVICE}")
-    names, body = [line for _, line in lines[:header]][-2:], lines[header:]
-    split, table = _cells(body, where)
-    labels = _columns(names, split, table.shape[1], where)
-    if labels is None:
-        labels = _unnamed(table, where)
-    return _flights(labels, table, where)
+    names = [line for _, line in lines[:header]][-2:]
+    split, table = _cells(lines[header:], where)
+    return _flights(_columns(names, split, table.shape[1], where) or _unnamed(table, where), table, where)
 
 
 def flights_of_mat(content: bytes, where: str) -> FoundFlights:
@@ -184,17 +179,12 @@ def flights_of_mat(content: bytes, where: str) -> FoundFlights:
     Raises:
         InputError: a damaged file, or none of these in it.
     """
-    variables = load_mat(content, where)
-    arrays = {name: value for name, value in variables.items() if not name.startswith("__")}
+    arrays = {name: value for name, value in load_mat(content, where).items() if not name.startswith("__")}
     pairs = _pairs({name.lower(): np.asarray(value) for name, value in arrays.items()})
-    points = [_complete(np.stack([y, z], axis=1)) for y, z in pairs]
+    points = [np.stack(pair, axis=1) for pair in pairs]
     if not points:
-        points = [_complete(matrix) for value in arrays.values() for matrix in _matrices(value)]
-    return FoundFlights(_checked(points, where), has_units=False)
-
-
-def _without_nan(line: str) -> str:
-    return re.sub(r"\bnan\b", "", line, flags=re.IGNORECASE)
+        points = [matrix for value in arrays.values() for matrix in _matrices(value)]
+    return _checked(points, where), False
 
 
 def _cells(lines: Sequence[tuple[int, str]], where: str) -> tuple[Callable[[str], Cells], Array]:
@@ -227,13 +217,10 @@ def _columns(names: Sequence[str], split: Callable[[str], Cells], width: int, wh
     for line in names:
         cells = split(line)
         cells = cells if len(cells) == width else [cell for cell in _BETWEEN_NAMES.split(line.strip()) if cell]
-        matches = [_LABEL.fullmatch(cell) for cell in cells]
         if len(cells) == width:
-            parsed = [
-                ColumnLabel(m[1].lower(), m[2], (m[3] or "").strip() or None) if m else ColumnLabel("", "", None)
-                for m in matches
-            ]
-            found.append(parsed)
+            matches = map(_LABEL.fullmatch, cells)
+            parsed = ((m[1].lower(), m[2], (m[3] or "").strip() or None) if m else ("", "", None) for m in matches)
+            found.append([ColumnLabel(*label) for label in parsed])
     axes = [columns for columns in found if {"y", "z"} <= {column.name for column in columns}]
     if not axes:
         if names and width > 2:
@@ -263,25 +250,14 @@ def _flights(columns: Sequence[ColumnLabel], table: Array, where: str) -> FoundF
     numbers = list(dict.fromkeys(number for _, number in values))
     lonely = [number for number in numbers if ("y", number) not in values or ("z", number) not in values]
     if len(values) != expected or lonely:
-        raise InputError(
-            where, "found columns y and z that do not pair", "allowed: y1,z1,y2,z2, ... or one y and one z"
-        )
-    points = []
-    for number in numbers:
-        sides = [_metres(*values[name, number], where) for name in "yz"]
-        points.append(np.stack(sides, axis=1))
-    parts = _by_flight_number(columns, table, points)
-    units = all(column.unit is not None for column, _ in values.values())
-    return FoundFlights(_checked([_complete(part) for part in parts], where), units)
-
-
-def _by_flight_number(columns: Sequence[ColumnLabel], table: Array, points: list[Array]) -> list[Array]:
-    """A column that numbers the flights parts those below each other."""
-    numbering = [k for k, column in enumerate(columns) if column.name in _FLIGHT_NUMBERS]
-    if not numbering or len(points) != 1:
-        return points
-    numbers = table[:, numbering[0]]
-    return [points[0][numbers == number] for number in dict.fromkeys(numbers[np.isfinite(numbers)].tolist())]
+        allowed = "allowed: y1,z1,y2,z2, ... or one y and one z"
+        raise InputError(where, "found columns y and z that do not pair", allowed)
+    points = [np.stack([_metres(*values[name, number], where) for name in "yz"], axis=1) for number in numbers]
+    numbering = [table[:, k] for k, column in enumerate(columns) if column.name in _FLIGHT_NUMBERS]
+    if numbering and len(points) == 1:  # flights below each other, parted by their numbers
+        flight = numbering[0]
+        points = [points[0][flight == one] for one in dict.fromkeys(flight[np.isfinite(flight)].tolist())]
+    return _checked(points, where), all(c.unit is not None for c, _ in values.values())
 
 
 def _metres(column: ColumnLabel, values: Array, where: str) -> Array:
@@ -326,16 +302,13 @@ def _matrices(value: object) -> list[Array]:
     return [matrix[:, 1:].astype(np.float64)] if matrix.shape[1] == 3 and np.all(np.diff(matrix[:, 0]) > 0) else []
 
 
-def _complete(points: Array) -> Array:
-    """Points that have both."""
-    return points[np.isfinite(points).all(axis=1)]
-
-
-def _checked(points: list[Array], where: str) -> list[Array]:
-    for number, flight in enumerate(points, 1):
+def _checked(points: Sequence[Array], where: str) -> list[Array]:
+    """Points of each flight that have both y and z."""
+    flights = [flight[np.isfinite(flight).all(axis=1)] for flight in points]
+    for number, flight in enumerate(flights, 1):
         if len(flight) < LEAST:
-            name = f"{where}: flight {number}" if len(points) > 1 else where
+            name = f"{where}: flight {number}" if len(flights) > 1 else where
             raise InputError(name, f"found {len(flight)} points", f"allowed: at least three, {_ADVICE}")
-    if not points:
+    if not flights:
         raise InputError(where, "found no points", f"allowed: at least three, {_ADVICE}")
-    return points
+    return flights

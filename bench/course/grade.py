@@ -1,7 +1,11 @@
-"""Grade a student's answers against the sealed truth: units checked, known mistakes recognised by their figures."""
+"""Grade a class against its sealed truth: units checked, mistakes known by their figures; grades as pages and CSV."""
 
 from __future__ import annotations
 
+import csv
+import hashlib
+import io
+import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,22 +14,27 @@ from typing import Any, Literal
 
 import numpy as np
 
-from bench.course.answers import MISTAKES, QUESTIONS, Mistake, Question
-from bench.course.students import SCHEMA, seal
-from bench.course.submission import GivenAnswer, Submission, find_submissions, read_submission
+from bench.course.answers import MISTAKES, Mistake
+from bench.course.submission import QUESTIONS, GivenAnswer, Question, Submission, find_submissions, read_submission
 from bench.errors import InputError
-from bench.files import read_text
+from bench.files import read_text, write_text
+from bench.names import cell
+from bench.report.document import Document, Neighbour, Neighbours, Paragraph, Points, Section, Table, table
+from bench.report.html import html
 from bench.structured import parse_json
 from bench.units import convert, dimensionality, same_dimension
 
+TITLE = "Industrial Drives, Part 2: grades"
+#: Schema of the truth of a class.
+SEALED = "bench.lab.class/1"
 #: An answer is a mistake's figure within the tolerance of a right one; E, which has none, within this share of it.
 OF_ERROR = 0.04
 #: A distance from a mistake's figure counts up to so many times what is allowed: one answer alone decides nothing.
 FARTHEST = 10.0
 
 Verdict = Literal["right", "wrong", "wrong unit", "not answered", "not judged"]
-#: Figures of each student's mistake in each of its ways, by the mistake's name.
-Figures = Mapping[str, Sequence[Mapping[str, float]]]
+#: What a way of working gives, by the names of the form.
+Figures = Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -49,9 +58,14 @@ class GradedAnswer:
     mistake: Mistake | None = None
 
     @property
-    def off(self) -> float | None:
-        """Share by which it is off what is expected; None where that cannot be told."""
-        return self.value / self.expected - 1.0 if math.isfinite(self.value) and self.expected else None
+    def off(self) -> str:
+        """Share by which it is off what is expected; empty where that cannot be told."""
+        return f"{self.value / self.expected - 1.0:+.2%}" if math.isfinite(self.value) and self.expected else ""
+
+    @property
+    def as_given(self) -> str:
+        """Value and unit; empty without an answer."""
+        return "" if self.given is None else f"{self.given.value:.6g} {self.given.unit or self.question.unit}"
 
     @property
     def remark(self) -> str:
@@ -64,12 +78,16 @@ class GradedAnswer:
             return "Off by more than other right ways would be; no mistake that is known gives this figure."
         return ""
 
-    def from_figure(self, way: Mapping[str, float]) -> float:
+    def from_figure(self, way: Figures) -> float:
         """Distance from a mistake's figure, 1 where it is just recognised."""
-        figure = _number(way.get(self.question.name))
+        figure = way.get(self.question.name, math.nan)
         if not math.isfinite(figure) or figure == 0.0:
             return math.inf
         return abs(self.value / figure - 1.0) / (self.question.tolerance or OF_ERROR)
+
+    def explained_by(self, ways: Sequence[Figures]) -> bool:
+        """Whether it is wrong, and a mistake's figure in one of its ways."""
+        return self.verdict == "wrong" and any(self.from_figure(way) <= 1.0 for way in ways)
 
 
 @dataclass(frozen=True)
@@ -90,14 +108,24 @@ class GradedStudent:
         return sum(answer.verdict != "not judged" for answer in self.answers)
 
     @property
+    def score(self) -> str:
+        """How many are right of those judged, in words."""
+        return f"{self.right} of {self.judged}"
+
+    @property
     def wrong(self) -> tuple[GradedAnswer, ...]:
         """Answers that are wrong, by value or unit."""
         return tuple(answer for answer in self.answers if answer.verdict in ("wrong", "wrong unit"))
 
     @property
-    def mistakes(self) -> tuple[Mistake, ...]:
-        """Known mistakes, each once."""
-        return tuple(dict.fromkeys(answer.mistake for answer in self.answers if answer.mistake is not None))
+    def mistakes(self) -> list[str]:
+        """Names of known mistakes, each once."""
+        return list(dict.fromkeys(answer.mistake.name for answer in self.answers if answer.mistake is not None))
+
+    @property
+    def page(self) -> str:
+        """Name of its page."""
+        return f"students/student-{self.student}.html"
 
 
 @dataclass(frozen=True)
@@ -136,6 +164,11 @@ def grade_class(submissions: Path, truth: Path) -> GradedClass:
     return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(graded))))
 
 
+def seal(content: Mapping[str, Any]) -> str:
+    """Checksum of a truth's content, to detect changes."""
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
 def read_truth_of_class(path: Path) -> Mapping[str, Any]:
     """Truth, expected answers and figures of mistakes by student, as `bench lab --record --students` wrote them.
 
@@ -147,7 +180,7 @@ def read_truth_of_class(path: Path) -> Mapping[str, Any]:
         content = parse_json(read_text(path, "a truth of a class"), path)
     except InputError as error:
         raise InputError(path, error.found, advice) from error
-    if not isinstance(content, dict) or content.get("schema") != SCHEMA:
+    if not isinstance(content, dict) or content.get("schema") != SEALED:
         raise InputError(path, "is no truth of a class", advice)
     if content.pop("seal", None) != seal(content):
         raise InputError(path, "was changed: its seal is broken", advice)
@@ -177,24 +210,16 @@ def grade(submission: Submission, known: Mapping[str, Any]) -> GradedStudent:
 
 
 def _graded(question: Question, given: GivenAnswer | None, known: Mapping[str, Any]) -> GradedAnswer:
-    expected = _number(known["expected"].get(question.name))
-    judged = question.tolerance is not None
-    if given is None:
-        return GradedAnswer(question, None, math.nan, expected, "not answered" if judged else "not judged")
-    if not _fits(given.unit, question.unit):
-        return GradedAnswer(question, given, math.nan, expected, "wrong unit")
-    value = float(convert(np.asarray(given.value), given.unit or question.unit, question.unit))
-    references = (expected, _number(known["truth"].get(question.name)))
-    right = any(abs(value - reference) <= _allowed(question, reference) for reference in references)
-    return GradedAnswer(question, given, value, expected, ("right" if right else "wrong") if judged else "not judged")
-
-
-def _number(value: float | None) -> float:
-    return math.nan if value is None else float(value)
-
-
-def _allowed(question: Question, reference: float) -> float:
-    return (question.tolerance or 0.0) * (abs(reference) or question.near_zero)
+    expected, true = (known[name].get(question.name, math.nan) for name in ("expected", "truth"))
+    value, verdict = math.nan, "not answered"
+    if given is not None:
+        if not _fits(given.unit, question.unit):
+            return GradedAnswer(question, given, value, expected, "wrong unit")
+        value = float(convert(np.asarray(given.value), given.unit or question.unit, question.unit))
+        share = question.tolerance or 0.0
+        right = (abs(value - one) <= share * (abs(one) or question.near_zero) for one in (expected, true))
+        verdict = "right" if any(right) else "wrong"
+    return GradedAnswer(question, given, value, expected, "not judged" if question.tolerance is None else verdict)
 
 
 def _fits(unit: str, wanted: str) -> bool:
@@ -213,7 +238,7 @@ def _measures(unit: str) -> str:
         return f"'{unit}' is no unit"
 
 
-def _with_mistake(answers: Sequence[GradedAnswer], figures: Figures) -> list[GradedAnswer]:
+def _with_mistake(answers: list[GradedAnswer], figures: Mapping[str, Sequence[Figures]]) -> list[GradedAnswer]:
     """Answers of a task, the wrong ones with the mistake whose figures they are, the nearest where several would do.
 
     A task is made in one way: all that a mistake changes in it must be as the mistake has it, E among them.
@@ -222,24 +247,92 @@ def _with_mistake(answers: Sequence[GradedAnswer], figures: Figures) -> list[Gra
     found: list[tuple[int, float, Mistake]] = []
     for mistake in MISTAKES:
         for way in figures.get(mistake.name, ()):
-            explained, apart = _agreement(valued, way)
+            explained = sum(answer.explained_by([way]) for answer in valued)
             if explained:
-                found.append((-explained, apart, mistake))
+                found.append((-explained, _apart(valued, way), mistake))
     if not found:
-        return list(answers)
+        return answers
     # more answers explained first, then the nearer
     best = min(found, key=lambda entry: entry[:2])[2]
     ways = figures[best.name]
-    return [replace(answer, mistake=best) if _is_figure(answer, ways) else answer for answer in answers]
+    return [replace(answer, mistake=best) if answer.explained_by(ways) else answer for answer in answers]
 
 
-def _is_figure(answer: GradedAnswer, ways: Sequence[Mapping[str, float]]) -> bool:
-    return answer.verdict == "wrong" and any(answer.from_figure(way) <= 1.0 for way in ways)
-
-
-def _agreement(answers: Sequence[GradedAnswer], way: Mapping[str, float]) -> tuple[int, float]:
-    """How many wrong answers are a mistake's figures, and how far all are from them in shares of what is allowed."""
-    explained = sum(_is_figure(answer, [way]) for answer in answers)
+def _apart(answers: Sequence[GradedAnswer], way: Figures) -> float:
+    """How far answers are from a mistake's figures in shares of what is allowed."""
     apart = [(answer.verdict, answer.from_figure(way)) for answer in answers]
     counted = [min(value, FARTHEST) ** 2 for verdict, value in apart if verdict != "right" or value > 1.0]
-    return explained, math.sqrt(sum(counted) / len(counted)) if counted else 0.0
+    return math.sqrt(sum(counted) / len(counted)) if counted else 0.0
+
+
+def write_grades(graded: GradedClass, out: Path) -> list[Path]:
+    """Write `grades.csv`, `grades.html` and a page for each student into a folder; returns the paths."""
+    contents = {"grades.csv": grades_csv(graded), "grades.html": html(class_document(graded))}
+    contents |= {one.page: html(student_document(one)) for one in graded.students}
+    for name, content in contents.items():
+        write_text(out / name, content)
+    return [out / name for name in contents]
+
+
+def class_document(graded: GradedClass) -> Document:
+    """All students: what is right, what is wrong by how much, which mistakes; whose form is missing or not read."""
+    rows = []
+    for one in graded.students:
+        wrong = ", ".join(f"{answer.question.name} {answer.off}".strip() for answer in one.wrong)
+        rows.append((one.student, one.score, wrong, ", ".join(one.mistakes)))
+    missing = f"No submission of: {', '.join(graded.missing)}."
+    blocks = (
+        *((Paragraph(text=missing),) if graded.missing else ()),
+        *((Points(items=tuple(map(str, graded.unread))),) if graded.unread else ()),
+        table("Answers", ("student", "right", "wrong~", "mistakes~"), rows),
+        Neighbours(files=tuple(Neighbour(name=one.page, about=f"student {one.student}") for one in graded.students)),
+    )
+    return Document(
+        title=TITLE,
+        subject=TITLE,
+        verdict=f"{len(graded.students)} forms graded, {len(graded.unread)} not.",
+        tone="open" if graded.missing or graded.unread else "sure",
+        answers={},
+        sections=(Section(key="students", heading="Students", blocks=blocks),),
+    )
+
+
+def student_document(one: GradedStudent) -> Document:
+    """One student's answers, each with what is to be said of it; what is wrong is marked."""
+    rows = [(a.question.task, a.question.name, a.as_given, a.verdict, a.remark) for a in one.answers]
+    wrong = [place for place, answer in enumerate(one.answers) if answer in one.wrong]
+    answers = table("Answers", ("task", "quantity", "your answer", "verdict", "remark~"), rows, wrong)
+    return Document(
+        title=f"{TITLE}, student {one.student}",
+        subject=TITLE,
+        verdict=f"Student {one.student}: {one.score} right",
+        tone="open" if one.wrong else "sure",
+        answers={},
+        sections=(Section(key="answers", heading="Answers", blocks=(answers,)),),
+    )
+
+
+def grades_csv(graded: GradedClass) -> str:
+    """A row an answer."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(["student", "task", "quantity", "given", "unit", "expected", "in", "verdict", "mistake"])
+    for one in graded.students:
+        for answer in one.answers:
+            asked, given = answer.question, answer.given
+            value, unit = (given.value, given.unit or asked.unit) if given is not None else ("", "")
+            mistake = answer.mistake.name if answer.mistake is not None else ""
+            expected = f"{answer.expected:.6g}", asked.unit
+            row = (one.student, asked.task, asked.name, value, unit, *expected, answer.verdict, mistake)
+            writer.writerow([cell(str(content)) for content in row])
+    return buffer.getvalue()
+
+
+def grades_table(graded: GradedClass) -> Table:
+    """A row a student: answers that are right, and mistakes."""
+    rows = []
+    for one in graded.students:
+        unknown = ", ".join(answer.question.name for answer in one.wrong if answer.mistake is None)
+        words = [*one.mistakes, *([f"wrong, not known why: {unknown}"] if unknown else [])]
+        rows.append((one.student, one.score, "; ".join(words)))
+    return table("Grades", ("student", "right", "mistakes~"), rows)

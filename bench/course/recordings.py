@@ -86,22 +86,20 @@ def run_of(trace: Trace, rig: Rig, truth: Mapping[str, float] | None = None) -> 
     if velocity.size < LEAST:
         reason = f"{trace.origin} has {velocity.size} samples in a row, {LEAST} are the least"
         raise UndeterminedError("motion", reason, "the whole run without holes")
+    if "position" in trace:
+        angle = trace["position"][part] - trace["position"][part.start]
+    else:
+        angle = cumulative_trapezoid(velocity, dx=trace.sample_period, initial=0.0)
     return LabRun(
         time=trace.time[part] - trace.time[part.start],
         velocity=velocity,
         current=current,
         acceleration=backward_difference(velocity, trace.sample_period),
         torque=torque_constant(rig).torque(current),
-        angle=_angle(trace, part),
+        angle=angle,
         sample_period=trace.sample_period,
         truth=truth or {},
     )
-
-
-def _angle(trace: Trace, part: slice) -> Array:
-    if "position" in trace:
-        return trace["position"][part] - trace["position"][part.start]
-    return cumulative_trapezoid(trace["velocity"][part], dx=trace.sample_period, initial=0.0)
 
 
 @dataclass(frozen=True)
@@ -122,11 +120,7 @@ class LabRecordings:
 
     @classmethod
     def in_folder(cls, folder: Path | None) -> LabRecordings:
-        """Recordings of a folder, or the synthetic ones.
-
-        Raises:
-            InputError: no such folder, or a bad rig file in it.
-        """
+        """Recordings of a folder, or the synthetic ones; raises InputError without it, or with a bad rig file in it."""
         if folder is None:
             return cls(asset("data", "traces"), lab_rig(), Sources.of(None), synthetic=True)
         if not folder.is_dir():
@@ -154,11 +148,7 @@ class LabRecordings:
 
     @cached_property
     def flights(self) -> Flights:
-        """The catapult's experiments, with the throw's truth where that lies beside them.
-
-        Raises:
-            InputError: none, several, or what is no table of points.
-        """
+        """The catapult's experiments, with the throw's truth where that lies beside them; raises as `read_flights`."""
         path = find_flights(self.folder)
         return replace(read_flights(path), truth=read_truth(path / "truth.json"))
 
@@ -185,10 +175,8 @@ class LabRecordings:
             names = ", ".join(path.name for path in found)
             raise InputError(self.folder / f"{name}.trace", f"found several ({names})", "allowed: one of them")
         others = [path.name for path in files]
-        hint = nearest(f"{name}.trace", others)
-        raise InputError(
-            self.folder / f"{name}.trace", f"no such file{hint}", f"found: {', '.join(others) or 'no recording'}"
-        )
+        missing = f"no such file{nearest(f'{name}.trace', others)}"
+        raise InputError(self.folder / f"{name}.trace", missing, f"found: {', '.join(others) or 'no recording'}")
 
     def run(self, name: str) -> LabRun:
         """A recording in SI units, with its truth where that lies beside it.
@@ -203,11 +191,7 @@ class LabRecordings:
 
 
 def read_truth(path: Path) -> Mapping[str, float]:
-    """True values by their names - SI; empty where there is no such file.
-
-    Raises:
-        InputError: a truth file that is none.
-    """
+    """True values by their names - SI; empty where there is no such file. Raises InputError where it is no truth."""
     if not path.exists():
         return {}
     content = parse_json(read_text(path, "a truth"), path)

@@ -6,34 +6,89 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from bench import __version__
-from bench.course.course import RECORDED, Results, course
-from bench.course.handin import Cover, write_sources
+from bench.arrays import Array
+from bench.assets import asset
+from bench.course.axis import KG_CM2
+from bench.course.course import TASKS, course
 from bench.course.pdf import write_pdf
-from bench.course.recordings import LabRecordings
-from bench.course.result import DoneTask, NotDone, Number
+from bench.course.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION, LabRecordings
+from bench.course.result import Number, TaskResult
+from bench.errors import BenchError, InputError
 from bench.files import held, whole, write_text
 from bench.report.document import Document, Paragraph, Section, Table, table
 from bench.report.figures import quiet_about_glyphs
 from bench.report.html import html
 from bench.report.serial import known
-from bench.structured import json_text
+from bench.rig.motor import DATASHEET
+from bench.structured import json_text, read_toml
 
 TITLE = "Industrial Drives, Part 2: Identification of Mechanical Parameters"
 SCHEMA = "bench.lab/1"
+SCRIPTS = asset("data", "lab", "scripts")
+#: Scripts that others import.
+SHARED = ("course", "fast_samples")
+#: Factors to SI of what task 11 takes from task 9, by the names there.
+OF_TASK_9 = {"J": 1.0 / KG_CM2, "K_fric_w": 1.0, "K_fric_0": 1.0}
+#: File of who hands a report in, and rows of a sheet that is filled in by hand.
+FILE, BLANK_ROWS = "group.toml", 3
+EXAMPLE = 'group = "7", and for each member [[student]] with name = "..." and number = "..."'
+DECLARATION = "We recorded and evaluated this ourselves; the sources lie beside this report."
+
+
+@dataclass(frozen=True)
+class Cover:
+    """Who hands a report in.
+
+    Attributes:
+        group: its name or number; empty to be filled in by hand.
+        students: name and student number of each; none likewise.
+    """
+
+    group: str = ""
+    students: tuple[tuple[str, str], ...] = ()
+
+    @classmethod
+    def in_folder(cls, folder: Path | None) -> Cover:
+        """From `group.toml` in a folder; blank without one. Raises InputError where it does not say it as it should."""
+        path = folder / FILE if folder is not None else None
+        if path is None or not path.exists():
+            return cls()
+        content = read_toml(path, f"a cover sheet, {EXAMPLE},")
+        students = content.get("student", [])
+        unknown = sorted(set(content) - {"group", "student"})
+        if unknown or not isinstance(students, list) or not all(_is_student(entry) for entry in students):
+            found = f"found {', '.join(unknown) or 'a student without name or number'}"
+            raise InputError(path, found, f"allowed: {EXAMPLE}")
+        return cls(str(content.get("group", "")), tuple((str(s["name"]), str(s["number"])) for s in students))
+
+    @property
+    def sheet(self) -> Section:
+        """To be signed, with blank rows to be filled in where no students are given."""
+        students = self.students or (("", ""),) * BLANK_ROWS
+        rows = [(name or "_" * 26, number or "_" * 12, "_" * 24) for name, number in students]
+        signed = table(f"Group: {self.group or '_' * 12}", ("name", "student number", "signature"), rows)
+        return Section(key="cover", heading="Cover sheet", blocks=(signed, Paragraph(text=DECLARATION)))
+
+
+def _is_student(entry: object) -> bool:
+    return isinstance(entry, dict) and {"name", "number"} == set(entry)
 
 
 @dataclass(frozen=True)
 class CourseReport:
     """Results of every task, and the files of the report."""
 
-    results: Results
+    results: Sequence[TaskResult]
     files: list[Path]
 
     @property
     def usable(self) -> bool:
         """Whether any task that needs a recording was done."""
-        return any(isinstance(result, DoneTask) and result.key in RECORDED for result in self.results)
+        recorded = {task.key for task in TASKS if task.recorded}
+        return any(result.reason is None and result.key in recorded for result in self.results)
 
 
 def report_course(data: Path | None, out: Path, progress: Callable[[float], None]) -> CourseReport:
@@ -50,27 +105,14 @@ def report_course(data: Path | None, out: Path, progress: Callable[[float], None
     recordings, cover = LabRecordings.in_folder(data), Cover.in_folder(data)
     results = course(recordings, lambda share: progress(0.7 * share))
     with held(out):
-        document = lab_document(results, recordings, cover)
-        json = lab_json(results, recordings.rig.name)
-        files = write_lab_report(out, document, json, lambda share: progress(0.7 + 0.3 * share))
+        document, content = lab_document(results, recordings, cover), lab_json(results, recordings.rig.name)
+        files = write_lab_report(out, document, content, lambda share: progress(0.7 + 0.3 * share))
         sources = write_sources(out / "sources", recordings, results)
     return CourseReport(results, [*sources, *files])
 
 
-def write_lab_report(
-    out: Path, document: Document, json: str, progress: Callable[[float], None] = lambda share: None
-) -> list[Path]:
-    """Write `lab.json`, `lab.html` and `lab.pdf` into a folder.
-
-    Args:
-        out: folder, made if it is not there.
-        document: of the results.
-        json: of the same.
-        progress: called with the share done.
-
-    Returns:
-        Paths written.
-    """
+def write_lab_report(out: Path, document: Document, json: str, progress: Callable[[float], None]) -> list[Path]:
+    """Write results as `lab.json`, `lab.html` and `lab.pdf` into a folder, which is made; returns the paths."""
     paths = [out / f"lab.{ending}" for ending in ("json", "html", "pdf")]
     with held(out), quiet_about_glyphs():
         write_text(paths[0], json)
@@ -82,15 +124,9 @@ def write_lab_report(
     return paths
 
 
-def lab_document(results: Results, recordings: LabRecordings, cover: Cover) -> Document:
-    """The report.
-
-    Args:
-        results: of the course.
-        recordings: it was done on.
-        cover: who hands it in.
-    """
-    done = [result for result in results if isinstance(result, DoneTask)]
+def lab_document(results: Sequence[TaskResult], recordings: LabRecordings, cover: Cover) -> Document:
+    """The report of results on recordings, with who hands it in."""
+    done = [result for result in results if result.reason is None]
     own, missing = sum(not result.example for result in done), len(results) - len(done)
     origin = (
         "Synthetic recordings of the rig in MuJoCo" if recordings.synthetic else f"Recordings in {recordings.folder}"
@@ -109,23 +145,16 @@ def lab_document(results: Results, recordings: LabRecordings, cover: Cover) -> D
         f"{missing} not done.",
         tone="open" if missing else "sure",
         answers=answers,
-        sections=(_cover_sheet(cover), *map(task_section, results)),
+        sections=(cover.sheet, *map(task_section, results)),
         origin=(f"servobench {__version__}",),
     )
 
 
-def _cover_sheet(cover: Cover) -> Section:
-    rows = [(name or "_" * 26, number or "_" * 12, "_" * 24) for name, number in cover.rows]
-    group = f"Group: {cover.group or '_' * 12}"
-    signed = table(group, ("name", "student number", "signature"), rows)
-    return Section(key="cover", heading="Cover sheet", blocks=(signed, Paragraph(text=cover.declaration)))
-
-
-def task_section(result: DoneTask | NotDone) -> Section:
+def task_section(result: TaskResult) -> Section:
     """A task, or what it is missing."""
     key = f"task-{result.key}"
     heading = f"Task {result.key}: {result.title}" if result.key.isdigit() else result.title
-    if isinstance(result, NotDone):
+    if result.reason is not None:
         return Section(key=key, heading=heading, blocks=(Paragraph(text=f"Not done: {result.reason}"),))
     if result.example:
         heading = f"{heading} (embedded example)"
@@ -149,12 +178,12 @@ def _cells(number: Number) -> tuple[str, str, str, str, str]:
     return number.name, f"{number.value:.5g}", number.unit, "" if truth is None else f"{truth:.5g}", error
 
 
-def course_table(results: Results) -> Table:
+def course_table(results: Sequence[TaskResult]) -> Table:
     """Every number with its unit, beside its truth where that is known; of what was not done, what is missing."""
     rows: list[tuple[str, ...]] = []
     marked = []
     for result in results:
-        if isinstance(result, NotDone):
+        if result.reason is not None:
             marked.append(len(rows))
             rows.append((result.key, f"not done: {result.reason}", "", "", "", ""))
             continue
@@ -164,20 +193,15 @@ def course_table(results: Results) -> Table:
     return table("Lab course", ("task", "quantity", "value>", "truth>", "error>", "unit"), rows, marked)
 
 
-def lab_json(results: Results, axis: str) -> str:
-    """Every number with unit, truth where it is known, and source; of what was not done, what is missing.
-
-    Args:
-        results: of the course.
-        axis: its name.
-    """
+def lab_json(results: Sequence[TaskResult], axis: str) -> str:
+    """Every number of a named axis with unit, truth where it is known, and source; else what is missing."""
     content = {"schema": SCHEMA, "version": __version__, "axis": axis, "tasks": [_task(result) for result in results]}
     return json_text(content, ascii_only=False) + "\n"
 
 
-def _task(result: DoneTask | NotDone) -> dict[str, object]:
+def _task(result: TaskResult) -> dict[str, object]:
     named = {"key": result.key, "title": result.title}
-    if isinstance(result, NotDone):
+    if result.reason is not None:
         return {**named, "status": "not_done", "reason": str(result.reason)}
     return {
         **named,
@@ -186,3 +210,57 @@ def _task(result: DoneTask | NotDone) -> dict[str, object]:
         "says": list(result.findings),
         "numbers": [{**vars(number), "value": known(number.value)} for number in result.numbers],
     }
+
+
+def write_sources(folder: Path, recordings: LabRecordings, results: Sequence[TaskResult]) -> list[Path]:
+    """Write the scripts of the tasks that were done, their recordings and values; `python taskNN.py` runs each.
+
+    Returns:
+        The folder, if anything was written.
+    """
+    done = {result.key: result for result in results if result.reason is None}
+    scripts = [path for path in sorted(SCRIPTS.glob("task*.py")) if path.stem[4:].lstrip("0") in done]
+    if not scripts:
+        return []
+    periods = {}
+    for name in (WITHOUT_FRICTION, WITH_FRICTION, FASTEST):
+        try:
+            run = recordings.run(name)
+        except BenchError:  # its tasks are not done, and say why
+            continue
+        periods[name] = run.sample_period
+        signals = np.column_stack([run.time, run.velocity, run.current])
+        _write_table(folder / "recordings" / f"{name}.csv", "time [s],velocity [rad/s],current [A]", signals)
+    if "1" in done:
+        flights = enumerate(recordings.flights.points, 1)
+        rows = np.concatenate([np.column_stack([np.full(len(flight), k), flight]) for k, flight in flights])
+        _write_table(folder / "recordings" / "flights.csv", "flight,y [m],z [m]", rows)
+    write_text(folder / "values.json", _values(recordings, done, periods))
+    for path in (*scripts, *(SCRIPTS / f"{name}.py" for name in SHARED)):
+        write_text(folder / path.name, path.read_text(encoding="utf-8"))
+    return [folder]
+
+
+def _write_table(path: Path, header: str, rows: Array) -> None:
+    lines = "\n".join(",".join(map(repr, row)) for row in rows.tolist())
+    write_text(path, f"{header}\n{lines}\n")
+
+
+def _values(recordings: LabRecordings, done: dict[str, TaskResult], periods: dict[str, float]) -> str:
+    """Values that the scripts take, in SI, each with its source."""
+    motor, sources = recordings.rig.motor, recordings.sources
+    found: dict[str, tuple[float | None, str]] = {
+        name: (getattr(motor, name), sources("motor", name))
+        for name in (*DATASHEET, "rotor_inertia", "cold_resistance_share", "electrical_time_constant")
+    }
+    for curve in motor.peak_curves[:1]:
+        for name in ("corner_speed", "no_load_speed"):
+            found[name] = getattr(curve, name), sources("motor", "peak_curves")
+    disk = recordings.rig.load.disk_inertia if recordings.rig.load else None
+    found["disk_inertia"] = disk, f"geometry of the disk: {sources('load', 'outer_diameter')}"
+    if "9" in done:
+        found |= {name: (done["9"][name].value * factor, "task 9") for name, factor in OF_TASK_9.items()}
+    found |= {f"T_{name}": (period, "recording") for name, period in periods.items()}
+    return (
+        json_text({name: {"value": v, "source": source} for name, (v, source) in found.items() if v is not None}) + "\n"
+    )

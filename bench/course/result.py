@@ -1,4 +1,4 @@
-"""What a task of the course returns: numbers with units, diagrams as data, and what they say."""
+"""What a task of the course comes to: numbers with units, diagrams as data, and what they say."""
 
 from __future__ import annotations
 
@@ -31,24 +31,42 @@ class Number:
     source: str = RECORDING
 
 
-def curve(x: Array, y: Array, name: str = "", style: Style = "line", reach: Array | None = None) -> Series:
-    """Points of a diagram, in the units of its panel's labels: x, y (n,); `wide` is to be drawn over.
+@dataclass(frozen=True)
+class TaskResult:
+    """What a task comes to; what it leaves out of the last four, the course fills in.
 
-    Args:
-        x, y: points (n,).
-        name: for the legend.
-        style: how it is drawn; its colour is by its place in the panel.
-        reach: how far up a line goes from each point (n,), none without.
+    Attributes:
+        findings: a paragraph each.
+        numbers, charts: results and diagrams.
+        key: number of the task in the course, or a name for what stands around the tasks.
+        title: of the task.
+        example: whether it is about the embedded example, whatever was recorded.
+        reason: why it could not be done; None where it was.
     """
-    return series(name, style, "ink", x, y, None if reach is None else (y, y + reach))
+
+    findings: tuple[str, ...] = ()
+    numbers: tuple[Number, ...] = ()
+    charts: tuple[Chart, ...] = ()
+    key: str = ""
+    title: str = ""
+    example: bool = False
+    reason: BenchError | None = None
+
+    def __getitem__(self, name: str) -> Number:
+        return next(number for number in self.numbers if number.name == name)
+
+
+def curve(x: Array, y: Array, name: str = "", style: Style = "line") -> Series:
+    """Points (n,) of a diagram, in the units of its panel's labels; `wide` is to be drawn over."""
+    return series(name, style, "ink", x, y)
 
 
 def panel(x_label: str, y_label: str, *curves: Series, log: bool = False, first: int = 0) -> Panel:
-    """Curves over one pair of axes.
+    """Curves one over the other, each in the next colour.
 
     Args:
         x_label, y_label: of the axes with their units, as `speed / (rad/s)`.
-        curves: one over the other, each in the next colour.
+        curves: over these axes.
         log: whether both axes are logarithmic.
         first: number of the first one's colour, where the curves are others' continued.
     """
@@ -62,36 +80,3 @@ def chart(title: str, *panels: Panel) -> Chart:
     """Panels one above the other; those with the same x label share their x axis."""
     shown = "; ".join(f"{panel.y_label} over {panel.x_label}" for panel in panels)
     return Chart(title=title, alternative=f"{shown}.", panels=panels)
-
-
-@dataclass(frozen=True)
-class DoneTask:
-    """A task that was done.
-
-    Attributes:
-        key: number in the course, or a name for what stands around the tasks.
-        title: of the task.
-        findings: a paragraph each.
-        numbers: results.
-        charts: diagrams.
-        example: whether it is about the embedded example, whatever was recorded.
-    """
-
-    key: str
-    title: str
-    findings: tuple[str, ...] = ()
-    numbers: tuple[Number, ...] = ()
-    charts: tuple[Chart, ...] = ()
-    example: bool = False
-
-    def __getitem__(self, name: str) -> Number:
-        return next(number for number in self.numbers if number.name == name)
-
-
-@dataclass(frozen=True)
-class NotDone:
-    """A task that could not be done: its number, title, and what is missing."""
-
-    key: str
-    title: str
-    reason: BenchError

@@ -1,4 +1,4 @@
-"""What a student hands in: the form to be filled in, as CSV, or the same as JSON."""
+"""What a student is asked and hands in: the form to be filled in, as CSV, or the same as JSON."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench.course.answers import QUESTIONS
-from bench.course.text import text_of
+from bench.course.flights import text_of
 from bench.errors import InputError
 from bench.names import nearest
 from bench.structured import parse_json
@@ -21,6 +20,49 @@ _SIGNS = str.maketrans({"²": "**2", "³": "**3", "·": "*", "^": "**", "Ω": "o
 
 #: Where a row stands, and its quantity, value and unit as they were written.
 Entry = tuple[str, str, str, str]
+
+
+@dataclass(frozen=True)
+class Question:
+    """A quantity that a student hands in.
+
+    Attributes:
+        task: number in the course.
+        name: of the quantity in the form.
+        unit: as pint reads it; of the form, answers in another one are converted.
+        tolerance: share by which a right answer may be off: other filters, thresholds and ways to read a corner are
+            right too. None where they make any value; it then only helps to recognise a mistake.
+        near_zero: what stands for the value in that share where it is zero.
+    """
+
+    task: str
+    name: str
+    unit: str
+    tolerance: float | None
+    near_zero: float = 0.0
+
+
+QUESTIONS = (
+    Question("1", "catapult_a", "1/m", 0.02),
+    Question("1", "catapult_b", "dimensionless", 0.02),
+    Question("1", "catapult_c", "m", 0.02),
+    Question("1", "catapult_E", "m**2", 0.05),
+    Question("3", "kT_stall", "N*m/A", 0.005),
+    Question("3", "kT_peak", "N*m/A", 0.005),
+    Question("4", "kT_a", "N*m/A**3", 0.01),
+    Question("4", "kT_b", "N*m/A**2", 0.01, near_zero=0.1),
+    Question("4", "kT_c", "N*m/A", 0.005),
+    Question("6", "alpha_max", "rad/s**2", 0.2),
+    Question("6", "J_without_friction", "kg*cm**2", 0.02),
+    Question("6", "J_load_without_friction", "kg*cm**2", 0.02),
+    Question("9", "J", "kg*cm**2", 0.02),
+    Question("9", "K_fric_w", "N*m*s/rad", 0.1),
+    Question("9", "K_fric_0", "N*m", 0.08),
+    Question("9", "E", "(N*m)**2", None),
+    Question("9", "J_load", "kg*cm**2", 0.02),
+    Question("10", "M_max", "N*m", 0.03),
+    Question("10", "corner", "rpm", 0.05),
+)
 
 
 @dataclass(frozen=True)

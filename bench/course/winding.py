@@ -1,4 +1,8 @@
-"""The axis driven through its motor's winding: MuJoCo's dcmotor with resistance, inductance and temperature.
+"""Task 11: why the measured corner lies at higher speed than the datasheet's, by simulating the motor's winding.
+
+The corner is where the torque starts to decline. There dIq/dt = 0, so temperature moves it and inductance cannot; what
+inductance does is to flatten the fall beyond it. The axis is driven through MuJoCo's dcmotor with resistance,
+inductance and temperature:
 
     U = R(T)*Iq + L*dIq/dt + Ke*omega, |U| <= U_max;    J*alpha = kT(Iq)*Iq - K_w*omega - K_0*sgn(omega)
 
@@ -9,17 +13,24 @@ voltage U = R(T)*I_set + Ke*omega + L/T_c*(I_set - Iq).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.errors import SimulationError
+from bench.course.axis import MAINS, RPM, circuit, joined, motor_value, torque_constant
+from bench.course.friction import identify_friction
+from bench.course.peak_torque import datasheet_curve, extrapolated_corner, fall
+from bench.course.recordings import LabRecordings
+from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, panel
+from bench.errors import BenchError, InputError, SimulationError
 from bench.plant.axis_model import AxisParameters, build_spec
 from bench.plant.closed_loop import DIVERGED
-from bench.rig.limits import HOT, Circuit
-from bench.rig.motor import TorqueConstant
+from bench.report.document import Chart
+from bench.rig.limits import COLD, HOT, Circuit, peak_curve
+from bench.rig.motor import PeakCurve, TorqueConstant
+from bench.rig.rig import Rig
 
 #: Name of the motor's actuator in mjcf/rotary_axis.xml.
 DRIVE = "drive"
@@ -27,6 +38,14 @@ DRIVE = "drive"
 STEP = 25e-6
 #: Time constant of the current loop - s.
 CURRENT_LOOP = 0.4e-3
+#: Electrical time constants that the split is shown for - s.
+TIME_CONSTANTS = (1e-3, 2e-3, 3e-3, 5e-3, 8e-3)
+#: The run-up lasts as many times J*omega_0/M_max.
+LENGTH = 5.0
+#: Of the drive, torque asked for per missing speed - N*m*s/rad.
+VELOCITY_GAIN = 0.9
+#: Shares of the peak torque at which speeds with and without inductance are compared.
+SHARES = (0.98, 0.9, 0.7, 0.5)
 
 
 @dataclass(frozen=True)
@@ -46,6 +65,11 @@ class WindingModel:
     peak_current: float
     temperature: float
     inductive: bool
+
+    @classmethod
+    def of(cls, rig: Rig, temperature: float, inductive: bool, own: Circuit | None = None) -> WindingModel:
+        """Of a rig's motor at MAINS, whose circuit may be given; raises InputError where the rig lacks something."""
+        return cls(own or circuit(rig), torque_constant(rig), motor_value(rig, "peak_current"), temperature, inductive)
 
     @property
     def resistance(self) -> float:
@@ -69,6 +93,7 @@ class WindingRun:
         voltage: U - V.
         torque: kT(Iq)*Iq - N*m.
         warming: of the winding from start to end - K.
+        limit: U_max - V.
     """
 
     time: Array
@@ -77,16 +102,28 @@ class WindingRun:
     voltage: Array
     torque: Array
     warming: float
+    limit: float
+
+    @property
+    def corner(self) -> float:
+        """Speed from which on full voltage no longer drives peak current - rad/s."""
+        started = int(np.argmax(self.current > 0.999 * self.current.max()))
+        at_limit = self.voltage[started:] >= self.limit * (1.0 - 1e-9)
+        return float(self.velocity[started + int(np.argmax(at_limit))])
+
+    @property
+    def line(self) -> float:
+        """Corner of the line through the fall - rad/s."""
+        return extrapolated_corner(self.velocity, self.current)
+
+    def speed_at(self, share: float) -> float:
+        """Speed at which the falling torque passes a share of its top - rad/s."""
+        last = int(np.flatnonzero(self.torque > 0.999 * self.torque.max())[-1])
+        return float(self.velocity[last + int(np.argmax(self.torque[last:] < share * self.torque.max()))])
 
 
-def run_winding(winding: WindingModel, axis: AxisParameters, demand: Array, velocity_gain: float) -> WindingRun:
-    """Let an axis follow a speed through its motor's winding.
-
-    Args:
-        winding: of the motor.
-        axis: its inertia and friction.
-        demand: (steps,) speed at every STEP - rad/s.
-        velocity_gain: torque asked for per speed missing - N*m*s/rad.
+def run_winding(winding: WindingModel, axis: AxisParameters, demand: Array) -> WindingRun:
+    """Let an axis follow a speed - rad/s, (steps,) at every STEP - through its motor's winding.
 
     Raises:
         SimulationError: it diverged.
@@ -95,7 +132,7 @@ def run_winding(winding: WindingModel, axis: AxisParameters, demand: Array, velo
     data = mujoco.MjData(model)
     circuit, constant, limit = winding.circuit, winding.torque_constant, winding.peak_current
     ke, loop_gain = circuit.back_emf_constant, winding.inductance / CURRENT_LOOP
-    current_gain = velocity_gain / constant.constant
+    current_gain = VELOCITY_GAIN / constant.constant
     record = np.zeros((demand.size, 3))
     for k, wanted in enumerate(demand.tolist()):
         omega = data.qvel[0]
@@ -112,7 +149,7 @@ def run_winding(winding: WindingModel, axis: AxisParameters, demand: Array, velo
         raise SimulationError(DIVERGED)
     velocity, current, voltage = record.T
     time = STEP * np.arange(demand.size, dtype=np.float64)
-    return WindingRun(time, velocity, current, voltage, constant.torque(current), float(data.act[0]))
+    return WindingRun(time, velocity, current, voltage, constant.torque(current), float(data.act[0]), circuit.voltage)
 
 
 def _model(winding: WindingModel, axis: AxisParameters) -> mujoco.MjModel:
@@ -129,3 +166,205 @@ def _model(winding: WindingModel, axis: AxisParameters) -> mujoco.MjModel:
         ctrlspec=int(mujoco.mjtCtrlInput.mjINPUT_VOLTAGE),
     )
     return spec.compile()
+
+
+@dataclass(frozen=True)
+class Split:
+    """The run-up by one cause after the other.
+
+    Attributes:
+        hot: winding at 120 degC, quasi-static.
+        cold: at 20 degC, quasi-static.
+        inductive: at 20 degC with the assumed inductance.
+        others: at 20 degC with an inductance of each of TIME_CONSTANTS.
+        acceleration: at full torque - rad/s**2.
+    """
+
+    hot: WindingRun
+    cold: WindingRun
+    inductive: WindingRun
+    others: tuple[WindingRun, ...]
+    acceleration: float
+
+    @property
+    def by_temperature(self) -> float:
+        """Shift of the corner - rad/s."""
+        return self.cold.corner - self.hot.corner
+
+    @property
+    def by_inductance(self) -> float:
+        """Shift of the corner - rad/s."""
+        return self.inductive.corner - self.cold.corner
+
+    @property
+    def faster(self) -> dict[float, float]:
+        """By how much inductance raises the speed of the same share of the peak torque - rad/s, by the share."""
+        return {share: self.inductive.speed_at(share) - self.cold.speed_at(share) for share in SHARES}
+
+
+def split(rig: Rig, axis: AxisParameters) -> Split:
+    """Let a rig's motor run up an axis hot, then cold, then cold with L, and with other values of L/R."""
+    own = circuit(rig)
+    full = float(torque_constant(rig).torque(np.asarray(motor_value(rig, "peak_current"))))
+    top = own.voltage / own.back_emf_constant
+    demand = np.full(round(LENGTH * axis.inertia * top / full / STEP), top)
+
+    def simulated(temperature: float, inductive: bool, winding: Circuit = own) -> WindingRun:
+        return run_winding(WindingModel.of(rig, temperature, inductive, winding), axis, demand)
+
+    return Split(
+        hot=simulated(HOT, False),
+        cold=simulated(COLD, False),
+        inductive=simulated(COLD, True),
+        others=tuple(simulated(COLD, True, replace(own, time_constant=tau)) for tau in TIME_CONSTANTS),
+        acceleration=(full - axis.coulomb_friction) / axis.inertia,
+    )
+
+
+def identified_axis(recordings: LabRecordings) -> AxisParameters:
+    """The axis as task 9 finds it; the embedded example's where there is no such recording."""
+    try:
+        found = identify_friction(recordings.with_friction)
+    except BenchError:
+        return AxisParameters.from_rig(recordings.example)
+    return AxisParameters(found.inertia, max(found.viscous, 0.0), max(found.coulomb, 0.0))
+
+
+def why_the_corner_lies_higher(recordings: LabRecordings) -> TaskResult:
+    """State how many rpm of the corner's shift each of the two causes is, and what inductance does instead."""
+    rig = recordings.rig
+    found = split(rig, identified_axis(recordings))
+    assumed = recordings.sources("motor", "electrical_time_constant")
+    faster = ", ".join(f"{speed * RPM:.0f} rpm at {share:.0%}" for share, speed in found.faster.items())
+    sheet = peak_curve(rig.motor, MAINS, rig.source).corner_speed
+    findings = (
+        "The corner is the speed at which the torque starts to decline, as full voltage no longer drives peak current: "
+        "U = R·Imax + Ke·ω. The current is still constant there, dIq/dt = 0, so no inductance can move it.",
+        f"Simulated, it lies at {found.hot.corner * RPM:.0f} rpm hot, at {found.cold.corner * RPM:.0f} rpm cold and at "
+        f"{found.inductive.corner * RPM:.0f} rpm cold with inductance (L/R, {assumed}): the cold winding moves it by "
+        f"{found.by_temperature * RPM:+.0f} rpm, as it takes less voltage and leaves more to the back-EMF, the "
+        f"inductance by {found.by_inductance * RPM:+.1f} rpm, and for L/R from 1 to 8 ms alike.",
+        "What inductance does is to flatten the fall: beyond the corner it keeps the current up for about L/R, in "
+        f"which speed rises by α·L/R. The same torque is there at a higher speed, by {faster} of the "
+        "peak. Whoever reads the corner from the line through the fall, or at a few percent below the peak, counts "
+        "this as a shift.",
+        *_measured_findings(recordings, found),
+        f"The winding warms by {found.hot.warming:.1f} K (hot) and {found.cold.warming:.1f} K (cold) during "
+        f"the run-up, which keeps the hot corner {(found.hot.corner - sheet) * RPM:+.0f} rpm from the datasheet's "
+        f"{sheet * RPM:.0f} rpm.",
+        _voltage_finding(rig),
+    )
+    charts = (_torque_chart(rig, found), _dependence_chart(found))
+    return TaskResult(findings, _numbers(found, joined(SIMULATED, f"L/R: {assumed}")), charts)
+
+
+def _numbers(found: Split, with_inductance: str) -> tuple[Number, ...]:
+    speeds = {
+        "corner, hot, quasi-static": (found.hot.corner, SIMULATED),
+        "corner, cold, quasi-static": (found.cold.corner, SIMULATED),
+        "corner, cold, with inductance": (found.inductive.corner, with_inductance),
+        "shift by temperature": (found.by_temperature, SIMULATED),
+        "shift by inductance": (found.by_inductance, with_inductance),
+    }
+    for share, faster in found.faster.items():
+        speeds[f"with inductance faster at {share:.0%} of the torque by"] = faster, with_inductance
+    others = {f"L/R = {tau * 1e3:g} ms": other for tau, other in zip(TIME_CONSTANTS, found.others, strict=True)}
+    speeds |= {f"corner, {words}": (other.corner, SIMULATED) for words, other in others.items()}
+    speeds |= {f"fall later by, {words}": (other.line - found.cold.line, SIMULATED) for words, other in others.items()}
+    return tuple(Number(name, speed * RPM, "rpm", source=source) for name, (speed, source) in speeds.items())
+
+
+def _measured_findings(recordings: LabRecordings, found: Split) -> tuple[str, ...]:
+    """What task 10 measured beside the simulation; nothing where that could not be done, which it says itself."""
+    try:
+        measured = fall(recordings.fastest, recordings.rig)
+    except BenchError:
+        return ()
+    text = (
+        f"Measured in task 10: {measured.corner * RPM:.0f} rpm, "
+        f"{(measured.corner - found.inductive.corner) * RPM:+.1f} rpm from the simulation, and a fall that comes "
+        f"{measured.lag * 1e3:.1f} ms late (L/R as it acts)."
+    )
+    same = (
+        " This recording was made by the same equations: that they agree shows that corner and lag can be read from "
+        "noisy samples at 1 ms, and nothing about a motor."
+    )
+    return (text + same if recordings.fastest.truth else text,)
+
+
+def _voltage_finding(rig: Rig) -> str:
+    """What the circuit leaves out, told by the curve at another voltage."""
+    other = next((curve for curve in rig.motor.peak_curves if curve.mains_voltage != MAINS), None)
+    if other is None:
+        return "The datasheet has one mains voltage only, so what the circuit leaves out does not show."
+    own = circuit(rig)
+    drop = own.resistance * motor_value(rig, "peak_current")
+    shift, time_constant = cross_voltage(own, peak_curve(rig.motor, MAINS, rig.source), other)
+    predicted = (own.voltage * other.mains_voltage / MAINS - drop) / own.back_emf_constant
+    return (
+        f"At {other.mains_voltage:g} V the same circuit has its corner at {predicted * RPM:.0f} rpm, the datasheet at "
+        f"{other.corner_speed * RPM:.0f} rpm: the course's equation leaves out the voltage ω·p·L·Iq at a right angle "
+        "to the back-EMF, which grows with speed. So part of what it counts as resistance is inductance. With both "
+        "curves of the datasheet met by U² = (R·Iq + Ke·ω)² + (ω·p·L·Iq)², the cold winding shifts the corner by "
+        f"{shift * RPM:.0f} rpm only, and L/R at {COLD:g} °C is {time_constant * 1e3:.3g} ms over the number of pole "
+        f"pairs: the assumed {own.time_constant * 1e3:g} ms are of the right size."
+    )
+
+
+def cross_voltage(motor: Circuit, low: PeakCurve, high: PeakCurve) -> tuple[float, float]:
+    """What two peak curves say of a circuit with the voltage at a right angle, U**2 = (R*I + Ke*w)**2 + (w*p*L*I)**2.
+
+    Taking (w_2/w_1)**2 times the equation at corner 1 from that at corner 2 leaves a quadratic in R*I.
+
+    Args:
+        motor: circuit at the mains voltage of `low`.
+        low, high: curves at two mains voltages.
+
+    Returns:
+        Shift of the corner of `low` from hot to cold - rad/s, and p*L/R cold - s; the current cancels out.
+
+    Raises:
+        InputError: no such circuit meets both curves.
+    """
+    ke, voltage, one, two = motor.back_emf_constant, motor.voltage, low.corner_speed, high.corner_speed
+    q, ratio = (two / one) ** 2, high.mains_voltage / low.mains_voltage
+    drop = _positive_root(q - 1.0, 2.0 * ke * (q * one - two), voltage**2 * (ratio**2 - q))
+    across = (voltage**2 - (drop + ke * one) ** 2) / one**2
+    if not across > 0.0:
+        raise InputError("motor.peak_curves", "found two curves that no circuit meets", "give the datasheet's corners")
+    cold = drop * motor.cold_share
+    corner = _positive_root(ke**2 + across, 2.0 * ke * cold, cold**2 - voltage**2)
+    return corner - one, float(np.sqrt(across)) / cold
+
+
+def _positive_root(a: float, b: float, c: float) -> float:
+    """Of a*x**2 + b*x + c with a > 0 > c."""
+    return float((-b + np.sqrt(b**2 - 4.0 * a * c)) / (2.0 * a))
+
+
+def _torque_chart(rig: Rig, found: Split) -> Chart:
+    speed, torque = datasheet_curve(rig)
+    every = slice(None, None, 40)
+    simulated = {
+        f"{HOT:g} °C, quasi-static": found.hot,
+        f"{COLD:g} °C, quasi-static": found.cold,
+        f"{COLD:g} °C, with inductance": found.inductive,
+    }
+    curves = (curve(run.velocity[every] * RPM, run.torque[every], name) for name, run in simulated.items())
+    datasheet = curve(speed * RPM, torque, f"datasheet, {MAINS:g} V", "dashes")
+    return chart("Task 11: simulated peak torque", panel("speed n / rpm", "torque M / (N·m)", datasheet, *curves))
+
+
+def _dependence_chart(found: Split) -> Chart:
+    tau = np.array(TIME_CONSTANTS)
+    from_zero = np.append(0.0, tau)
+    corners = (np.array([one.corner for one in found.others]) - found.cold.corner) * RPM
+    lines = (np.array([one.line for one in found.others]) - found.cold.line) * RPM
+    axes = panel(
+        "electrical time constant L/R / ms",
+        "shift by inductance / rpm",
+        curve(tau * 1e3, corners, "corner", "large dots"),
+        curve(tau * 1e3, lines, "line through the fall", "large dots"),
+        curve(from_zero * 1e3, from_zero * found.acceleration * RPM, "α·L/R at full torque", "dashes"),
+    )
+    return chart("Task 11: inductance moves the fall, not the corner", axes)

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.course import t06_inertia, t09_least_squares, t10_peak_torque
+from bench.course import friction, inertia, peak_torque
 from bench.course.axis import Sources, lab_rig
+from bench.course.record import draw_rig
 from bench.course.recordings import LabRecordings, LabRun
-from bench.course.students import draw_rig
 from bench.errors import UndeterminedError
 from bench.fit.lab import backward_difference
 from bench.report.drive import in_range
@@ -49,15 +49,15 @@ def there_and_back(backward):
 
 def test_6_what_the_load_is_beside_its_theory():
     """J = 20 kg*cm**2 less a rotor of 0.25 over a disk of 18.9578: 4.178 % more."""
-    numbers, findings = t06_inertia.load_inertia(20e-4, recordings_of(), true=22.5)
+    numbers, findings = inertia.load_inertia(20e-4, recordings_of(), true=22.5)
     load, theory = numbers
     disk = 1e4 * math.pi / 32.0 * 7850.0 * 0.0065 * (0.14**4 - 0.014**4)
     assert (load.value, load.truth) == pytest.approx((19.75, 22.25), rel=1e-12)
     assert theory.value == pytest.approx(disk, rel=1e-12)
     assert f"{19.75 / disk - 1.0:+.2%} off" in findings[1]
-    for inertia in (0.0, -1e-3, math.nan):
+    for negative in (0.0, -1e-3, math.nan):
         with pytest.raises(UndeterminedError, match="opposite signs"):
-            t06_inertia.require_positive(inertia)
+            inertia.require_positive(negative)
 
 
 def test_6_inertia_is_the_mean_over_a_quarter_of_the_largest_acceleration_and_more():
@@ -65,7 +65,7 @@ def test_6_inertia_is_the_mean_over_a_quarter_of_the_largest_acceleration_and_mo
     steps = np.array([0.0, 0.04, 0.01, -0.04, 0.00999])
     alpha = steps / PERIOD
     run = run_of(np.cumsum(steps), alpha * [1.0, 1e-3, 3e-3, 2e-3, 0.5])
-    task = t06_inertia.task(recordings_of(without_friction=run))
+    task = inertia.inertia_without_friction(recordings_of(without_friction=run))
     assert task["alpha_max"].value == pytest.approx(40.0)
     assert task["J"].value == pytest.approx(1e4 * 2e-3, rel=1e-9)
     assert task.findings[0].startswith("3 of 5 samples")
@@ -77,19 +77,19 @@ def test_6_inertia_is_the_mean_over_a_quarter_of_the_largest_acceleration_and_mo
 def test_9_both_directions_are_needed_by_a_fiftieth_of_the_samples(backward, told):
     run = there_and_back(backward)
     if told:
-        assert t09_least_squares.identify_friction(run).coulomb == pytest.approx(COULOMB, rel=1e-9)
+        assert friction.identify_friction(run).coulomb == pytest.approx(COULOMB, rel=1e-9)
     else:
         with pytest.raises(UndeterminedError, match="one way only"):
-            t09_least_squares.identify_friction(run)
+            friction.identify_friction(run)
 
 
 def test_9_what_is_exact_is_found_and_reconstructed_exactly():
     run = there_and_back(0.4)
-    found = t09_least_squares.identify_friction(run)
+    found = friction.identify_friction(run)
     assert (found.inertia, found.viscous, found.coulomb) == pytest.approx((INERTIA, VISCOUS, COULOMB), rel=1e-9)
     assert found.error == pytest.approx(0.0, abs=1e-15)
     bare = run_of(run.velocity, 1.5e-3 * run.acceleration)  # 15 kg*cm**2 in task 6
-    task = t09_least_squares.task(recordings_of(with_friction=run, without_friction=bare))
+    task = friction.inertia_and_friction(recordings_of(with_friction=run, without_friction=bare))
     assert task.findings[2] == f"J_load is {19.75 / 14.75 - 1.0:+.2%} off the one of task 6."
     measured, estimated = curves(task)
     inner = slice(2, -2)  # at the ends the filter has no samples, and another derivative stands in
@@ -99,20 +99,20 @@ def test_9_what_is_exact_is_found_and_reconstructed_exactly():
 
 def test_10_the_run_up_begins_at_full_torque_and_leaves_out_what_is_below_a_fifth_of_a_newton_metre():
     torque = [0.5, 2.5, 2.99, 3.01, 2.0, 3.4, 0.21, 0.19, -1.0, 0.2]
-    kept = t10_peak_torque.run_up(run_of(np.arange(10.0), torque), lab_rig())
+    kept = peak_torque.run_up(run_of(np.arange(10.0), torque), lab_rig())
     assert kept.torque.tolist() == [3.01, 2.0, 3.4, 0.21, 0.2]
     assert kept.velocity.tolist() == [3.0, 4.0, 5.0, 6.0, 9.0]
     assert kept.current == pytest.approx(kept.torque / 0.75)
     with pytest.raises(UndeterminedError, match=r"reaches 2\.99"):
-        t10_peak_torque.run_up(run_of(np.arange(3.0), torque[:3]), lab_rig())
+        peak_torque.run_up(run_of(np.arange(3.0), torque[:3]), lab_rig())
 
 
 def test_10_a_row_of_the_table_is_the_median_within_five_radians_a_second_on_the_way_up():
     at = 2000.0 / RPM
     velocity = np.array([at - 5.1, at - 4.9, at, at + 4.9, at + 5.1, 400.0, at, at])
     torque = np.array([9.0, 3.1, 1.0, 2.0, 9.0, 0.5, 7.0, 7.0])
-    measured = t10_peak_torque.measured_at_speeds(velocity, torque)
-    assert t10_peak_torque.SPEEDS == (1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0)
+    measured = peak_torque.measured_at_speeds(velocity, torque)
+    assert peak_torque.SPEEDS == (1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0)
     assert measured[1] == 2.0
     assert np.isnan(measured).tolist() == [True, False, *[True] * 5]
 

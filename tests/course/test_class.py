@@ -10,8 +10,8 @@ from time import process_time
 import numpy as np
 import pytest
 
-from bench.course.answers import QUESTIONS
-from bench.course.students import SCHEMA, seal
+from bench.course.grade import SEALED, seal
+from bench.course.submission import QUESTIONS
 from bench.trace.read import read
 from tests.command import bench
 
@@ -245,7 +245,7 @@ def known():
 
 
 def sealed(path, known):
-    content = {"schema": SCHEMA, "seed": 0, "students": known}
+    content = {"schema": SEALED, "seed": 0, "students": known}
     path.write_text(json.dumps({**content, "seal": seal(content)}))
     return path
 

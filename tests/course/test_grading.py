@@ -4,9 +4,8 @@ import math
 
 import pytest
 
-from bench.course.answers import QUESTIONS
 from bench.course.grade import grade
-from bench.course.submission import GivenAnswer, Submission
+from bench.course.submission import QUESTIONS, GivenAnswer, Submission
 
 #: Promised to students: by how much of the value an answer may be off - percent.
 TOLERANCES = {

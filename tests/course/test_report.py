@@ -9,10 +9,9 @@ import pytest
 
 from bench.assets import asset
 from bench.course import pdf
-from bench.course.handin import Cover
 from bench.course.recordings import LabRecordings
-from bench.course.report import course_table, lab_document, task_section, write_lab_report
-from bench.course.result import NotDone
+from bench.course.report import Cover, course_table, lab_document, task_section, write_lab_report
+from bench.course.result import TaskResult
 from bench.errors import InputError
 from bench.report.document import Picture
 from bench.report.figures import drawn
@@ -65,7 +64,9 @@ def test_report_has_every_task_number_and_figure(lab, done):
 
 
 def test_what_was_not_done_says_what_is_missing(done):
-    missing = NotDone("9", "Least squares", InputError("folder/<b>.trace", "no such file", "found: nothing"))
+    missing = TaskResult(
+        key="9", title="Least squares", reason=InputError("folder/<b>.trace", "no such file", "found: nothing")
+    )
     page = html(document([done["2"], missing]))
     assert "Not done: folder/&lt;b&gt;.trace: no such file; found: nothing" in page
     assert "no such file" in course_table([done["2"], missing]).rows[-1][1]
@@ -148,7 +149,7 @@ def test_a_script_that_is_handed_in_gives_the_reports_numbers(lab, done, number)
 
 def test_a_cover_sheet_names_the_group(tmp_path):
     assert Cover.in_folder(tmp_path) == Cover()
-    assert len(Cover().rows) == 3
+    assert [len(block.rows) for block in Cover().sheet.blocks[:1]] == [3]
     path = tmp_path / "group.toml"
     path.write_text('group = "7"\n[[student]]\nname = "Ada <L>"\nnumber = "12345"\n')
     cover = Cover.in_folder(tmp_path)
@@ -190,5 +191,5 @@ def test_the_advice_keeps_its_brackets_on_the_terminal():
     reason = InputError("a.csv", "holds no velocity", 'write [trace.columns] velocity = "column [unit]"')
     shown = console()
     with shown.capture() as kept:
-        shown.print(rendered(course_table([NotDone("6", "Inertia", reason)])))
+        shown.print(rendered(course_table([TaskResult(key="6", title="Inertia", reason=reason)])))
     assert '[trace.columns]velocity="column[unit]"' in "".join(kept.get().split())

@@ -5,13 +5,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bench.course.axis import lab_rig
-from bench.course.catapult import FLIGHTS, fly
-from bench.course.corner import decline, extrapolated_corner
+from bench.course.catapult import FLIGHTS, by_normal_equations, by_orthogonal_solver, columns, fly
+from bench.course.friction import WIDTH, fast_samples, filtered_acceleration, lateness
+from bench.course.peak_torque import decline, extrapolated_corner, run_up
 from bench.course.recordings import LabRecordings, LabRun
-from bench.course.t01_catapult import by_normal_equations, by_orthogonal_solver, columns
-from bench.course.t04_torque_constant_curve import coefficients
-from bench.course.t08_fast_samples import WIDTH, fast_samples, filtered_acceleration, lateness
-from bench.course.t10_peak_torque import run_up
+from bench.course.torque_constants import coefficients
 from bench.errors import InputError, UndeterminedError
 from bench.fit.lab import backward_difference
 from tests.course.drawn import curves
@@ -44,8 +42,9 @@ def test_1_catapult_recovers_the_throw_within_its_scatter(done):
 
 def test_1_a_flight_in_mujoco_is_the_ballistic_parabola():
     flight = fly()
-    assert flight.y.size == 20
-    assert np.abs(np.polyval(flight.coefficients, flight.y) - flight.z).max() < 1e-9
+    y, z = flight.points.T
+    assert y.size == 20
+    assert np.abs(np.polyval(flight.coefficients, y) - z).max() < 1e-9
 
 
 def test_1_both_solvers_agree_until_the_condition_number_is_squared():

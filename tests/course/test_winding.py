@@ -7,9 +7,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bench.course.axis import lab_rig, torque_constant
-from bench.course.corner import extrapolated_corner
-from bench.course.t11_corner import TIME_CONSTANTS, VELOCITY_GAIN, cross_voltage
-from bench.course.winding import CURRENT_LOOP, STEP, WindingModel, run_winding
+from bench.course.peak_torque import extrapolated_corner
+from bench.course.winding import (
+    CURRENT_LOOP,
+    STEP,
+    TIME_CONSTANTS,
+    VELOCITY_GAIN,
+    WindingModel,
+    cross_voltage,
+    run_winding,
+)
 from bench.plant.axis_model import AxisParameters
 from bench.rig.limits import COLD, HOT, Circuit
 from tests.course.drawn import curves
@@ -65,7 +72,7 @@ def test_run_through_the_winding_agrees_with_an_independent_integrator(circuit):
     axis = AxisParameters.from_rig(rig)
     winding = WindingModel(circuit, torque_constant(rig), 5.7, COLD, True)
     top, duration = 5000.0 / RPM, 0.6
-    run = run_winding(winding, axis, np.full(round(duration / STEP), top), VELOCITY_GAIN)
+    run = run_winding(winding, axis, np.full(round(duration / STEP), top))
     every = slice(None, None, round(1e-3 / STEP))
     current, speed, warming = independent(winding, axis, top, duration)
     off = np.abs(run.velocity[every] - speed).max(), np.abs(run.current[every] - current)[5:].max()
@@ -116,7 +123,7 @@ def test_11_without_warming_the_hot_corner_is_the_datasheets(circuit):
     axis = AxisParameters.from_rig(rig)
     slow = replace(circuit, thermal_time_constant=1e9)
     winding = WindingModel(slow, torque_constant(rig), 5.7, HOT, False)
-    run = run_winding(winding, axis, np.full(round(0.6 / STEP), 5000.0 / RPM), VELOCITY_GAIN)
+    run = run_winding(winding, axis, np.full(round(0.6 / STEP), 5000.0 / RPM))
     assert extrapolated_corner(run.velocity, run.current) * RPM == pytest.approx(2100.0, abs=0.5)
 
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from bench.course.recordings import LabRecordings
-from bench.course.result import COMPUTED, DoneTask, Number, chart, curve, panel
+from bench.course.result import COMPUTED, Number, TaskResult, chart, curve, panel
 from bench.fit.lab import backward_difference
 from bench.trace.filter import GaussianFilter
-
-KEY, TITLE = "2", "Backward difference"
 
 SAMPLE_PERIOD = 1e-3
 #: One period, as the course has it: t = 0 : 0.001 : 2*pi.
@@ -18,7 +16,7 @@ DURATION = 2.0 * np.pi
 WIDTH = 2.0 * SAMPLE_PERIOD
 
 
-def task(recordings: LabRecordings) -> DoneTask:
+def backward_difference_of_a_sine(recordings: LabRecordings) -> TaskResult:
     """Differentiate sin(t) both ways and compare with cos(t).
 
     The backward difference belongs half a sample earlier, so it errs by T/2*|u''|: 5e-4 here. The bench's filter is
@@ -47,4 +45,4 @@ def task(recordings: LabRecordings) -> DoneTask:
         panel("time / s", "error, backward / (1/s)", curve(time[1:], error)),
         panel("time / s", "error, bench / (1/s)", curve(time[kept], error_of_bench)),
     )
-    return DoneTask(KEY, TITLE, (findings,), numbers, (drawn,))
+    return TaskResult((findings,), numbers, (drawn,))

@@ -1,4 +1,4 @@
-"""Task 6: inertia as the mean of M/alpha where the axis accelerates hard."""
+"""Tasks 5 to 7: both recordings in SI units, and inertia as the mean of M/alpha where nothing but inertia resists."""
 
 from __future__ import annotations
 
@@ -6,12 +6,42 @@ import numpy as np
 
 from bench.arrays import rms
 from bench.course.axis import KG_CM2, joined
-from bench.course.recordings import LabRecordings
-from bench.course.result import RECORDING, DoneTask, Number, chart, curve, panel
+from bench.course.recordings import LabRecordings, LabRun
+from bench.course.result import RECORDING, Number, TaskResult, chart, curve, panel
 from bench.errors import UndeterminedError
 from bench.fit.lab import mean_inertia
 
-KEY, TITLE = "6", "Moment of inertia without friction"
+
+def signals_without_friction(recordings: LabRecordings) -> TaskResult:
+    """Task 5: the signals of the recording without friction."""
+    return _signals(recordings.without_friction, "Task 5: recording without friction")
+
+
+def signals_with_friction(recordings: LabRecordings) -> TaskResult:
+    """Task 7: the signals of the recording with friction."""
+    return _signals(recordings.with_friction, "Task 7: recording with friction")
+
+
+def _signals(run: LabRun, title: str) -> TaskResult:
+    """Angle, speed, acceleration and torque one above the other, and how far they reach."""
+    signals = {
+        "angle φ / rad": run.angle,
+        "speed ω / (rad/s)": run.velocity,
+        "acceleration α / (rad/s²)": run.acceleration,
+        "torque M / (N·m)": run.torque,
+    }
+    findings = (
+        f"{run.time.size} samples, one each {run.sample_period * 1e3:.4g} ms, {run.time[-1]:.3g} s.",
+        "The course asks for four graphs and names three: speed, acceleration and torque. The fourth here is the "
+        "angle, which shows how far the disk turns and that the motion comes back.",
+    )
+    numbers = (
+        Number("largest speed", float(np.abs(run.velocity).max()), "rad/s"),
+        Number("largest acceleration", float(np.abs(run.acceleration).max()), "rad/s²"),
+        Number("largest torque", float(np.abs(run.torque).max()), "N·m"),
+    )
+    panels = (panel("time / s", label, curve(run.time, values)) for label, values in signals.items())
+    return TaskResult(findings, numbers, (chart(title, *panels),))
 
 
 def require_positive(inertia: float) -> None:
@@ -50,8 +80,8 @@ def load_inertia(inertia: float, recordings: LabRecordings, true: float | None) 
     return numbers, findings
 
 
-def task(recordings: LabRecordings) -> DoneTask:
-    """alpha_max, J from samples with |alpha| >= alpha_max/4, J_load = J - J_motor beside theory.
+def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
+    """Task 6: alpha_max, J from samples with |alpha| >= alpha_max/4, J_load = J - J_motor beside theory.
 
     Raises:
         UndeterminedError: the axis never accelerates, or torque and acceleration oppose each other.
@@ -84,4 +114,4 @@ def task(recordings: LabRecordings) -> DoneTask:
         panel("time / s", "torque / (N·m)", measured, curve(run.time, inertia * run.acceleration, "J·α")),
         panel("time / s", "M - J·α / (N·m)", curve(run.time, residual)),
     )
-    return DoneTask(KEY, TITLE, findings, numbers, (drawn,))
+    return TaskResult(findings, numbers, (drawn,))

@@ -1,20 +1,26 @@
-"""Task 8: filtered acceleration, and the samples that are fast enough for the friction model."""
+"""Tasks 8 and 9: inertia and friction from the samples that are fast enough.
+
+A*theta = b with A = [alpha_filt, omega, sgn(omega)], b = M, theta = (J, K_fric_w, K_fric_0), over |omega| >= 20 rad/s.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.arrays import Array
+from bench.arrays import Array, rms
+from bench.axis_kind import COULOMB
+from bench.course.axis import KG_CM2
+from bench.course.inertia import inertia_without_friction, load_inertia, require_positive
 from bench.course.recordings import LabRecordings, LabRun
-from bench.course.result import DoneTask, Number, chart, curve, panel
-from bench.errors import UndeterminedError
-from bench.fit.lab import LEAST_SPEED
+from bench.course.result import Number, TaskResult, chart, curve, panel
+from bench.errors import BenchError, UndeterminedError
+from bench.fit.determined import RECORD
+from bench.fit.lab import LEAST_SPEED, least_squares
+from bench.fit.rows import ONE_WAY
 from bench.report.document import Chart
 from bench.trace.filter import GaussianFilter
-
-KEY, TITLE = "8", "Filtered acceleration, slow samples removed"
 
 #: Backward differences that the filter takes the mean of; an even number, so that it is late by whole samples.
 WIDTH = 4
@@ -78,8 +84,8 @@ def lateness(run: LabRun, late: int = 0) -> float:
     return float(behind @ bend / (bend @ bend) / run.sample_period)
 
 
-def task(recordings: LabRecordings) -> DoneTask:
-    """Draw the remaining samples over the original ones, and alpha_filt over alpha."""
+def samples_that_remain(recordings: LabRecordings) -> TaskResult:
+    """Task 8: draw the remaining samples over the original ones, and alpha_filt over alpha."""
     run = recordings.with_friction
     kept = fast_samples(run)
     acceleration, _ = filtered_acceleration(run)
@@ -102,7 +108,7 @@ def task(recordings: LabRecordings) -> DoneTask:
         Number("step to step scatter of alpha", scatter, "rad/s²"),
         Number("step to step scatter of alpha_filt", scatter_filtered, "rad/s²"),
     )
-    return DoneTask(KEY, TITLE, findings, numbers, (_remaining_chart(run, kept), _edge_chart(run)))
+    return TaskResult(findings, numbers, (_remaining_chart(run, kept), _edge_chart(run)))
 
 
 def _remaining_chart(run: LabRun, kept: LabRun) -> Chart:
@@ -138,3 +144,85 @@ def _edge_chart(run: LabRun) -> Chart:
         panel("t_sync / s", "acceleration α / (rad/s²)", *whole),
         panel("t_sync / s, one edge", "acceleration α / (rad/s²)", *close),
     )
+
+
+@dataclass(frozen=True)
+class EquationOfMotion:
+    """What the course finds.
+
+    Attributes:
+        inertia: J - kg*m**2.
+        viscous: K_fric_w - N*m*s/rad.
+        coulomb: K_fric_0 - N*m.
+        error: E, remaining quadratic error - (N*m)**2.
+    """
+
+    inertia: float
+    viscous: float
+    coulomb: float
+    error: float
+
+    def torque(self, run: LabRun) -> Array:
+        """J*alpha + K_fric_w*omega + K_fric_0*sgn(omega) - N*m."""
+        friction = self.viscous * run.velocity + self.coulomb * np.sign(run.velocity)
+        return self.inertia * run.acceleration + friction
+
+
+def identify_friction(run: LabRun) -> EquationOfMotion:
+    """The course's least squares on the fast samples of a recording.
+
+    Raises:
+        UndeterminedError: they do not tell inertia and friction apart, or torque and acceleration oppose each other.
+    """
+    samples = fast_samples(run)
+    weaker = 0.5 * (1.0 - abs(float(np.mean(np.sign(samples.velocity)))))
+    if weaker < ONE_WAY:
+        reason = "the axis moves one way only, so a constant torque and Coulomb friction are one number"
+        raise UndeterminedError("Coulomb friction", reason, RECORD[COULOMB])
+    theta, _, error = least_squares(samples.acceleration, samples.velocity, samples.torque)
+    require_positive(float(theta[0]))
+    return EquationOfMotion(*theta.tolist(), error=error)
+
+
+def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
+    """Task 9: identify, and draw the reconstructed torque of every sample over the measured one."""
+    run = recordings.with_friction
+    found, fitted, every = identify_friction(run), fast_samples(run), in_step(run)
+    estimated = found.torque(every)
+    residual = run.torque - estimated
+    left, left_of_fitted = rms(residual), np.sqrt(found.error / fitted.time.size)
+    true = run.true("moment_of_inertia", KG_CM2)
+    loads, _ = load_inertia(found.inertia, recordings, true)
+    findings = (
+        f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted.time.size} samples of task 8; the theta with the least "
+        "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
+        f"M_est is drawn for all {run.time.size} samples. It leaves {left:.3g} N·m RMS, "
+        f"{left / rms(run.torque):.2%} of the torque; over the fitted samples {left_of_fitted:.3g} N·m.",
+        *_beside_task_6(loads, recordings),
+    )
+    numbers = (
+        Number("J", found.inertia * KG_CM2, "kg·cm²", true),
+        Number("K_fric_w", found.viscous, "N·m·s/rad", run.true("viscous_friction_coefficient")),
+        Number("K_fric_0", found.coulomb, "N·m", run.true("coulomb_friction_torque")),
+        Number("E", found.error, "(N·m)²"),
+        *loads[:1],
+        Number("samples of M_est", float(every.time.size), "1"),
+        Number("RMS of M - M_est, all samples", left, "N·m"),
+    )
+    measured = curve(run.time, run.torque, "measured torque M", "wide")
+    drawn = chart(
+        "Task 9: reconstructed torque over the measured one",
+        panel("time / s", "torque / (N·m)", measured, curve(run.time, estimated, "M_est, all samples")),
+        panel("time / s", "M - M_est / (N·m)", curve(run.time, residual)),
+    )
+    return TaskResult(findings, numbers, (drawn,))
+
+
+def _beside_task_6(loads: list[Number], recordings: LabRecordings) -> tuple[str, ...]:
+    """How far J_load is off that of task 6; nothing where that could not be done, which its own place says."""
+    try:
+        before = inertia_without_friction(recordings)
+    except BenchError:
+        return ()
+    apart = [load.value / before["J_load"].value - 1.0 for load in loads[:1]]
+    return tuple(f"J_load is {share:+.2%} off the one of task 6." for share in apart)

@@ -1,0 +1,177 @@
+"""Beside the tasks, on the embedded example: estimators compared, friction emulated, gear and load torque."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from bench.arrays import Array, column_rms
+from bench.axis_kind import OFFSET
+from bench.course.axis import KG_CM2, motor_value, simulated_with, torque_constant, without_friction
+from bench.course.friction import EquationOfMotion, identify_friction
+from bench.course.recordings import LabRecordings, run_of
+from bench.course.result import Number, TaskResult
+from bench.fit.identify import identify
+from bench.fit.lab import identify_as_in_the_lab, mean_inertia
+from bench.plant.axis_model import AxisParameters
+from bench.plant.sensing import Sensors
+from bench.plant.simulate import simulate
+from bench.rig.load import Load
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+#: Quantities of the equation of motion as the bench names them, and the course.
+NAMES = {
+    "moment_of_inertia": "J",
+    "viscous_friction_coefficient": "K_fric_w",
+    "coulomb_friction_torque": "K_fric_0",
+}
+#: Recordings of each motion that estimators are compared on.
+REPETITIONS = 20
+#: Ways to estimate from a recording with friction.
+STEP, LATE, BENCH = "least squares, in step", "least squares, out of step", "bench"
+#: Where friction sits, and which current is recorded.
+MECHANICS, SETPOINT, PHASES = "in the mechanics", "emulated", "emulated, phases"
+#: Motor turns per turn of the load; inertia of the gear on the motor's side - kg*m**2; load torque, behind it - N*m.
+RATIO, GEAR_INERTIA, LOAD_TORQUE = 3.0, 0.1e-4, 1.2
+#: A disk so many times as heavy as the lab's turns behind the gear.
+HEAVIER = 6.0
+
+
+def estimators(recordings: LabRecordings) -> TaskResult:
+    """RMS error of the course's estimators and the bench's over recordings of one motion with fresh sensor noise.
+
+    Raises:
+        InputError: the example's rig lacks what the simulation needs.
+    """
+    rig = recordings.example
+    truth = AxisParameters.from_rig(rig)
+    known = np.array([truth.inertia, truth.viscous_friction_coefficient, truth.coulomb_friction])
+    bare = [run_of(trace, rig) for trace in _repeated(without_friction(rig))]
+    mean = np.array([[mean_inertia(run.acceleration, run.torque)[0]] for run in bare])
+    numbers = [Number("J, mean of M/α", _rms_error(mean, known[:1])[0], "%")]
+    found: dict[str, list[list[float]]] = {STEP: [], LATE: [], BENCH: []}
+    for trace in _repeated(rig):
+        own = identify_friction(run_of(trace, rig))
+        found[STEP].append([own.inertia, own.viscous, own.coulomb])
+        for words, estimate in ((LATE, identify_as_in_the_lab(trace, rig)), (BENCH, identify(trace, rig))):
+            found[words].append([estimate[name].value for name in NAMES])
+    errors = {words: _rms_error(np.array(values), known) for words, values in found.items()}
+    for words, error in errors.items():
+        numbers += [Number(f"{name}, {words}", e, "%") for name, e in zip(NAMES.values(), error, strict=True)]
+    late, step, bench = errors[LATE], errors[STEP], errors[BENCH]
+    findings = (
+        f"RMS error over {REPETITIONS} recordings of the fast run. The backward difference is half a sample late: "
+        f"taken as it is, J·α of that half sample goes into friction ({late[1]:.0f} % and {late[2]:.0f} %). In step "
+        f"(t_sync) {step[1]:.2g} % and {step[2]:.2g} % remain.",
+        f"The bench's own is better still, J within {bench[0]:.2g} % against {step[0]:.2g} %, as one filter serves "
+        "torque, speed, acceleration and sign alike: smoothing α alone shortens its peaks against the torque's, and "
+        "its noise draws J towards zero (or, in the mean of M/α, away from it, as 1/α is convex).",
+    )
+    return TaskResult(findings, tuple(numbers))
+
+
+def _repeated(rig: Rig) -> list[Trace]:
+    """One motion as the sensors record it, with noise of its own each time."""
+    simulated, sensors = simulate(rig, "fast_reversals"), Sensors.from_rig(rig)
+    return [
+        sensors.record(simulated.states, simulated.references, np.random.default_rng(seed), f"recording {seed}")
+        for seed in range(1, REPETITIONS + 1)
+    ]
+
+
+def _rms_error(found: Array, known: Array) -> list[float]:
+    """Of estimates (n, p) - percent of the truth (p,)."""
+    return (100.0 * column_rms(found / known - 1.0)).tolist()
+
+
+def record_each(rig: Rig) -> dict[str, Trace]:
+    """One motion with friction in the mechanics, and emulated by the drive's software with either current recorded.
+
+    The set-point is what the drive asks for before its software subtracts the friction; through the phases flows what
+    is left of it.
+    """
+    mechanics = simulate(simulated_with(rig, friction="mechanics"), "fast_reversals").trace
+    emulated = simulate(simulated_with(rig, friction="drive"), "fast_reversals")
+    flowing = replace(emulated.states, torque=emulated.states.motor_torque)
+    sensors = Sensors.from_rig(rig)
+    phases = sensors.record(flowing, emulated.references, np.random.default_rng(0), f"{emulated.trace.origin}, phases")
+    return {MECHANICS: mechanics, SETPOINT: emulated.trace, PHASES: phases}
+
+
+def emulated_friction(recordings: LabRecordings) -> TaskResult:
+    """Simulate friction in mechanics and software, identify each as the course does and by the default estimator.
+
+    Raises:
+        InputError: the example's rig lacks what the simulation needs.
+    """
+    rig = recordings.example
+    torque_constant(rig)
+    truth = AxisParameters.from_rig(rig)
+    traces = record_each(rig)
+    found = {words: identify_friction(run_of(trace, rig)) for words, trace in traces.items()}
+    numbers = []
+    for words, trace in traces.items():
+        default, share = identify(trace, rig), 0.0 if words == PHASES else 1.0  # phases carry no friction
+        viscous, coulomb = share * truth.viscous_friction_coefficient, share * truth.coulomb_friction
+        own = found[words]
+        numbers += [
+            Number(f"J, {words}", own.inertia * KG_CM2, "kg·cm²", truth.inertia * KG_CM2),
+            Number(f"K_fric_w, {words}", own.viscous, "N·m·s/rad", viscous),
+            Number(f"K_fric_0, {words}", own.coulomb, "N·m", coulomb),
+            Number(f"K_fric_w, {words}, bench", default["viscous_friction_coefficient"].value, "N·m·s/rad", viscous),
+            Number(f"K_fric_0, {words}, bench", default["coulomb_friction_torque"].value, "N·m", coulomb),
+        ]
+    return TaskResult(_emulation_findings(found, truth), tuple(numbers))
+
+
+def _emulation_findings(found: dict[str, EquationOfMotion], truth: AxisParameters) -> tuple[str, ...]:
+    mechanics, setpoint, phases = found[MECHANICS], found[SETPOINT], found[PHASES]
+    return (
+        "Which current is recorded decides whether software friction is seen.",
+        f"The set-point, before the drive subtracts the friction: K_fric_w is "
+        f"{abs(setpoint.viscous / mechanics.viscous - 1.0):.2%} and K_fric_0 "
+        f"{abs(setpoint.coulomb / mechanics.coulomb - 1.0):.2%} off what the same friction in the mechanics gives. "
+        "Whoever reads this current and the speed cannot tell where friction sits.",
+        f"The current of the phases, from which the course computes I_q: the motor makes only what is left, the axis "
+        f"turns without friction, and least squares finds none: {phases.coulomb:.2g} N·m of "
+        f"{truth.coulomb_friction:.2g}, {phases.viscous:.2g} N·m·s/rad of {truth.viscous_friction_coefficient:.2g}. "
+        "Friction that is found in such a recording sits in the mechanics.",
+    )
+
+
+def geared(rig: Rig) -> Rig:
+    """The lab's axis with a gear, a heavier disk and a load torque; identification fits a constant torque too."""
+    load = rig.load or Load()
+    inertia = HEAVIER * (load.disk_inertia or 0.0)
+    load = load.model_copy(update={"gear_ratio": RATIO, "gear_inertia": GEAR_INERTIA})
+    total = motor_value(rig, "rotor_inertia") + GEAR_INERTIA + load.reflected(inertia)
+    rig = simulated_with(rig, moment_of_inertia=total, load_torque=LOAD_TORQUE, friction="mechanics")
+    drive = rig.drive.model_copy(update={"inertia_feedforward": total}) if rig.drive else None
+    return rig.model_copy(update={"load": load, "drive": drive, "offset": True})
+
+
+def equation_of_motion(recordings: LabRecordings) -> TaskResult:
+    """Simulate and identify M = J*alpha + K_w*omega + K_0*sgn(omega) + M_load/i, J = J_motor + J_load/i**2.
+
+    Raises:
+        InputError: the example's rig lacks what the simulation needs.
+    """
+    axis = geared(recordings.example)
+    truth = AxisParameters.from_rig(axis)
+    found = {name: parameter.value for name, parameter in identify(simulate(axis).trace, axis).parameters.items()}
+    load, offset = (truth.inertia - truth.motor_inertia) * RATIO**2, axis.axis_kind.parameter(OFFSET)
+    friction = truth.viscous_friction_coefficient, truth.coulomb_friction
+    numbers = (
+        Number("J", found["moment_of_inertia"] * KG_CM2, "kg·cm²", truth.inertia * KG_CM2),
+        Number("J_load behind the gear", found["load_moment_of_inertia"] * KG_CM2, "kg·cm²", load * KG_CM2),
+        Number("K_fric_w", found["viscous_friction_coefficient"], "N·m·s/rad", friction[0]),
+        Number("K_fric_0", found["coulomb_friction_torque"], "N·m", friction[1]),
+        Number("M_load behind the gear", found[offset] * RATIO, "N·m", LOAD_TORQUE),
+    )
+    findings = (
+        f"With i = {RATIO:g} the motor feels J_load/i² and M_load/i. Simulated with {LOAD_TORQUE:g} N·m on the load "
+        "and identified with a constant torque beside inertia and friction.",
+    )
+    return TaskResult(findings, numbers)

@@ -1,0 +1,239 @@
+"""Torque over speed: the fastest run-up against the datasheet's peak curve (task 10), and the operating range.
+
+The corner is the speed at which torque starts to decline, as full voltage no longer drives peak current:
+
+    L*dIq/dt + R*Iq = U - Ke*omega  beyond it,  so  Iq = top*(omega_0 - omega)/(omega_0 - omega_c), late by tau = L/R
+
+At the corner itself Iq is constant, dIq/dt = 0: U = R*top + Ke*omega_c holds with inductance and without. So inductance
+moves what follows, the fall, and not the corner: it keeps the current up for about tau, in which speed rises by
+alpha*tau.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from scipy.signal import lfilter
+
+from bench.arrays import Array
+from bench.course.axis import MAINS, RPM
+from bench.course.recordings import LabRecordings, LabRun
+from bench.course.result import Number, TaskResult, chart, curve, panel
+from bench.errors import UndeterminedError
+from bench.report.drive import in_range
+from bench.rig.limits import peak_curve
+from bench.rig.rig import Rig
+
+#: Stretch of the falling current, in shares of its top, that the line is fitted to.
+FROM, TO = 0.9, 0.5
+#: Faster samples, as a share of the highest speed, may belong to the drive's own stop at the speed asked for.
+STILL_RISING = 0.97
+#: The top is the median of samples above this share of the largest.
+TOP = 0.95
+#: Time constant that the search for it starts from - s.
+TYPICAL = 2e-3
+#: Points of the model a sample: the current bends between two of them.
+FINER = 8
+#: The course drops samples of less torque - N*m - and starts at the first above 3.0 N*m, this share of the lab
+#: motor's peak.
+LEAST_TORQUE, FULL_SHARE = 0.2, 3.0 / 3.5
+#: Speeds of the table - rpm, and samples that belong to one: within this of it - rad/s.
+SPEEDS, HALF_BIN = (1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0), 5.0
+
+
+@dataclass(frozen=True)
+class Decline:
+    """How the current falls beyond the corner.
+
+    Attributes:
+        corner: speed at which it starts to - rad/s.
+        no_load: speed at which it would end, as the winding was during the run - rad/s.
+        lag: tau, by which it comes late, L/R - s.
+        extrapolated: speed at which the line through the fall from 90 to 50 % meets the top - rad/s; the corner without
+            inductance, later by alpha*tau with it.
+    """
+
+    corner: float
+    no_load: float
+    lag: float
+    extrapolated: float
+
+
+def extrapolated_corner(velocity: Array, current: Array) -> float:
+    """Speed at which the line through the falling current meets the current's top - rad/s.
+
+    In the circuit U = R*Iq + Ke*omega at full voltage, current falls linearly with speed, so the line is the physics
+    and the corner that of the datasheet's curve. (Torque does not: kT rises as the current falls.)
+
+    Args:
+        velocity, current: (n,) of one run-up - rad/s, A.
+
+    Raises:
+        UndeterminedError: the current does not fall to half while the axis accelerates.
+    """
+    top, _, slope, offset = _fall(velocity, current)
+    return (top - offset) / slope
+
+
+def decline(velocity: Array, current: Array, sample_period: float) -> Decline:
+    """Corner, end and lag of the fall, by least squares on the current from its top to half of it.
+
+    Args:
+        velocity, current: (n,) of one run-up, evenly sampled - rad/s, A.
+        sample_period: s.
+
+    Raises:
+        UndeterminedError: the current does not fall to half while the axis accelerates.
+    """
+    top, high, slope, offset = _fall(velocity, current)
+    below = np.flatnonzero((np.arange(current.size) > high[-1]) & (current < TO * top))
+    stopped = np.flatnonzero(velocity >= STILL_RISING * velocity.max())
+    ends = [int(found[0]) for found in (below, stopped) if found.size]
+    part = slice(int(high[0]), min(ends, default=current.size))
+    speed, measured = velocity[part], current[part]
+    corner, no_load = (top - offset) / slope, -offset / slope
+    between = np.interp(np.arange((speed.size - 1) * FINER + 1) / FINER, np.arange(speed.size), speed)
+
+    def unexplained(theta: Array) -> Array:
+        corner, no_load, lag = theta
+        quasi_static = np.minimum(top, top * (no_load - between) / (no_load - corner))
+        return _late(quasi_static, lag, sample_period / FINER)[::FINER] - measured
+
+    start, middle = np.array([corner, no_load, TYPICAL]), 0.5 * (corner + no_load)
+    bounds = [0.0, middle, 0.0], [middle, 10.0 * no_load, 1.0]
+    found = least_squares(unexplained, start, bounds=bounds, x_scale=start, xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    return Decline(*found.x.tolist(), extrapolated=corner)
+
+
+def _late(values: Array, lag: float, period: float) -> Array:
+    """Response of a first-order lag to a signal that is straight between samples, at rest before it."""
+    if lag < 1e-6 * period:
+        return values
+    a = np.exp(-period / lag)
+    b = lag / period * (1.0 - a)
+    # x[k] = a*x[k-1] + (1 - b)*u[k] + (b - a)*u[k-1]: exact for u straight between its samples
+    return np.asarray(lfilter([1.0 - b, b - a], [1.0, -a], values, zi=[b * values[0]])[0], dtype=np.float64)
+
+
+def _fall(velocity: Array, current: Array) -> tuple[float, NDArray[np.int64], float, float]:
+    """Top of the current - A - and the samples there; slope - A*s/rad - and offset - A - of its fall over speed."""
+    largest = float(current.max())
+    high = np.flatnonzero(current > TOP * largest)
+    falling = np.arange(current.size) > high[-1]
+    falling &= (current < FROM * largest) & (current > TO * largest) & (velocity < STILL_RISING * velocity.max())
+    speeds = velocity[falling]
+    if speeds.size < 3 or np.ptp(speeds) <= 0.0:
+        reason = "the current does not fall from its top to half of it as speed rises"
+        raise UndeterminedError("corner speed", reason, "a run-up with full torque to close to the no-load speed")
+    slope, offset = np.polyfit(speeds, current[falling], 1).tolist()
+    return float(np.median(current[high[0] : high[-1] + 1])), high, slope, offset
+
+
+def start(run: LabRun, rig: Rig) -> int:
+    """First sample of full torque, more than 3.0 N*m with the lab's motor.
+
+    Raises:
+        UndeterminedError: the torque never comes near its peak.
+    """
+    least = FULL_SHARE * (rig.motor.peak_torque or 0.0)
+    full = run.torque > least
+    if not full.any():
+        reason = f"the torque never exceeds {least:.3g} N*m, it reaches {float(run.torque.max()):.3g} N*m"
+        raise UndeterminedError("peak torque over speed", reason, "a run-up with the motor's full torque, forward")
+    return int(np.argmax(full))
+
+
+def run_up(run: LabRun, rig: Rig) -> LabRun:
+    """Samples from the first full torque on, those with M < 0.2 N*m dropped; raises as `start`."""
+    return run.at((run.torque >= LEAST_TORQUE) & (np.arange(run.torque.size) >= start(run, rig)))
+
+
+def fall(run: LabRun, rig: Rig) -> Decline:
+    """Corner of the run-up and how the current falls beyond it; raises as `start` and `decline`."""
+    first = start(run, rig)
+    return decline(run.velocity[first:], run.current[first:], run.sample_period)
+
+
+def datasheet_curve(rig: Rig) -> tuple[Array, Array]:
+    """Corners of the peak curve at MAINS: speed - rad/s, torque - N*m."""
+    curve = peak_curve(rig.motor, MAINS, rig.source)
+    speed = np.array([0.0, curve.corner_speed, curve.no_load_speed])
+    return speed, (rig.motor.peak_torque or 0.0) * curve.share(speed)
+
+
+def measured_at_speeds(velocity: Array, torque: Array) -> Array:
+    """M_max at SPEEDS - N*m, the median of the samples within HALF_BIN on the way up; NaN where there is none.
+
+    Args:
+        velocity, torque: (n,) of the run-up - rad/s, N*m.
+    """
+    up = slice(0, int(np.argmax(velocity)) + 1)
+    near = (np.abs(velocity[up] - speed / RPM) <= HALF_BIN for speed in SPEEDS)
+    return np.array([np.median(torque[up][samples]) if samples.any() else math.nan for samples in near])
+
+
+def over_speed(recordings: LabRecordings) -> TaskResult:
+    """Draw the measured torque over the speed beside the datasheet's curve, and tell both at seven speeds."""
+    run, rig, sources = recordings.fastest, recordings.rig, recordings.sources
+    kept = run_up(run, rig)
+    speed, torque = kept.velocity * RPM, kept.torque
+    limit, allowed = datasheet_curve(rig)
+    found = fall(run, rig)
+    corner, corner_of_datasheet = found.corner * RPM, float(limit[1]) * RPM
+    measured = measured_at_speeds(kept.velocity, torque)
+    numbers = [
+        Number("peak torque", float(torque.max()), "N·m", rig.motor.peak_torque if run.truth else None),
+        Number("measured corner", corner, "rpm", run.true("corner_speed", RPM)),
+        Number("datasheet's corner", corner_of_datasheet, "rpm", source=sources("motor", "peak_curves")),
+    ]
+    for at, value, sheet in zip(SPEEDS, measured.tolist(), np.interp(SPEEDS, limit * RPM, allowed), strict=True):
+        name = f"M_max at {at:.0f} rpm"
+        if math.isfinite(value):
+            numbers.append(Number(name, value, "N·m"))
+        numbers.append(Number(f"{name}, datasheet", float(sheet), "N·m", source=sources("motor", "peak_torque")))
+    findings = (
+        f"The torque starts to decline at {corner:.0f} rpm, {corner - corner_of_datasheet:+.0f} rpm from "
+        "the datasheet's corner; task 11 says why. The corner is found by least squares on the current from its top to "
+        "half of it: constant, then falling in proportion to speed with a lag, as the motor's circuit has it.",
+        *_tail_findings(kept, found),
+        *_missing_findings(measured),
+    )
+    axes = panel(
+        "speed n / rpm",
+        "torque M / (N·m)",
+        curve(speed, torque, "measured", "dots"),
+        curve(limit * RPM, allowed, f"datasheet, {MAINS:g} V", "dashes"),
+        curve(np.array([corner]), np.interp([corner], speed, torque), "corner", "large dots"),
+    )
+    return TaskResult(findings, tuple(numbers), (chart("Task 10: peak torque", axes),))
+
+
+def _tail_findings(kept: LabRun, found: Decline) -> tuple[str, ...]:
+    """What ends the run before the no-load speed: the drive's set speed, which the axis then keeps."""
+    top = float(kept.velocity.max())
+    if top > 0.99 * found.no_load:
+        return ()
+    tail = kept.velocity > STILL_RISING * top
+    return (
+        f"The tail above {STILL_RISING * top * RPM:.0f} rpm is not the motor's limit. The drive was set to about "
+        f"{top * RPM:.0f} rpm: as the axis gets there its speed control takes the torque back, to "
+        f"{float(kept.torque[tail].min()):.2g} N·m, where the winding would still give it up to "
+        f"{found.no_load * RPM:.0f} rpm.",
+    )
+
+
+def _missing_findings(measured: Array) -> tuple[str, ...]:
+    missing = [f"{speed:.0f}" for speed, value in zip(SPEEDS, measured, strict=True) if not math.isfinite(value)]
+    return (f"At {', '.join(missing)} rpm there is no sample: the run-up does not get there.",) if missing else ()
+
+
+def operating_range(recordings: LabRecordings) -> TaskResult:
+    """The recording with friction in the speed-torque diagram, and the reserve that it leaves."""
+    run = recordings.with_friction
+    found = in_range(recordings.rig, run.velocity, run.torque, "recording with friction")
+    numbers = tuple(Number(name, value, unit) for name, (value, unit) in found.numbers.items())
+    return TaskResult(found.findings, numbers, (found.chart,), title=found.chart.title)
