@@ -2,47 +2,14 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
-from bench.validation.independent.effects import Effect, stack
+from bench.validation.independent.effects.effect import Effect, Rows, stack
 from bench.validation.independent.rig import Axis
 from bench.validation.independent.stick_slip import distance_weight, move, speed_weight
-
-CONSTANTS = (
-    "inertia",
-    "viscous",
-    "coulomb",
-    "torque_constant",
-    "peak_current",
-    "resistance",
-    "inductance",
-    "back_emf_constant",
-)
-
-
-@dataclass
-class Members:
-    """State and constants of those axes of a plant that have an effect, as the effect's hooks see them - (k,) each."""
-
-    plant: Plant
-    index: np.ndarray | slice
-    effect: Effect
-    memory: np.ndarray = field(init=False)
-    level: np.ndarray = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.memory = np.zeros_like(self.plant.velocity[self.index])
-
-    def __getattr__(self, name: str) -> np.ndarray:
-        return getattr(self.plant, name)[self.index]
-
-    @property
-    def time(self) -> float:
-        """Time at the middle of the step - s."""
-        return self.plant.midtime
 
 
 class Plant:
@@ -65,33 +32,34 @@ class Plant:
     def __init__(
         self, axes: Sequence[Axis], effects: Sequence[Sequence[Effect]], position: float = 0.0, velocity: float = 0.0
     ) -> None:
+        def array(name: str) -> np.ndarray:
+            return np.array([getattr(axis, name) for axis in axes], dtype=float)
+
         n = len(axes)
-        constants = [np.array([getattr(axis, name) for axis in axes], dtype=float) for name in CONSTANTS]
-        self.inertia, self.viscous, self.coulomb, self.torque_constant, self.peak_current = constants[:5]
-        self.resistance, self.inductance, self.back_emf_constant = constants[5:]
+        self.inertia, self.viscous, self.coulomb = array("inertia"), array("viscous"), array("coulomb")
+        self.torque_constant, self.peak_current = array("torque_constant"), array("peak_current")
+        self.resistance, self.inductance = array("resistance"), array("inductance")
+        self.back_emf_constant = array("back_emf_constant")
         self.position, self.velocity = np.full(n, position, dtype=float), np.full(n, velocity, dtype=float)
         self.current, self.motor_torque, self.time, self.midtime = np.zeros(n), np.zeros(n), 0.0, 0.0
         self.recorded_current, self._before = self.current, self.velocity
-        self._acting = _members(self, effects)
+        self._acting = _acting(self, effects)
         self.load_position, self.load_velocity = self.position.copy(), self.velocity.copy()
         self._load_before = self.load_velocity.copy()
-        self._separate_bodies(axes)
-        self._rate = self.viscous / self._body
-        self._weights: dict[float, tuple[np.ndarray, np.ndarray]] = {}
-        self._sense_at_start()
-
-    def _separate_bodies(self, axes: Sequence[Axis]) -> None:
         self._body = self.inertia.copy()
-        joints = np.zeros(len(axes), dtype=int)
-        for rows in self._with("transmitted_torque"):
+        joints = np.zeros(n, dtype=int)
+        for rows in self._acting["transmitted_torque"]:
             joints[rows.index] += 1
-            self._body[rows.index] = np.array([axis.rotor_inertia for axis in axes])[rows.index]
+            self._body[rows.index] = array("rotor_inertia")[rows.index]
         if joints.max() > 1:
             raise ValueError("an axis has one coupling between motor and load")
         self._load_inertia = self.inertia - self._body
-
-    def _with(self, hook: str) -> list[Members]:
-        return self._acting.get(hook, [])
+        self._rate = self.viscous / self._body
+        self._weights: dict[float, tuple[np.ndarray, np.ndarray]] = {}
+        self.measured_position, self.measured_velocity = self._sensed(self.position, self.velocity)
+        self.sensed_velocity = self.measured_velocity
+        for rows in self._acting["filtered"]:
+            rows.memory = self.measured_velocity[rows.index].copy()
 
     def advance(self, demand: np.ndarray, step: float) -> None:
         """Advance by `step` - s - while the drive demands a current - A - (n,)."""
@@ -101,32 +69,35 @@ class Plant:
         self.velocity = 1.5 * speed - 0.5 * self._before
         self.acting_current = self._drive_current(demand, step)
         self.motor_torque = self.torque_constant * self.acting_current
-        for rows in self._with("torque_factor"):
+        for rows in self._acting["torque_factor"]:
             self.motor_torque[rows.index] *= rows.effect.torque_factor(rows)
         net = self.motor_torque.copy()
         self.load_torque = np.zeros_like(net)
-        for rows in self._with("resisting_torque"):
+        for rows in self._acting["resisting_torque"]:
             torque = rows.effect.resisting_torque(rows)
             net[rows.index] -= torque
             self.load_torque[rows.index] += torque * rows.effect.transmitted
-        for rows in self._with("transmitted_torque"):
+        for rows in self._acting["transmitted_torque"]:
             net[rows.index] -= self._move_load(rows, step)
         forward, backward = self._friction_levels()
-        for rows in self._with("bristle_torque"):
+        for rows in self._acting["bristle_torque"]:
             net[rows.index] -= self._bend_half(rows, speed, forward, backward, step)
         body, rate, weights = self._inertia(step)
-        for rows in self._with("bristle_torque"):
+        for rows in self._acting["bristle_torque"]:
             forward[rows.index] = backward[rows.index] = 0.0
         after, distance = move(speed, net, forward, backward, body, rate, weights, step)
-        self._remember(after, step)
-        self._sense(start, speed, start + distance, after, step)
+        for rows in self._acting["remember"]:
+            rows.memory = rows.effect.remember(rows, rows.memory, step)
+        for rows in self._acting["bristle_torque"]:
+            rows.memory = rows.effect.bend(after[rows.index], rows.level, rows.memory, step / 2.0)
+        self._sense(start + distance, after, step)
         self._before, self.velocity, self.position = speed, after, start + distance
         self.time += step
 
     def _drive_current(self, demand: np.ndarray, step: float) -> np.ndarray:
         """Current that makes torque, at the middle of the step; the measured one is advanced to its end."""
-        limited = self._with("driven_current")
-        lagging, misread = self._with("acting_current"), self._with("true_current")
+        limited = self._acting["driven_current"]
+        lagging, misread = self._acting["acting_current"], self._acting["true_current"]
         before, self.current = self.current, demand
         middle = demand
         if limited or lagging or misread:
@@ -142,7 +113,7 @@ class Plant:
             middle[rows.index] = rows.effect.acting_current(measured, start, step / 2.0)
             rows.memory = rows.effect.acting_current(measured, start, step)
         self.recorded_current = self.current
-        for rows in self._with("recorded_current"):
+        for rows in self._acting["recorded_current"]:
             rows.memory = rows.effect.recorded_current(self.current[rows.index], rows.memory, step)
             self.recorded_current = self.recorded_current.copy()
             self.recorded_current[rows.index] = rows.memory
@@ -151,28 +122,28 @@ class Plant:
     def _friction_levels(self) -> tuple[np.ndarray, np.ndarray]:
         """(K_0 + excess +- difference/2)*factor, against positive and against negative motion."""
         level = self.coulomb.copy()
-        for rows in self._with("friction_excess"):
+        for rows in self._acting["friction_excess"]:
             level[rows.index] += rows.effect.friction_excess(rows)
         forward, backward = level, level.copy()
-        for rows in self._with("friction_difference"):
+        for rows in self._acting["friction_difference"]:
             half = 0.5 * rows.effect.friction_difference(rows)
             forward[rows.index] += half
             backward[rows.index] -= half
-        for rows in self._with("friction_factor"):
+        for rows in self._acting["friction_factor"]:
             factor = rows.effect.friction_factor(rows)
             forward[rows.index] *= factor
             backward[rows.index] *= factor
         return np.maximum(forward, 0.0), np.maximum(backward, 0.0)
 
     def _bend_half(
-        self, rows: Members, speed: np.ndarray, forward: np.ndarray, backward: np.ndarray, step: float
+        self, rows: Rows, speed: np.ndarray, forward: np.ndarray, backward: np.ndarray, step: float
     ) -> np.ndarray:
         i = rows.index
         rows.level = np.maximum(np.where(self.velocity[i] > 0.0, forward[i], backward[i]), 1e-12)
         rows.memory = rows.effect.bend(speed[i], rows.level, rows.memory, step / 2.0)
         return rows.effect.bristle_torque(rows, rows.level, rows.memory)
 
-    def _move_load(self, rows: Members, step: float) -> np.ndarray:
+    def _move_load(self, rows: Rows, step: float) -> np.ndarray:
         """Torque from motor to load at the middle of the step, and the load moved by it."""
         i = rows.index
         speed = self.load_velocity[i]
@@ -185,7 +156,7 @@ class Plant:
         return torque
 
     def _inertia(self, step: float) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
-        varying = self._with("added_inertia")
+        varying = self._acting["added_inertia"]
         if not varying:
             if step not in self._weights:
                 whole = np.full_like(self._rate, step)
@@ -197,14 +168,8 @@ class Plant:
         rate, whole = self.viscous / body, np.full_like(body, step)
         return body, rate, (speed_weight(rate, whole), distance_weight(rate, whole))
 
-    def _remember(self, after: np.ndarray, step: float) -> None:
-        for rows in self._with("remember"):
-            rows.memory = rows.effect.remember(rows, rows.memory, step)
-        for rows in self._with("bristle_torque"):
-            rows.memory = rows.effect.bend(after[rows.index], rows.level, rows.memory, step / 2.0)
-
     def _sensed(self, position: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        members = self._with("measured")
+        members = self._acting["measured"]
         if members:
             position, speed = position.copy(), speed.copy()
         for rows in members:
@@ -212,19 +177,11 @@ class Plant:
             position[i], speed[i] = rows.effect.measured(position[i], speed[i])
         return position, speed
 
-    def _sense_at_start(self) -> None:
-        self.measured_position, self.measured_velocity = self._sensed(self.position, self.velocity)
-        self.sensed_velocity = self.measured_velocity
-        for rows in self._with("filtered"):
-            rows.memory = self.measured_velocity[rows.index].copy()
-
-    def _sense(
-        self, start: np.ndarray, speed: np.ndarray, position: np.ndarray, after: np.ndarray, step: float
-    ) -> None:
+    def _sense(self, position: np.ndarray, after: np.ndarray, step: float) -> None:
         before = self.sensed_velocity
         self.measured_position, self.sensed_velocity = self._sensed(position, after)
         self.measured_velocity = self.sensed_velocity
-        filters = self._with("filtered")
+        filters = self._acting["filtered"]
         if filters:
             self.measured_velocity = self.sensed_velocity.copy()
         for rows in filters:
@@ -233,38 +190,18 @@ class Plant:
             self.measured_velocity[i] = rows.memory
 
 
-HOOKS = (
-    "resisting_torque",
-    "friction_excess",
-    "friction_factor",
-    "friction_difference",
-    "added_inertia",
-    "torque_factor",
-    "remember",
-    "bristle_torque",
-    "transmitted_torque",
-    "driven_current",
-    "acting_current",
-    "true_current",
-    "recorded_current",
-    "measured",
-    "filtered",
-)
-
-
-def _members(plant: Plant, effects: Sequence[Sequence[Effect]]) -> dict[str, list[Members]]:
-    """For each hook the effects that act through it, each stacked over its axes."""
+def _acting(plant: Plant, effects: Sequence[Sequence[Effect]]) -> defaultdict[str, list[Rows]]:
+    """For each hook the effects whose class defines it, each stacked over its axes."""
     found: dict[tuple[type[Effect], int], list[tuple[int, Effect]]] = {}
     for row, those in enumerate(effects):
         for order, effect in enumerate(those):
             repeats = sum(type(other) is type(effect) for other in those[:order])
             found.setdefault((type(effect), repeats), []).append((row, effect))
-    acting: dict[str, list[Members]] = {}
+    acting: defaultdict[str, list[Rows]] = defaultdict(list)
     for (kind, _), pairs in found.items():
         index = np.array([row for row, _ in pairs])
         everywhere = len(index) == len(effects)
-        rows = Members(plant, slice(None) if everywhere else index, stack([effect for _, effect in pairs]))
-        for hook in HOOKS:
-            if kind.overrides(hook):
-                acting.setdefault(hook, []).append(rows)
+        rows = Rows(plant, slice(None) if everywhere else index, stack([effect for _, effect in pairs]))
+        for hook in vars(kind):
+            acting[hook].append(rows)
     return acting

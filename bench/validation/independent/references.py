@@ -11,6 +11,22 @@ import numpy as np
 from bench.validation.independent.rig import Axis
 
 
+class Phase(Protocol):
+    """A part of a motion.
+
+    Attributes:
+        duration: of it - s.
+        distance: gone in it - rad.
+    """
+
+    duration: float
+    distance: float
+
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
+        ...
+
+
 class Ramps:
     """Speed through given points, linear between them, averaged over `jerk_time`: acceleration has no jumps.
 
@@ -43,79 +59,65 @@ class Ramps:
         return area + beyond * self.distance, gone + speed * x + slope * x**2 / 2.0, speed + slope * x
 
     def at(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
+        """As every phase of a motion has it."""
         ends = zip(self._sharp(time), self._sharp(time - self._jerk_time), strict=True)
         return tuple((now - then) / self._jerk_time for now, then in ends)
 
 
+@dataclass
 class Multisine:
     """Position sum of sines, faded in and out by sin(pi*t/duration)**2 so that it starts and ends at rest.
 
-    Args:
+    Attributes:
         speeds, frequencies, phases: amplitude of each sine's speed - rad/s, its frequency - Hz, its phase - rad.
     """
 
-    distance = 0.0
+    duration: float
+    speeds: np.ndarray
+    frequencies: np.ndarray
+    phases: np.ndarray
+    distance: float = 0.0
 
-    def __init__(self, duration: float, speeds: np.ndarray, frequencies: np.ndarray, phases: np.ndarray) -> None:
-        self.duration = duration
-        self._omega, self._phases = 2.0 * np.pi * frequencies, phases
-        self._amplitudes = speeds / self._omega
-
-    def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
-        angle = np.outer(time, self._omega) + self._phases
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
+        """As every phase of a motion has it."""
+        omega = 2.0 * np.pi * self.frequencies
+        amplitudes, angle = self.speeds / omega, np.outer(time, omega) + self.phases
         # summed by rows: a matrix product rounds differently with the number of times asked for
-        x = np.sum(np.sin(angle) * self._amplitudes, axis=1)
-        dx = np.sum(np.cos(angle) * self._amplitudes * self._omega, axis=1)
-        ddx = -np.sum(np.sin(angle) * self._amplitudes * self._omega**2, axis=1)
+        x = np.sum(np.sin(angle) * amplitudes, axis=1)
+        dx = np.sum(np.cos(angle) * amplitudes * omega, axis=1)
+        ddx = -np.sum(np.sin(angle) * amplitudes * omega**2, axis=1)
         return _faded(time, self.duration, x, dx, ddx)
 
 
+@dataclass
 class Chirp:
     """Speed amplitude*sin of a phase that sweeps its frequency linearly, faded like the multisine's position.
 
-    Args:
-        amplitude: of the position - rad. first, last: frequencies - Hz.
+    Attributes:
+        amplitude: of the position - rad.
+        first, last: frequencies - Hz.
     """
 
-    distance = 0.0
+    duration: float
+    amplitude: float
+    first: float
+    last: float
+    distance: float = 0.0
 
-    def __init__(self, duration: float, amplitude: float, first: float, last: float) -> None:
-        self.duration, self._amplitude, self._first, self._last = duration, amplitude, first, last
-
-    def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
-        sweep = (self._last - self._first) / self.duration
-        angle = 2.0 * np.pi * (self._first * time + 0.5 * sweep * time**2)
-        omega, slope = 2.0 * np.pi * (self._first + sweep * time), 2.0 * np.pi * sweep
-        x, dx = self._amplitude * np.sin(angle), self._amplitude * omega * np.cos(angle)
-        return _faded(time, self.duration, x, dx, self._amplitude * (slope * np.cos(angle) - omega**2 * np.sin(angle)))
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
+        """As every phase of a motion has it."""
+        sweep = (self.last - self.first) / self.duration
+        angle = 2.0 * np.pi * (self.first * time + 0.5 * sweep * time**2)
+        omega, slope = 2.0 * np.pi * (self.first + sweep * time), 2.0 * np.pi * sweep
+        x, dx = self.amplitude * np.sin(angle), self.amplitude * omega * np.cos(angle)
+        return _faded(time, self.duration, x, dx, self.amplitude * (slope * np.cos(angle) - omega**2 * np.sin(angle)))
 
 
-def _faded(
-    time: np.ndarray, duration: float, x: np.ndarray, dx: np.ndarray, ddx: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _faded(time: np.ndarray, duration: float, x: np.ndarray, dx: np.ndarray, ddx: np.ndarray) -> tuple[np.ndarray, ...]:
     """Position, speed, acceleration of x*sin(pi*t/duration)**2."""
     turn = 2.0 * np.pi / duration
     f, df, ddf = 0.5 - 0.5 * np.cos(turn * time), 0.5 * turn * np.sin(turn * time), 0.5 * turn**2 * np.cos(turn * time)
     return f * x, df * x + f * dx, ddf * x + 2.0 * df * dx + f * ddx
-
-
-class Phase(Protocol):
-    """A part of a motion.
-
-    Attributes:
-        duration: of it - s.
-        distance: gone in it - rad.
-    """
-
-    duration: float
-    distance: float
-
-    def at(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -181,13 +183,17 @@ def multisine(speed: float, acceleration: float, duration: float, rng: np.random
     return Multisine(duration, speeds, frequencies, rng.uniform(-np.pi, np.pi, 9))
 
 
+def _jerk_time(rng: np.random.Generator) -> float:
+    return float(np.exp(rng.uniform(np.log(0.01), np.log(0.06))))
+
+
 def random_motion(axis: Axis, rng: np.random.Generator, duration: float = 8.0) -> Motion:
     """A mixed recording in random order: fast runs both ways, staircase, slow reversals, and a multisine or a chirp."""
     top = axis.top_speed * rng.uniform(0.85, 1.0)
     peak = axis.peak_torque / axis.inertia
     acceleration = min(rng.uniform(0.45, 0.75) * peak, top / 0.03)
     gentle = acceleration * rng.uniform(0.4, 0.9)
-    jerk_time = float(np.exp(rng.uniform(np.log(0.01), np.log(0.06))))
+    jerk_time = _jerk_time(rng)
     ramp = top / acceleration + jerk_time
     repeats = 2 if 12 * ramp < 0.3 * duration else 1
     run_dwell = max((0.3 * duration - 4 * repeats * ramp) / (2 * repeats + 1), 0.006 * duration)
@@ -212,10 +218,6 @@ def random_motion(axis: Axis, rng: np.random.Generator, duration: float = 8.0) -
 def _gentle(axis: Axis, rng: np.random.Generator) -> float:
     """An acceleration well within what the motor can do - rad/s**2."""
     return float(rng.uniform(0.2, 0.6)) * axis.peak_torque / axis.inertia
-
-
-def _jerk_time(rng: np.random.Generator) -> float:
-    return float(np.exp(rng.uniform(np.log(0.01), np.log(0.06))))
 
 
 def _up_and_down(axis: Axis, rng: np.random.Generator, duration: float) -> Motion:

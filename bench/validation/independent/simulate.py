@@ -9,7 +9,7 @@ from math import ceil
 import numpy as np
 
 from bench.trace.trace import Trace
-from bench.validation.independent.effects import Effect
+from bench.validation.independent.effects.effect import Effect
 from bench.validation.independent.plant import Plant
 from bench.validation.independent.references import Motion
 from bench.validation.independent.rig import Axis
@@ -79,102 +79,54 @@ def simulate(
     An axis' noise depends on `seed` and its number alone, which is its place in the list if not given: with a number of
     its own, it can be simulated again without the others.
     """
-    if not len(axes) == len(motions) == len(effects) == len(sensors):
-        raise ValueError("axes, motions, effects and sensors come one each")
     numbers = range(len(axes)) if numbers is None else numbers
+    runs = [_Run(*one) for one in zip(numbers, axes, motions, map(tuple, effects), sensors, strict=True)]
     recordings: dict[int, Recorded] = {}
     for period in sorted({axis.control_period for axis in axes}):
         same = [k for k, axis in enumerate(axes) if axis.control_period == period]
         same.sort(key=lambda k: motions[k].duration)
         for first in range(0, len(same), SIDE_BY_SIDE):
             places = same[first : first + SIDE_BY_SIDE]
-            batch = _Batch(
-                [numbers[k] for k in places],
-                [axes[k] for k in places],
-                [motions[k] for k in places],
-                [tuple(effects[k]) for k in places],
-                [sensors[k] for k in places],
-                seed,
-                longest_step,
-            )
-            recordings |= dict(zip(places, batch.record(), strict=True))
+            beside = _recorded([runs[k] for k in places], period, seed, longest_step)
+            recordings |= dict(zip(places, beside, strict=True))
     return [recordings[k] for k in range(len(axes))]
 
 
 @dataclass(frozen=True)
-class _Batch:
-    """Axes of one control period, simulated together."""
+class _Run:
+    """What is recorded of one axis, and its number, which its noise depends on."""
 
-    numbers: Sequence[int]
-    axes: Sequence[Axis]
-    motions: Sequence[Motion]
-    effects: Sequence[tuple[Effect, ...]]
-    sensors: Sequence[Sensors]
-    seed: int
-    longest_step: float
+    number: int
+    axis: Axis
+    motion: Motion
+    effects: tuple[Effect, ...]
+    sensors: Sensors
 
-    def record(self) -> list[Recorded]:
-        decimations = [_decimation(sensor, axis) for sensor, axis in zip(self.sensors, self.axes, strict=True)]
-        kept: list[list[np.ndarray]] = [[] for _ in self.axes]
-        for first, block in self._blocks():
-            for k, decimation in enumerate(decimations):
-                start = -first % decimation
-                kept[k].append(block[start::decimation, :, k])
-        return [self._recorded(k, np.concatenate(rows).T) for k, rows in enumerate(kept)]
+    @property
+    def decimation(self) -> int:
+        """Control periods a sample."""
+        ratio = self.sensors.sample_period / self.axis.control_period
+        if abs(ratio - round(ratio)) > 1e-6 or ratio < 1.0 - 1e-6:
+            period = f"sample period {self.sensors.sample_period} s"
+            raise ValueError(f"{self.axis.name}: {period} is no multiple of {self.axis.control_period} s")
+        return round(ratio)
 
-    def _blocks(self) -> Iterator[tuple[int, np.ndarray]]:
-        """First tick, and signals (ticks, 7, axes): the six below and the noise of the speed."""
-        period = self.axes[0].control_period
-        substeps = ceil(period / self.longest_step - 1e-9)
-        plant, drive = Plant(self.axes, self.effects), Drive(self.axes, period)
-        resolution = np.array([sensor.encoder_resolution for sensor in self.sensors])
-        rounding = np.array([s.velocity.resolution if s.velocity_noise_fed_back else 0.0 for s in self.sensors])
-        streams = [
-            NoiseStream(s.velocity, period, np.random.default_rng([self.seed, number, 0]))
-            for s, number in zip(self.sensors, self.numbers, strict=True)
-        ]
-        fed_back = np.array([s.velocity_noise_fed_back for s in self.sensors], dtype=float)
-        filtered = np.array([s.velocity_filter_fed_back for s in self.sensors])
-        ticks = ceil(max(motion.duration for motion in self.motions) / period) + 1
-        for first in range(0, ticks, BLOCK):
-            time = period * np.arange(first, min(first + BLOCK, ticks))
-            reference = np.stack([motion.at(time) for motion in self.motions], axis=-1)
-            noise = np.stack([stream.at(time) for stream in streams], axis=-1)
-            block = np.empty((time.size, 7, len(self.axes)))
-            for tick, row in enumerate(block):
-                position = rounded(plant.measured_position, resolution)
-                seen = np.where(filtered, plant.measured_velocity, plant.sensed_velocity)
-                velocity = rounded(seen + fed_back * noise[tick], rounding)
-                demand = drive.current(reference[:, tick], position, velocity)
-                row[0], row[1], row[2] = plant.position, plant.velocity, plant.motor_torque
-                row[3], row[4], row[5], row[6] = position, plant.measured_velocity, plant.recorded_current, noise[tick]
-                for substep in range(substeps):
-                    plant.advance(demand, period / substeps)
-                    if substep == 0:
-                        row[5] = np.where(self._ages() == 0, plant.recorded_current, row[5])
-            if not np.isfinite(block).all():
-                lost = [self.axes[int(k)].name for k in np.flatnonzero(~np.isfinite(block).all(axis=(0, 1)))]
-                raise FloatingPointError(f"diverged: {', '.join(lost)}")
-            yield first, block
-
-    def _ages(self) -> np.ndarray:
-        return np.array([sensor.current_age for sensor in self.sensors])
-
-    def _recorded(self, k: int, signals: np.ndarray) -> Recorded:
-        axis, sensor, motion = self.axes[k], self.sensors[k], self.motions[k]
-        count = int(motion.duration / sensor.sample_period + 1e-9) + 1
-        time = sensor.sample_period * np.arange(count, dtype=float)
+    def recorded(self, signals: np.ndarray, seed: int) -> Recorded:
+        """What its sensors report of signals (7, samples)."""
+        axis, sensors = self.axis, self.sensors
+        count = int(self.motion.duration / sensors.sample_period + 1e-9) + 1
+        time = sensors.sample_period * np.arange(count, dtype=float)
         position, velocity, torque, measured, clean, current, noise = signals[:, :count]
-        hiss = NoiseStream(sensor.current, sensor.sample_period, np.random.default_rng([self.seed, self.numbers[k], 1]))
-        reference = motion.at(time)
+        hiss = NoiseStream(sensors.current, sensors.sample_period, np.random.default_rng([seed, self.number, 1]))
+        reference = self.motion.at(time)
         reported = {
             "position": measured,
-            "velocity": rounded(clean + noise, sensor.velocity.resolution),
-            "current": rounded(current + hiss.at(time), sensor.current.resolution),
+            "velocity": rounded(clean + noise, sensors.velocity.resolution),
+            "current": rounded(current + hiss.at(time), sensors.current.resolution),
             "position_reference": reference[0],
             "velocity_reference": reference[1],
         }
-        if not sensor.position_recorded:
+        if not sensors.position_recorded:
             del reported["position"], reported["position_reference"]
         length = "m" if axis.linear else "rad"
         units = {name: "A" if name == "current" else length + "/s" * name.startswith("velocity") for name in reported}
@@ -186,13 +138,48 @@ class _Batch:
             "current": current,
         }
         trace = Trace(time, reported, units, f"independent {axis.name}")
-        return Recorded(trace, axis, motion, self.effects[k], sensor, true)
+        return Recorded(trace, axis, self.motion, self.effects, sensors, true)
 
 
-def _decimation(sensors: Sensors, axis: Axis) -> int:
-    ratio = sensors.sample_period / axis.control_period
-    if abs(ratio - round(ratio)) > 1e-6 or ratio < 1.0 - 1e-6:
-        raise ValueError(
-            f"{axis.name}: sample period {sensors.sample_period} s is no multiple of {axis.control_period} s"
-        )
-    return round(ratio)
+def _recorded(runs: Sequence[_Run], period: float, seed: int, longest_step: float) -> list[Recorded]:
+    """Axes of one control period - s - simulated together."""
+    decimations = [run.decimation for run in runs]
+    kept: list[list[np.ndarray]] = [[] for _ in runs]
+    for first, block in _blocks(runs, period, seed, longest_step):
+        for k, decimation in enumerate(decimations):
+            kept[k].append(block[-first % decimation :: decimation, :, k])
+    return [run.recorded(np.concatenate(rows).T, seed) for run, rows in zip(runs, kept, strict=True)]
+
+
+def _blocks(runs: Sequence[_Run], period: float, seed: int, longest_step: float) -> Iterator[tuple[int, np.ndarray]]:
+    """First tick, and signals (ticks, 7, axes): the six below and the noise of the speed."""
+    substeps = ceil(period / longest_step - 1e-9)
+    axes, sensors = [run.axis for run in runs], [run.sensors for run in runs]
+    plant, drive = Plant(axes, [run.effects for run in runs]), Drive(axes, period)
+    resolution = np.array([one.encoder_resolution for one in sensors])
+    rounding = np.array([one.velocity.resolution if one.velocity_noise_fed_back else 0.0 for one in sensors])
+    streams = [NoiseStream(run.sensors.velocity, period, np.random.default_rng([seed, run.number, 0])) for run in runs]
+    fed_back = np.array([one.velocity_noise_fed_back for one in sensors], dtype=float)
+    filtered = np.array([one.velocity_filter_fed_back for one in sensors])
+    fresh = np.array([one.current_age for one in sensors]) == 0
+    ticks = ceil(max(run.motion.duration for run in runs) / period) + 1
+    for first in range(0, ticks, BLOCK):
+        time = period * np.arange(first, min(first + BLOCK, ticks))
+        reference = np.stack([run.motion.at(time) for run in runs], axis=-1)
+        noise = np.stack([stream.at(time) for stream in streams], axis=-1)
+        block = np.empty((time.size, 7, len(runs)))
+        for tick, row in enumerate(block):
+            position = rounded(plant.measured_position, resolution)
+            seen = np.where(filtered, plant.measured_velocity, plant.sensed_velocity)
+            velocity = rounded(seen + fed_back * noise[tick], rounding)
+            demand = drive.current(reference[:, tick], position, velocity)
+            row[0], row[1], row[2] = plant.position, plant.velocity, plant.motor_torque
+            row[3], row[4], row[5], row[6] = position, plant.measured_velocity, plant.recorded_current, noise[tick]
+            for substep in range(substeps):
+                plant.advance(demand, period / substeps)
+                if substep == 0:
+                    row[5] = np.where(fresh, plant.recorded_current, row[5])
+        if not np.isfinite(block).all():
+            lost = [axes[int(k)].name for k in np.flatnonzero(~np.isfinite(block).all(axis=(0, 1)))]
+            raise FloatingPointError(f"diverged: {', '.join(lost)}")
+        yield first, block

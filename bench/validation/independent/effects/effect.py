@@ -6,41 +6,54 @@ The same object serves one axis (fields are numbers) and many (fields are arrays
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
-from typing import ClassVar, Protocol, Self
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from bench.validation.independent.rig import Axis
 
 
-class Rows(Protocol):
+@dataclass
+class Rows:
     """State and constants of those axes of a plant that have an effect, as the effect's hooks see them - (k,) each.
 
-    Beside these, every attribute of the plant that is an array of axes, of those axes alone.
+    Any other attribute is the plant's array of axes of that name, of those axes alone.
+
+    Attributes:
+        plant: that they belong to.
+        index: of those axes.
+        effect: stacked over them.
+        memory, level: the effect's own state, and the level of dry friction that its bristles tend to.
     """
 
-    memory: np.ndarray
-    level: np.ndarray
+    plant: Any
+    index: np.ndarray | slice
+    effect: Effect
+    memory: np.ndarray = field(init=False)
+    level: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.memory = np.zeros_like(self.velocity)
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        return getattr(self.plant, name)[self.index]
 
     @property
     def time(self) -> float:
         """Time at the middle of the step - s."""
-        ...
-
-    def __getattr__(self, name: str) -> np.ndarray: ...
+        return self.plant.midtime
 
 
 @dataclass(frozen=True)
 class Effect:
-    """A physical effect. It overrides the hooks through which it acts; the plant asks no other one.
+    """A physical effect. It defines the hooks through which it acts; the plant asks no other one.
 
     `rows` shows the state of the axes that have the effect, midway through the step; `memory` is the effect's own state
     (one number an axis), `step` the time to advance - s.
     """
 
     name: ClassVar[str]
-    outside_catalogue: ClassVar[bool] = False
     on_linear_axis: ClassVar[bool] = True
     #: Whether its resisting torque is one of a load that a gear transmits.
     transmitted: ClassVar[bool] = False
@@ -128,11 +141,6 @@ class Effect:
     def filtered(self, before: np.ndarray, after: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
         """Reported speed after the step, in which the sensed one went from `before` to `after` - rad/s."""
         raise NotImplementedError
-
-    @classmethod
-    def overrides(cls, hook: str) -> bool:
-        """Whether the effect overrides a hook."""
-        return getattr(cls, hook) is not getattr(Effect, hook)
 
 
 def stack(effects: Sequence[Effect]) -> Effect:

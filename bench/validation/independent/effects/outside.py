@@ -19,7 +19,6 @@ class SlowMemoryFriction(Effect):
     """
 
     name: ClassVar[str] = "slow_memory_friction"
-    outside_catalogue: ClassVar[bool] = True
     relative_amplitude: float
     time_constant: float
     speed: float
@@ -41,7 +40,6 @@ class PositionNotch(Effect):
     """Resisting torque A*exp(-(d/s)**2) where d is the angle from the notch within the turn; A - N*m, s width - rad."""
 
     name: ClassVar[str] = "position_notch"
-    outside_catalogue: ClassVar[bool] = True
     on_linear_axis: ClassVar[bool] = False
     amplitude: float
     angle: float
@@ -61,7 +59,6 @@ class Vibration(Effect):
     """Resisting torque A*sin(2*pi*f*t + phi) from a neighbour that runs; A amplitude - N*m, f frequency - Hz."""
 
     name: ClassVar[str] = "vibration"
-    outside_catalogue: ClassVar[bool] = True
     amplitude: float
     frequency: float
     phase: float = 0.0
@@ -82,7 +79,6 @@ class RestHardening(Effect):
     """
 
     name: ClassVar[str] = "rest_hardening"
-    outside_catalogue: ClassVar[bool] = True
     relative_amplitude: float
     time_constant: float
     speed: float

@@ -1,4 +1,8 @@
-"""Effects of motor and drive electronics."""
+"""Effects of motor and drive, and faults of what is measured: of current, its filter and constant, of angle and speed.
+
+The mechanics do not feel the faults, except through the drive, which regulates what its sensors read; a filter of the
+recorded current is the recorder's alone.
+"""
 
 from __future__ import annotations
 
@@ -103,6 +107,102 @@ class CurrentLoopLag(Effect):
 
     def acting_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
         return current + (memory - current) * np.exp(-step / self.time_constant)
+
+
+@dataclass(frozen=True)
+class CurrentFilterLag(Effect):
+    """Recorded current y follows the one that the drive reads: T*dy/dt = i - y; T time_constant - s."""
+
+    name: ClassVar[str] = "current_filter_lag"
+    time_constant: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(3e-3 * about(severity, rng))
+
+    def recorded_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
+        return current + (memory - current) * np.exp(-step / self.time_constant)
+
+
+@dataclass(frozen=True)
+class CurrentGainAsymmetry(Effect):
+    """One ampere read is 1 + d/2 amperes of positive and 1 - d/2 of negative current; d gain_difference."""
+
+    name: ClassVar[str] = "current_gain_asymmetry"
+    gain_difference: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(float(rng.choice([-1.0, 1.0]) * 0.08 * about(severity, rng)))
+
+    def true_current(self, rows: Rows, reading: np.ndarray) -> np.ndarray:
+        return np.where(reading > 0.0, 1.0 + self.gain_difference / 2.0, 1.0 - self.gain_difference / 2.0) * reading
+
+
+@dataclass(frozen=True)
+class CurrentOffsetDrift(Effect):
+    """The sensor reads rate*t too much, as torque; rate - N*m/s."""
+
+    name: ClassVar[str] = "current_offset_drift"
+    rate: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(float(rng.choice([-1.0, 1.0]) * about(severity, rng) * axis.torque_scale / duration))
+
+    def true_current(self, rows: Rows, reading: np.ndarray) -> np.ndarray:
+        return reading - self.rate * rows.time / rows.torque_constant
+
+
+@dataclass(frozen=True)
+class TorqueConstantDrift(Effect):
+    """kT*(1 + rate*t); rate - 1/s."""
+
+    name: ClassVar[str] = "torque_constant_drift"
+    rate: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(float(rng.choice([-1.0, 1.0]) * 0.12 * about(severity, rng) / duration))
+
+    def torque_factor(self, rows: Rows) -> np.ndarray | float:
+        return 1.0 + self.rate * rows.time
+
+
+@dataclass(frozen=True)
+class VelocityFilterLag(Effect):
+    """Reported speed v follows the sensed one: T*dv/dt = w - v; T time_constant - s."""
+
+    name: ClassVar[str] = "velocity_filter_lag"
+    time_constant: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(8e-3 * about(severity, rng) * _slowness(axis))
+
+    def filtered(self, before: np.ndarray, after: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
+        # exact for a sensed speed that changes linearly within the step: v lags it by T*(1 - exp(-t/T)) of its slope
+        slope = (after - before) / step
+        decay = np.exp(-step / self.time_constant)
+        return after - slope * self.time_constant * (1.0 - decay) + (memory - before) * decay
+
+
+@dataclass(frozen=True)
+class EncoderEccentricity(Effect):
+    """Measured angle q + e*sin(q + phi), measured speed its derivative; e amplitude - rad."""
+
+    name: ClassVar[str] = "encoder_eccentricity"
+    on_linear_axis: ClassVar[bool] = False
+    amplitude: float
+    phase: float = 0.0
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(0.035 * about(severity, rng), phase(rng))
+
+    def measured(self, position: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        angle = position + self.phase
+        return position + self.amplitude * np.sin(angle), speed * (1.0 + self.amplitude * np.cos(angle))
 
 
 def _slowness(axis: Axis) -> float:
