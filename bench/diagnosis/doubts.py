@@ -6,13 +6,11 @@ what it leaves of the names; where one takes them all, an unexplained remainder 
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.arrays import Array
 from bench.diagnosis.policy import Policy, freedom, worth
 from bench.diagnosis.search import Searched, Step, backward_elimination, candidates, refined
 from bench.effects.catalogue import simpler_forms
@@ -21,7 +19,7 @@ from bench.effects.rivals import RIVALS
 from bench.effects.signals import Signals
 from bench.effects.waves import Wave
 from bench.fit.fit import Fit, fit
-from bench.fit.hypothesis import Term
+from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.rows import Rows
 from bench.trace.filter import Column
 
@@ -42,9 +40,10 @@ class Evidence:
     excluded: frozenset[str]
     policy: Policy
 
-    def rivals(self) -> list[Effect]:
-        """Effects from outside the catalogue."""
-        return [effect for effect in RIVALS if effect.name not in self.excluded]
+    def rivals(self, fitted: Fit) -> Iterator[Fit]:
+        """A fit with each effect from outside the catalogue, the most promising first."""
+        outside = [effect for effect in RIVALS if effect.name not in self.excluded]
+        return (refined(fitted, found.term) for found in candidates(fitted, outside))
 
 
 #: A reason not to believe a name: the fit with what it leaves of its names.
@@ -62,14 +61,13 @@ def not_in_holdout(fitted: Fit, evidence: Evidence) -> Fit:
 
     Unless it happens as an event there, at the same time of that recording.
     """
-    events = [term for term in fitted.terms if isinstance(term.effect, Occasional)]
-    if evidence.holdout is None or not events:
+    quiet = _without(fitted.hypothesis, Occasional)
+    if evidence.holdout is None or quiet == fitted.hypothesis:
         return fitted
-    quiet = fitted.hypothesis.with_terms(term for term in fitted.terms if not isinstance(term.effect, Occasional))
     there = fit(evidence.holdout, quiet)
     most = evidence.policy.holdout_apart * max(fitted.chi, 1.0)
-    for event in events:
-        if there.chi > most:
+    for event in fitted.terms:
+        if isinstance(event.effect, Occasional) and there.chi > most:
             there = _repeated(there, event, evidence.policy)
     return fitted if there.chi < most else fit(fitted.rows, quiet)
 
@@ -95,14 +93,13 @@ def contested(fitted: Fit, evidence: Evidence) -> Fit:
         return fitted
     for index in range(len(fitted.terms) - 1, -1, -1):
         less = fit(fitted.rows, fitted.hypothesis.without(index))
-        found = candidates(less, evidence.rivals())
-        if not found:
+        rival = next(evidence.rivals(less), None)
+        if rival is None:
             continue
-        rival = refined(less, found[0].term)
         both = fit(fitted.rows, rival.hypothesis.plus(fitted.terms[index]))
         chance = policy.by_chance(fitted, max(freedom(rival) - freedom(fitted), 1))
-        outdone = policy.better(worth(fitted, rival), policy.contested, fitted.excess, chance)
-        if outdone and not policy.better(worth(rival, both), policy.keeps, worth(less, fitted)):
+        outdone = worth(fitted, rival) > max(policy.contested * fitted.excess, chance)
+        if outdone and worth(rival, both) <= policy.keeps * worth(less, fitted):
             fitted = less
     return fitted
 
@@ -127,29 +124,27 @@ def _of_wrong_form(fitted: Fit, term: Term, policy: Policy) -> bool:
     number = _wave_number(term)
     if number is None:
         return False
-    columns = fitted.seen(lambda s: _waves(s, number), of_motion=False)
+    columns = fitted.seen(lambda s: _relatives(s, number), of_motion=False)
     saved = float(fitted.gains(columns, columns.shape[1])[0])
-    left = math.sqrt(max(fitted.chi**2 - saved / (fitted.residual.size * fitted.floor**2), 0.0))
-    return policy.better(saved, policy.wrong_form, fitted.excess, policy.by_chance(fitted, columns.shape[1]), left)
+    left = np.sqrt(max(fitted.chi**2 - saved / (fitted.residual.size * fitted.floor**2), 0.0))
+    most = max(policy.wrong_form * fitted.excess, policy.by_chance(fitted, columns.shape[1]))
+    return saved > most and bool(left <= policy.relatives_leave)
 
 
 def two_for_one(fitted: Fit, evidence: Evidence) -> Fit:
     """Two waves of one period where a single wave of another form, in their place, leaves only noise."""
     numbers = [_wave_number(term) for term in fitted.terms]
-    waves = [index for index, number in enumerate(numbers) if number is not None]
-    pairs = [(late, early) for late in reversed(waves) for early in waves if early < late]
-    for late, early in pairs:
-        number = numbers[late]
-        if number is None or number != numbers[early]:
-            continue
-        less = fit(fitted.rows, fitted.hypothesis.without(late).without(early))
-        columns = less.seen(lambda s, n=number: _waves(s, n), of_motion=False)
-        half = columns.shape[1] // 2
-        order = np.stack([np.arange(half), half + np.arange(half)], axis=1).ravel()
-        saved = float(less.gains(columns[:, order], 2).max())
-        left = math.sqrt(max(less.squares - saved, 0.0) / less.count) / fitted.floor
-        if evidence.policy.better(saved, evidence.policy.one_for_several, leaves=left):
-            return two_for_one(less, evidence)
+    for late in range(len(numbers) - 1, -1, -1):
+        for early in range(late):
+            number = numbers[late]
+            if number is None or number != numbers[early]:
+                continue
+            less = fit(fitted.rows, fitted.hypothesis.without(late).without(early))
+            columns = less.seen(lambda s, n=number: _relatives(s, n), of_motion=False)
+            saved = float(less.gains(columns, 2).max())
+            left = np.sqrt(max(less.squares - saved, 0.0) / less.count) / fitted.floor
+            if saved > 0.0 and left <= evidence.policy.one_for_several:
+                return two_for_one(less, evidence)
     return fitted
 
 
@@ -159,18 +154,16 @@ def one_for_many(fitted: Fit, evidence: Evidence) -> Fit:
     A series of harmonics draws any bump at one angle; where a single rival with fewer numbers does, there is no series.
     What is not needed beside the rival goes with the waves.
     """
-    kept = [term for term in fitted.terms if not isinstance(term.effect, Wave)]
-    if len(fitted.terms) - len(kept) < 2:
+    plain = _without(fitted.hypothesis, Wave)
+    if len(fitted.terms) - len(plain.terms) < 2:
         return fitted
-    less = fit(fitted.rows, fitted.hypothesis.with_terms(kept))
-    tried = [refined(less, found.term) for found in candidates(less, evidence.rivals())]
-    fewer = [rival for rival in tried if freedom(rival) < freedom(fitted)]
-    rival = min(fewer, key=lambda found: found.squares, default=None)
-    policy = evidence.policy
-    if rival is None or not policy.better(worth(less, rival), policy.one_for_several, leaves=rival.chi):
+    less = fit(fitted.rows, plain)
+    fewer = [rival for rival in evidence.rivals(less) if freedom(rival) < freedom(fitted)]
+    rival = min(fewer, key=lambda found: found.squares, default=less)
+    if worth(less, rival) <= 0.0 or rival.chi > evidence.policy.one_for_several:
         return fitted
-    needed = backward_elimination(rival, policy).terms
-    return fit(fitted.rows, fitted.hypothesis.with_terms(term for term in kept if any(map(term.same, needed))))
+    needed = backward_elimination(rival, evidence.policy).terms
+    return fit(fitted.rows, plain.with_terms(term for term in plain.terms if any(map(term.same, needed))))
 
 
 def simpler(fitted: Fit, evidence: Evidence) -> Fit:
@@ -178,7 +171,7 @@ def simpler(fitted: Fit, evidence: Evidence) -> Fit:
     for index, term in enumerate(fitted.terms):
         for form in simpler_forms(term.effect, fitted.scope):
             plain = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(form)))
-            if not evidence.policy.significant(plain, fitted, 1, fitted):
+            if worth(plain, fitted) <= evidence.policy.by_chance(fitted, 1):
                 return simpler(plain, evidence)
     return fitted
 
@@ -220,15 +213,17 @@ def doubted(searched: Searched, evidence: Evidence, doubts: Sequence[Doubt] = DO
     return replace(searched, steps=kept)
 
 
+def _without(hypothesis: Hypothesis, kind: type[Effect]) -> Hypothesis:
+    """A hypothesis less its effects of a kind."""
+    return hypothesis.with_terms(term for term in hypothesis.terms if not isinstance(term.effect, kind))
+
+
 def _wave_number(term: Term) -> float | None:
     return term.effect.wave_number(term.shape) if isinstance(term.effect, Wave) else None
 
 
-def _waves(s: Signals, number: float) -> list[Column]:
+def _relatives(s: Signals, number: float) -> list[Column]:
     """Waves of position times whatever a torque may hang on: nothing, omega**2, its direction, torque, acceleration."""
-    columns: list[Column] = []
-    waves: tuple[Array, Array] = np.sin(number * s.position), np.cos(number * s.position)
-    for wave in waves:
-        columns += [[(factor * wave, 0)] for factor in (np.ones_like(wave), s.velocity**2, s.sign, s.torque)]
-        columns.append([(s.velocity * wave, 1)])
-    return columns
+    factors = (np.ones_like(s.position), 0), (s.velocity**2, 0), (s.sign, 0), (s.torque, 0), (s.velocity, 1)
+    waves = np.sin(number * s.position), np.cos(number * s.position)
+    return [[(factor * wave, order)] for factor, order in factors for wave in waves]

@@ -10,10 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
-from bench.axis_kind import AxisKind
 from bench.diagnosis.add import Added
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.where import LEAST, bins_of, coordinates, means_in, where
 from bench.fit.fit import Fit
 from bench.fit.stored import Balance
 from bench.plant.measured_motion import measured_velocity
@@ -79,27 +77,6 @@ class Course:
     torque_left: tuple[Array, ...]
 
 
-@dataclass(frozen=True)
-class Profile:
-    """The gap over one coordinate, before anything was added and after.
-
-    Attributes:
-        coordinate: of `bench.diagnosis.where`.
-        unit: of it.
-        share: of the first gap's variance that it explains.
-        centres: of its bins - unit - (b,).
-        before, after: mean of measured less modelled torque in each bin - N*m (N) - (b,), without and with the added
-            effects.
-    """
-
-    coordinate: str
-    unit: str
-    share: float
-    centres: Array
-    before: Array
-    after: Array
-
-
 def courses(recordings: Recordings, added: Added) -> tuple[Course, ...]:
     """The recording, and the holdout where there is one, beside the bare axis and the model after each addition."""
     laid_out = [rows for rows in (recordings.rows, recordings.holdout_rows) if rows is not None]
@@ -132,26 +109,6 @@ def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
 def _rms_known(left: NDArray[np.float32] | None) -> float:
     """RMS over the samples that a model covers; nan without a model."""
     return math.nan if left is None else rms(left[np.isfinite(left)].astype(np.float64))
-
-
-def profiles(bare: Fit, whole: Fit, kind: AxisKind, unit: str, current: Array | None) -> tuple[Profile, ...]:
-    """The gap over each coordinate before and after, by the share of the first gap it explains.
-
-    Args:
-        bare, whole: fits without and with all effects, of the same rows.
-        kind: of the axis.
-        unit: of the effort.
-        current: as reported at the rows - A - (m,); None where another effort is.
-    """
-    shares = {account.coordinate: account.share for account in where(bare, kind, unit, current)}
-    found = []
-    for one in coordinates(bare, kind, unit, current):
-        index = bins_of(one.values)
-        kept = np.bincount(index) >= LEAST
-        centres = means_in(index, one.values if one.called is None else one.called)
-        before, after = means_in(index, bare.left), means_in(index, whole.left)
-        found.append(Profile(one.name, one.unit, shares[one.name], centres[kept], before[kept], after[kept]))
-    return tuple(sorted(found, key=lambda profile: -profile.share))
 
 
 def torque_gap(steps: list[Shrunk], whole: Fit, unit: str) -> Gap:

@@ -18,7 +18,6 @@ from bench.errors import InputError
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.rows import Rows
-from bench.fit.stored import Balance
 from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
 from bench.plant.model_file import Mounting, StoredModel
 from bench.rig.rig import Rig
@@ -32,12 +31,7 @@ SPEEDS, SLOWEST = 400, 1e-3
 
 
 def stored_model(fitted: Fit, outside: Sequence[Present], rig: Rig) -> StoredModel:
-    """The axis of a fit in MuJoCo.
-
-    Args:
-        fitted: J, K_w, K_0 and effects of the torque balance.
-        outside: effects outside the torque balance.
-        rig: of the axis.
+    """The axis of a fit in MuJoCo, with effects outside the torque balance.
 
     Raises:
         InputError: MuJoCo cannot have the effects with these values, or no inertia.
@@ -75,11 +69,7 @@ def holding_bandwidth(model: AxisModel, top_speed: float) -> float:
 
     Where friction falls as speed rises by c - N*m*s/rad -, the held axis J*s**2 + (K_v + K_w - c)*s + K_i runs away
     from the recording unless K_v = J*w exceeds c - K_w: small errors grow where the axis under its own drive was
-    stable. Then the model is held as firmly as that takes.
-
-    Args:
-        model: with all its effects.
-        top_speed: of the recording - rad/s (m/s).
+    stable. Then the model is held as firmly as that takes, up to the recording's top speed - rad/s (m/s).
     """
     speed = np.geomspace(SLOWEST, 1.0, SPEEDS) * max(top_speed, 1e-9)
     nothing = np.zeros_like(speed)
@@ -172,7 +162,3 @@ class Extension:
         """Whether an effect may occur in one recording and not in another."""
         terms = self.hypothesis.terms
         return index < len(terms) and isinstance(terms[index].effect, Occasional)
-
-    def balance(self, events: bool) -> Balance:
-        """Torque balance with all effects; `events`: whether its events occur in every recording."""
-        return Balance.of(self.whole.fitted).repeating(events)

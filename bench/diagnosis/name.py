@@ -77,15 +77,7 @@ class Suspects:
 def name(
     recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Policy, doubts: Sequence[Doubt] = DOUBTS
 ) -> Suspects:
-    """Suspects of a recording.
-
-    Args:
-        recordings: laid out.
-        bare: the fit without an effect.
-        excluded: effects that are not tried.
-        policy: that decides.
-        doubts: raised of what a search finds, in this order.
-    """
+    """What a search adds to the bare fit and doubts leave of it, and what the signals show directly."""
     effects = [effect for name, effect in catalogue().items() if name not in excluded]
     searched = search(bare, effects, policy)
     searched = doubted(searched, Evidence(bare, recordings.holdout_rows, excluded, policy), doubts)
@@ -96,13 +88,7 @@ def name(
 def named(
     recordings: Recordings, fitted: Fit, detected: Mapping[Effect, Detected]
 ) -> tuple[list[NamedEffect], dict[str, Parameter]]:
-    """Effects with their quantities, and J, K_w, K_0 beside them.
-
-    Args:
-        recordings: that were fitted.
-        fitted: the torque balance with its effects.
-        detected: effects outside the torque balance.
-    """
+    """Effects of a torque balance and outside of it with their quantities, and J, K_w, K_0 beside them."""
     numbers, others = uncertain(fitted), recordings.within_tolerance(fitted)
     hinted, over_noise = hint(fitted, catalogue().values()) or fitted, unbiased(fitted)
     parameters = {

@@ -175,14 +175,7 @@ def motions(recordings: Recordings, model: AxisModel) -> list[tuple[str, Referen
 def separation(
     recordings: Recordings, models: tuple[AxisModel, AxisModel], references: References, width: float
 ) -> float:
-    """RMS torque that one model would miss on the other's recording of a motion - N*m (N).
-
-    Args:
-        recordings: whose rig drives both.
-        models: the two explanations.
-        references: the motion.
-        width: of the diagnosis' filter - s.
-    """
+    """RMS torque - N*m (N) - that one model would miss on the other's recording, through a filter of a width - s."""
     cascade = replace(Cascade.from_rig(recordings.rig), control_period=references.period)
     states = []
     for model in models:

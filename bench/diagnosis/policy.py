@@ -6,7 +6,6 @@ are more than chance saves in a search, and more than a share of the squares at 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,19 +29,6 @@ def worth(without: Fit, having: Fit) -> float:
 def over_noise(fitted: Fit) -> float:
     """RMS residual over that of white sensor noise in the same balance, which effects damp or amplify - 1."""
     return fitted.rms / fitted.noise.white
-
-
-@dataclass(frozen=True)
-class Margin:
-    """By how much one explanation must be better than another.
-
-    Attributes:
-        share: of the squares at stake that it must save.
-        leaves: residual over noise floor that it may leave at most.
-    """
-
-    share: float = 0.0
-    leaves: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -74,9 +60,10 @@ class Policy:
         overlap: of the shorter one: how long an event of the holdout is the recording's, too.
         contested: of what is above noise: what a rival from outside the catalogue explains beyond a name.
         keeps: share of its worth that a name keeps beside a rival that takes nothing of it.
-        wrong_form: of what is above noise: what relatives of a wave explain only if it is of the wrong form, and what
-            they leave then. Eccentricity under another name left 0.8 to 1.1, gravity of a pendulum on a gear 2.1.
-        one_for_several: what one explanation leaves in the place of several names.
+        wrong_form: of what is above noise: what relatives of a wave explain only if it is of the wrong form.
+        relatives_leave: residual over noise floor that they leave then at most. Eccentricity under another name left
+            0.8 to 1.1, gravity of a pendulum on a gear 2.1.
+        one_for_several: residual over noise floor that one explanation leaves at most in the place of several names.
         believable: of what was above noise without names: what may be left beside them.
         believable_contact: the same beside a contact, whose impacts leave bursts.
         holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave. Of
@@ -88,53 +75,30 @@ class Policy:
     chance: float = 40.0
     remainder: float = NOISE_ALONE
     large: float = 3.0
-    promising: Margin = Margin(0.1)
+    promising: float = 0.1
     finalists: int = 4
     explains: float = 1.0
-    needed: Margin = Margin(0.02)
-    as_good: Margin = Margin(0.9)
+    needed: float = 0.02
+    as_good: float = 0.9
     exchanges: int = 2
-    replaces: Margin = Margin(0.5)
+    replaces: float = 0.5
     determined: float = 0.5
     holdout_apart: float = 1.25
     overlap: float = 0.5
-    contested: Margin = Margin(0.25)
-    keeps: Margin = Margin(0.5)
-    wrong_form: Margin = Margin(0.5, leaves=1.25)
-    one_for_several: Margin = Margin(leaves=NOISE_ALONE)
+    contested: float = 0.25
+    keeps: float = 0.5
+    wrong_form: float = 0.5
+    relatives_leave: float = 1.25
+    one_for_several: float = NOISE_ALONE
     believable: float = 0.2
     believable_contact: float = 0.35
     holdout_gap: float = 3.0
     most: int = 12
     members: int = 12
 
-    def better(
-        self, saved: float, by: Margin, stake: float = 0.0, chance: float = -math.inf, leaves: float = 0.0
-    ) -> bool:
-        """Whether one explanation of some rows is better than another.
-
-        Args:
-            saved: squares that it leaves less - (N*m)**2 (N**2).
-            by: the margin.
-            stake: squares of which the margin asks a share - (N*m)**2 (N**2).
-            chance: squares that chance saves - (N*m)**2 (N**2).
-            leaves: residual over noise floor that it leaves.
-        """
-        return saved > max(chance, by.share * stake) and leaves <= by.leaves
-
     def by_chance(self, fitted: Fit, numbers: int, noise: float | None = None) -> float:
-        """Squares that so many numbers save by chance at most - (N*m)**2 (N**2).
-
-        Args:
-            fitted: whose noise it is.
-            numbers: that are added.
-            noise: its power in a row instead - (N*m)**2 (N**2).
-        """
+        """Squares that so many numbers save by chance at most, of a fit's noise or of a power in a row - (N*m)**2."""
         return self.chance * numbers * fitted.rows.correlation * (fitted.floor**2 if noise is None else noise)
-
-    def significant(self, without: Fit, having: Fit, numbers: int, noise: Fit) -> bool:
-        """Whether a fit leaves less than another by more than chance in so many numbers, with the noise of a fit."""
-        return self.better(worth(without, having), Margin(), chance=self.by_chance(noise, numbers))
 
     def remains(self, fitted: Fit) -> bool:
         """Whether what is left stands clearly above noise."""
@@ -146,7 +110,7 @@ class Policy:
 
     def promises(self, current: Fit, gain: float) -> bool:
         """Whether a candidate that takes so much at a grid's shape is worth the search of its shape."""
-        return self.better(gain, self.promising, current.excess, self.by_chance(current, 1))
+        return gain > max(self.promising * current.excess, self.by_chance(current, 1))
 
     def accepts(self, before: Fit, after: Fit) -> bool:
         """Whether the last term of `after` explains its share of what is above noise, significantly and physically.
@@ -162,19 +126,17 @@ class Policy:
         excess = before.excess or max(before.squares - before.count * noise, 0.0)
         term = after.terms[-1]
         added = after.theta.size - before.theta.size + len(term.shape)
-        share = Margin(self.explains * term.effect.needed_share(term.shape, after.scope))
-        chance = self.by_chance(before, added, noise)
-        explains = share.share * excess > 0.0 and self.better(explained(before, after), share, excess, chance)
-        return explains and self.physical(after)
+        share = self.explains * term.effect.needed_share(term.shape, after.scope) * excess
+        saves = explained(before, after) > max(share, self.by_chance(before, added, noise))
+        return share > 0.0 and saves and self.physical(after)
 
     def physical(self, fitted: Fit) -> bool:
         """Whether every effect keeps within what physics allows: friction resists, masses are positive."""
-        if fitted.base.inertia <= 0.0:
-            return False
-        for index, term in enumerate(fitted.terms):
-            if not term.effect.physical(fitted.strengths(index), term.shape, fitted.base):
-                return False
-        return all(_plausible(effect, fitted) for effect in {term.effect for term in fitted.terms})
+        return (
+            fitted.base.inertia > 0.0
+            and all(_physical(fitted, index) for index in range(len(fitted.terms)))
+            and all(_plausible(fitted, effect) for effect in {term.effect for term in fitted.terms})
+        )
 
     def needs(self, fitted: Fit, less: Fit, index: int) -> bool:
         """Whether a term, without which `less` is, still saves something beside those that came after it.
@@ -182,31 +144,36 @@ class Policy:
         One that may only damp noise does not.
         """
         numbers = max(len(fitted.strengths(index)) + len(fitted.terms[index].shape), 1)
-        saves = self.better(worth(less, fitted), self.needed, less.excess, self.by_chance(fitted, numbers))
+        saves = worth(less, fitted) > max(self.needed * less.excess, self.by_chance(fitted, numbers))
         return saves and not self.only_damps(less, fitted)
 
     def exchanges_for(self, before: Fit, after: Fit) -> bool:
         """Whether `after`, with another effect in the place of a name, leaves less by more than chance."""
         numbers = max(freedom(after) - freedom(before), 1)
-        return self.significant(before, after, numbers, before) and self.physical(after)
+        return worth(before, after) > self.by_chance(before, numbers) and self.physical(after)
 
     def replaces_by(self, before: Fit, after: Fit) -> bool:
         """Whether `after`, with its last term in the place of others, leaves clearly less where it is determined.
 
         And no more where it is not.
         """
-        index = len(after.terms) - 1
-        if not after.terms[index].effect.physical(after.strengths(index), after.terms[index].shape, after.base):
+        if not _physical(after, len(after.terms) - 1):
             return False
         left = float(np.sum(before.residual[after.determined] ** 2))
         excess = max(left - after.count * before.floor**2, 0.0)
-        clearly = self.better(left - after.squares, self.replaces, excess)
+        clearly = left - after.squares > self.replaces * excess
         no_more = float(np.sum(after.left**2)) < before.squares
         enough = float(after.determined.mean()) > self.determined
         return clearly and no_more and enough and not self.only_damps(before, after)
 
 
-def _plausible(effect: Effect, fitted: Fit) -> bool:
+def _physical(fitted: Fit, index: int) -> bool:
+    """Whether one term keeps within what physics allows."""
+    term = fitted.terms[index]
+    return term.effect.physical(fitted.strengths(index), term.shape, fitted.base)
+
+
+def _plausible(fitted: Fit, effect: Effect) -> bool:
     """Whether the terms of an effect, several if it is repeatable, are credible together."""
     own = [index for index, term in enumerate(fitted.terms) if term.effect is effect]
     strengths, shapes = [fitted.strengths(index) for index in own], [fitted.terms[index].shape for index in own]

@@ -1,17 +1,28 @@
-"""Whether the holdout is a recording of the same axis; if not, it cannot validate the model."""
+"""How recordings of one axis differ: a holdout, which else validates nothing, and several that are joined."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from bench.arrays import NORMAL95, rms
 from bench.comparison.difference import Difference
+from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
+from bench.diagnosis.recordings import Recordings
 from bench.effects.effect import Occasional
+from bench.errors import UndeterminedError
+from bench.fit.determined import left_open, require_determined
+from bench.fit.estimate import Alone, load_inertia
 from bench.fit.fit import Fit, fit
+from bench.fit.hypothesis import Hypothesis
+from bench.fit.layout import lay_out
 from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
+from bench.fit.solution import equations_of
 
 #: Factors by which J, K_w and K_0 of one axis may differ between recordings without a warning.
 REPORTED = (1.01, 1.3, 1.1)
@@ -58,14 +69,9 @@ class SameAxis:
 
 
 def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> SameAxis:
-    """Compare J, K_w and K_0 of recording and holdout, and test whether the model fits both.
+    """Compare J, K_w and K_0, whose names have such units, of a recording's fit and of the holdout.
 
-    Its effects are fitted to both recordings; events belong to one of them and are left out.
-
-    Args:
-        fitted: the model of the recording.
-        other: the holdout.
-        units: of J, K_w and K_0 by their names.
+    The model's effects are fitted to both recordings; events belong to one of them and are left out.
     """
     if other is None:
         return SameAxis(None)
@@ -82,7 +88,7 @@ def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> Same
             differs.append(Disagreement(name, own[name], others[name]))
         if _beyond(FOREIGN[k], found):
             apart.append(f"{1.0 + found.value:.3g} times the {label} (± {NORMAL95 * found.std_error:.2g})")
-    left, least = _left(there), _left(here)
+    left, least = (found.rms / rms(found.effort) for found in (there, here))
     if left > max(LEFT, MORE * least):
         apart.append(f"{left:.0%} of its torque unexplained by the effects found, {least:.1%} of the recording's")
     if apart:
@@ -95,5 +101,77 @@ def _beyond(factor: float, found: Difference) -> bool:
     return found.outside(1.0 / factor - 1.0, factor - 1.0, SURE)
 
 
-def _left(fitted: Fit) -> float:
-    return fitted.rms / rms(fitted.effort)
+@dataclass(frozen=True)
+class Apart:
+    """How recordings differ.
+
+    Attributes:
+        parameters: of all together, with intervals that count it.
+        recordings: J, K_w and K_0 of each alone, beside the effects that were found; () of one.
+        between: their spread, of what at least two tell.
+        warnings: in what they differ.
+    """
+
+    parameters: dict[str, Parameter]
+    recordings: tuple[Alone, ...] = ()
+    between: Mapping[str, Between] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+
+def apart(recordings: Recordings, whole: Fit, parameters: Mapping[str, Parameter]) -> Apart:
+    """The model with all effects, and its parameters, compared to it fitted to each of several recordings alone."""
+    found = dict(parameters)
+    if not recordings.trace.joined:
+        return Apart(found)
+    alone = _each(recordings, whole)
+    warnings, spread = [], {}
+    for name in recordings.base_units:
+        own = [one.parameters[name] for one in alone if name in one.parameters]
+        if len(own) < 2:
+            continue
+        differ = excess([own])
+        found[name] = widened(found[name], differ, own)
+        spread[name] = between(own)
+        if differ.chance < ALARM / len(recordings.base_units):
+            warnings.append(spread_warning(name, own))
+    found |= load_inertia(found, recordings.rig)
+    return Apart(found, alone, spread, tuple(warnings))
+
+
+def widened(found: Parameter, differ: Excess, own: Sequence[Parameter]) -> Parameter:
+    """A joint value whose interval includes the spread between recordings, as far as averaging leaves it.
+
+    Args:
+        found: with its interval from the recordings' own errors.
+        differ: spread of the recordings beyond these.
+        own: estimate by each recording alone.
+    """
+    more = differ.of_joint(own)
+    if not more:
+        return found
+    reach = math.hypot(found.half_width, differ.reach * more)
+    interval = (found.value - reach, found.value + reach)
+    return replace(found, std_error=math.hypot(found.std_error, more), ci95=interval)
+
+
+def _each(recordings: Recordings, whole: Fit) -> tuple[Alone, ...]:
+    kind, first = recordings.rig.axis_kind, float(recordings.trace.time[0])
+    joined = recordings.trace.joined
+    ends = [start - first for start, _ in joined[1:]] + [np.inf]
+    found = []
+    for (begun, origin), end in zip(joined, ends, strict=True):
+        start = begun - first
+        rows = whole.rows.selected(lambda time, start=start, end=end: (time >= start) & (time < end))
+        equations = equations_of(rows, lay_out(rows, Hypothesis())) if rows.effort.size else None
+        if equations is None:
+            found.append(Alone(origin, {}, f"no filtered sample of {origin} moves clearly in one direction"))
+            continue
+        try:
+            reason = ""
+            require_determined(equations, kind)
+        except UndeterminedError as refusal:
+            reason = str(refusal)
+        found_alone = uncertain(fit(rows, whole.hypothesis)).base(recordings.base_units)
+        unknown = {kind.parameter(term) for term in left_open(equations, kind)}
+        found.append(Alone(origin, {name: one for name, one in found_alone.items() if name not in unknown}, reason))
+    return tuple(found)

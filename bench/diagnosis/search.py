@@ -158,7 +158,7 @@ def _repeats_a_step(fitted: Fit, steps: Sequence[Step], policy: Policy) -> bool:
     """Whether an earlier step had the same effects and left no more: what is taken up and let go in turn never ends."""
     names = Counter(fitted.hypothesis.names)
     same = [step.fitted for step in steps if Counter(step.fitted.hypothesis.names) == names]
-    return any(not policy.significant(earlier, fitted, 1, fitted) for earlier in same)
+    return any(worth(earlier, fitted) <= policy.by_chance(fitted, 1) for earlier in same)
 
 
 def exchanged(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit | None:
@@ -170,9 +170,9 @@ def exchanged(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit | N
     found = []
     for index, term in enumerate(fitted.terms[:-1]):
         less = fit(fitted.rows, fitted.hypothesis.without(index))
-        taken = worth(less, fitted)
+        least = policy.as_good * worth(less, fitted)
         tried = candidates(less, [effect for effect in effects if effect is not term.effect])
-        as_good = [candidate for candidate in tried if policy.better(candidate.gain, policy.as_good, taken)]
+        as_good = [candidate for candidate in tried if candidate.gain > least]
         instead = [refined(less, candidate.term) for candidate in as_good[: policy.exchanges]]
         found += [after for after in instead if policy.exchanges_for(fitted, after)]
     if not found:

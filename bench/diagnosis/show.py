@@ -2,27 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from bench.comparison.spread import Between
 from bench.diagnosis.add import Added, Rejected
-from bench.diagnosis.apart import apart
-from bench.diagnosis.considered import Considered, considered
-from bench.diagnosis.gaps import Course, Gap, Profile, Shrunk, courses, profiles, shrinking, torque_gap, velocity_gap
+from bench.diagnosis.gaps import Course, Gap, Shrunk, courses, shrinking, torque_gap, velocity_gap
 from bench.diagnosis.name import NamedEffect, Suspects
 from bench.diagnosis.next_experiment import NextExperiment, propose
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.same_axis import SameAxis
-from bench.diagnosis.verdict import Shown, verdict
-from bench.diagnosis.warnings import impacts, left_open, suspicions
-from bench.diagnosis.where import Where, where
+from bench.diagnosis.same_axis import SameAxis, apart
+from bench.diagnosis.search import Searched, Step
+from bench.diagnosis.verdict import Shown, impacts, left_open, suspicions, verdict
+from bench.diagnosis.where import Profile, Where, profiles, where
+from bench.effects.catalogue import catalogue
+from bench.effects.effect import Effect
 from bench.fit.estimate import Alone
 from bench.fit.fit import Fit
 from bench.fit.parameter import Parameter
 from bench.fit.stored import Balance
 from bench.gate.check import Check
 from bench.plant.model_file import StoredModel
+
+
+@dataclass(frozen=True)
+class Considered:
+    """An effect of the catalogue, and why it was accepted or not.
+
+    Attributes:
+        effect: of the catalogue.
+        taken: whether it is in the model.
+        alone: share of the squared gap that it explains alone; None if it was not tried.
+        beside: share of the squared residual that it explains in addition to the others; None if it was not tried.
+        reason: for or against it.
+    """
+
+    effect: Effect
+    taken: bool
+    alone: float | None
+    beside: float | None
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -80,15 +99,7 @@ class Diagnosis:
 
 
 def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Suspects, added: Added) -> Diagnosis:
-    """The diagnosis of what was found.
-
-    Args:
-        recordings: laid out.
-        bare: the fit without an effect.
-        located: where the gap sits.
-        suspects: what was named.
-        added: what was kept.
-    """
+    """The diagnosis of what was named and kept; `located`: where the gap of the bare fit sits."""
     rig, unit, kind = recordings.rig, recordings.unit, recordings.rig.axis_kind
     whole, kept, searched = added.extension.whole.fitted, added.refined, suspects.searched
     shown, several = courses(recordings, added), apart(recordings, whole, kept.parameters)
@@ -118,7 +129,7 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
         model=kept.model,
         balance=Balance.of(whole).repeating(added.repeats),
         courses=shown,
-        profiles=profiles(bare, whole, kind, unit, current),
+        profiles=profiles(bare, whole, located, kind, unit, current),
         considered=considered(recordings, suspects, added),
         warnings=[
             *suspicions(recordings.trace, rig, kept.parameters),
@@ -128,3 +139,54 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
             *added.warnings,
         ],
     )
+
+
+def considered(recordings: Recordings, suspects: Suspects, added: Added) -> tuple[Considered, ...]:
+    """All effects: those accepted in the order of addition, then the others by the share they explain."""
+    rounds = rounds_of(suspects.searched)
+    named = {one.effect: one for one in added.refined.effects}
+    found: dict[Effect, Considered] = {}
+    for effect in catalogue().values():
+        shares = [share for tried in rounds if (share := _share(tried, effect)) is not None]
+        reason = _for(named[effect]) if effect in named else _against(effect, recordings, suspects, added, rounds)
+        last = _share(rounds[-1], effect) if len(rounds) > 1 and effect not in named else None
+        found[effect] = Considered(effect, effect in named, shares[0] if shares else None, last, reason)
+    taken = [found.pop(effect) for effect in named]
+    return (*taken, *sorted(found.values(), key=lambda one: -(one.alone or 0.0)))
+
+
+def rounds_of(searched: Searched) -> list[Step]:
+    """Rounds of a search: each fit with what was tried beside it; beside the last nothing was accepted."""
+    pairs = zip(searched.steps, searched.steps[1:], strict=False)
+    rounds = [Step(before.fitted, after.rivals) for before, after in pairs]
+    return rounds if searched.ended is None else [*rounds, searched.ended]
+
+
+def _share(tried: Step, effect: Effect) -> float | None:
+    """Share of the squared residual that an effect explains beside a fit; None if it was not tried."""
+    gains = [candidate.gain for candidate in tried.rivals if candidate.term.effect is effect]
+    return max(0.0, *gains) / max(tried.fitted.squares, 1e-300) if gains else None
+
+
+def _for(named: NamedEffect) -> str:
+    """The figures that support an effect."""
+    return ", ".join(f"{key.replace('_', ' ')} {value:.3g}" for key, value in named.evidence.items()) or "named"
+
+
+def _against(effect: Effect, recordings: Recordings, suspects: Suspects, added: Added, rounds: Sequence[Step]) -> str:
+    """Why an effect is not in the model: the first of these reasons that holds."""
+    rejected = {one.name: one.reason for one in added.rejected}
+    share = _share(rounds[-1], effect) if rounds else None
+    reasons = {
+        "was not to be tried": effect.name in suspects.excluded,
+        rejected.get(effect.name, ""): effect.name in rejected,
+        "was taken up and let go: the others explain it too, or a doubt spoke against it": any(
+            effect is term.effect for tried in rounds for term in tried.fitted.terms
+        ),
+        "such a recording cannot show it": not effect.sought(recordings.rows.scope),
+        "no more than chance": share is not None
+        and share * rounds[-1].fitted.squares < suspects.policy.by_chance(rounds[-1].fitted, 1),
+        "too little, or with values that physics forbids": share is not None,
+        "the recording tells but one of it and what was taken": not suspects.searched.last.hypothesis.admits(effect),
+    }
+    return next((reason for reason, holds in reasons.items() if holds), "nothing in the recording points to it")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,6 +37,27 @@ class Where:
 
 
 @dataclass(frozen=True)
+class Profile:
+    """The gap over one coordinate, before anything was added and after.
+
+    Attributes:
+        coordinate: of `bench.diagnosis.where`.
+        unit: of it.
+        share: of the first gap's variance that it explains.
+        centres: of its bins - unit - (b,).
+        before, after: mean of measured less modelled torque in each bin - N*m (N) - (b,), without and with the added
+            effects.
+    """
+
+    coordinate: str
+    unit: str
+    share: float
+    centres: Array
+    before: Array
+    after: Array
+
+
+@dataclass(frozen=True)
 class Coordinate:
     """A coordinate along the rows of a recording.
 
@@ -53,7 +75,7 @@ class Coordinate:
 
 
 def where(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None) -> list[Where]:
-    """Shares of every coordinate, largest first.
+    """Shares of every coordinate of the gap that a fit leaves, largest first.
 
     Args:
         fitted: whose residual is the gap.
@@ -96,6 +118,20 @@ def means_in(index: NDArray[np.int64], values: Array) -> Array:
     """Mean of values (m,) in each bin (b,)."""
     count = np.bincount(index)
     return np.bincount(index, values, minlength=count.size) / np.maximum(count, 1)
+
+
+def profiles(
+    bare: Fit, whole: Fit, located: Sequence[Where], kind: AxisKind, unit: str, current: Array | None
+) -> tuple[Profile, ...]:
+    """The gap over each coordinate without and with all effects, by the share of the first it explains; as `where`."""
+    shares, found = {account.coordinate: account.share for account in located}, []
+    for one in coordinates(bare, kind, unit, current):
+        index = bins_of(one.values)
+        kept = np.bincount(index) >= LEAST
+        centres = means_in(index, one.values if one.called is None else one.called)
+        before, after = means_in(index, bare.left), means_in(index, whole.left)
+        found.append(Profile(one.name, one.unit, shares[one.name], centres[kept], before[kept], after[kept]))
+    return tuple(sorted(found, key=lambda profile: -profile.share))
 
 
 def _account(coordinate: Coordinate, gap: Array) -> Where:

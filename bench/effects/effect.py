@@ -32,7 +32,7 @@ from bench.effects.axis import Axis, Values
 from bench.effects.shape import LAG, Shape, Shapes, grid_of, is_pitch
 from bench.effects.signals import Base, Scope, Signals
 from bench.rig.rig import Rig
-from bench.trace.filter import Column
+from bench.trace.filter import Column, GaussianFilter
 from bench.trace.trace import Trace
 from bench.units import Quantity
 
@@ -297,11 +297,18 @@ class EffortLag(Lag):
 
 
 class Detectable(Effect):
-    """Single signals show it directly, without the torque balance."""
+    """Single signals show it directly, without the torque balance; see `smoothed`."""
 
     @abstractmethod
     def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
         """The effect read from signals, smoothed by a filter of this width - s; None if not visible."""
+
+
+def smoothed(trace: Trace, smooth: GaussianFilter, name: str, *orders: int) -> Array:
+    """Derivatives of such orders of a recorded signal through a filter (k, m), all stretches long enough in a row."""
+    parts = [part for part in trace.segments if part.stop - part.start > 4 * smooth.margin]
+    found = [smooth(trace[name][part], *orders) for part in parts]
+    return np.concatenate([np.empty((len(orders), 0)), *found], axis=1)
 
 
 # In the search.

@@ -40,10 +40,12 @@ class Present:
             InputError: an unknown effect or quantity, or a value out of bounds.
         """
         effect = named(name, where)
-        known = {quantity.name: quantity for quantity in effect.quantities}
         for key, value in values.items():
-            _check(known_quantity(effect, key, where), value, f"{where}: {name}.{key}")
-        return cls(name, tuple((key, float(values[key])) for key in known if key in values))
+            quantity = known_quantity(effect, key, where)
+            if not quantity.lower <= value <= quantity.upper:
+                allowed = f"allowed: {quantity.lower:g} to {quantity.upper:g} {quantity.unit}"
+                raise InputError(f"{where}: {name}.{key}", f"found {value:g} {quantity.unit}", allowed)
+        return cls(name, tuple((q.name, float(values[q.name])) for q in effect.quantities if q.name in values))
 
     @property
     def effect(self) -> Effect:
@@ -127,12 +129,3 @@ def parse_value(text: str, unit: str, where: str) -> float:
     if not math.isfinite(value):
         raise InputError(where, f"found {text}", f"allowed: a finite number in {unit}")
     return value
-
-
-def _check(quantity: Quantity, value: float, where: str) -> None:
-    if math.isnan(value) or not quantity.lower <= value <= quantity.upper:
-        raise InputError(
-            where,
-            f"found {value:g} {quantity.unit}",
-            f"allowed: {quantity.lower:g} to {quantity.upper:g} {quantity.unit}",
-        )

@@ -16,7 +16,7 @@ import numpy as np
 
 from bench.arrays import NORMAL95
 from bench.effects.acting import FilteredSignal
-from bench.effects.effect import Detectable, Detected, MotionLag
+from bench.effects.effect import Detectable, Detected, MotionLag, smoothed
 from bench.effects.signals import Scope
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
@@ -55,11 +55,9 @@ class VelocityFilterLag(MotionLag, Detectable, FilteredSignal):
         if not {"position", "velocity"} <= set(trace.signals):
             return None
         smooth = GaussianFilter(max(width, 1.5 * trace.sample_period), trace.sample_period)
-        parts = [part for part in trace.segments if part.stop - part.start > 4 * smooth.margin]
-        if not parts:
+        (moved,), (reported, rate) = smoothed(trace, smooth, "position", 1), smoothed(trace, smooth, "velocity", 0, 1)
+        if moved.size == 0:
             return None
-        moved = np.concatenate([smooth(trace["position"][part], 1)[0] for part in parts])
-        reported, rate = np.concatenate([smooth(trace["velocity"][part], 0, 1) for part in parts], axis=1)
         difference = moved - reported
         difference = difference - difference.mean()
         noise = {name: white_noise(trace[name]) for name in ("position", "velocity")}

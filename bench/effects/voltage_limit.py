@@ -16,7 +16,7 @@ import numpy as np
 from bench.arrays import NORMAL95, namespace
 from bench.effects.acting import DriveLimit
 from bench.effects.axis import Axis, Number, Values, Winding
-from bench.effects.effect import Detected
+from bench.effects.effect import Detected, smoothed
 from bench.errors import InputError
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
@@ -54,12 +54,8 @@ class VoltageLimit(DriveLimit):
         if not known or not {"current", "velocity_reference", "velocity"} <= set(trace.signals):
             return None
         smooth = GaussianFilter(max(width, 1.5 * trace.sample_period), trace.sample_period)
-        parts = [part for part in trace.segments if part.stop - part.start > 4 * smooth.margin]
-        if not parts:
-            return None
-        current, slope = np.concatenate([smooth(trace["current"][part], 0, 1) for part in parts], axis=1)
-        speed = np.concatenate([smooth(trace["velocity"][part], 0)[0] for part in parts])
-        wanted = np.concatenate([smooth(trace["velocity_reference"][part], 0)[0] for part in parts])
+        current, slope = smoothed(trace, smooth, "current", 0, 1)
+        (speed,), (wanted,) = (smoothed(trace, smooth, name, 0) for name in ("velocity", "velocity_reference"))
         needed = motor.resistance * current + motor.back_emf_constant * speed + (motor.inductance or 0.0) * slope
         voltage, lack = np.abs(needed), np.sign(wanted) * (wanted - speed)
         behind = lack > BEHIND * float(np.abs(trace["velocity_reference"]).max())

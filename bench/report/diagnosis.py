@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from bench.axis_kind import INERTIA, KINDS, AxisKind
+from bench.diagnosis.add import NULL
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.gaps import Course, Gap, Profile, Shrunk
+from bench.diagnosis.gaps import Course, Gap, Shrunk
 from bench.diagnosis.name import NamedEffect
-from bench.diagnosis.refine import NULL
 from bench.diagnosis.same_axis import SameAxis
-from bench.diagnosis.where import Where
+from bench.diagnosis.where import Profile, Where
 from bench.effects.acting import Sensing
 from bench.gate.gate import warnings_of
 from bench.names import words

@@ -12,7 +12,7 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
-from bench.diagnosis.refine import NULL
+from bench.diagnosis.add import NULL
 from bench.diagnosis.replay import LEFT, Replay
 from bench.effects.present import Present
 from bench.names import readable, words

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 import bench
 from bench.arrays import Array, rms
-from bench.diagnosis.decidable import fit_bare
+from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.search import candidates
 from bench.diagnosis.where import LEAST, bins_of, coordinates, means_in, where
 from bench.effects.catalogue import catalogue

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.diagnosis.decidable import fit_bare
 from bench.diagnosis.doubts import DOUBTS, Doubt, Evidence, doubted
 from bench.diagnosis.policy import Policy
+from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import Fit

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.diagnosis.decidable import fit_bare
+from bench.diagnosis.recordings import fit_bare
 from bench.effects.backlash import likeliest_shape
 from bench.fit.rows import Rows
 from bench.rig.rig import load_rig

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from bench.diagnosis.decidable import fit_bare
 from bench.diagnosis.policy import Policy
+from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.effects.presliding_friction import bristles, sliding_level

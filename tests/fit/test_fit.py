@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from bench.diagnosis.decidable import fit_bare
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.policy import Policy
+from bench.diagnosis.recordings import fit_bare
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
 from bench.fit.identify import identify

@@ -17,8 +17,8 @@ import typer
 from rich.console import Console
 from rich.progress import track
 
-from bench.diagnosis.decidable import fit_bare
 from bench.diagnosis.policy import POLICY, worth
+from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.search import candidates, search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import Fit

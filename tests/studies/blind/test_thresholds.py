@@ -12,7 +12,7 @@ TRUTHS = [{"group": "single", "effects": ["unbalance"]}, {"group": "null", "effe
 
 def test_every_threshold_says_what_it_decides():
     found = thresholds()
-    assert {"chance", "keeps.share", "wrong_form.leaves", "most"} <= {each.name for each in found}
+    assert {"chance", "keeps", "relatives_leave", "most"} <= {each.name for each in found}
     assert all(each.decides for each in found)
 
 

@@ -16,10 +16,9 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-from bench.diagnosis.decidable import fit_bare
 from bench.diagnosis.doubts import DOUBTS, Doubt, Evidence, doubted
 from bench.diagnosis.policy import POLICY, Policy
-from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.search import Searched, search
 from bench.effects.catalogue import catalogue
 from bench.errors import BenchError

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 from pkgutil import resolve_name
 
 from bench.diagnosis.doubts import DOUBTS, Doubt
-from bench.diagnosis.policy import POLICY, Margin, Policy
+from bench.diagnosis.policy import POLICY, Policy
 from tests.diagnosis.off import undoubted, without
 
 #: Shares and bounds that effects state of themselves: where each stands, and what it decides.
@@ -26,7 +25,8 @@ OF_EFFECTS = (
 FACTORS = {"half": 0.5, "double": 2.0}
 #: Numbers of the policy that only doubts ask, so that a search finds the same.
 OF_DOUBTS = frozenset(
-    {"holdout_apart", "overlap", "contested", "keeps", "wrong_form", "one_for_several", "believable", "holdout_gap"}
+    {"holdout_apart", "overlap", "contested", "keeps", "wrong_form", "relatives_leave", "one_for_several"}
+    | {"believable", "holdout_gap"}
 )
 
 
@@ -35,7 +35,7 @@ class Threshold:
     """A number that decides on names.
 
     Attributes:
-        owner, name: policy, module or class that it stands in, and what it is called there; of a margin `name.part`.
+        owner, name: policy, module or class that it stands in, and what it is called there.
         value: as is.
         decides: what, in the words of its documentation.
     """
@@ -48,15 +48,14 @@ class Threshold:
     @property
     def of_doubts(self) -> bool:
         """Whether only doubts ask it, so that a search finds the same."""
-        return self.name.partition(".")[0] in OF_DOUBTS
+        return self.name in OF_DOUBTS
 
     @contextmanager
     def times(self, factor: float) -> Iterator[Policy]:
         """The policy with the threshold so many times what it is; a whole number stays one."""
         value = type(self.value)(self.value * factor)
         if self.owner == "Policy":
-            name, _, part = self.name.partition(".")
-            yield replace(POLICY, **{name: replace(getattr(POLICY, name), **{part: value}) if part else value})
+            yield replace(POLICY, **{self.name: value})
             return
         owner = resolve_name(self.owner)
         setattr(owner, self.name, value)
@@ -68,18 +67,10 @@ class Threshold:
 
 def thresholds() -> list[Threshold]:
     """Those of the policy in its order, then those of effects."""
-    found = []
-    for field in fields(POLICY):
-        value, decides = getattr(POLICY, field.name), _documented(field.name)
-        if not isinstance(value, Margin):
-            found.append(Threshold("Policy", field.name, value, decides))
-            continue
-        parts = {part.name: getattr(value, part.name) for part in fields(value)}
-        found += [
-            Threshold("Policy", f"{field.name}.{part}", number, decides)
-            for part, number in parts.items()
-            if number not in (0.0, math.inf)
-        ]
+    found = [
+        Threshold("Policy", field.name, getattr(POLICY, field.name), _documented(field.name))
+        for field in fields(POLICY)
+    ]
     return found + [
         Threshold(owner, name, getattr(resolve_name(owner), name), decides) for owner, name, decides in OF_EFFECTS
     ]
