@@ -14,20 +14,8 @@ from bench.baseline.model import RESPONSE_TORQUE
 from bench.baseline.state import GAPS, NamedHere, RemainingGap
 from bench.comparison.difference import CHANGED, SAME, UNDECIDED, Comparison, Measured
 from bench.names import short, words
+from bench.report import document as doc
 from bench.report.continuous_integration import Finding
-from bench.report.document import (
-    AnyPart,
-    Colour,
-    Document,
-    Intervals,
-    Paragraph,
-    Points,
-    Section,
-    Span,
-    Table,
-    Tone,
-    table,
-)
 from bench.report.numbers import effort_word, number, sentence, share, unit_text
 from bench.report.serial import known, picked, serialised
 
@@ -36,8 +24,8 @@ SCHEMA = "bench.check/1"
 DISPLAYED = {"rad": ("deg", 180.0 / math.pi)}
 #: Quantities that change as a consequence of others.
 FOLLOWING = frozenset({*GAPS, RESPONSE_TORQUE})
-COLOURS: dict[str, Colour] = {CHANGED: "model", UNDECIDED: "ink", SAME: "left"}
-TONES: dict[str, Tone] = {SAME: "sure", UNDECIDED: "open", CHANGED: "refused"}
+COLOURS: dict[str, doc.Colour] = {CHANGED: "model", UNDECIDED: "ink", SAME: "left"}
+TONES: dict[str, doc.Tone] = {SAME: "sure", UNDECIDED: "open", CHANGED: "refused"}
 #: Margins to which the chart reaches at least, so that one is seen, and at most, so that small differences are.
 LEAST, MOST = 2.0, 8.0
 #: Characters of what a state rests on, and of a title made of file names.
@@ -191,17 +179,17 @@ def findings(checked: Checked) -> list[Finding]:
     ]
 
 
-def check_document(checked: Checked, title: str) -> Document:
+def check_document(checked: Checked, title: str) -> doc.Document:
     """The document of a check of what `title` names."""
     alike, line = not (checked.rig or checked.conditions), unit_text(headline(checked))
     sections = [
-        Section(key="comparisons", heading="What was compared", blocks=tuple(_compared(checked))),
-        Section(key="conditions", heading="Like with like", blocks=(_unlike(checked),), detail=alike),
+        doc.section("comparisons", "What was compared", *_compared(checked)),
+        doc.section("conditions", "Like with like", _unlike(checked), detail=alike),
     ]
     if checked.baseline.gaps or checked.now.gaps:
         gaps = (_gaps_table(checked),)
-        sections.append(Section(key="gaps", heading="What the models leave", blocks=gaps, detail=True))
-    return Document(
+        sections.append(doc.section("gaps", "What the models leave", *gaps, detail=True))
+    return doc.Document(
         title=f"{short(title)}: check",
         subject=short(title, LONG),
         verdict=f"Changed: {line[:1].lower()}{line[1:]}." if checked.result == CHANGED else f"{line}.",
@@ -249,13 +237,13 @@ def _next(checked: Checked) -> str:
     return "Record again, several times: a difference near its margin needs more than one recording to decide."
 
 
-def _compared(checked: Checked) -> Iterator[AnyPart]:
+def _compared(checked: Checked) -> Iterator[doc.AnyPart]:
     """The chart, and the table behind it, worst first."""
     spans = tuple(_spans(checked))
     if spans:
         reach = max(abs(end) for span in spans for end in (span.low, span.high))
         reach = min(max(reach, LEAST), MOST)
-        yield Intervals(
+        yield doc.Intervals(
             title="Differences over their margins.",
             alternative="Now less baseline with its interval of 95 %, as a multiple of the margin: within the band "
             f"it does not matter. A ring at the end of the scale lies beyond {number(reach, digits=2)} margins.",
@@ -268,15 +256,15 @@ def _compared(checked: Checked) -> Iterator[AnyPart]:
     headings = ("quantity", "baseline>", "now>", "difference (95 %)>", "margin>", "unit", "result")
     rows = ((*_cells(one), *([one.held_back] if because else [])) for one in checked.comparisons)
     marked = (k for k, one in enumerate(checked.comparisons) if one.result == CHANGED)
-    yield table("Worst first", (*headings, *(["because~"] if because else [])), rows, marked)
+    yield doc.table("Worst first", (*headings, *(["because~"] if because else [])), rows, marked)
 
 
-def _spans(checked: Checked) -> Iterator[Span]:
+def _spans(checked: Checked) -> Iterator[doc.Span]:
     for one in checked.comparisons:
         bounds, difference = one.difference95, one.difference
         if bounds is not None and difference is not None and one.margin > 0.0:
             low, value, high = (each / one.margin for each in (bounds[0], difference.value, bounds[1]))
-            yield Span(name=_label(one), colour=COLOURS[one.result], value=value, low=low, high=high)
+            yield doc.Span(name=_label(one), colour=COLOURS[one.result], value=value, low=low, high=high)
 
 
 def _label(one: Comparison) -> str:
@@ -296,18 +284,18 @@ def _cells(one: Comparison) -> tuple[str, ...]:
     return _label(one), text(one.baseline), text(one.now), difference, margin, unit, one.result
 
 
-def _unlike(checked: Checked) -> Points | Paragraph:
+def _unlike(checked: Checked) -> doc.Points | doc.Paragraph:
     """In what the two states are not recorded alike."""
     lines = [f"rig: {line}" for line in checked.rig]
     lines += [f"not as in the baseline: {line}" for line in checked.conditions]
     if lines:
-        return Points(items=tuple(lines))
+        return doc.Points(items=tuple(lines))
     if not checked.now.conditions:
-        return Paragraph(text="Nothing beside the models differs: neither rests on a recording here.")
-    return Paragraph(text="The rig, the motion and the sampling are those of the baseline.")
+        return doc.Paragraph(text="Nothing beside the models differs: neither rests on a recording here.")
+    return doc.Paragraph(text="The rig, the motion and the sampling are those of the baseline.")
 
 
-def _gaps_table(checked: Checked) -> Table:
+def _gaps_table(checked: Checked) -> doc.Table:
     """What is left in both states, and their verdicts."""
     verdicts = [words(state.verdict) or "not asked" for state in (checked.baseline, checked.now)]
     rows: list[tuple[str, ...]] = [("verdict", *verdicts, "")]
@@ -317,7 +305,7 @@ def _gaps_table(checked: Checked) -> Table:
             both = ("–" if gap is None else number(getattr(gap, value), digits=3) for gap in gaps)
             rows.append((f"{what}, {of} (RMS)", *both, unit_text(unit)))
     caption = "Verdicts, and what inertia, friction and effects do not explain"
-    return table(caption, ("of", "baseline>", "now>", "unit"), rows)
+    return doc.table(caption, ("of", "baseline>", "now>", "unit"), rows)
 
 
 def _basis(label: str, provenance: Mapping[str, Any]) -> str:

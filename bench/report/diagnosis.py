@@ -23,22 +23,7 @@ from bench.effects.acting import Sensing
 from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml
-from bench.report.document import (
-    Chart,
-    Document,
-    Downloads,
-    File,
-    Intervals,
-    Panel,
-    Paragraph,
-    Picture,
-    Points,
-    Section,
-    Span,
-    TimeGraph,
-    series,
-    table,
-)
+from bench.report import document as doc
 from bench.report.identification import recordings_json
 from bench.report.numbers import coordinate_word, effort_word, interval, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
@@ -167,8 +152,8 @@ def write_diagnosis(
 
 
 def diagnosis(
-    found: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, files: Sequence[File] = ()
-) -> Document:
+    found: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, files: Sequence[doc.File] = ()
+) -> doc.Document:
     """The document of a diagnosis of what `title` names, with files to take along: the model, and all numbers."""
     tables = [parameters_table("The axis", found.parameters)]
     tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in found.effects]
@@ -176,14 +161,14 @@ def diagnosis(
     sections = (
         _motion(found),
         _where(found),
-        Section(key="parameters", heading="Parameters", blocks=tuple(tables)),
+        doc.section("parameters", "Parameters", *tables),
         *_beside(found),
         _suspects(found),
         _next(found),
         checks_section(found.checks, found.warnings),
-        Section(key="model", heading="The model", blocks=(Downloads(files=tuple(files)),)),
+        doc.section("model", "The model", doc.Downloads(files=tuple(files))),
     )
-    return Document(
+    return doc.Document(
         title=title,
         subject=f"Diagnosis of {title}",
         verdict=verdict_sentence(found),
@@ -200,17 +185,20 @@ def _kind(found: Diagnosis) -> AxisKind:
     return next(kind for kind in KINDS if kind.speed_unit == found.velocity.unit)
 
 
-def _files(found: Diagnosis, provenance: Mapping[str, Any] | None) -> list[File]:
+def _files(found: Diagnosis, provenance: Mapping[str, Any] | None) -> list[doc.File]:
     """The model, and all numbers."""
     tables = {"torque_balance": found.balance.table()}
     toml = tables_toml(_kind(found), tables) if found.model is None else model_toml(found.model, tables)
     about = "the model with all that was found, for bench replay"
-    files = [File(name="model.toml", about=about, media="application/toml", content=toml)]
+    files = [doc.File(name="model.toml", about=about, media="application/toml", content=toml)]
     if found.model is not None:
         about, xml = "what MuJoCo has of it natively; opens alone", model_xml(found.model)
-        files.append(File(name="model.xml", about=about, media="application/xml", content=xml))
+        files.append(doc.File(name="model.xml", about=about, media="application/xml", content=xml))
     text = diagnosis_json(found, provenance) + "\n"
-    return [*files, File(name="diagnosis.json", about="all of it as numbers", media="application/json", content=text)]
+    return [
+        *files,
+        doc.File(name="diagnosis.json", about="all of it as numbers", media="application/json", content=text),
+    ]
 
 
 def verdict_sentence(found: Diagnosis) -> str:
@@ -323,7 +311,7 @@ def _following(found: Diagnosis) -> str:
     return ""
 
 
-def _motion(found: Diagnosis) -> Section:
+def _motion(found: Diagnosis) -> doc.Section:
     """Speed and torque over time for each recording, and the gaps after each addition."""
     names = [course.name for course in found.courses]
     gaps = (effort_word(found.torque.unit), found.torque), ("speed", found.velocity)
@@ -333,11 +321,11 @@ def _motion(found: Diagnosis) -> Section:
         for label, step in zip(_labels(found), found.steps, strict=True)
     ]
     rows.append(("noise floor", *(number(gap.noise_floor, digits=3) for _, gap in gaps for _ in names)))
-    steps = table("RMS gaps before and after each addition", ("model", *headings), rows)
+    steps = doc.table("RMS gaps before and after each addition", ("model", *headings), rows)
     graphs = (_over_time(found, course) for course in found.courses)
     loop = "The models run in MuJoCo on the recorded torque, held softly to the recorded motion at "
-    held = Paragraph(text=f"{loop}{number(found.bandwidth, 'rad/s', 3)}.")
-    return Section(key="motion", heading="Measured and simulated", blocks=(steps, *graphs, held))
+    held = doc.Paragraph(text=f"{loop}{number(found.bandwidth, 'rad/s', 3)}.")
+    return doc.section("motion", "Measured and simulated", steps, *graphs, held)
 
 
 def _labels(found: Diagnosis) -> list[str]:
@@ -345,7 +333,7 @@ def _labels(found: Diagnosis) -> list[str]:
     return ["inertia and friction", *(f"+ {words(step.effect)}" for step in found.steps[1:])]
 
 
-def _over_time(found: Diagnosis, course: Course) -> TimeGraph:
+def _over_time(found: Diagnosis, course: Course) -> doc.TimeGraph:
     shown = [0, *range(max(1, len(found.steps) - STEPS), len(found.steps))]
     labels, effort = _labels(found), effort_word(found.torque.unit)
     first, last = found.steps[0], found.steps[-1]
@@ -366,21 +354,21 @@ def _over_time(found: Diagnosis, course: Course) -> TimeGraph:
     return time_graph(title, alternative, course.time, signals, [labels[k] for k in shown], part)
 
 
-def _where(found: Diagnosis) -> Section:
+def _where(found: Diagnosis) -> doc.Section:
     """The gap over the coordinates."""
     rows = []
     for one in found.where:
         between = " and ".join(map(number, one.region))
         rows.append((coordinate_word(one.coordinate, one.unit), share(one.share), between, unit_text(one.unit)))
     headings = ("coordinate", "share of the gap>", "most of it between>", "unit")
-    shares = table("Share of the gap's variance that each coordinate accounts for", headings, rows)
+    shares = doc.table("Share of the gap's variance that each coordinate accounts for", headings, rows)
     blocks = (_gap_chart(found, DRAWN), shares)
-    return Section(key="where", heading="Where the gap sits", blocks=blocks, detail=True)
+    return doc.section("where", "Where the gap sits", *blocks, detail=True)
 
 
-def _gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> Chart:
+def _gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
     profiles, most = {profile.coordinate: profile for profile in found.profiles}, found.profiles[0]
-    return Chart(
+    return doc.Chart(
         title="The gap, and what was found in it.",
         alternative=f"Mean of measured less modelled {effort_word(found.torque.unit)} in bins of each coordinate. "
         f"Most of it hangs on {most.coordinate}, {share(most.share)} of its variance.",
@@ -390,16 +378,16 @@ def _gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> Chart:
     )
 
 
-def _over(profile: Profile, found: Diagnosis) -> Panel:
+def _over(profile: Profile, found: Diagnosis) -> doc.Panel:
     """Before and after, what the found effects make of it, and the noise of a row."""
     order = np.argsort(profile.centres)
     x, before, after = profile.centres[order], profile.before[order], profile.after[order]
-    drawn = [noise_band(x.tolist(), found.torque.noise_floor), series("gap before", "dots", "ink", x, before)]
+    drawn = [noise_band(x.tolist(), found.torque.noise_floor), doc.series("gap before", "dots", "ink", x, before)]
     if found.effects:
         names = " and ".join(words(effect.name) for effect in found.effects)
-        drawn.append(series(f"what {names} makes of it", "line", "model", x, before - after))
-        drawn.append(series("left after", "rings", "left", x, after))
-    return Panel(
+        drawn.append(doc.series(f"what {names} makes of it", "line", "model", x, before - after))
+        drawn.append(doc.series("left after", "rings", "left", x, after))
+    return doc.Panel(
         x_label=coordinate_word(profile.coordinate, profile.unit),
         x_unit=unit_text(profile.unit),
         note=f"{share(profile.share)} of the gap",
@@ -407,7 +395,7 @@ def _over(profile: Profile, found: Diagnosis) -> Panel:
     )
 
 
-def _beside(found: Diagnosis) -> list[Section]:
+def _beside(found: Diagnosis) -> list[doc.Section]:
     """What was found beside effects and parameters, if anything."""
     unit, sensors = found.velocity.unit, _sensors(found)
     lines = [f"at fault is the sensor, not the axis: {', '.join(sensors)}"] if sensors else []
@@ -424,10 +412,10 @@ def _beside(found: Diagnosis) -> list[Section]:
     lines += [f"stopped: {found.stopped}"] if found.stopped else []
     if found.unexplained_where:
         lines.append(f"unexplained: {share(found.unexplained_share)} of the gap")
-    return [Section(key="beside", heading="Beside it", blocks=(Points(items=tuple(lines)),))] if lines else []
+    return [doc.section("beside", "Beside it", doc.Points(items=tuple(lines)))] if lines else []
 
 
-def _suspects(found: Diagnosis) -> Section:
+def _suspects(found: Diagnosis) -> doc.Section:
     def of_gap(value: float | None) -> str:
         return "–" if value is None else share(value)
 
@@ -438,52 +426,52 @@ def _suspects(found: Diagnosis) -> Section:
     caption = "Every effect of the catalogue: the share it would explain, and why it was taken or was not"
     headings = ("effect", "taken", "of the gap, alone>", "of what is left, beside the others>", "why~")
     marked = (k for k, one in enumerate(found.considered) if one.taken)
-    return Section(key="suspects", heading="Suspects", blocks=(table(caption, headings, rows, marked),), detail=True)
+    return doc.section("suspects", "Suspects", doc.table(caption, headings, rows, marked), detail=True)
 
 
-def _next(found: Diagnosis) -> Section:
+def _next(found: Diagnosis) -> doc.Section:
     """What to record next, and what is unexplained."""
     text = _following(found) or "Nothing is left open that another motion of this rig would tell."
-    blocks: list[Paragraph | Points] = [Paragraph(text=text)]
+    blocks: list[doc.Paragraph | doc.Points] = [doc.Paragraph(text=text)]
     if found.because:
-        blocks.append(Paragraph(text="What speaks against this being all:"))
-        blocks.append(Points(items=tuple(map(words, found.because))))
+        blocks.append(doc.Paragraph(text="What speaks against this being all:"))
+        blocks.append(doc.Points(items=tuple(map(words, found.because))))
     left = (
         f"{share(one.share)} of what is left hangs on {coordinate_word(one.coordinate, one.unit)}, most of it between "
         f"{number(one.region[0])} and {number(one.region[1], one.unit)}"
         for one in found.unexplained_where
     )
     if found.unexplained_where:
-        blocks.append(Points(items=tuple(left)))
-    return Section(key="next", heading="What to record next", blocks=tuple(blocks), detail=True)
+        blocks.append(doc.Points(items=tuple(left)))
+    return doc.section("next", "What to record next", *blocks, detail=True)
 
 
-def _where_picture(found: Diagnosis, title: str) -> Picture:
+def _where_picture(found: Diagnosis, title: str) -> doc.Picture:
     """The gap over all coordinates on one scale, and its spectrum on a scale of its own."""
     spectrum = next(account for account in found.where if account.coordinate == "frequency")
-    panel = Panel(
+    panel = doc.Panel(
         x_label="frequency",
         x_unit="Hz",
         y_label=f"gap before / ({unit_text(found.torque.unit)}/√Hz)",
         note=f"{share(spectrum.share)} of the gap in one band",
-        series=(series("", "line", "ink", spectrum.centres[1:], spectrum.means[1:]),),
+        series=(doc.series("", "line", "ink", spectrum.centres[1:], spectrum.means[1:]),),
     )
     over = _gap_chart(found, [profile.coordinate for profile in found.profiles])
-    below = Chart(title="", alternative="Spectrum of the gap before.", panels=(panel,))
-    return Picture(name="where", title=title, rows=((over,), (below,)))
+    below = doc.Chart(title="", alternative="Spectrum of the gap before.", panels=(panel,))
+    return doc.Picture(name="where", title=title, rows=((over,), (below,)))
 
 
-def _gaps_picture(found: Diagnosis, title: str) -> Picture:
+def _gaps_picture(found: Diagnosis, title: str) -> doc.Picture:
     """RMS gaps of the bare axis and after each addition, on both recordings, against the noise floor."""
     torque = _shrinking(found, effort_word(found.torque.unit), [step.torque for step in found.steps], found.torque)
     speed = _shrinking(found, "speed", [step.velocity for step in found.steps], found.velocity)
-    return Picture(name="gaps", title=title, rows=(tuple(filter(None, (torque, speed))),))
+    return doc.Picture(name="gaps", title=title, rows=(tuple(filter(None, (torque, speed))),))
 
 
-def _shrinking(found: Diagnosis, what: str, steps: Sequence[tuple[float, ...]], gap: Gap) -> Intervals | None:
+def _shrinking(found: Diagnosis, what: str, steps: Sequence[tuple[float, ...]], gap: Gap) -> doc.Intervals | None:
     """Gaps of all steps; None where none is known."""
     spans = [
-        Span(name=f"{label}, {course.name}", colour=colour, value=value, low=value, high=value)
+        doc.Span(name=f"{label}, {course.name}", colour=colour, value=value, low=value, high=value)
         for label, values in zip(_labels(found), steps, strict=True)
         for course, colour, value in zip(found.courses, ("ink", "model"), values, strict=False)
         if math.isfinite(value) and value > 0.0
@@ -492,7 +480,7 @@ def _shrinking(found: Diagnosis, what: str, steps: Sequence[tuple[float, ...]], 
         return None
     ends = [gap.noise_floor, *(span.value for span in spans)]
     limits = min(ends) / BESIDE, max(ends) * BESIDE
-    return Intervals(
+    return doc.Intervals(
         title=f"{sentence(what)} gap",
         alternative="RMS gaps before and after each addition; the band is noise.",
         label=f"RMS {what} gap",

@@ -320,6 +320,11 @@ class Section(Part):
     detail: bool = Field(default=False, exclude=True)
 
 
+def section(key: str, heading: str, *blocks: AnyPart, detail: bool = False) -> Section:
+    """A section of these parts."""
+    return Section(key=key, heading=heading, blocks=blocks, detail=detail)
+
+
 class Picture(Part):
     """A figure for paper, by its file's name without ending: rows from top to bottom, their parts beside each other."""
 

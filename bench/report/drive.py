@@ -21,9 +21,9 @@ from bench.report.document import (
     Panel,
     Picture,
     Points,
-    Section,
     Series,
     Table,
+    section,
     series,
     table,
 )
@@ -103,8 +103,8 @@ def limits(trace: Trace, rig: Rig) -> Document:
         tone="sure" if least >= 0.0 else "refused",
         answers={},
         sections=(
-            Section(key="findings", heading="What it leaves", blocks=(Points(items=found.findings),)),
-            Section(key="range", heading="Operating range", blocks=blocks),
+            section("findings", "What it leaves", Points(items=found.findings)),
+            section("range", "Operating range", *blocks),
         ),
         origin=origin(None),
         pictures=(Picture(name="limits", title="", rows=((found.chart,),)),),

@@ -5,24 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 
-from bench.effects.acting import (
-    DirectedFriction,
-    DriveLimit,
-    Electronics,
-    FilteredSignal,
-    Mechanism,
-    MisreadEffort,
-    MisreadMotion,
-    Native,
-    RaisesFriction,
-    ResistingTorque,
-    ScalesFriction,
-    ScalesTorque,
-    Sensing,
-    TorqueLag,
-    TorqueLoss,
-    VaryingInertia,
-)
+from bench.effects import acting as ways
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
 from bench.effects.present import named
@@ -31,19 +14,19 @@ from bench.units import Quantity
 
 #: The method by which effects of a kind act in a simulation, and where.
 PLACES: tuple[tuple[type[Effect], str, str], ...] = (
-    (Native, "add", "in the MuJoCo model"),
-    (RaisesFriction, "friction_excess", "in every step, level of dry friction"),
-    (ScalesFriction, "friction_factor", "in every step, level of dry friction"),
-    (DirectedFriction, "friction_difference", "in every step, level of dry friction"),
-    (ResistingTorque, "resisting_torque", "in every step, resisting torque"),
-    (ScalesTorque, "torque_factor", "in every step, motor torque"),
-    (VaryingInertia, "added_inertia", "in every step, inertia"),
-    (DriveLimit, "flowing", "between demanded and reported current"),
-    (TorqueLag, "acting", "between reported current and torque"),
-    (TorqueLoss, "delivered", "between reported current and torque"),
-    (MisreadMotion, "seen", "between motion and drive"),
-    (MisreadEffort, "acted", "between the current that is read and the one that flows"),
-    (FilteredSignal, "recorded", "between drive and recording"),
+    (ways.Native, "add", "in the MuJoCo model"),
+    (ways.RaisesFriction, "friction_excess", "in every step, level of dry friction"),
+    (ways.ScalesFriction, "friction_factor", "in every step, level of dry friction"),
+    (ways.DirectedFriction, "friction_difference", "in every step, level of dry friction"),
+    (ways.ResistingTorque, "resisting_torque", "in every step, resisting torque"),
+    (ways.ScalesTorque, "torque_factor", "in every step, motor torque"),
+    (ways.VaryingInertia, "added_inertia", "in every step, inertia"),
+    (ways.DriveLimit, "flowing", "between demanded and reported current"),
+    (ways.TorqueLag, "acting", "between reported current and torque"),
+    (ways.TorqueLoss, "delivered", "between reported current and torque"),
+    (ways.MisreadMotion, "seen", "between motion and drive"),
+    (ways.MisreadEffort, "acted", "between the current that is read and the one that flows"),
+    (ways.FilteredSignal, "recorded", "between drive and recording"),
 )
 
 
@@ -79,9 +62,11 @@ def acting(effect: Effect) -> dict[str, str]:
 
 
 def _where(effect: Effect) -> str:
-    if isinstance(effect, Mechanism):
-        return "MuJoCo model" if isinstance(effect, Native) else "every step"
-    return "electronics" if isinstance(effect, Electronics) else "sensor" if isinstance(effect, Sensing) else ""
+    if isinstance(effect, ways.Mechanism):
+        return "MuJoCo model" if isinstance(effect, ways.Native) else "every step"
+    return (
+        "electronics" if isinstance(effect, ways.Electronics) else "sensor" if isinstance(effect, ways.Sensing) else ""
+    )
 
 
 def unit_of(quantity: Quantity) -> str:

@@ -20,17 +20,7 @@ from bench.arrays import Array
 from bench.errors import InputError
 from bench.files import whole
 from bench.names import plain
-from bench.report.document import (
-    Chart,
-    Drawable,
-    HeatMap,
-    Intervals,
-    Panel,
-    Picture,
-    Series,
-    Table,
-    TimeGraph,
-)
+from bench.report import document as doc
 from bench.report.over_time import unpacked
 
 P = ParamSpec("P")
@@ -85,7 +75,7 @@ def in_style(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
 
 @in_style
-def drawn(picture: Picture) -> Figure:
+def drawn(picture: doc.Picture) -> Figure:
     """The figure of a picture: its rows from top to bottom, the parts of a row beside each other."""
     heights = [max(map(height, row)) for row in picture.rows]
     figure = Figure(figsize=(WIDTH, TITLE + sum(heights)), layout="constrained")
@@ -93,57 +83,57 @@ def drawn(picture: Picture) -> Figure:
     rows = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
     for place, row in zip(rows, picture.rows, strict=True):
         row = [row[0], *(_unnamed(part, row[0]) for part in row[1:])]
-        widths = [0.4 if isinstance(part, Table) else 1.0 for part in row]
+        widths = [0.4 if isinstance(part, doc.Table) else 1.0 for part in row]
         for beside, part in zip(place.subfigures(1, len(row), width_ratios=widths, squeeze=False)[0], row, strict=True):
             draw(beside, part)
     return figure
 
 
-def _unnamed(part: Drawable, first: Drawable) -> Drawable:
+def _unnamed(part: doc.Drawable, first: doc.Drawable) -> doc.Drawable:
     """A part of a row; intervals of the same names as the first one's without them."""
-    if not (isinstance(part, Intervals) and isinstance(first, Intervals)):
+    if not (isinstance(part, doc.Intervals) and isinstance(first, doc.Intervals)):
         return part
     if [span.name for span in part.spans] != [span.name for span in first.spans]:
         return part
     return part.model_copy(update={"spans": tuple(span.model_copy(update={"name": ""}) for span in part.spans)})
 
 
-def height(part: Drawable) -> float:
+def height(part: doc.Drawable) -> float:
     """Height that a part takes - inch."""
     match part:
-        case Table():
+        case doc.Table():
             return 0.4 + 2.0 * LINE * len(part.rows)
-        case TimeGraph():
+        case doc.TimeGraph():
             return 0.5 + TIME_PANEL * len(part.panels)
-        case Intervals():
+        case doc.Intervals():
             return 1.0 + SPAN * len(part.spans)
-        case HeatMap():
+        case doc.HeatMap():
             return 2.6 + 0.34 * len(part.rows)
-        case Chart() if part.stacked:
+        case doc.Chart() if part.stacked:
             legends = sum(-(-sum(bool(one.name) for one in panel.series) // LEGEND) for panel in part.panels)
             return max(3.0, 0.8 + STACKED * len(part.panels)) + LINE * legends
-        case Chart():
+        case doc.Chart():
             return 0.4 + ROW * (-(-len(part.panels) // ACROSS) if len(part.panels) > 1 else 1.6)
 
 
-def draw(figure: Figure | SubFigure, part: Drawable) -> None:
+def draw(figure: Figure | SubFigure, part: doc.Drawable) -> None:
     """Draw a part into a figure, in the style that is set."""
     match part:
-        case Table():
+        case doc.Table():
             _write(figure, part)
-        case TimeGraph():
+        case doc.TimeGraph():
             _over_time(figure, part)
-        case Intervals():
+        case doc.Intervals():
             _intervals(figure, part)
-        case HeatMap():
+        case doc.HeatMap():
             _heat(figure, part)
-        case Chart() if part.stacked:
+        case doc.Chart() if part.stacked:
             _stacked(figure, part)
-        case Chart():
+        case doc.Chart():
             _beside(figure, part)
 
 
-def _write(figure: Figure | SubFigure, table: Table) -> None:
+def _write(figure: Figure | SubFigure, table: doc.Table) -> None:
     """A table as text: what a row is of, and what it says below."""
     axes = figure.subplots()
     axes.set_axis_off()
@@ -151,7 +141,7 @@ def _write(figure: Figure | SubFigure, table: Table) -> None:
     axes.text(0.0, 1.0, plain("\n".join(lines)), va="top", linespacing=1.45, transform=axes.transAxes, parse_math=False)
 
 
-def _over_time(figure: Figure | SubFigure, graph: TimeGraph) -> None:
+def _over_time(figure: Figure | SubFigure, graph: doc.TimeGraph) -> None:
     """All panels, with the model chosen last, and the one chosen first beside it where it stays in sight."""
     last = len(graph.choices) - 1
     every = figure.subplots(len(graph.panels), 1, sharex=True, squeeze=False)[:, 0]
@@ -179,7 +169,7 @@ def _extent(time: Array, low: Array, high: Array) -> list[Array]:
     return thinned(time, low)
 
 
-def _beside(figure: Figure | SubFigure, chart: Chart) -> None:
+def _beside(figure: Figure | SubFigure, chart: doc.Chart) -> None:
     """Panels beside each other on one y scale, under one legend."""
     across = min(len(chart.panels), ACROSS)
     rows = -(-len(chart.panels) // across)
@@ -197,7 +187,7 @@ def _beside(figure: Figure | SubFigure, chart: Chart) -> None:
         _as_text(legend.get_texts())
 
 
-def _stacked(figure: Figure | SubFigure, chart: Chart) -> None:
+def _stacked(figure: Figure | SubFigure, chart: doc.Chart) -> None:
     """Panels one above the other; those with the first one's x label on its x axis."""
     title_figure(figure, chart.title, x=0.02, size="medium")
     size = ("medium", "small", "x-small")[min(len(chart.panels), 3) - 1]
@@ -216,7 +206,7 @@ def _stacked(figure: Figure | SubFigure, chart: Chart) -> None:
     figure.align_ylabels(every)
 
 
-def _panel(axes: Axes, panel: Panel) -> None:
+def _panel(axes: Axes, panel: doc.Panel) -> None:
     for one in panel.series:
         _series(axes, one)
     if panel.log:
@@ -225,7 +215,7 @@ def _panel(axes: Axes, panel: Panel) -> None:
     axes.set_xlabel(plain(_labelled(panel.x_label, panel.x_unit)), parse_math=False)
 
 
-def _series(axes: Axes, one: Series) -> None:
+def _series(axes: Axes, one: doc.Series) -> None:
     colour, label = COLOURS[one.colour], plain(one.name) or None
     if one.style == "band":
         axes.fill_between(one.x, one.low, one.high, color=colour, lw=0.0, zorder=0.5, label=label)
@@ -238,7 +228,7 @@ def _series(axes: Axes, one: Series) -> None:
     axes.plot(one.x, one.y, color=colour, label=label, **style)
 
 
-def _intervals(figure: Figure | SubFigure, block: Intervals) -> None:
+def _intervals(figure: Figure | SubFigure, block: doc.Intervals) -> None:
     """Rows with their values beside the axis, where nothing crosses them."""
     axes, places = figure.subplots(), np.arange(len(block.spans))
     low, high = block.right
@@ -263,7 +253,7 @@ def _intervals(figure: Figure | SubFigure, block: Intervals) -> None:
     axes.grid(visible=False, axis="y")
 
 
-def _heat(figure: Figure | SubFigure, block: HeatMap) -> None:
+def _heat(figure: Figure | SubFigure, block: doc.HeatMap) -> None:
     """Counts, coloured by their share of the row; the right answers, on the diagonal, are framed."""
     axes, counts = figure.subplots(), np.array(block.counts).reshape(len(block.rows), len(block.columns))
     shares = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)

@@ -15,20 +15,7 @@ from bench.comparison.change_point import expected
 from bench.fleet.fleet import TABLE, Fleet
 from bench.fleet.summary import ALARM, STATUSES, Changed, Summary
 from bench.names import short, words
-from bench.report.document import (
-    AnyPart,
-    Chart,
-    Document,
-    Neighbour,
-    Neighbours,
-    Panel,
-    Paragraph,
-    Section,
-    Series,
-    Table,
-    series,
-    table,
-)
+from bench.report import document as doc
 from bench.report.numbers import SPACE, number, sentence, share, unit_text
 from bench.report.serial import picked, serialised
 
@@ -81,7 +68,7 @@ def _changed(one: Changed) -> dict[str, Any]:
     }
 
 
-def fleet_document(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any]) -> Document:
+def fleet_document(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any]) -> doc.Document:
     """The document of a fleet; the same for the same results, however many were evaluated now.
 
     Args:
@@ -95,25 +82,22 @@ def fleet_document(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any
     ]
     caption = "Those that most recordings of their axis show come first"
     effects = _first(caption, ("axis", "effect", "recordings>", "first"), rows)
-    shown = (Section(key="effects", heading="Effects that axes show", blocks=(effects,)),)
-    beside = Neighbours(
-        files=(
-            Neighbour(name=TABLE, about="a row for each recording: parameters, errors, verdict, reason, provenance"),
-            Neighbour(name=summary_file, about="all that this page says, without a bound on its length"),
-        )
-    )
+    shown = (doc.section("effects", "Effects that axes show", effects),)
+    rows_of = "a row for each recording: parameters, errors, verdict, reason, provenance"
+    files = {TABLE: rows_of, summary_file: "all that this page says, without a bound on its length"}
+    beside = doc.Neighbours(files=tuple(doc.Neighbour(name=file, about=about) for file, about in files.items()))
     options = ", ".join(key for key, value in provenance["options"].items() if value) or "none"
-    return Document(
+    return doc.Document(
         title=f"{name}: fleet",
         subject=f"Fleet {name}: {len(fleet.manifest)} recordings of {summary.axes} axes",
         verdict=_verdict(summary),
         tone="refused" if summary.changed else "open" if summary.concerns or not summary.compared else "sure",
         answers=_answers(fleet),
         sections=(
-            Section(key="people", heading="Who needs a person first", blocks=(_people(summary),)),
-            Section(key="changes", heading="What changed", blocks=tuple(_changes(fleet))),
+            doc.section("people", "Who needs a person first", _people(summary)),
+            doc.section("changes", "What changed", *_changes(fleet)),
             *(shown if summary.shown else ()),
-            Section(key="recordings", heading="Recordings", blocks=(_statuses(summary), beside)),
+            doc.section("recordings", "Recordings", _statuses(summary), beside),
         ),
         origin=(
             f"servobench {provenance['version']}; manifest sha256 {provenance['manifest_sha256']}",
@@ -177,20 +161,20 @@ def _share(one: Changed) -> str:
     return text.replace("-", "−")
 
 
-def _people(summary: Summary) -> AnyPart:
+def _people(summary: Summary) -> doc.AnyPart:
     reasons = _reasons(summary)
     if not reasons:
-        return Paragraph(text="Nobody: no axis changed, and every recording gave a result that explains it.")
+        return doc.Paragraph(text="Nobody: no axis changed, and every recording gave a result that explains it.")
     rows = [(short(axis, NAME), "; ".join(why)) for axis, why in reasons.items()]
     marked = range(min(ROWS, len({one.history.axis for one in summary.changed})))
     return _first("Changed first, then by how grave it is", ("axis", "why~"), rows, marked)
 
 
-def _changes(fleet: Fleet) -> Iterator[AnyPart]:
+def _changes(fleet: Fleet) -> Iterator[doc.AnyPart]:
     """The table of changes, and the first of them over time."""
     changed = fleet.summary.changed
     if not changed:
-        yield Paragraph(text=f"Nothing, in {fleet.summary.compared} series of a quantity over time.")
+        yield doc.Paragraph(text=f"Nothing, in {fleet.summary.compared} series of a quantity over time.")
         return
     headings = ("axis", "quantity", "before>", "after>", "change (95 %)>", "since", "recordings before, after>")
     rows = [
@@ -207,12 +191,12 @@ def _changes(fleet: Fleet) -> Iterator[AnyPart]:
     ]
     yield _first("Surest first", headings, rows)
     if len(changed) > CHARTS:
-        yield Paragraph(text=f"The {CHARTS} surest over time:")
+        yield doc.Paragraph(text=f"The {CHARTS} surest over time:")
     for one in changed[:CHARTS]:
         yield _over_time(one, fleet)
 
 
-def _over_time(one: Changed, fleet: Fleet) -> Chart:
+def _over_time(one: Changed, fleet: Fleet) -> doc.Chart:
     """A quantity over time, and where the next recording was to be expected before and after the change."""
     step, history = one.step, one.history
     near = slice(max(0, step.place - DOTS // 2), step.place + DOTS // 2)
@@ -223,19 +207,21 @@ def _over_time(one: Changed, fleet: Fleet) -> Chart:
     drawn = (
         _band("the next recording (95 %), as told before and after", np.array([x[0], x[-1]]), before),
         _band("", later, after),
-        series("mean", "line", "model", until, np.full(2, step.before)),
-        series("", "line", "model", later, np.full(2, step.after)),
-        series("recordings, each with its own interval", "dots", "ink", x, values, (values - reach, values + reach)),
+        doc.series("mean", "line", "model", until, np.full(2, step.before)),
+        doc.series("", "line", "model", later, np.full(2, step.after)),
+        doc.series(
+            "recordings, each with its own interval", "dots", "ink", x, values, (values - reach, values + reach)
+        ),
     )
     count = len(history.rows)
     nearest = "" if count <= x.size else f" Of {count} recordings the {x.size} nearest to it are drawn."
-    return Chart(
+    return doc.Chart(
         title=f"{short(history.axis, NAME)}: {words(history.quantity)}.",
         alternative=f"From {number(step.before)} to {number(step.after, history.unit)}, {_share(one)}, since "
         f"{one.since} ({short(one.file, NAME)}).{nearest}",
         y_label=words(history.quantity),
         y_unit=unit_text(history.unit),
-        panels=(Panel(x_label=label, x_unit=unit, series=drawn),),
+        panels=(doc.Panel(x_label=label, x_unit=unit, series=drawn),),
     )
 
 
@@ -249,17 +235,19 @@ def _clock(fleet: Fleet, rows: Sequence[int]) -> tuple[Array, str, str]:
     return since / CLOCK[unit], f"time since {fleet.manifest.text('time')[rows[0]]}", unit
 
 
-def _band(name: str, x: Array, around: tuple[float, float]) -> Series:
-    return series(name, "band", "floor", x, bounds=(np.full(2, around[0]), np.full(2, around[1])))
+def _band(name: str, x: Array, around: tuple[float, float]) -> doc.Series:
+    return doc.series(name, "band", "floor", x, bounds=(np.full(2, around[0]), np.full(2, around[1])))
 
 
-def _statuses(summary: Summary) -> Table:
+def _statuses(summary: Summary) -> doc.Table:
     rows = ((words(status), str(summary.counts[status]), MEANT[status]) for status in STATUSES)
     marked = (k for k, status in enumerate(STATUSES) if status != "done" and summary.counts[status])
-    return table("By status", ("status", "recordings>", "which~"), rows, marked)
+    return doc.table("By status", ("status", "recordings>", "which~"), rows, marked)
 
 
-def _first(caption: str, headings: Sequence[str], rows: Sequence[tuple[str, ...]], marked: Sequence[int] = ()) -> Table:
+def _first(
+    caption: str, headings: Sequence[str], rows: Sequence[tuple[str, ...]], marked: Sequence[int] = ()
+) -> doc.Table:
     """A table of the first rows, which says how many there are."""
     more = f"; the first {ROWS} of {len(rows)}" if len(rows) > ROWS else ""
-    return table(f"{sentence(caption)}{more}", headings, rows[:ROWS], marked)
+    return doc.table(f"{sentence(caption)}{more}", headings, rows[:ROWS], marked)

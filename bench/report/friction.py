@@ -15,7 +15,7 @@ from bench.effects.catalogue import catalogue
 from bench.friction_map.map import CHANCE, FrictionCurve, FrictionMap
 from bench.gate.gate import warnings_of
 from bench.names import words
-from bench.report.document import Chart, Document, Panel, Picture, Section, series
+from bench.report.document import Chart, Document, Panel, Picture, section, series
 from bench.report.numbers import effort_word, number, sentence, share, unit_text
 from bench.report.parts import checks_section, origin, values_table
 from bench.report.serial import serialised
@@ -61,8 +61,8 @@ def friction(found: FrictionMap, title: str) -> Document:
         tone="sure",
         answers=_answers(found),
         sections=(
-            Section(key="curve", heading="Friction over speed", blocks=(curves, left)),
-            Section(key="parameters", heading="Parameters", blocks=tuple(tables)),
+            section("curve", "Friction over speed", curves, left),
+            section("parameters", "Parameters", *tables),
             checks_section(found.checks, ()),
         ),
         origin=origin(None),

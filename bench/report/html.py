@@ -13,15 +13,16 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
-from matplotlib.ticker import MaxNLocator
 
 from bench.names import plain
 from bench.report.document import Chart, Document, File, Intervals, Moving, Panel, Series, TimeGraph
+
+if TYPE_CHECKING:  # 0.05 s, which only a page has to pay
+    from jinja2 import Environment
 
 
 def html(document: Document, script: str | None = None) -> str:
@@ -60,6 +61,8 @@ def _asset(*parts: str) -> str:
 
 @cache
 def _environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
     found = Environment(
         loader=PackageLoader("bench.report", "page/templates"), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True, finalize=_shown,
@@ -210,6 +213,8 @@ def _drawn(series: Series, across: Ruler, down: Ruler) -> Drawn:
 
 def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
     """Round values within bounds, with labels of as many digits as tell them apart."""
+    from matplotlib.ticker import MaxNLocator  # 0.1 s, which only a chart on a page has to pay
+
     places = [float(value) for value in MaxNLocator(most).tick_values(low, high) if low <= value <= high]
     step = min(np.diff(places), default=1.0)
     size = max(map(abs, places), default=1.0)

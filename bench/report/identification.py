@@ -21,7 +21,7 @@ from bench.fit.covariance import NOISE_ALONE
 from bench.fit.estimate import Alone, Estimate, modelled_effort
 from bench.gate.gate import gate, warnings_of
 from bench.names import readable, words
-from bench.report.document import Chart, Document, Downloads, File, Panel, Picture, Section, TimeGraph, series
+from bench.report.document import Chart, Document, Downloads, File, Panel, Picture, TimeGraph, section, series
 from bench.report.numbers import effort_word, interval, number, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
@@ -159,18 +159,18 @@ def identification(
     """
     alone = recordings_table(estimate.recordings, estimate.between, estimate.parameters)
     tables = (parameters_table("The axis", estimate.parameters, truth), *alone)
-    sections = [Section(key="parameters", heading="Parameters", blocks=tables)]
+    sections = [section("parameters", "Parameters", *tables)]
     if motions:
         graphs = tuple(_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])
         sections += [
-            Section(key="motion", heading="Measured and modelled", blocks=graphs),
-            Section(key="where", heading="Where the rest sits", blocks=(_rest(estimate, motions),)),
+            section("motion", "Measured and modelled", *graphs),
+            section("where", "Where the rest sits", _rest(estimate, motions)),
         ]
     sections.append(checks_section(estimate.checks, estimate.warnings))
     if motions:
         text = identification_json(estimate, refinement, None, provenance) + "\n"
         file = File(name="identify.json", about="all of it as numbers", media="application/json", content=text)
-        sections.append(Section(key="files", heading="The numbers", blocks=(Downloads(files=(file,)),)))
+        sections.append(section("files", "The numbers", Downloads(files=(file,))))
     return Document(
         title=title,
         subject=f"Identification of {title}",

@@ -12,23 +12,7 @@ import numpy as np
 from bench.errors import InputError
 from bench.gate.check import Check
 from bench.names import readable, words
-from bench.report.document import (
-    AnyPart,
-    Chart,
-    Code,
-    Document,
-    Panel,
-    Paragraph,
-    Picture,
-    Section,
-    Table,
-    TimeCurve,
-    TimeGraph,
-    TimePanel,
-    Tone,
-    series,
-    table,
-)
+from bench.report import document as doc
 from bench.report.numbers import number, unit_text
 from bench.report.over_time import Grid
 from bench.report.parts import checks_section, origin
@@ -45,7 +29,7 @@ MOST_HOLES = 20
 MOST = 16
 
 
-def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | None = None) -> Document:
+def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | None = None) -> doc.Document:
     """The document of an inspection.
 
     Args:
@@ -57,16 +41,16 @@ def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | N
     sections = []
     if found.signals:
         graph = () if trace is None else (signals_graph(trace),)
-        sections.append(Section(key="signals", heading="Signals", blocks=(*graph, _signals(found))))
+        sections.append(doc.section("signals", "Signals", *graph, _signals(found)))
     if found.asks is not None:
-        sections.append(Section(key="asked", heading="What to write", blocks=tuple(_what_to_write(found))))
+        sections.append(doc.section("asked", "What to write", *_what_to_write(found)))
     rest = [column for column in found.columns if not column.read]
     if rest:
-        sections.append(Section(key="columns", heading="Columns that are not read", blocks=(_columns(rest),)))
+        sections.append(doc.section("columns", "Columns that are not read", _columns(rest)))
     if checks or found.notes:
         told = checks_section(checks, found.notes)
         sections.append(told.model_copy(update={"detail": False}))
-    return Document(
+    return doc.Document(
         title=name,
         subject=f"Inspection of {name} ({found.format})",
         verdict=verdict,
@@ -77,7 +61,7 @@ def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | N
     )
 
 
-def signals_graph(trace: Trace) -> TimeGraph:
+def signals_graph(trace: Trace) -> doc.TimeGraph:
     """Every signal of a recording over time; those of one unit share a panel."""
     signals = sorted(trace.signals, key=lambda name: list(trace.units.values()).index(trace.units[name]))
     grid = Grid.of(trace.time, len(signals))
@@ -85,11 +69,11 @@ def signals_graph(trace: Trace) -> TimeGraph:
     for unit, named in groupby(signals, key=lambda name: trace.units[name]):
         names = list(named)
         curves = tuple(
-            TimeCurve(name=words(name), role=role, choice=None, samples=grid.samples(places, trace.signals[name]))
+            doc.TimeCurve(name=words(name), role=role, choice=None, samples=grid.samples(places, trace.signals[name]))
             for name, role in zip(names, ROLES * len(names), strict=False)
         )
-        panels.append(TimePanel(label=words(names[0]), unit=unit_text(unit), curves=curves))
-    return TimeGraph(
+        panels.append(doc.TimePanel(label=words(names[0]), unit=unit_text(unit), curves=curves))
+    return doc.TimeGraph(
         title="Over time.",
         alternative=f"{', '.join(map(words, signals))} of the recording.",
         start=grid.start,
@@ -99,26 +83,25 @@ def signals_graph(trace: Trace) -> TimeGraph:
     )
 
 
-def signals_picture(recording: Recording, how: ReadingOptions) -> Picture:
+def signals_picture(recording: Recording, how: ReadingOptions) -> doc.Picture:
     """The signals over time, holes as gaps; of a recording that needs a rig, the columns that change over samples."""
     title = readable(Path(recording.origin).name)
     try:
         trace = assemble(recording, how)
     except InputError:
         channels = [channel for channel in of_axis(recording, how.axis) if _changes(channel)]
-        panels = tuple(
-            Panel(
-                x_label="sample",
-                y_label=channel.label,
-                series=(series("", "line", "ink", np.arange(channel.values.size, dtype=np.float64), channel.values),),
-            )
-            for channel in channels[:MOST]
-        ) or (Panel(x_label="sample", y_label="no column changes", series=()),)
+        panels = []
+        for channel in channels[:MOST]:
+            sample = np.arange(channel.values.size, dtype=np.float64)
+            line = doc.series("", "line", "ink", sample, channel.values)
+            panels.append(doc.Panel(x_label="sample", y_label=channel.label, series=(line,)))
+        if not panels:
+            panels.append(doc.Panel(x_label="sample", y_label="no column changes", series=()))
         more = len(channels) - MOST
         title += f" and {more} columns more" if more > 0 else ""
-        chart = Chart(title="", alternative="Columns over samples.", panels=panels)
-        return Picture(name="signals", title=title, rows=((chart,),))
-    return Picture(name="signals", title=title, rows=((signals_graph(trace),),))
+        chart = doc.Chart(title="", alternative="Columns over samples.", panels=tuple(panels))
+        return doc.Picture(name="signals", title=title, rows=((chart,),))
+    return doc.Picture(name="signals", title=title, rows=((signals_graph(trace),),))
 
 
 def _changes(channel: Channel) -> bool:
@@ -126,7 +109,7 @@ def _changes(channel: Channel) -> bool:
     return channel.defect is None and numbers.size > 1 and bool(np.ptp(numbers))
 
 
-def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, Tone]:
+def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, doc.Tone]:
     """What the recording is good for, in a sentence, and how that is meant."""
     if found.asks is not None or found.duration is None or found.rate is None:
         return "It is not read as a recording yet: its signals have to be told first.", "refused"
@@ -164,7 +147,7 @@ def _lost(found: Inspection) -> str:
     return "; ".join(parts)
 
 
-def _signals(found: Inspection) -> Table:
+def _signals(found: Inspection) -> doc.Table:
     rows = (
         (
             words(signal.name),
@@ -176,10 +159,10 @@ def _signals(found: Inspection) -> Table:
         for signal in found.signals
     )
     headings = ("signal", "column", "unit", "least>", "most>", "RMS>", "resolution>")
-    return table("What is read, in SI units", headings, rows)
+    return doc.table("What is read, in SI units", headings, rows)
 
 
-def _columns(columns: Sequence[ColumnSummary]) -> Table:
+def _columns(columns: Sequence[ColumnSummary]) -> doc.Table:
     rows = (
         (
             column.name if column.axis is None else f"{column.name} ({column.axis})",
@@ -192,12 +175,12 @@ def _columns(columns: Sequence[ColumnSummary]) -> Table:
         )
         for column in columns
     )
-    return table("In the file's units", ("column", "unit", "least>", "most>", "resolution>", "likely~"), rows)
+    return doc.table("In the file's units", ("column", "unit", "least>", "most>", "resolution>", "likely~"), rows)
 
 
-def _what_to_write(found: Inspection) -> Iterator[AnyPart]:
+def _what_to_write(found: Inspection) -> Iterator[doc.AnyPart]:
     """What keeps the file from being read, and the lines of a rig that would help."""
-    yield Paragraph(text=f"{found.asks}.")
+    yield doc.Paragraph(text=f"{found.asks}.")
     if found.suggestions:
-        yield Paragraph(text="Likely, for the rig file:")
-        yield Code(text="\n".join(("[trace.columns]", *found.suggestions)))
+        yield doc.Paragraph(text="Likely, for the rig file:")
+        yield doc.Code(text="\n".join(("[trace.columns]", *found.suggestions)))

@@ -13,7 +13,7 @@ from bench.fit.estimate import Alone
 from bench.fit.parameter import Parameter
 from bench.gate.check import Check
 from bench.names import readable, words
-from bench.report.document import Downloads, File, Points, Section, Series, Table, table
+from bench.report.document import Downloads, File, Points, Section, Series, Table, section, table
 from bench.report.numbers import interval, number, unit_text
 
 
@@ -83,7 +83,7 @@ def checks_section(checks: Sequence[Check], warnings: Sequence[str]) -> Section:
     headings = ("check", "status", "found~", *(["advice~"] if advised else []))
     notes = (Points(items=tuple(warnings)),) if warnings else ()
     tables = (table(caption, headings, rows, marked),) if applicable else ()
-    return Section(key="checks", heading="Checks and warnings", blocks=(*notes, *tables), detail=True)
+    return section("checks", "Checks and warnings", *notes, *tables, detail=True)
 
 
 def model_section(model: Path) -> Section:
@@ -94,12 +94,12 @@ def model_section(model: Path) -> Section:
     """
     content = read_text(model, "a model")
     file = File(name=readable(model.name), about="the model", media="application/toml", content=content)
-    return Section(key="model", heading="The model", blocks=(Downloads(files=(file,)),))
+    return section("model", "The model", Downloads(files=(file,)))
 
 
 def warnings_sections(warnings: Sequence[str]) -> list[Section]:
     """What the user should know before believing a result, if anything."""
-    return [Section(key="warnings", heading="Warnings", blocks=(Points(items=tuple(warnings)),))] if warnings else []
+    return [section("warnings", "Warnings", Points(items=tuple(warnings)))] if warnings else []
 
 
 def origin(provenance: Mapping[str, Any] | None) -> tuple[str, ...]:

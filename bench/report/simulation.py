@@ -18,7 +18,18 @@ from bench.effects.present import Present
 from bench.names import readable, words
 from bench.plant.axis_model import parameter_quantities
 from bench.plant.simulate import Simulated, Truth
-from bench.report.document import Document, Downloads, File, Moving, Paragraph, Section, Slowed, Table, TimeGraph, table
+from bench.report.document import (
+    Document,
+    Downloads,
+    File,
+    Moving,
+    Paragraph,
+    Slowed,
+    Table,
+    TimeGraph,
+    section,
+    table,
+)
 from bench.report.numbers import effort_word, number, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import model_section, origin, values_table, warnings_sections
@@ -69,9 +80,9 @@ def simulation(simulated: Simulated, name: str) -> Document:
         tone="sure",
         answers=answers,
         sections=(
-            Section(key="motion", heading="Recorded and true", blocks=(_recorded(simulated),)),
-            Section(key="truth", heading="The truth", blocks=true),
-            Section(key="files", heading="The numbers", blocks=(Downloads(files=(file,)),)),
+            section("motion", "Recorded and true", _recorded(simulated)),
+            section("truth", "The truth", *true),
+            section("files", "The numbers", Downloads(files=(file,))),
         ),
         origin=(*origin(None), f"seed {truth.seed}"),
     )
@@ -130,7 +141,7 @@ def replay(replayed: Replay, model: Path, along: str) -> Document:
     ]
     shown = f"Speed and {effort} of the recording as measured and as the model has them, and what is left of each."
     graph = time_graph("Over time.", shown, replayed.time, signals)
-    motion = Section(key="motion", heading="Measured and simulated", blocks=(graph,))
+    motion = section("motion", "Measured and simulated", graph)
     return Document(
         title=title,
         subject=f"Replay: {title}",
@@ -175,8 +186,8 @@ def view(shown: SideBySide, model: Path, along: str, warnings: Sequence[str] = (
     alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
     graph = time_graph("Over time.", alternative, shown.time, signals, part=PART)
     sections = [
-        Section(key="moving", heading="Moving", blocks=(motion_of(shown),)),
-        Section(key="motion", heading="Over time", blocks=(graph,)),
+        section("moving", "Moving", motion_of(shown)),
+        section("motion", "Over time", graph),
     ]
     return Document(
         title=title,

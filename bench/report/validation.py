@@ -19,20 +19,7 @@ from pyarrow import csv
 from bench.arrays import NORMAL95
 from bench.files import held, whole
 from bench.names import words
-from bench.report.document import (
-    AnyPart,
-    Document,
-    HeatMap,
-    Intervals,
-    Neighbour,
-    Neighbours,
-    Paragraph,
-    Picture,
-    Section,
-    Span,
-    Table,
-    table,
-)
+from bench.report import document as doc
 from bench.report.numbers import number, sentence, share, unit_text
 from bench.report.parts import origin
 from bench.report.publish import markdown, write_document
@@ -104,24 +91,24 @@ def _naming_json(found: Naming) -> dict[str, Any]:
     }
 
 
-def validation(found: Validation, provenance: Mapping[str, Any], command: str, own: bool) -> Document:
+def validation(found: Validation, provenance: Mapping[str, Any], command: str, own: bool) -> doc.Document:
     """The document of a validation that `command` does again; on one's own axis how well it is told comes first."""
-    first, naming, note = _first(found), found.naming, Paragraph(text=NOTE)
-    sections = [Section(key="coverage", heading="How often an interval holds the truth", blocks=tuple(_charts(found)))]
+    first, naming, note = _first(found), found.naming, doc.Paragraph(text=NOTE)
+    sections = [doc.section("coverage", "How often an interval holds the truth", *_charts(found))]
     if own:
-        axis = Section(key="axis", heading="This motion on this drive", blocks=_determined(found.runs))
+        axis = doc.section("axis", "This motion on this drive", *_determined(found.runs))
         sections.insert(0, axis)
-    sections.append(Section(key="numbers", heading="How far off numbers are", blocks=(*_numbers(found, True), note)))
+    sections.append(doc.section("numbers", "How far off numbers are", *_numbers(found, True), note))
     parts = tuple(_numbers(found, False))
     if parts:
-        sections.append(Section(key="parts", heading="The same, by parts of these runs", blocks=parts, detail=True))
+        sections.append(doc.section("parts", "The same, by parts of these runs", *parts, detail=True))
     if naming is not None:
-        sections.append(Section(key="names", heading="Whether names are right", blocks=tuple(_naming(naming))))
-    beside = Neighbours(files=tuple(Neighbour(name=name, about=about) for name, about in FILES.items()))
-    sections.append(Section(key="runs", heading="All runs", blocks=(_outcomes(found.runs), beside)))
+        sections.append(doc.section("names", "Whether names are right", *_naming(naming)))
+    beside = doc.Neighbours(files=tuple(doc.Neighbour(name=name, about=about) for name, about in FILES.items()))
+    sections.append(doc.section("runs", "All runs", _outcomes(found.runs), beside))
     low = any(one.inside[-1].bounds[1] < LEVEL for one in first)
     false = naming is not None and naming.false.count > 0
-    return Document(
+    return doc.Document(
         title="Validation",
         subject=command,
         verdict=_verdict(first, naming),
@@ -171,19 +158,19 @@ def _answers(found: Validation, first: list[Coverage]) -> Iterator[tuple[str, st
     yield "Runs?", f"{len(found.runs)}: {counts}."
 
 
-def _charts(found: Validation) -> Iterator[AnyPart]:
+def _charts(found: Validation) -> Iterator[doc.AnyPart]:
     """Share of intervals that hold the truth with its bounds, by quantity and group of runs."""
     charts = [_chart(found, quantity, -1) for quantity in SYMBOLS]
     if not any(chart.spans for chart in charts):
-        yield Paragraph(text="No run tells a quantity.")
+        yield doc.Paragraph(text="No run tells a quantity.")
     yield from (chart for chart in charts if chart.spans)
 
 
-def _chart(found: Validation, quantity: str, place: int) -> Intervals:
+def _chart(found: Validation, quantity: str, place: int) -> doc.Intervals:
     """The same of a quantity, at the level of this place among all."""
     level, shown = LEVELS[place], [one for one in found.coverage if one.quantity in SYMBOLS and one.told]
     least = min((one.inside[place].bounds[0] for one in shown), default=FROM)
-    return Intervals(
+    return doc.Intervals(
         title=f"{sentence(TERM_WORDS[quantity])}, {SYMBOLS[quantity]}.",
         alternative=f"Share of the intervals of {share(level)} that hold the truth, by groups of runs, "
         "with bounds of 95 %; the line is what they claim.",
@@ -195,25 +182,25 @@ def _chart(found: Validation, quantity: str, place: int) -> Intervals:
     )
 
 
-def _span(one: Coverage, place: int) -> Span:
+def _span(one: Coverage, place: int) -> doc.Span:
     inside = one.inside[place]
     low, value, high = (100.0 * each for each in (inside.bounds[0], inside.value, inside.bounds[1]))
     colour = "ink" if one.by == "identify" else "model"
-    return Span(name=f"{one.by}: {one.group}", colour=colour, value=value, low=low, high=high)
+    return doc.Span(name=f"{one.by}: {one.group}", colour=colour, value=value, low=low, high=high)
 
 
-def _pictures(found: Validation) -> Iterator[Picture]:
+def _pictures(found: Validation) -> Iterator[doc.Picture]:
     """Coverage of each quantity at every level, and names by what is hidden."""
     rows = [tuple(_chart(found, quantity, place) for place in range(len(LEVELS))) for quantity in SYMBOLS]
     told = tuple(row for row in rows if row[0].spans)
-    nothing = table("", ("",), [("No run tells a quantity.",)])
-    yield Picture(name="coverage", title="How often an interval holds the truth", rows=told or ((nothing,),))
+    nothing = doc.table("", ("",), [("No run tells a quantity.",)])
+    yield doc.Picture(name="coverage", title="How often an interval holds the truth", rows=told or ((nothing,),))
     if found.naming is not None:
         matrix = confusion(found.naming.confusion)
-        yield Picture(name="confusion", title="Named, by what is hidden", rows=((matrix,),))
+        yield doc.Picture(name="confusion", title="Named, by what is hidden", rows=((matrix,),))
 
 
-def _numbers(found: Validation, whole: bool) -> Iterator[AnyPart]:
+def _numbers(found: Validation, whole: bool) -> Iterator[doc.AnyPart]:
     """Bias, spread, width and coverage, of whole groups of runs or of parts of them."""
     for by, title in TITLES.items():
         some = [one for one in found.coverage if one.by == by and one.whole is whole]
@@ -221,7 +208,7 @@ def _numbers(found: Validation, whole: bool) -> Iterator[AnyPart]:
             yield _covered(some, title)
 
 
-def _covered(found: Sequence[Coverage], title: str) -> Table:
+def _covered(found: Sequence[Coverage], title: str) -> doc.Table:
     rows = (
         (
             each.group,
@@ -237,10 +224,10 @@ def _covered(found: Sequence[Coverage], title: str) -> Table:
         for each in found
     )
     levels = (f"{level:.0%}>" for level in LEVELS)
-    return table(title, ("runs", "of", "told>", "bias %>", "RMS %>", "± %>", "±/RMS>", *levels, "bounds>"), rows)
+    return doc.table(title, ("runs", "of", "told>", "bias %>", "RMS %>", "± %>", "±/RMS>", *levels, "bounds>"), rows)
 
 
-def _determined(runs: tuple[Run, ...]) -> tuple[AnyPart, ...]:
+def _determined(runs: tuple[Run, ...]) -> tuple[doc.AnyPart, ...]:
     """How well a motion determines each quantity of one axis with nothing hidden in it: how often, and how closely."""
     plain = [run for run in runs if not run.hidden and run.status != "failed"]
     rows = []
@@ -253,17 +240,17 @@ def _determined(runs: tuple[Run, ...]) -> tuple[AnyPart, ...]:
     headings = ("quantity", "true", "determined>", "± % (95 %)>", "bias %>", "RMS error %>")
     note = "determined: runs, with nothing hidden, that tell the quantity by an interval which excludes zero."
     title = "How well this motion on this drive determines the axis"
-    return table(title, headings, rows), Paragraph(text=note)
+    return doc.table(title, headings, rows), doc.Paragraph(text=note)
 
 
-def _outcomes(runs: tuple[Run, ...]) -> Table:
+def _outcomes(runs: tuple[Run, ...]) -> doc.Table:
     """How many runs there are, and why some tell nothing, without the numbers of a run."""
     counts = Counter((run.status, run.reason.partition(":")[0]) for run in runs)
     rows = ((status, reason, str(count)) for (status, reason), count in sorted(counts.items(), key=lambda e: -e[1]))
-    return table("Runs", ("identify", "why", "runs>"), rows)
+    return doc.table("Runs", ("identify", "why", "runs>"), rows)
 
 
-def _naming(found: Naming) -> Iterator[AnyPart]:
+def _naming(found: Naming) -> Iterator[doc.AnyPart]:
     """Whether names are right, over all runs that were diagnosed."""
     by_motion = found.nulls_by_motion if len(found.nulls_by_motion) > 1 else {}
     every = {
@@ -275,15 +262,15 @@ def _naming(found: Naming) -> Iterator[AnyPart]:
         "refused": found.refused,
     }
     names = ((name, _bounded(one), _of(one)) for name, one in every.items())
-    yield table("Names", ("what", "share>", "runs>"), names)
+    yield doc.table("Names", ("what", "share>", "runs>"), names)
     if found.named:  # of each effect, how often it is named where it is, and where it is not
         shares = {name: found.named.get(name, Share(0, 0)) for name in sorted({*found.named, *found.falsely})}
         by_name = ((name, _bounded(one), _of(one), str(found.falsely.get(name, 0))) for name, one in shares.items())
-        yield table("By effect", ("effect", "named where it is>", "runs>", "where it is not>"), by_name)
+        yield doc.table("By effect", ("effect", "named where it is>", "runs>", "where it is not>"), by_name)
     if found.confusion:
         yield confusion(found.confusion)
     rows = ((words(hidden), _counts(counts)) for hidden, counts in found.confusion.items())
-    yield table("What is said where one effect is hidden, or nothing", ("hidden", "said, and how often~"), rows)
+    yield doc.table("What is said where one effect is hidden, or nothing", ("hidden", "said, and how often~"), rows)
 
 
 def _counts(counts: Mapping[str, int]) -> str:
@@ -291,11 +278,11 @@ def _counts(counts: Mapping[str, int]) -> str:
     return ", ".join(f"{words(name)} {number(count)}" for name, count in ordered)
 
 
-def confusion(counts: Mapping[str, Mapping[str, int]]) -> HeatMap:
+def confusion(counts: Mapping[str, Mapping[str, int]]) -> doc.HeatMap:
     """What is said of runs with one effect hidden or none, as a matrix: first the right answers, in the rows' order."""
     answers = [NOTHING_MISSING if name == NOTHING else name for name in counts]
     columns = [*answers, *sorted({name for said in counts.values() for name in said} - set(answers))]
-    return HeatMap(
+    return doc.HeatMap(
         caption="Hidden down, said across: how often, coloured by the share of what is said in a row; "
         "the right answer is framed",
         corner="hidden",
@@ -378,7 +365,7 @@ def write_validation(
     Raises:
         InputError: the folder cannot be written to.
     """
-    tables = [_outcomes(found.runs), *_numbers(found, True), *_numbers(found, False), Paragraph(text=NOTE)]
+    tables = [_outcomes(found.runs), *_numbers(found, True), *_numbers(found, False), doc.Paragraph(text=NOTE)]
     tables += [] if found.naming is None else _naming(found.naming)
     text = "\n\n".join([f"# Validation\n\n`{command}`", *filter(None, map(markdown, tables))])
     beside = {"validation.json": validation_json(found, provenance) + "\n", "validation.md": text + "\n"}
