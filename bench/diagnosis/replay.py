@@ -138,7 +138,7 @@ def load_balance(path: str | Path) -> Balance:
 
 
 def _require_sound(balance: Balance, where: str) -> None:
-    if not (np.isfinite(balance.width) and balance.width > 0.0):
+    if not 0.0 < balance.width < math.inf:
         raise InputError(f"{where}.filter_width", f"found {balance.width:g}", "allowed: a width above zero - s")
     if not np.isfinite(balance.theta).all():
         raise InputError(f"{where}.coefficients", "found one that is not finite", "allowed: finite numbers")

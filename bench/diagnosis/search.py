@@ -64,13 +64,7 @@ class Searched:
 
 
 def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
-    """Effects in the order in which they are taken up.
-
-    Args:
-        bare: the fit without an effect.
-        effects: to be tried.
-        policy: that decides.
-    """
+    """Effects in the order in which they are taken up beside the fit without one."""
     found = forward_selection(Searched((Step(bare),)), effects, policy)
     for _ in range(policy.most):  # each leaves less, so it ends before; what is let go in between could turn it round
         better = exchanged(found.last, effects, policy)

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array, rms
 from bench.comparison.spread import Between
 from bench.diagnosis.add import Added, Rejected
-from bench.diagnosis.gaps import Course, Gap, Shrunk, courses, shrinking, torque_gap, velocity_gap
 from bench.diagnosis.name import NamedEffect, Suspects
 from bench.diagnosis.next_experiment import NextExperiment, propose
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, apart
 from bench.diagnosis.search import Searched, Step
-from bench.diagnosis.verdict import Shown, impacts, left_open, suspicions, verdict
+from bench.diagnosis.verdict import Gap, Shown, impacts, left_open, suspicions, verdict
 from bench.diagnosis.where import Profile, Where, profiles, where
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
@@ -22,7 +26,50 @@ from bench.fit.fit import Fit
 from bench.fit.parameter import Parameter
 from bench.fit.stored import Balance
 from bench.gate.check import Check
+from bench.plant.measured_motion import measured_velocity
 from bench.plant.model_file import StoredModel
+from bench.trace.noise import white_noise
+
+
+@dataclass(frozen=True)
+class Shrunk:
+    """Gaps after one addition to the model.
+
+    Attributes:
+        effect: added last; empty for the bare axis.
+        torque: of the recording, and of the holdout where there is one - N*m (N).
+        velocity: the same - rad/s (m/s); nan if not available.
+    """
+
+    effect: str
+    torque: tuple[float, ...]
+    velocity: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Course:
+    """One recording over time, with the residuals of the model after each addition.
+
+    Attributes:
+        name: `recording` or `holdout`.
+        origin: of it.
+        time: s - (n,).
+        velocity: as measured - rad/s (m/s) - (n,).
+        velocity_left: measured less simulated, for each step (n,), nan outside the model; None without a model, or
+            if it diverged.
+        rows: index into the samples of each row of the torque balance (m,).
+        torque: as measured, filtered - N*m (N) - (m,).
+        torque_left: measured less modelled, for each step (m,).
+    """
+
+    name: str
+    origin: str
+    time: Array
+    velocity: Array
+    velocity_left: tuple[NDArray[np.float32] | None, ...]
+    rows: NDArray[np.int64]
+    torque: Array
+    torque_left: tuple[Array, ...]
 
 
 @dataclass(frozen=True)
@@ -139,6 +186,54 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
             *added.warnings,
         ],
     )
+
+
+def courses(recordings: Recordings, added: Added) -> tuple[Course, ...]:
+    """The recording, and the holdout where there is one, beside the bare axis and the model after each addition."""
+    laid_out = [rows for rows in (recordings.rows, recordings.holdout_rows) if rows is not None]
+    balances = [Balance.of(stage.fitted).repeating(added.repeats) for stage in added.extension.stages]
+    found = []
+    for rows, recorded in zip(laid_out, added.recorded, strict=True):
+        trace = recorded.trace
+        left = [added.gaps.residual(stage, recorded) for stage in added.extension.stages]
+        if added.refined.gap is not None and added.refined.model is not None:
+            (simulated,) = added.gaps.velocities([added.refined.model], [recorded])
+            left[-1] = None if simulated is None else recorded.residual(simulated)
+        along = recorded.name, trace.origin, trace.time, measured_velocity(trace), tuple(left), rows.samples()
+        found.append(Course(*along, rows.effort, tuple(balance.left(rows) for balance in balances)))
+    return tuple(found)
+
+
+def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
+    """Gaps of the bare axis and after each addition, the last one as it was kept."""
+    return [
+        Shrunk(
+            stage.effect,
+            tuple(rms(course.torque_left[k]) for course in shown),
+            tuple(_rms_known(course.velocity_left[k]) for course in shown),
+        )
+        for k, stage in enumerate(added.extension.stages)
+    ]
+
+
+def _rms_known(left: NDArray[np.float32] | None) -> float:
+    """RMS over the samples that a model covers; nan without a model."""
+    return math.nan if left is None else rms(left[np.isfinite(left)].astype(np.float64))
+
+
+def torque_gap(steps: list[Shrunk], whole: Fit, unit: str) -> Gap:
+    """Of all effects together, over all rows; beside it what is left on those that judge the fit, where not all do."""
+    pairs = list(zip(steps[0].torque, steps[-1].torque, strict=True))
+    judged = None if whole.determined.all() else (float(whole.determined.mean()), whole.rms)
+    return Gap(unit, whole.floor, pairs[0], pairs[1] if len(pairs) > 1 else None, judged)
+
+
+def velocity_gap(recordings: Recordings, steps: list[Shrunk]) -> Gap:
+    """Of all effects together; None where MuJoCo cannot have the model or a simulation diverged."""
+    both = zip(steps[0].velocity, steps[-1].velocity, strict=True)
+    pairs = [pair if all(map(math.isfinite, pair)) else None for pair in both]
+    floor = white_noise(measured_velocity(recordings.trace))
+    return Gap(recordings.rig.axis_kind.speed_unit, floor, pairs[0], pairs[1] if len(pairs) > 1 else None)
 
 
 def considered(recordings: Recordings, suspects: Suspects, added: Added) -> tuple[Considered, ...]:

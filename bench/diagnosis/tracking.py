@@ -48,13 +48,7 @@ class Recorded:
 
     @classmethod
     def of(
-        cls,
-        name: str,
-        trace: Trace,
-        rig: Rig,
-        since: float = -np.inf,
-        until: float = np.inf,
-        events: bool = True,
+        cls, name: str, trace: Trace, rig: Rig, since: float = -np.inf, until: float = np.inf, events: bool = True
     ) -> Recorded:
         """A recording whose gap is taken from `since` until `until` - s."""
         judged = (trace.time >= since) & (trace.time < until) & in_stretches(trace)
@@ -145,13 +139,7 @@ class HeldOut:
 
     @classmethod
     def of(cls, recordings: Recordings, trusted: bool, events: bool) -> HeldOut:
-        """The holdout, or the last third of the recording.
-
-        Args:
-            recordings: of the diagnosis.
-            trusted: whether the holdout is of this axis.
-            events: whether the recording's events happen in the holdout too.
-        """
+        """A holdout that is `trusted` to be of this axis, with the recording's events or not; else the last third."""
         if recordings.holdout is not None and recordings.holdout_rows is not None and trusted:
             recorded = Recorded.of(HOLDOUT, recordings.holdout, recordings.rig, events=events)
             seen = Recorded.of(RECORDING, recordings.trace, recordings.rig)
@@ -159,13 +147,9 @@ class HeldOut:
         time = recordings.trace.time
         split = float(time[0] + (1.0 - HELD_OUT) * (time[-1] - time[0]))
         recorded = Recorded.of(LAST_THIRD, recordings.trace, recordings.rig, split)
-        fitted, judge = (_part(recordings.rows, split - time[0], late) for late in (False, True))
+        smooth, after = recordings.rows.conditioning.filter, split - time[0]
+        away = smooth.margin * smooth.sample_period  # within which the filter mixes both sides
+        fitted = recordings.rows.selected(lambda time: time < after - away)
+        judge = recordings.rows.selected(lambda time: time >= after + away)
         seen = Recorded.of(FIRST_PART, recordings.trace, recordings.rig, until=split)
         return cls(fitted, FIRST_PART, judge, recorded, seen)
-
-
-def _part(rows: Rows, split: float, late: bool) -> Rows:
-    """The rows before or after a time, without those where the filter mixes both sides."""
-    smooth = rows.conditioning.filter
-    away = smooth.margin * smooth.sample_period
-    return rows.selected(lambda time: time >= split + away if late else time < split - away)

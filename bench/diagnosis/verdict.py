@@ -14,7 +14,6 @@ import numpy as np
 from bench.arrays import rms
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS, AxisKind
 from bench.diagnosis.add import Added
-from bench.diagnosis.gaps import Gap
 from bench.diagnosis.name import NamedEffect, Suspects
 from bench.diagnosis.recordings import Recordings
 from bench.fit.fit import Fit
@@ -27,6 +26,24 @@ from bench.trace.trace import Trace
 CLIPPED, IN_A_ROW = 0.005, 5
 #: Distance from the drive's own limit within which standing there is the drive's doing and the value true.
 AT_LIMIT = 0.02
+
+
+@dataclass(frozen=True)
+class Gap:
+    """RMS gap before and after the effects were added, on both recordings, against the noise floor.
+
+    Attributes:
+        unit: of all numbers.
+        noise_floor: expected RMS from sensor noise alone.
+        identify, holdout: (before, after) over all rows; None if not available.
+        judged: share of the rows that the verdict is based on, and the gap on them; None if it is all rows.
+    """
+
+    unit: str
+    noise_floor: float
+    identify: tuple[float, float] | None
+    holdout: tuple[float, float] | None
+    judged: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -152,7 +169,15 @@ def _with_interval(name: str, found: Parameter) -> str:
 
 def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> list[str]:
     """Warnings: less inertia than the rotor alone has, or a signal that stands at the end of its range."""
-    return [*_less_than_the_rotor(rig, parameters), *_clipped(trace, rig)]
+    inertia, rotor = parameters.get("moment_of_inertia"), rig.motor.rotor_inertia
+    clipped = _clipped(trace, rig)
+    if inertia is None or rotor is None or inertia.unit != "kg*m**2" or inertia.ci95[1] >= rotor:
+        return clipped
+    return [
+        f"the moment of inertia, {inertia.value:.3g} kg*m**2, is less than the rotor's alone, {rotor:.3g} kg*m**2: "
+        "check the units of current and speed and the torque constant",
+        *clipped,
+    ]
 
 
 def left_open(rows: Rows, kind: AxisKind) -> list[str]:
@@ -176,16 +201,6 @@ def impacts(fitted: Fit, unit: str) -> list[str]:
         f"{100.0 * share:.0f} % of the rows follow impacts so closely that their torque hangs on instants which the "
         f"recording does not tell: the verdict is by the others, on which {fitted.rms:.3g} {unit} are left; the torque "
         "gap counts all"
-    ]
-
-
-def _less_than_the_rotor(rig: Rig, parameters: Mapping[str, Parameter]) -> list[str]:
-    found, rotor = parameters.get("moment_of_inertia"), rig.motor.rotor_inertia
-    if found is None or rotor is None or found.unit != "kg*m**2" or found.ci95[1] >= rotor:
-        return []
-    return [
-        f"the moment of inertia, {found.value:.3g} kg*m**2, is less than the rotor's alone, {rotor:.3g} kg*m**2: "
-        "check the units of current and speed and the torque constant"
     ]
 
 

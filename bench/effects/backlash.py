@@ -22,8 +22,6 @@ E. M. Ronchetti, Robust Statistics, 2nd ed., 2009, ch. 7; B. Efron, R. J. Tibshi
 1993, sec. 8.6.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ Another package offers effects as entry points of the group `servobench.effects`
     belt_creep = "their_package.belt_creep:EFFECT"
 """
 
-from __future__ import annotations
-
 import importlib
 import pkgutil
 from functools import cache

@@ -6,8 +6,6 @@ A - amplitude - N*m; n - harmonic, cycles per revolution, two or more; q - angle
 Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003, ch. 5.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from bench.effects.acting import Native

@@ -9,8 +9,6 @@ another one it is not sought, and where no position tells a lag of the speed the
 Source: W. Leonhard, Control of Electrical Drives (filtered current feedback).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -9,8 +9,6 @@ Source: D.-W. Chung, S.-K. Sul, Analysis and compensation of current measurement
 drives, IEEE Transactions on Industry Applications 34(2), 1998 (scaling errors of current sensors).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -6,8 +6,6 @@ T - time constant - s; M - torque that acts, M_reported = k_T*I of the reported 
 Source: D. Schröder, Elektrische Antriebe - Regelung von Antriebssystemen (closed current loop as a first-order lag).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

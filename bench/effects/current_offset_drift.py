@@ -10,8 +10,6 @@ Source: D.-W. Chung, S.-K. Sul, Analysis and compensation of current measurement
 drives, IEEE Transactions on Industry Applications 34(2), 1998 (offset errors of current sensors).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from bench.effects.acting import MisreadEffort

@@ -7,8 +7,6 @@ told from a torque offset by any recording: they are each other's `ambiguous_wit
 Source: A. Janot, M. Gautier, M. Brunot, NSIB workshop 2019 (EMPS, asymmetric friction).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

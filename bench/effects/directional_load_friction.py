@@ -11,8 +11,6 @@ Source: M. Duclusaud, G. Passault, V. Padois, O. Ly, Extended friction models fo
 actuators, 2024, arXiv 2410.08650 (model M5; M6 adds squares to its rise at low speed).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

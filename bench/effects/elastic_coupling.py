@@ -15,8 +15,6 @@ ringing that a recording ends with returns at its start.
 Source: D. Schröder, Elektrische Antriebe - Regelung von Antriebssystemen (two-mass system).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

@@ -7,8 +7,6 @@ e*sin(q + phi) = s*sin(q) + c*cos(q), and the acceleration errs by d/dt(omega*(s
 Source: A. Ernst, Digital Linear and Angular Metrology, 1998 (eccentricity of graduations).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

@@ -6,8 +6,6 @@ A - relative amplitude of the dry part, the viscous part may decay by another; T
 recording's start - s.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

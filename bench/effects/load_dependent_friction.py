@@ -6,8 +6,6 @@ mu - load friction coefficient, not negative; M_motor - motor torque - N*m (N).
 Source: M. Linderoth, A. Stolt, A. Robertsson, R. Johansson, IROS 2013 (load-dependent friction of a gear).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

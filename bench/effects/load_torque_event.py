@@ -5,8 +5,6 @@
 M_e - N*m (N); t - time since the recording's start (that of the first, of several that are joined) - s.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@
 A - relative amplitude; q - angle - rad.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from bench.effects.acting import ScalesFriction

@@ -6,8 +6,6 @@ A - relative amplitude; n - harmonic; q - angle - rad. Lagrange's equation of th
 With J*sin(n*q)*alpha = d/dt(J*sin(n*q)*omega) - J*n*cos(n*q)*omega**2, only raw products are differentiated.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -8,8 +8,6 @@ g - level of sliding friction over K_0: 1, or what other effects make of it (Str
 Source: P. R. Dahl, AIAA Journal 14(12), 1976, 1675-1682; C. Canudas de Wit et al., IEEE TAC 40(3), 1995, eqs. 1-4.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise

@@ -5,8 +5,6 @@
 k_q - N*m*s**2/rad**2 (N*s**2/m**2), not negative.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -3,8 +3,6 @@
 So what none of the effects is does not get the name of the nearest one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Shapes: quantities of effects that enter nonlinearly, and where a search looks for them first on any axis."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product

@@ -6,8 +6,6 @@ M_s - static friction - N*m (N); omega_s - Stribeck velocity - rad/s (m/s); K_0 
 Source: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, Automatica 30(7), 1994, eq. 4.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -10,8 +10,6 @@ Source: T. Sebastian, Temperature effects on torque production and efficiency of
 Transactions on Industry Applications 31(2), 1995.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from bench.effects.acting import MisreadEffort

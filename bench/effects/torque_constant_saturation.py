@@ -6,8 +6,6 @@ d - drop at peak current; I_peak - peak current - A. Torque rises with current u
 dM/dI = kT*(1 - 3*d*(I/I_peak)**2) > 0, so d is 1/3 at most.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from bench.effects.acting import TorqueLoss

@@ -5,8 +5,6 @@
 M_0 - N*m (N).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -6,8 +6,6 @@ A - relative amplitude; n - harmonic; M_motor = kT*Iq - N*m; q - angle - rad.
 Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003, ch. 9.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from bench.effects.acting import ScalesTorque

@@ -5,8 +5,6 @@
 c - stiffness - N*m/rad (N/m), not negative; q - position - rad (m). A rest position other than zero is a torque offset.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from bench.effects.acting import Native, Spring

@@ -5,8 +5,6 @@
 A - N*m; q - angle - rad.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from bench.effects.acting import LoadTorque, Native

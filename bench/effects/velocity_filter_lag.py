@@ -8,8 +8,6 @@ dv/dt.
 Source: W. Leonhard, Control of Electrical Drives (filtered speed feedback).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -7,8 +7,6 @@ The current loop brings the current to its demand as fast as the voltage allows,
 Source: W. Leonhard, Control of Electrical Drives (current control under limited voltage).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -6,8 +6,6 @@ A - amplitude; n - harmonic, the wave number of a pitch - rad/m - on a linear ax
 s, c - strengths; q - position - rad (m).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -15,9 +15,10 @@ import numpy as np
 from bench.axis_kind import INERTIA, KINDS, AxisKind
 from bench.diagnosis.add import NULL
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.gaps import Course, Gap, Shrunk
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.same_axis import SameAxis
+from bench.diagnosis.show import Course, Shrunk
+from bench.diagnosis.verdict import Gap
 from bench.diagnosis.where import Profile, Where
 from bench.effects.acting import Sensing
 from bench.gate.gate import warnings_of

@@ -7,11 +7,11 @@ import pytest
 
 from bench.arrays import NORMAL95, rms
 from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.gaps import Gap
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.verdict import (
     OBJECTIONS,
+    Gap,
     Shown,
     holdout_apart,
     moves_worse,
