@@ -23,7 +23,7 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Occasional
 from bench.errors import InputError
 from bench.names import nearest
-from bench.rig.rig import Rig
+from bench.rig.rig import CheckTable, Rig
 from bench.trace.trace import Trace
 from bench.units import parse
 
@@ -309,13 +309,16 @@ class Allowed:
         """Those of a rig, or the defaults of a kind of axis without one; InputError where a quantity is not known."""
         if rig is None:
             return cls(kind)
-        found = cls(rig.axis_kind)
-        if rig.check is not None:
-            found = cls(rig.axis_kind, rig.check.margin, rig.check.between, f"{rig.source}: check")
-        for table in ("margin", "between"):
-            for name in getattr(found, table):
-                _require_known(name, found, f"{found.source}.{table}")
-        return found
+        stated, source = rig.check or CheckTable(), f"{rig.source}: check"
+        own = [*rig.axis_kind.base_parameters(), TORQUE_GAP, VELOCITY_GAP]
+        known = f"{', '.join(own)}, or EFFECT.QUANTITY as in bench effects"
+        for table, names in (("margin", stated.margin), ("between", stated.between)):
+            for name in (name for name in names if name not in own):
+                of_effects = [f"{effect.name}.{q.name}" for effect in catalogue().values() for q in effect.quantities]
+                if name not in of_effects:
+                    found = f"found '{name}'{nearest(name, [*own, *of_effects])}"
+                    raise InputError(f"{source}.{table}", found, f"allowed: {known}")
+        return cls(rig.axis_kind, stated.margin, stated.between, source)
 
     def margin_of(self, name: str, baseline: Measured, state: State) -> float:
         """Change of a quantity below which it does not matter - its unit.
@@ -349,11 +352,3 @@ def _stated(text: str, baseline: Measured, where: str) -> float:
     if value < 0.0:
         raise InputError(where, f"found {text!r}", 'allowed: zero or above, e.g. "2 %"')
     return value
-
-
-def _require_known(name: str, allowed: Allowed, where: str) -> None:
-    own = [*allowed.kind.base_parameters(), TORQUE_GAP, VELOCITY_GAP]
-    of_effects = [f"{effect.name}.{q.name}" for effect in catalogue().values() for q in effect.quantities]
-    if name not in own and name not in of_effects:
-        known = f"{', '.join(own)}, or EFFECT.QUANTITY as in bench effects"
-        raise InputError(where, f"found '{name}'{nearest(name, [*own, *of_effects])}", f"allowed: {known}")

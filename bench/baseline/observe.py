@@ -33,6 +33,15 @@ from bench.trace.trace import Trace
 Progress = Callable[[float], None]
 #: Effects of another state, each with its match in this one.
 Others = Sequence[tuple[NamedHere, NamedHere | None]]
+#: Factor within which conditions count as equal.
+ALIKE = 1.1
+#: Recorded but not compared: a changed axis needs another effort, and the cut-off follows the noise.
+FOLLOWING = frozenset({"rms_effort", "cutoff"})
+#: Window over which speed is averaged before it is differentiated - s.
+SMOOTH = 0.02
+#: Tables and keys of a rig that no result depends on: its name, the truth of a simulation, what a check allows, and the
+#: drive, whose effect on the motion is compared separately.
+BESIDE = {"name", "simulation", "check", "drive", "source"}
 
 
 @dataclass(frozen=True)
@@ -210,17 +219,6 @@ def _term(effect: NamedHere, mine: NamedHere | None, own: Fit, state: State) -> 
     if mine is not None:
         return own.terms[[one for one in state.effects if one.shape is not None].index(mine)]
     return Term(effect.effect, effect.shape or (), load=() if effect.on_load else None)
-
-
-#: Factor within which conditions count as equal.
-ALIKE = 1.1
-#: Recorded but not compared: a changed axis needs another effort, and the cut-off follows the noise.
-FOLLOWING = frozenset({"rms_effort", "cutoff"})
-#: Window over which speed is averaged before it is differentiated - s.
-SMOOTH = 0.02
-#: Tables and keys of a rig that no result depends on: its name, the truth of a simulation, what a check allows, and the
-#: drive, whose effect on the motion is compared separately.
-BESIDE = {"name", "simulation", "check", "drive", "source"}
 
 
 def conditions(traces: Sequence[Trace], rig: Rig, cutoff: float) -> dict[str, Measured]:

@@ -232,17 +232,14 @@ class DriveUnits:
         """As a rig tells them; InputError where a unit is none of its signal's."""
         return cls(rig, Unit.of(rig, "position"), Unit.of(rig, "velocity"), Unit.of(rig, "current"))
 
-    def currents(self, torque: Array) -> Array | None:
-        """Currents that give torques - the drive's unit - (n,); None where the rig knows no torque constant."""
-        constant = self.rig.motor.torque_per_ampere
-        return None if constant is None else constant.current(torque) / self.current.factor
-
     def table(self, name: str, unit: Unit, table: TorqueTable) -> str:
-        """A table as CSV, in the order of the drive's own count."""
-        coordinate, currents = table.coordinate / unit.factor, self.currents(table.torque)
-        columns = [coordinate, table.torque] + ([] if currents is None else [currents])
+        """A table as CSV, in the order of the drive's own count; with currents where the rig knows what gives them."""
+        coordinate, constant = table.coordinate / unit.factor, self.rig.motor.torque_per_ampere
+        columns = [coordinate, table.torque]
         head = [f"{name} [{unit.text}]", f"{self.rig.axis_kind.effort} [{self.rig.effort_unit}]"]
-        head += [] if currents is None else [f"current [{self.current.text}]"]
+        if constant is not None:
+            columns.append(constant.current(table.torque) / self.current.factor)
+            head.append(f"current [{self.current.text}]")
         return csv_text(head, np.column_stack(columns)[np.argsort(coordinate, kind="stable")])
 
     def inertia(self, feedforward: Feedforward) -> Iterator[tuple[str, float, str]]:

@@ -34,6 +34,7 @@ from bench.trace.read import read_recording
 from bench.trace.stream import cut
 from bench.trace.trace import Trace, assemble
 
+SCHEMA = "bench.fleet.recording/1"
 #: What a recording is called in what is said of it: the same whatever its path is, and wherever it was copied to.
 CALLED = "recording"
 #: Bytes copied from a storage at a time.
@@ -174,9 +175,6 @@ def _errors_as_input(url: str) -> Iterator[None]:
     except (OSError, ValueError, ImportError) as error:  # no file or way to it; no such storage; no package for it
         reason = " ".join(str(error).split()) or type(error).__name__
         raise InputError(url, f"cannot be read ({reason})", "give the URL of a trace that fsspec can open") from error
-
-
-SCHEMA = "bench.fleet.recording/1"
 
 
 @dataclass(frozen=True)

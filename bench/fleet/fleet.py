@@ -24,6 +24,10 @@ UNLUCKY = ("failed", "timed_out")
 TABLE = "fleet.parquet"
 #: Share of the progress until it is known what is missing.
 PLANNING = 0.05
+NUMBER, TEXT, TEXTS = pa.float64(), pa.string(), pa.list_(pa.string())
+#: Of each parameter, by what follows its name; and of the gaps of torque (force) and velocity.
+OF_PARAMETER = {"": ("value", NUMBER), "_std_error": ("std_error", NUMBER), "_unit": ("unit", TEXT)}
+OF_GAP = {"": "after", "_before": "before", "_noise_floor": "noise_floor", "_unit": "unit"}
 
 
 @dataclass(frozen=True)
@@ -87,12 +91,6 @@ def _missing(store: Store, planned: Sequence[PlannedRecording], retry: bool) -> 
             if found is None or (retry and found["status"] in UNLUCKY):
                 missing[one.key] = one.job
     return missing
-
-
-NUMBER, TEXT, TEXTS = pa.float64(), pa.string(), pa.list_(pa.string())
-#: Of each parameter, by what follows its name; and of the gaps of torque (force) and velocity.
-OF_PARAMETER = {"": ("value", NUMBER), "_std_error": ("std_error", NUMBER), "_unit": ("unit", TEXT)}
-OF_GAP = {"": "after", "_before": "before", "_noise_floor": "noise_floor", "_unit": "unit"}
 
 
 def tabulate(manifest: Manifest, planned: Sequence[PlannedRecording], results: Sequence[Plain]) -> pa.Table:

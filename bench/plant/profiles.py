@@ -106,7 +106,7 @@ Profile = Callable[[MotionLimits], References]
 
 def fast_reversals(limits: MotionLimits) -> References:
     """The lab's fast run: accelerate and decelerate between the two directions, never at rest. Tells inertia best."""
-    return _through(limits, [limits.speed, -limits.speed] * 4 + [0.0], dwell=0.0)
+    return through_speeds(limits, [limits.speed, -limits.speed] * 4 + [0.0], dwell=0.0)
 
 
 def full_torque(limits: MotionLimits) -> References:
@@ -119,13 +119,13 @@ def full_torque(limits: MotionLimits) -> References:
 def speed_staircase(limits: MotionLimits) -> References:
     """Up and down through steps of speed, each held for a while, in both directions. Tells friction over speed best."""
     steps = [share * limits.speed for share in (0.2, 0.4, 0.6, 0.8, 1.0, 0.7, 0.3, 0.1)]
-    return _through(limits, [*steps, *(-step for step in steps), 0.0], dwell=0.06)
+    return through_speeds(limits, [*steps, *(-step for step in steps), 0.0], dwell=0.06)
 
 
 def slow_reversals(limits: MotionLimits) -> References:
     """To and fro at a few percent of top speed: breakaway, and friction close to standstill."""
     slow = replace(limits, speed=SLOW_SPEED * limits.speed, acceleration=SLOW_ACCELERATION * limits.acceleration)
-    return _through(slow, [slow.speed, -slow.speed, slow.speed, -slow.speed, 0.0], dwell=0.1)
+    return through_speeds(slow, [slow.speed, -slow.speed, slow.speed, -slow.speed, 0.0], dwell=0.1)
 
 
 def multisine(limits: MotionLimits) -> References:
@@ -169,10 +169,6 @@ def plan(name: str, limits: MotionLimits) -> References:
         limits = replace(limits, speed=0.9 * limits.speed)
         references = PROFILES[name](limits)
     return references
-
-
-def _through(limits: MotionLimits, speeds: list[float], dwell: float) -> References:
-    return through_speeds(speeds, dwell, limits.acceleration, limits.ramp_time, limits.period)
 
 
 def _fade(share: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -227,19 +223,14 @@ def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: 
     )
 
 
-def through_speeds(
-    speeds: Sequence[float], dwell: float, acceleration: float, ramp_time: float, period: float
-) -> References:
-    """Motion from rest through speeds - rad/s (m/s) -, each held for `dwell` - s; `period` as of `s_curve`.
-
-    At most with an acceleration - rad/s**2 (m/s**2) - that builds up and fades in `ramp_time` - s.
-    """
+def through_speeds(limits: MotionLimits, speeds: Sequence[float], dwell: float) -> References:
+    """Motion from rest within limits through speeds - rad/s (m/s) -, each held for `dwell` - s."""
     durations, accelerations = [], []
     for change in np.diff([0.0, *speeds]):
-        lengths, knots = speed_change(float(change), acceleration, ramp_time)
+        lengths, knots = speed_change(float(change), limits.acceleration, limits.ramp_time)
         durations += [*lengths, dwell]
         accelerations += [*knots, 0.0]
-    return s_curve(durations, accelerations, period)
+    return s_curve(durations, accelerations, limits.period)
 
 
 def speed_change(change: float, acceleration: float, ramp_time: float) -> tuple[list[float], list[float]]:

@@ -1,6 +1,7 @@
 """Profiles: derivatives, limits, directions and speeds."""
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -74,7 +75,9 @@ def test_s_curve_by_hand():
 
 
 def test_small_speed_changes_stay_below_the_acceleration():
-    r = through_speeds([0.1, 0.0], 0.5, acceleration=1000.0, ramp_time=0.01, period=1e-4)
+    limits = MotionLimits(speed=100.0, acceleration=1e3, full_acceleration=1e3, travel=math.inf, period=1e-4)
+    assert limits.ramp_time == pytest.approx(0.01)
+    r = through_speeds(limits, [0.1, 0.0], 0.5)
     assert r.velocity.max() == pytest.approx(0.1)
     assert r.acceleration.max() == pytest.approx(10.0)
 
