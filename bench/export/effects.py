@@ -113,12 +113,12 @@ class Copies:
     def __init__(self, batch: Batch, models: Sequence[StoredModel], joint: str) -> None:
         if len(models) != batch.nsim:
             raise InputError("models", f"found {len(models)}", f"allowed: one for each of the {batch.nsim} copies")
-        _check(batch.model, joint)
+        bristles = _bristles(batch.model, joint)
         ratios = {stored.mounting.gear_ratio for stored in models}
         if len(ratios) > 1:
             raise InputError("models", f"found gear ratios of {sorted(ratios)}", "allowed: copies of one joint")
         self._batch, self._time = batch, batch.bind("time")
-        joints = Joints.of(batch, joint, ratios.pop(), _bristles(batch.model, joint))
+        joints = Joints.of(batch, joint, ratios.pop(), bristles)
         self._effects = _AtJoint(joints, batch.model, joint, models, batch.bind)
 
     def step(self) -> None:
@@ -162,7 +162,6 @@ class _Running(_AtJoint):
     """The effects on one simulation, with what they remember of it."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, stored: StoredModel, joint: str) -> None:
-        _check(model, joint)
         self.model, self.data = model, data
         self.joint = SimulationJoint(model, data, joint, stored.mounting.gear_ratio, _bristles(model, joint))
         super().__init__(self.joint, model, joint, [stored], lambda name: getattr(data, name)[None])
@@ -217,14 +216,14 @@ class Actuators:
 
 
 def _bristles(model: mujoco.MjModel, joint: str) -> str:
-    """Actuator whose bristles are the joint's friction: as `bench export` names it, or the bench's own model."""
-    exported = f"{joint} {BRISTLES}"
-    return exported if mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, exported) >= 0 else BRISTLES
+    """Actuator whose bristles are the joint's friction, as `bench export` or the bench's own model names it.
 
-
-def _check(model: mujoco.MjModel, joint: str) -> None:
+    InputError where the model has no such joint, or a Runge-Kutta integrator.
+    """
     names = [model.joint(k).name for k in range(model.njnt)]
     if joint not in names:
         raise InputError(f"joint '{joint}'", "found none of that name", f"allowed: {', '.join(filter(None, names))}")
     if model.opt.integrator not in ONE_STAGE:
         raise InputError("option integrator", "found RK4", "allowed: Euler, implicit, implicitfast")
+    exported = f"{joint} {BRISTLES}"
+    return exported if mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, exported) >= 0 else BRISTLES

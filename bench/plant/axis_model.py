@@ -93,10 +93,7 @@ class AxisParameters:
 
         InputError where there is no `[simulation]`, no inertia to be had, or a rotor heavier than the whole.
         """
-        simulation = rig.simulation
-        if simulation is None:
-            raise InputError(f"{rig.source}: simulation", "missing", "a simulated axis needs a table [simulation]")
-        load, kind = rig.load or Load(), rig.axis_kind
+        simulation, load, kind = rig.simulated, rig.load or Load(), rig.axis_kind
         motor = rig.motor.inertia + (load.gear_inertia or 0.0)
         inertia = getattr(simulation, kind.inertia)
         if inertia is None:

@@ -54,9 +54,8 @@ class Plant:
     def from_rig(cls, rig: Rig, effects: Sequence[Present] = ()) -> Plant:
         """The simulated axis that a rig describes; InputError where `[drive]` or `[simulation]` lack or contradict."""
         parameters, cascade = AxisParameters.from_rig(rig), Cascade.from_rig(rig)
-        assert rig.simulation is not None
-        timestep = rig.simulation.timestep or cascade.control_period
-        emulated = rig.simulation.friction == "drive"
+        timestep = rig.simulated.timestep or cascade.control_period
+        emulated = rig.simulated.friction == "drive"
         return cls(parameters, cascade, timestep, emulated, tuple(effects), winding_of(rig))
 
     @classmethod

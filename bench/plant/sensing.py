@@ -99,9 +99,7 @@ class Sensors:
     @classmethod
     def from_rig(cls, rig: Rig) -> Sensors:
         """The sensors of a rig's `[simulation]`; InputError where it has none."""
-        told = rig.simulation
-        if told is None:
-            raise InputError(f"{rig.source}: simulation", "missing", "a simulated axis needs a table [simulation]")
+        told = rig.simulated
         noise = told.velocity_noise, told.current_noise
         return cls(told.sample_period, told.encoder_resolution, *noise, rig.motor.torque_per_ampere, rig.axis_kind)
 

@@ -235,13 +235,13 @@ def references_of(trace: Trace, period: float, stride: int) -> References:
     samples = ticks[::stride]
     if "velocity_reference" in trace:
         velocity = CubicSpline(samples, trace["velocity_reference"])
-        position = velocity.antiderivative()
-        offset = float(trace["position"][0]) if "position" in trace else 0.0
+        integral = velocity.antiderivative()
+        position = integral(ticks)
         if "position_reference" in trace:
-            recorded = trace["position_reference"]
-            slow = CubicSpline(samples, recorded - position(samples))(ticks)
-            return References(ticks, position(ticks) + slow, velocity(ticks), velocity(ticks, 1))
-        return References(ticks, position(ticks) + offset, velocity(ticks), velocity(ticks, 1))
+            position = position + CubicSpline(samples, trace["position_reference"] - integral(samples))(ticks)
+        elif "position" in trace:
+            position = position + float(trace["position"][0])
+        return References(ticks, position, velocity(ticks), velocity(ticks, 1))
     if "position_reference" in trace:
         position = CubicSpline(samples, trace["position_reference"])
         return References(ticks, position(ticks), position(ticks, 1), position(ticks, 2))

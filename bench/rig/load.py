@@ -78,10 +78,9 @@ class Load(RigTable):
         """What the disk adds to the inertia of an axis of a kind, on the load's side - kg*m**2 (kg); 0 without one."""
         return (self.disk_inertia if kind.turns else self.disk_mass) or 0.0
 
-    def gravity_torque(self, position: Array) -> Array | None:
-        """M_load = m*g*r*sin(q/i - q_0)/i - N*m - at the motor, at its angles q - rad - (n,); None without a mass."""
-        if self.eccentric_mass is None or self.eccentric_radius is None:
-            return None
+    def gravity_torque(self, position: Array) -> Array:
+        """M_load = m*g*r*sin(q/i - q_0)/i - N*m - of an eccentric mass at the motor, at its angles q - rad - (n,)."""
+        assert self.eccentric_mass is not None and self.eccentric_radius is not None
         moment = self.eccentric_mass * STANDARD_GRAVITY * self.eccentric_radius
         return moment * np.sin(position / self.gear_ratio - self.hanging_position) / self.gear_ratio
 

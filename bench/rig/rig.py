@@ -145,6 +145,13 @@ class Rig(RigTable):
         """What its quantities are called, and their units."""
         return axis_kind(self.kind, self.source)
 
+    @property
+    def simulated(self) -> Simulation:
+        """Truth of the simulated axis; InputError where the rig has none."""
+        if self.simulation is None:
+            raise InputError(f"{self.source}: simulation", "missing", "a simulated axis needs a table [simulation]")
+        return self.simulation
+
     def on_axis(self, name: str | None) -> Rig:
         """The same rig, reading the axis of this name from recordings that hold several; None: as the rig says."""
         trace = self.trace if name is None else self.trace.model_copy(update={"axis": name})
@@ -193,8 +200,7 @@ class Rig(RigTable):
             return effort, unit
         if unit != "N*m":
             raise InputError(f"{self.source}: load.eccentric_mass", f"found an effort in {unit}", "allowed: N*m")
-        gravity = self.load.gravity_torque(trace["position"])
-        return (effort, unit) if gravity is None else (effort - gravity, unit)
+        return effort - self.load.gravity_torque(trace["position"]), unit
 
     def needs_speed(self, trace: Trace) -> bool:
         """Whether the effort in a trace is made of a voltage less what the speed induces, kT*(U - Ke*w)/R."""
