@@ -19,7 +19,6 @@ from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.identify import identify
-from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
 from bench.fit.rows import WIDEST, Rows
 from bench.fit.shapes import shaped
@@ -27,6 +26,7 @@ from bench.gate.gate import passed
 from bench.plant.measured_motion import measured_velocity
 from bench.rig.rig import Rig
 from bench.rig.values import tolerance_of
+from bench.statistics import Parameter
 from bench.trace.join import join
 from bench.trace.trace import Trace
 

@@ -60,7 +60,7 @@ def friction(
     report: ReportOption = None,
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
-    from bench.friction_map.map import friction_map
+    from bench.friction_map import friction_map
     from bench.report.friction import SCHEMA, friction_json
     from bench.report.friction import friction as document_of
 

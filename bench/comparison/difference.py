@@ -22,12 +22,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 from scipy import special
 
 from bench.arrays import Array
+from bench.statistics import Parameter
 
 #: Number of recordings in a baseline from which on the spread is theirs alone, by Student's t. With fewer it is the
 #: larger of theirs and the stated one: at 2 degrees of freedom and 30 comparisons at 1 % an interval is 55 standard
@@ -38,35 +38,6 @@ NOT_EQUIVALENT = 0.05
 SAME, CHANGED, UNDECIDED = "same", "changed", "undecided"
 #: From worst to best.
 RESULTS = (CHANGED, UNDECIDED, SAME)
-
-
-class Estimated(Protocol):
-    """What is asked of an identified quantity (`bench.fit.parameter.Parameter`)."""
-
-    @property
-    def value(self) -> float:
-        """In `unit`."""
-        ...
-
-    @property
-    def unit(self) -> str:
-        """SI."""
-        ...
-
-    @property
-    def std_error(self) -> float:
-        """Standard error - unit; nan where none is known."""
-        ...
-
-    @property
-    def half_width(self) -> float:
-        """Half width of the interval of 95 % - unit."""
-        ...
-
-    @property
-    def degrees(self) -> float:
-        """Degrees of freedom of the Student's t that gives this half width; inf for a normal distribution."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -90,7 +61,7 @@ class Measured:
     spread: float | None = None
 
     @classmethod
-    def of(cls, found: Estimated, alone: Sequence[Estimated] = ()) -> Measured:
+    def of(cls, found: Parameter, alone: Sequence[Parameter] = ()) -> Measured:
         """From a quantity with its interval, and from its estimates by each of several recordings alone.
 
         Of several recordings the error is the root mean square of theirs.
@@ -142,7 +113,7 @@ class Difference:
         return cls(now.value - baseline.value, math.sqrt(variance), degrees)
 
     @classmethod
-    def relative(cls, baseline: Estimated, now: Estimated) -> Difference:
+    def relative(cls, baseline: Parameter, now: Parameter) -> Difference:
         """now/baseline - 1 with the error that both pass on to it; what recordings differ by is left to the range.
 
         Args:

@@ -17,10 +17,10 @@ from bench.effects.effect import Detected, Effect
 from bench.effects.present import Present
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit
-from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
 from bench.fit.shapes import unbiased
 from bench.fit.systematic import hint
+from bench.statistics import Parameter
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.effects.effect import Effect
-from bench.fit.covariance import NOISE_ALONE
 from bench.fit.fit import Fit, explained
 from bench.fit.shapes import free_shapes
+from bench.fit.solution import NOISE_ALONE
 
 
 def freedom(fitted: Fit) -> int:

@@ -19,10 +19,10 @@ from bench.fit.estimate import Alone, load_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.layout import lay_out
-from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.solution import equations_of
+from bench.statistics import Parameter
 
 #: Factors by which J, K_w and K_0 of one axis may differ between recordings without a warning.
 REPORTED = (1.01, 1.3, 1.1)

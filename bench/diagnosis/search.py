@@ -14,8 +14,7 @@ from bench.diagnosis.policy import Policy, worth
 from bench.effects.effect import Effect, Replacing
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
-from bench.fit.hypothesis import Term
-from bench.fit.interplay import on_other_side, outer_loads
+from bench.fit.hypothesis import Term, on_other_side, outer_loads
 from bench.fit.shapes import shaped, together
 
 #: Said of a search that its limit ended.

@@ -20,7 +20,6 @@ from bench.effects.present import Present
 from bench.errors import InputError, UndeterminedError
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
-from bench.fit.parameter import Parameter
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.shapes import shaped
@@ -30,6 +29,7 @@ from bench.plant.plant import Plant
 from bench.plant.profiles import PROFILES, MotionLimits, full_torque, plan
 from bench.plant.simulate import simulate
 from bench.rig.rig import Rig
+from bench.statistics import Parameter
 from bench.trace.trace import Trace
 
 #: Profiles to choose from: not the one that demands more than the motor has.

@@ -8,9 +8,9 @@ from bench.axis_kind import ARMATURE, COULOMB, INERTIA, OFFSET, VISCOUS, AxisKin
 from bench.errors import UndeterminedError
 from bench.fit.estimate import Estimate
 from bench.fit.normal_equations import NormalEquations
-from bench.fit.parameter import Parameter
 from bench.fit.rows import ONE_WAY
 from bench.names import words
+from bench.statistics import Parameter
 
 #: Least number of rows for each column of the regression.
 ROWS_PER_COLUMN = 20

@@ -12,9 +12,9 @@ from bench.arrays import Array
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import Between
 from bench.errors import UndeterminedError
-from bench.fit.parameter import Parameter
 from bench.gate.check import Check
 from bench.rig.rig import Rig
+from bench.statistics import Parameter
 from bench.trace.motion import Motion
 
 

@@ -14,8 +14,7 @@ from bench.arrays import Array, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Columns, Contact, Coupling, Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
-from bench.fit.hypothesis import Hypothesis, Term
-from bench.fit.interplay import hang_together, in_line, with_friction, with_load
+from bench.fit.hypothesis import Hypothesis, Term, hang_together, in_line, with_friction, with_load
 from bench.fit.layout import DIGIT, Layout, delays, lay_out, rounding, seen_by
 from bench.fit.noise import Floor, noise_power
 from bench.fit.normal_equations import bounded, solved

@@ -1,11 +1,29 @@
-"""A hypothesis: which effects there are and of what shape, and what is in the recording beside them."""
+"""A hypothesis: which effects there are and of what shape, and what is in the recording beside them.
+
+Dry frictions of one axis multiply: what scales the level scales all that other effects add to it.
+
+    M = (K_0 + sum of added levels)*(1 + w_1)*(1 + w_2)*...
+
+Linear in the strengths only with the other strengths held, as share of K_0. So it is where friction follows the torque
+of a load, which is a matter of other strengths. An outer load - drag, a spring, an unbalance, an event - on the motor
+stands in the balance as it is; on the load of a soft coupling it shakes the coupling first, and its strength also
+drives the load's motion. A fit brings all of these in line.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from bench.effects.effect import Coupling, Effect, Lag, Repeatable
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array
+from bench.axis_kind import COULOMB
+from bench.effects.acting import CarriesFriction, FollowsLoad, FrictionLevel, LoadTorque, ScalesFriction
+from bench.effects.effect import Coupling, Effect, Lag, Load, OuterTorque, Repeatable
+from bench.effects.signals import Signals
+from bench.fit.rows import Rows
 
 
 @dataclass(frozen=True)
@@ -92,3 +110,138 @@ class Hypothesis:
     def coupling(self) -> int | None:
         """Index of the term that joins motor and load, None if they are one."""
         return next((index for index, term in enumerate(self.terms) if isinstance(term.effect, Coupling)), None)
+
+
+def in_line(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
+    """The hypothesis with what its terms see of each other's strengths as a fit found them.
+
+    Args:
+        hypothesis: that was fitted.
+        theta: its coefficients (p,).
+        owners: names of their columns (p,).
+    """
+    found = _with_loads(_with_levels(hypothesis, theta, owners), theta, owners)
+    return _with_pulls(found, theta, owners)
+
+
+def hang_together(hypothesis: Hypothesis) -> bool:
+    """Whether the columns of a term depend on the strengths of another."""
+    loaded = any(term.load is not None for term in hypothesis.terms)
+    return loaded or _follows_load(hypothesis) or _multiply(hypothesis)
+
+
+def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
+    """The recording with the level of dry friction that the term at an index scales or carries, as share of K_0.
+
+    sgn(omega) and what terms add to it, times what scales it: before the one at the index, or all where it carries it.
+    """
+    terms = hypothesis.terms
+    carries = index < len(terms) and isinstance(terms[index].effect, CarriesFriction)
+    others = [
+        (term, term.effect, k < index or carries)
+        for k, term in enumerate(terms)
+        if isinstance(term.effect, FrictionLevel) and term.level and k != index
+    ]
+    acting = [(term, effect) for term, effect, _ in others if not isinstance(effect, ScalesFriction)]
+    acting += [(term, effect) for term, effect, before in others if before and isinstance(effect, ScalesFriction)]
+    if not acting:
+        return seen
+
+    def change(signals: Signals) -> Signals:
+        for term, effect in acting:
+            more = effect.level(signals, term.shape, term.level)
+            signals = replace(signals, friction=signals.friction + more)
+        return signals
+
+    return seen.with_signals(change)
+
+
+def _with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
+    """The hypothesis with the levels that a fit found: strengths over K_0 where that is positive."""
+    coulomb = float(theta[owners == COULOMB][0])
+
+    def level(index: int, term: Term) -> tuple[float, ...]:
+        if coulomb <= 0.0 or not isinstance(term.effect, FrictionLevel):
+            return ()
+        return tuple((theta[owners == index] / coulomb).tolist())
+
+    return hypothesis.with_terms(replace(term, level=level(index, term)) for index, term in enumerate(hypothesis.terms))
+
+
+def _multiply(hypothesis: Hypothesis) -> bool:
+    """Whether an effect scales what another adds, or carries it."""
+    effects = [term.effect for term in hypothesis.terms]
+    levels = sum(isinstance(effect, FrictionLevel) for effect in effects)
+    scaled = levels > 1 and any(isinstance(effect, ScalesFriction) for effect in effects)
+    return scaled or (levels > 0 and any(isinstance(effect, CarriesFriction) for effect in effects))
+
+
+def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows:
+    """The recording with the torque that terms of some strengths make as a load; others are left out."""
+    known = [
+        (term.effect, term.shape, strengths)
+        for term, strengths in pulls
+        if strengths and isinstance(term.effect, LoadTorque)
+    ]
+    if not known:
+        return seen
+
+    def change(signals: Signals) -> Signals:
+        load = np.zeros(signals.time.size)
+        for effect, shape, strengths in known:
+            for strength, ((values, _),) in zip(strengths, effect.columns(signals, shape), strict=True):
+                load += strength * values
+        return replace(signals, load=load)
+
+    return seen.with_signals(change)
+
+
+def _with_pulls(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
+    """The hypothesis with the strengths that a fit found of its loads, if the friction of a term follows them."""
+    if not _follows_load(hypothesis):
+        return hypothesis
+
+    def pull(index: int, term: Term) -> tuple[float, ...]:
+        return tuple(theta[owners == index].tolist()) if isinstance(term.effect, LoadTorque) else ()
+
+    return hypothesis.with_terms(replace(term, pull=pull(k, term)) for k, term in enumerate(hypothesis.terms))
+
+
+def _follows_load(hypothesis: Hypothesis) -> bool:
+    """Whether the friction of a term follows the torque of the load."""
+    return any(isinstance(term.effect, FollowsLoad) for term in hypothesis.terms)
+
+
+def outer_loads(hypothesis: Hypothesis) -> list[int]:
+    """Indices of the terms that may act on the load of a coupling; none without one."""
+    if hypothesis.coupling is None:
+        return []
+    return [index for index, term in enumerate(hypothesis.terms) if isinstance(term.effect, OuterTorque)]
+
+
+def on_other_side(hypothesis: Hypothesis) -> Hypothesis:
+    """The hypothesis with its outer loads on the load instead of on the motor, or the other way round."""
+    outer = outer_loads(hypothesis)
+    onto = None if any(hypothesis.terms[index].load is not None for index in outer) else ()
+    return hypothesis.with_terms(
+        replace(term, load=onto) if index in outer else term for index, term in enumerate(hypothesis.terms)
+    )
+
+
+def loads_of(hypothesis: Hypothesis) -> tuple[Load, ...]:
+    """What acts on the load, as far as its strengths are known."""
+    outer = [(term.effect, term.shape, term.load) for term in hypothesis.terms if term.load]
+    return tuple((effect, shape, load) for effect, shape, load in outer if isinstance(effect, OuterTorque))
+
+
+def _with_loads(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
+    """The hypothesis with the strengths over load inertia that a fit found of what acts on the load."""
+    index = hypothesis.coupling
+    inertia = 0.0 if index is None else float(theta[owners == index][0])
+
+    def moved(k: int, term: Term) -> Term:
+        if term.load is None:
+            return term
+        return replace(term, load=tuple((theta[owners == k] / inertia).tolist()) if inertia > 0.0 else ())
+
+    return hypothesis.with_terms(moved(k, term) for k, term in enumerate(hypothesis.terms))

@@ -26,8 +26,7 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.effects.acting import FollowsLoad
 from bench.effects.effect import Columns, Coupling, Distortion, EffortLag, MotionLag
 from bench.effects.signals import Signals
-from bench.fit.hypothesis import Hypothesis
-from bench.fit.interplay import loads_of, with_friction, with_load
+from bench.fit.hypothesis import Hypothesis, loads_of, with_friction, with_load
 from bench.fit.normal_equations import Name
 from bench.fit.rows import Rows, known_of
 from bench.trace.filter import Column

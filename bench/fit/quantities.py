@@ -16,12 +16,12 @@ from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Contact, Effect, FiltersMotion
 from bench.effects.shape import is_pitch
 from bench.effects.signals import Base, Signals
-from bench.fit.covariance import estimated, misfit
 from bench.fit.fit import Fit, least_squares
 from bench.fit.layout import lay_out
 from bench.fit.normal_equations import block_edges, solved
-from bench.fit.parameter import Parameter
 from bench.fit.rows import Rows
+from bench.fit.solution import estimated, misfit
+from bench.statistics import Parameter
 
 #: Step of a numerical derivative, relative.
 STEP = 1e-4

@@ -23,11 +23,11 @@ from bench.errors import BenchError, InputError, UndeterminedError
 from bench.files import read_text, sha256, write_text
 from bench.fit.estimate import Estimate, RefusedEstimateError
 from bench.fit.identify import identify
-from bench.fit.parameter import Parameter
 from bench.fleet.manifest import Manifest
 from bench.gate.check import Check
 from bench.gate.gate import UnanswerableError
 from bench.rig.rig import Rig, load_rig
+from bench.statistics import Parameter
 from bench.structured import json_text, parse_json
 from bench.trace.choose import axes_of
 from bench.trace.read import read_recording

@@ -1,6 +1,6 @@
 """What a fleet's table says: which axes changed and since when, what was named, and who needs a person and why.
 
-An axis changed where what its recordings tell of inertia or friction steps (`bench.comparison.change_point`).
+An axis changed where what its recordings tell of inertia or friction steps (`bench.comparison.spread`).
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
-from bench.comparison.change_point import ChangePoint, change_point
 from bench.comparison.difference import holm
+from bench.comparison.spread import ChangePoint, change_point
 from bench.fleet.evaluate import Plain, PlannedRecording
 from bench.fleet.manifest import Manifest
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from bench.gate.balance import Balanced
-from bench.gate.check import Check, absent
-from bench.gate.seen import Seen
+from bench.gate.check import Balanced, Check, Seen, absent
 
 FOLLOWS, CONSTANTS = "effort_follows_motion", "motor_constants_agree"
 #: Shares of the effort, explained by motion and position, below which a recording fails, and warns. The least of any

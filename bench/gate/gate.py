@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from bench.axis_kind import INERTIA
 from bench.errors import BenchError, InputError, UndeterminedError
-from bench.gate import effort, losses, signals, timing, velocity, wraps
-from bench.gate.check import STATUSES, Check
-from bench.gate.seen import Look, Repaired, Seen
+from bench.gate import effort, repairs, signals, timing, velocity
+from bench.gate.check import STATUSES, Check, Look, Repaired, Seen
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace, require_plausible
 
@@ -17,9 +16,9 @@ from bench.trace.trace import Trace, require_plausible
 CHECKS: tuple[Look, ...] = (
     signals.moves,
     timing.regular,
-    wraps.runs_on,
+    repairs.runs_on,
     velocity.is_derivative,
-    losses.none_lost,
+    repairs.none_lost,
     timing.rate,
     signals.clips,
     signals.resolution,
@@ -27,7 +26,7 @@ CHECKS: tuple[Look, ...] = (
     effort.constants,
 )
 #: Checks that do not apply at one steady speed: signals may stay the same, and effort follows no motion.
-UNSTEADY = (signals.moves, losses.none_lost, timing.rate, signals.resolution, effort.follows_motion)
+UNSTEADY = (signals.moves, repairs.none_lost, timing.rate, signals.resolution, effort.follows_motion)
 STEADY = tuple(look for look in CHECKS if look not in UNSTEADY)
 #: Checks of a later part of a recording: what can go wrong there, without what holds for all of it.
 WHOLE = (timing.rate, signals.resolution, effort.follows_motion, effort.constants)

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import rms
-from bench.gate.check import Check, absent
-from bench.gate.seen import EFFORTS, Seen, resolution_of
+from bench.gate.check import EFFORTS, Check, Seen, absent, resolution_of
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 

@@ -8,8 +8,7 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
-from bench.gate.check import Check, absent
-from bench.gate.seen import Seen
+from bench.gate.check import Check, Seen, absent
 from bench.trace.time_base import HOLE, TimeBase
 from bench.trace.trace import Trace
 

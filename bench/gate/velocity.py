@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.gate.check import Check, absent
-from bench.gate.seen import Seen, resolution_of
+from bench.gate.check import Check, Seen, absent, resolution_of
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 

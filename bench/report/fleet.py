@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from bench.arrays import NORMAL95, Array
-from bench.comparison.change_point import expected
+from bench.comparison.spread import expected
 from bench.fleet.fleet import TABLE, Fleet
 from bench.fleet.summary import ALARM, STATUSES, Changed, Summary
 from bench.names import short, words

@@ -12,7 +12,7 @@ import numpy as np
 
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS
 from bench.effects.catalogue import catalogue
-from bench.friction_map.map import CHANCE, FrictionCurve, FrictionMap
+from bench.friction_map import CHANCE, FrictionCurve, FrictionMap
 from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.report.document import Chart, Document, Panel, Picture, section, series

@@ -17,8 +17,8 @@ import numpy as np
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS, AxisKind
 from bench.comparison.spread import Between
-from bench.fit.covariance import NOISE_ALONE
 from bench.fit.estimate import Alone, Estimate, modelled_effort
+from bench.fit.solution import NOISE_ALONE
 from bench.gate.gate import gate, warnings_of
 from bench.names import readable, words
 from bench.report.document import Chart, Document, Downloads, File, Panel, Picture, TimeGraph, section, series

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from bench.fit.parameter import Parameter
 from bench.gate.check import Check
+from bench.statistics import Parameter
 from bench.structured import json_text
 
 

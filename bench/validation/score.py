@@ -12,7 +12,7 @@ from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.name import NamedEffect
 from bench.effects.effect import Effect
-from bench.fit.parameter import Parameter
+from bench.statistics import Parameter
 from bench.validation.plan import Case
 
 #: Terms of the equation of motion that are judged.

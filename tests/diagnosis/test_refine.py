@@ -13,7 +13,7 @@ from bench.diagnosis.search import Searched, Step
 from bench.diagnosis.tracking import HeldOut
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
-from bench.fit.parameter import Parameter
+from bench.statistics import Parameter
 from tests.diagnosis.constructed import COULOMB, INERTIA, RIG, VISCOUS, moved, recorded
 from tests.diagnosis.hand_made import term
 

@@ -5,7 +5,7 @@ import pytest
 from scipy import special
 from scipy.signal import lfilter
 
-from bench.fit.covariance import estimated, left_out, long_run_covariance, misfit
+from bench.fit.solution import estimated, left_out, long_run_covariance, misfit
 
 #: 97.5 % quantile of Student's t by degrees of freedom, from a printed table.
 STUDENT = {1: 12.7062, 3: 3.18245, 7: 2.36462, 10: 2.22814, 26: 2.05553}

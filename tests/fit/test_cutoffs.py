@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bench.arrays import rms
-from bench.fit.cutoffs import BELOW, Tried, among, choose
 from bench.fit.estimate import RefusedEstimateError
+from bench.fit.gathered import BELOW, Tried, among, choose
 from bench.fit.identify import identify
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace

@@ -6,7 +6,7 @@ import pytest
 from bench.axis_kind import LINEAR, ROTARY
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import OfSpeed, Signals
-from bench.friction_map.map import friction_map
+from bench.friction_map import friction_map
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

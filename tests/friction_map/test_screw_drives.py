@@ -4,7 +4,7 @@ import pytest
 
 from bench.assets import asset
 from bench.errors import UndeterminedError
-from bench.friction_map.map import friction_map
+from bench.friction_map import friction_map
 from bench.rig.rig import load_rig
 from bench.trace.read import read
 from tests.shared import SHARED, needs_shared

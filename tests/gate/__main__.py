@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import typer
 
-from bench.gate import effort, losses, timing, velocity
-from bench.gate.seen import Seen
+from bench.gate import effort, repairs, timing, velocity
+from bench.gate.check import Seen
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from tests.gate.clean import independent, public, real, shared_cases
@@ -25,9 +25,9 @@ def measures(trace: Trace, rig: Rig) -> Iterator[tuple[str, float]]:
         assert both is not None
         yield f"|ratio - 1| of speed (told {velocity.TOLD}, refused {velocity.REFUSED})", abs(both.ratio - 1.0)
         yield f"remainder of speed (refused {velocity.REMAINDER})", both.remainder
-    damage = losses.damage_of(trace)
+    damage = repairs.damage_of(trace)
     share = (damage.lost + damage.stale) / len(trace)
-    yield f"share of lost samples (refused {losses.MOST}, without speed {losses.MOST_BLIND})", share
+    yield f"share of lost samples (refused {repairs.MOST}, without speed {repairs.MOST_BLIND})", share
     fitted = seen.balance()
     if fitted is not None:
         yield (

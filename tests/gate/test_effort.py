@@ -7,8 +7,8 @@ import pytest
 
 from bench.errors import InputError
 from bench.gate import effort
+from bench.gate.check import Seen
 from bench.gate.gate import passed
-from bench.gate.seen import Seen
 from tests.gate.damage import changed
 
 

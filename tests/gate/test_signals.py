@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bench.gate import signals
+from bench.gate.check import Seen
 from bench.gate.gate import CHECKS, UnanswerableError, passed
-from bench.gate.seen import Seen
 from bench.trace.trace import Trace
 from tests.gate.damage import changed
 

@@ -5,8 +5,8 @@ import pytest
 
 from bench.errors import InputError
 from bench.gate import timing
+from bench.gate.check import Seen
 from bench.gate.gate import UnanswerableError, passed
-from bench.gate.seen import Seen
 from bench.trace.trace import Trace
 from tests.gate.damage import changed, keeping, with_samples
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.gate import velocity
-from bench.gate.seen import Seen
+from bench.gate.check import Seen
 from bench.trace.trace import Trace
 from tests.gate.damage import changed
 

@@ -5,7 +5,7 @@ import pytest
 
 from bench.errors import InputError
 from bench.fit.identify import identify
-from bench.gate import wraps
+from bench.gate import repairs
 from bench.gate.gate import gate, passed
 from bench.trace.trace import Trace
 from tests.gate.damage import changed, keeping
@@ -14,7 +14,7 @@ from tests.gate.damage import changed, keeping
 @pytest.mark.parametrize("period", [2.0 * np.pi, 1.0, 25.0, 2.0 * np.pi / 7.0])
 def test_a_wrapped_position_runs_on_again(sound, rig, period):
     wrapped = changed(sound, position=np.mod(sound["position"] + 0.1, period) - 0.5 * period)
-    gated = gate(wrapped, rig, [wraps.runs_on])
+    gated = gate(wrapped, rig, [repairs.runs_on])
     mended, (found,) = gated.trace, gated.checks
     assert found.status == "pass"
     assert "undone" in found.found
@@ -43,7 +43,7 @@ def test_a_position_elsewhere_after_a_hole_is_no_wrap(sound, rig):
     kept = np.r_[0:1000, 4000:4200]
     apart = Trace(sound.time[kept], {n: v[kept] for n, v in sound.signals.items()}, sound.units, sound.origin)
     shifted = changed(apart, position=apart["position"] + 1e3 * (np.arange(kept.size) >= 1000))
-    gated = gate(shifted, rig, [wraps.runs_on])
+    gated = gate(shifted, rig, [repairs.runs_on])
     mended, (found,) = gated.trace, gated.checks
     assert found.status == "pass"
     assert mended.wraps is None

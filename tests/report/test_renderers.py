@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from bench.errors import UndeterminedError
-from bench.fit.parameter import Parameter
 from bench.gate.check import Check
 from bench.report import figures
 from bench.report.document import (
@@ -31,6 +30,7 @@ from bench.report.html import Ruler, drawn
 from bench.report.publish import markdown
 from bench.report.serial import known, picked, serialised
 from bench.report.terminal import rendered, show, writable
+from bench.statistics import Parameter
 
 NUMBERS = table(
     "numbers", ("of", "value>", "why~"), [("inertia", "(1.3100 ± 0.0012)·10⁻³", "because"), ("a|b", "−2", "")]

@@ -1,4 +1,6 @@
-"""Samples that a recorder lost, or wrote twice, and numbered on as if nothing had happened.
+"""What the gate puts right: samples that were lost, and positions that wrap.
+
+Samples that a recorder lost, or wrote twice, and numbered on as if nothing had happened.
 
 Each loss is a jump in position that speed knows nothing of: with n samples lost between two, the axis has gone n*v*T
 further than the integral of its speed over one period T. A sample that repeats the one before is n = -1, and the next
@@ -17,10 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
-from bench.gate.check import Check, absent
-from bench.gate.seen import Repaired, Seen, resolution_of
+from bench.gate.check import Check, Repaired, Seen, absent, resolution_of
 from bench.trace.time_base import HOLE, counted, interpolate
 from bench.trace.trace import Trace
+from bench.trace.wraps import Wraps, jumps, period_of, undone
 
 NAME = "lost_samples"
 #: Samples of the running median, and of the shortest stretch that is looked at.
@@ -185,3 +187,37 @@ def repaired(trace: Trace, damage: Damage) -> Trace:
         steps_of_parts = tuple((float(time[k]), float(gap[k] * period)) for k in holes)
         base = replace(base, holes=steps_of_parts, interpolated=base.interpolated + filled.size)
     return replace(trace, time=np.concatenate([time, between])[order], signals=signals, time_base=base)
+
+
+WRAPS = "position_wraps"
+ALLOWED_WRAPS = "a position that runs on, or wraps by one period"
+
+
+def runs_on(seen: Seen) -> Check | Repaired:
+    """The recording with its wraps undone."""
+    trace = seen.trace
+    if "position" not in trace:
+        return absent(WRAPS, "no position is recorded", ALLOWED_WRAPS)
+    if trace.wraps is not None:
+        return _undone(trace, trace.wraps)
+    position = trace["position"]
+    places = jumps(position, trace.time)
+    if not places.size:
+        return Check(WRAPS, "pass", "position runs on", ALLOWED_WRAPS)
+    period = period_of(position, places)
+    if period is None:
+        longest = float(np.abs(np.diff(position)[places]).max())
+        found = (
+            f"position jumps {places.size} times, by up to {longest:.4g} {trace.units['position']}, not by one period"
+        )
+        advice = "record so that it runs on, cut the recording at the jumps, or leave the position out"
+        return Check(WRAPS, "fail", found, ALLOWED_WRAPS, advice)
+    wraps = Wraps(period, int(places.size))
+    wrapping = [name for name in ("position", "position_reference") if name in trace]
+    repaired = trace.with_signals({name: undone(trace[name], period) for name in wrapping}, {})
+    return Repaired(_undone(trace, wraps), replace(repaired, wraps=wraps))
+
+
+def _undone(trace: Trace, wraps: Wraps) -> Check:
+    found = f"position wraps at {wraps.period:.5g} {trace.units['position']}; {wraps.count} wraps undone"
+    return Check(WRAPS, "pass", found, ALLOWED_WRAPS)

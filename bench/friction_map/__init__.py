@@ -1,1 +1,0 @@
-"""Friction over steady speeds: several recordings, each at one speed."""
