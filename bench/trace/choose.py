@@ -171,10 +171,9 @@ def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes
     if channel.defect is not None:
         raise channel.defect
     scale = _scale(recording, signal, channel, unit, notes)
-    if named and unit is not None and not channel.moments:
-        own = _own_scale(signal, channel)
-        if own is not None and own != scale:
-            notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
+    own = unit_of(channel.unit)
+    if named and not channel.moments and None not in (unit, own) and not _means(str(own), signal, scale):
+        notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
     return SignalColumn(channel, scale, sign)
 
 
@@ -186,25 +185,22 @@ def _scale(recording: Recording, signal: str, channel: Channel, given: str | Non
     if unit is None and usual is not None:
         unit = usual
         notes.append(f"{signal} taken as {usual}, as the file tells no unit")
+    line = f'{signal} = "{channel.name} [unit]" in the rig\'s [trace.columns]'
     if unit is None:
-        raise InputError(
-            channel.place(),
-            channel.open_unit or "has no unit",
-            f'allowed: a unit in the file, or {signal} = "{channel.name} [unit]" in the rig\'s [trace.columns]',
-        )
+        reason = channel.open_unit or "has no unit"
+        raise InputError(channel.place(), reason, f"allowed: a unit in the file, or {line}")
     try:
         return scale_in(signal, unit, channel.place())
     except InputError as error:
-        line = f'; {signal} = "{channel.name} [unit]" in the rig\'s [trace.columns] says which'
-        raise InputError(error.where, error.found, error.allowed + line) from error
+        raise InputError(error.where, error.found, f"{error.allowed}; {line} says which") from error
 
 
-def _own_scale(signal: str, channel: Channel) -> UnitScale | None:
-    unit = unit_of(channel.unit)
+def _means(unit: str, signal: str, scale: UnitScale) -> bool:
+    """Whether a signal's unit is worth as much; what is no unit of it is not."""
     try:
-        return None if unit is None else scale_in(signal, unit, "")
+        return scale_in(signal, unit, "") == scale
     except InputError:
-        return UnitScale(unit or "", 0.0)  # what the file says is no unit of it: the rig's is another
+        return False
 
 
 def _named(recording: Recording, signal: str, name: str) -> Channel | None:
@@ -222,30 +218,20 @@ def _without_marks(name: str) -> str:
 
 
 def _known(recording: Recording, signal: str) -> Channel | None:
-    for matches in (
-        [channel for channel in recording.channels if channel.name == signal],
-        [channel for channel in recording.channels if signal_of(channel.name) == signal],
-    ):
-        if matches:
-            return _one(recording, signal, matches)
-    return None
+    alike = [channel for channel in recording.channels if signal_of(channel.name) == signal]
+    matches = [channel for channel in recording.channels if channel.name == signal] or alike
+    return _one(recording, signal, matches) if matches else None
 
 
 def _one(recording: Recording, signal: str, matches: list[Channel]) -> Channel:
     if len(matches) == 1:
         return matches[0]
-    axes = axes_of(matches)
+    where, axes = f"{recording.origin}: {signal}", axes_of(matches)
     if len(axes) > 1:
-        found = f"found {len(axes)} axes ({', '.join(axes)})"
-        raise InputError(
-            f"{recording.origin}: {signal}", found, f"pick one: --axis {axes[0]}, or axis in the rig's [trace]"
-        )
+        advice = f"pick one: --axis {axes[0]}, or axis in the rig's [trace]"
+        raise InputError(where, f"found {len(axes)} axes ({', '.join(axes)})", advice)
     names = ", ".join(f"'{channel.label}'" for channel in matches)
-    raise InputError(
-        f"{recording.origin}: {signal}",
-        f"found several columns for it ({names})",
-        "name one in the rig's [trace.columns]",
-    )
+    raise InputError(where, f"found several columns for it ({names})", "name one in the rig's [trace.columns]")
 
 
 def _index(recording: Recording, columns: Mapping[str, str]) -> Channel | None:
@@ -266,8 +252,5 @@ def missing(recording: Recording, what: str, then: str | None = None) -> InputEr
     labels = [short(channel.label) for channel in recording.channels[:12]]
     more = len(recording.channels) - len(labels)
     shown = ", ".join(labels) + (f" and {more} more" if more else "")
-    return InputError(
-        f"{recording.origin}: {what}",
-        "not in the file",
-        f"found: {shown or 'no column'}" + (f"; {then}" if then else ""),
-    )
+    found = f"found: {shown or 'no column'}" + (f"; {then}" if then else "")
+    return InputError(f"{recording.origin}: {what}", "not in the file", found)

@@ -1,10 +1,15 @@
-"""What a recording holds, before it is used: every column and, where they are clear, the signals."""
+"""What a recording holds, before it is used: every column and, where they are clear, the signals.
+
+Where a column is not read, the signal that it probably holds is judged by name, unit and values, with the reasons. Only
+a suggestion: the user decides and enters it in the rig's `[trace.columns]`.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 
@@ -15,13 +20,78 @@ from bench.errors import InputError
 from bench.structured import json_text
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis, reading_options
-from bench.trace.in_si import InSI, in_si
-from bench.trace.likely import Guess, likely_signals
+from bench.trace.in_si import in_si
 from bench.trace.read import read_recording
-from bench.trace.signals import scale_in
-from bench.trace.trace import Trace, on_time_base, unused
+from bench.trace.signals import SI_UNITS, is_index, scale_in, signal_of, unit_of, wanted_units
+from bench.trace.trace import on_time_base, unused
+from bench.units.conversion import is_unit, scale_of
+from bench.units.grammar import UnitError
 
 SCHEMA = "bench.inspect/1"
+
+#: Words in column names, in the languages of drives, and letters of the field.
+WORDS: dict[str, str] = {
+    "time": r"time|zeit|temps|tempo|tiempo|timestamp|stamp|ms_today|clock|uhrzeit|t",
+    "velocity": r"vel|velo|velocity|speed|spd|geschw\w*|drehzahl\w*|vitesse|velocidad|velocita|omega|rpm|erpm|"
+    r"dq|qd|qdot|n_?ist|nact|v_?ist|606c|60:?6c|vact|actvel\w*|r63|r0063|vl|w",
+    "position": r"pos|position\w*|angle|winkel|theta|enc|encoder|lage\w*|phi|weg|6064|actpos\w*|pl|q|x",
+    "current": r"cur|curr|current|iq|i_q|isq|strom\w*|courant|corriente|amps?|r78|r0078|il|q_axis_current|i",
+    "torque": r"torque|trq|tq|moment|drehmoment\w*|effort\w*|tau|couple|coppia|m_?ist|6077|r80|r0080|force|kraft",
+    "voltage": r"volt\w*|spannung|uq|vq|vbus|udc|tension|u",
+    "temperature": r"temp\w*|motor_temp",
+    "acceleration": r"acc|accel\w*|beschl\w*",
+}
+_NAMED = {signal: re.compile(rf"(?:{words})\d*", re.I) for signal, words in WORDS.items()}
+_REFERENCE = re.compile(
+    r"set|soll\w*|ref|reference|cmd|command\w*|demand|target|goal|input|setpoint|sp|des|desired|consigne|"
+    r"r62|r0062|607a|60ff",
+    re.I,
+)
+_FOREIGN = re.compile(
+    r"d_axis\w*|id|in|battery|supply|mos|frame|seq|state|status|flags?|mode|error|fault|checksum", re.I
+)
+_PARTS = re.compile(r"[\s._/:()\[\],;|-]+|(?<=[a-z])(?=[A-Z])")
+_ROUND = re.compile(r"(.*?)\s*[({]([^(){}]*)[)}]\s*|(.*?)[,/]\s+(\S+)")
+#: Correlation from which a column is another's derivative, and samples that are looked at.
+DERIVATIVE, ENOUGH = 0.9, 200_000
+#: Characters of a name in which a unit is sought.
+LONGEST_NAME = 200
+#: Units of time without one, and the share by which a position and its velocity may miss each other in it.
+TIMES, AGREEMENT = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}, 0.1
+
+_DYNAMIXEL = "as Dynamixel's X series has it (control table in Robotis' e-manual); check your model's"
+_ODRIVE = "as ODrive has it (docs.odriverobotics.com, API reference)"
+_ROS = "as ROS has it (REP 103)"
+_VESC = "as VESC Tool logs it"
+_SINAMICS = "as SINAMICS has it (list manual)"
+_CIA402 = "object of CiA 402"
+
+#: Columns of drive vendors: the signal, its unit by the manual - None if it depends on settings -, and the source with
+#: what to check.
+COLUMNS: dict[str, tuple[str, str | None, str]] = {
+    "present_position": ("position", "turn/4096", _DYNAMIXEL),
+    "present_velocity": ("velocity", "0.229 rpm", _DYNAMIXEL),
+    "present_current": ("current", "2.69 mA", _DYNAMIXEL + ": 2.69 mA of XM and XH, 1 mA of XL330 and XC330"),
+    "pos_estimate": ("position", "turn", _ODRIVE),
+    "vel_estimate": ("velocity", "turn/s", _ODRIVE),
+    "iq_measured": ("current", "A", _ODRIVE),
+    "torque_estimate": ("torque", "N*m", _ODRIVE),
+    "input_pos": ("position_reference", "turn", _ODRIVE),
+    "input_vel": ("velocity_reference", "turn/s", _ODRIVE),
+    "%time": ("time", "ns", "as rostopic echo -p writes it"),
+    "position0": ("position", "rad", _ROS),
+    "velocity0": ("velocity", "rad/s", _ROS),
+    "effort0": ("torque", "N*m", _ROS),
+    "ms_today": ("time", "ms", _VESC),
+    "q_axis_current": ("current", "A", _VESC),
+    "erpm": ("velocity", None, "electrical revolutions: write rpm/P with the motor's P pairs of poles"),
+    "r63": ("velocity", "rpm", _SINAMICS),
+    "r80": ("torque", "N*m", _SINAMICS),
+    "r78": ("current", "Arms", _SINAMICS),
+    "0x6064": ("position", None, f"{_CIA402}, position actual value; its unit is a setting of the drive"),
+    "0x606c": ("velocity", None, f"{_CIA402}, velocity actual value; its unit is a setting of the drive"),
+    "0x6077": ("torque", "permille", f"{_CIA402}, torque actual value in permille of rated_torque"),
+}
 
 
 @dataclass(frozen=True)
@@ -140,6 +210,7 @@ def inspect(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None
 
 def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
     """See `inspect`."""
+    origin, kind, axes, metadata = recording.origin, recording.format, axes_of(recording.channels), recording.metadata
     try:
         chosen, notes = choose(recording, how)
         found = in_si(chosen, recording, how)
@@ -147,49 +218,35 @@ def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
     except InputError as error:
         if how.columns:
             raise
-        summaries = _columns(recording, {}, how)
-        return Inspection(
-            recording.origin,
-            recording.format,
-            summaries,
-            axes_of(recording.channels),
-            str(error),
-            metadata=dict(recording.metadata),
-            notes=recording.notes,
-        )
-    return _of_trace(recording, chosen, found, trace, how)
-
-
-def _of_trace(
-    recording: Recording, chosen: Mapping[str, SignalColumn], found: InSI, trace: Trace, how: ReadingOptions
-) -> Inspection:
-    base = trace.time_base
-    assert base is not None  # a trace that was read has one
-    signals = tuple(
-        _summary(name, trace.units[name], chosen[name].channel.label, values, found.signals[name].values)
-        for name, values in trace.signals.items()
-    )
+        columns = _columns(recording, {}, how)
+        return Inspection(origin, kind, columns, axes, str(error), metadata=dict(metadata), notes=recording.notes)
+    assert trace.time_base is not None  # a trace that was read has one
+    base = asdict(trace.time_base)
     return Inspection(
-        origin=trace.origin,
-        format=recording.format,
+        origin=origin,
+        format=kind,
         columns=_columns(recording, chosen, how),
-        axes=axes_of(recording.channels),
+        axes=axes,
         asks=None,
         samples=len(trace),
         segments=len(trace.segments),
         start=float(trace.time[0]),
         duration=float(trace.time[-1] - trace.time[0]),
-        rate=1.0 / base.sample_period,
-        jitter=base.jitter,
-        holes=base.holes,
-        duplicates=base.duplicates,
-        interpolated=base.interpolated,
-        resampled=base.resampled,
-        signals=signals,
+        rate=1.0 / base.pop("sample_period"),
+        **base,
+        signals=tuple(
+            _summary(name, trace.units[name], chosen[name].channel.label, values, found.signals[name].values)
+            for name, values in trace.signals.items()
+        ),
         dropped=tuple(unused(chosen, recording)),
-        metadata=dict(recording.metadata),
+        metadata=dict(metadata),
         notes=trace.notes,
     )
+
+
+def to_json(inspection: Inspection, more: Mapping[str, object] = MappingProxyType({})) -> str:
+    """The inspection as JSON, its fields under their names, and what others have to say of the recording."""
+    return json_text({"schema": SCHEMA, **asdict(inspection), "suggestions": inspection.suggestions, **more})
 
 
 def _summary(name: str, unit: str, column: str, values: Array, recorded: Array) -> SignalSummary:
@@ -211,18 +268,17 @@ def _columns(
     """Every column of the axis in numbers, with what it is read as or likely to be."""
     channels = of_axis(recording, how.axis)
     read = {id(choice.channel): signal for signal, choice in chosen.items()}
-    guesses = likely_signals(channels)
-    return tuple(
-        _column(channel, read.get(id(channel)), guesses.get(place), set(chosen))
-        for place, channel in enumerate(channels)
-    )
+    guesses = {place: guess for place, guess in likely_signals(channels).items() if guess.signal not in chosen}
+    return tuple(_column(channel, read.get(id(channel)), guesses.get(place)) for place, channel in enumerate(channels))
 
 
-def _column(channel: Channel, read: str | None, guess: Guess | None, known: set[str]) -> ColumnSummary:
+def _column(channel: Channel, read: str | None, guess: Guess | None) -> ColumnSummary:
     numbers = channel.values[np.isfinite(channel.values)]
     signal, why, suggestion = read, (), None
-    if read is None and guess is not None and guess.signal not in known:
-        signal, why, suggestion = guess.signal, guess.why, suggested(channel, guess)
+    if read is None and guess is not None:
+        unit = "" if channel.moments else f" [{guess.unit or '?'}]"  # of which only the user knows it
+        signal, why = guess.signal, guess.why
+        suggestion = f"{signal} = {json.dumps(channel.name + unit, ensure_ascii=False)}"
     return ColumnSummary(
         name=channel.name,
         unit=channel.unit,
@@ -239,12 +295,6 @@ def _column(channel: Channel, read: str | None, guess: Guess | None, known: set[
     )
 
 
-def suggested(channel: Channel, guess: Guess) -> str:
-    """Line for `[trace.columns]`; `?` stands where only the user knows the unit."""
-    unit = "" if channel.moments else f" [{guess.unit or '?'}]"
-    return f"{guess.signal} = {json.dumps(channel.name + unit, ensure_ascii=False)}"
-
-
 def _rate(channel: Channel) -> float | None:
     if channel.time is None or channel.time.values.size < 2:
         return None
@@ -253,6 +303,178 @@ def _rate(channel: Channel) -> float | None:
     return 1.0 / seconds if seconds > 0.0 else None
 
 
-def to_json(inspection: Inspection, more: Mapping[str, object] = MappingProxyType({})) -> str:
-    """The inspection as JSON, its fields under their names, and what others have to say of the recording."""
-    return json_text({"schema": SCHEMA, **asdict(inspection), "suggestions": inspection.suggestions, **more})
+@dataclass(frozen=True)
+class Guess:
+    """A signal that a column may hold.
+
+    Attributes:
+        signal: as `[trace.columns]` names it.
+        unit: of the column; None if only the user knows.
+        why: the reasons.
+        weight: of the reasons.
+    """
+
+    signal: str
+    unit: str | None
+    why: tuple[str, ...]
+    weight: float
+
+
+@np.errstate(over="ignore", invalid="ignore")  # implausible magnitudes give no reasons
+def likely_signals(channels: Sequence[Channel]) -> dict[int, Guess]:
+    """What each channel is likely to be, by its place in the file; no two of an axis are the same signal."""
+    numeric = {
+        place: channel for place, channel in enumerate(channels) if channel.defect is None and channel.values.size > 1
+    }
+    times = [place for place, channel in numeric.items() if _rises(channel.values)]
+    derived = _derivatives({place: channel for place, channel in numeric.items() if place not in times})
+    found = [
+        (guess, place)
+        for place, channel in numeric.items()
+        for guess in _guesses(channel, derived.get(place), place in times)
+    ]
+    given: dict[int, Guess] = {}
+    taken: set[tuple[str, str | None]] = set()
+    for guess, place in sorted(found, key=lambda pair: -pair[0].weight):
+        key = (guess.signal, channels[place].axis)
+        if place not in given and key not in taken:
+            given[place] = guess
+            taken.add(key)
+    return _with_time_unit(given, channels)
+
+
+def _with_time_unit(given: dict[int, Guess], channels: Sequence[Channel]) -> dict[int, Guess]:
+    """A time without a unit takes the one in which position and velocity, both with theirs, agree."""
+    of = {guess.signal: (place, guess) for place, guess in given.items()}
+    if not {"time", "position", "velocity"} <= set(of):
+        return given
+    place, time = of["time"]
+    if time.unit is not None or channels[place].moments:
+        return given
+    angle, speed = (_in_si(channels[of[name][0]], of[name][1]) for name in ("position", "velocity"))
+    ticks = channels[place].values[:ENOUGH]
+    if angle is None or speed is None or not angle.size == speed.size == ticks.size:
+        return given
+    step = np.diff(angle)
+    travelled = 0.5 * (speed[1:] + speed[:-1]) * np.diff(ticks)
+    plain = np.abs(step) < 0.2 * np.ptp(angle)
+    power = float(travelled[plain] @ travelled[plain])
+    second = float(travelled[plain] @ step[plain]) / power if power > 0.0 else 0.0
+    for unit, factor in TIMES.items():
+        if abs(second / factor - 1.0) < AGREEMENT:
+            why = (*time.why, f"position and velocity agree in {unit}")
+            return {**given, place: replace(time, unit=unit, why=why)}
+    return given
+
+
+def _in_si(channel: Channel, guess: Guess) -> Array | None:
+    if guess.unit is None:
+        return None
+    try:
+        return channel.values[:ENOUGH] * scale_of(guess.unit, wanted_units(guess.signal)).factor
+    except UnitError:
+        return None
+
+
+def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> list[Guess]:
+    """Signals that a channel may be."""
+    unit = written_unit_of(channel)
+    parts = [part for part in _PARTS.split(channel.name) if part]
+    names = [channel.name.strip().rsplit(".", 1)[-1], *parts]
+    speaks = 1.0 if any(_FOREIGN.fullmatch(part) for part in parts) else 2.0
+    is_reference = any(_REFERENCE.fullmatch(part) for part in parts)
+    guesses = []
+    for signal in WORDS if rises else [signal for signal in WORDS if signal != "time"]:
+        fits = _fits(signal, unit)
+        if fits is False:
+            continue
+        why: list[tuple[float, str]] = [(4.0, "holds moments")] if signal == "time" and channel.moments else []
+        if signal_of(channel.name) == signal:
+            why.append((3.0, f"is called '{channel.name}'"))
+        elif any(_NAMED[signal].fullmatch(name) for name in names):
+            why.append((speaks, f"'{channel.name}' speaks of {signal}"))
+        if fits:
+            why.append((1.5, f"stands in {unit}"))
+        if derived is not None and derived[0] == signal:
+            why.append((1.5, derived[1]))
+        if signal == "time" and why:
+            why.append((1.0, "rises steadily"))
+        if sum(weight for weight, _ in why) < 1.5:
+            continue
+        if is_reference and f"{signal}_reference" in SI_UNITS:
+            signal = f"{signal}_reference"
+            why.append((-0.25, "is a set-point by its name"))
+        own = unit if fits else None
+        vendor = None if own is not None or channel.moments else vendor_column(channel.name)
+        if vendor is not None and vendor[0] == signal:
+            own = vendor[1]
+            why.append((0.5, vendor[2]))
+        guesses.append(Guess(signal, own, tuple(text for _, text in why), sum(weight for weight, _ in why)))
+    return guesses
+
+
+def written_unit_of(channel: Channel) -> str | None:
+    """Unit of a channel from its head or, in round brackets or behind a comma, its name."""
+    unit = unit_of(channel.unit)
+    if unit is not None or channel.moments:
+        return unit
+    match = _ROUND.fullmatch(channel.name) if len(channel.name) <= LONGEST_NAME else None
+    inside = (match[2] or match[4] or "").strip() if match else ""
+    return inside if inside and is_unit(inside) else None
+
+
+def _fits(signal: str, unit: str | None) -> bool | None:
+    """Whether a signal may stand in a unit; None where there is none, or only the user knows."""
+    if unit is None:
+        return None
+    try:
+        scale_of(unit, wanted_units(signal))
+    except UnitError as error:
+        return None if "may mean" in error.found or "counts" in error.found else False
+    return True
+
+
+def _rises(values: Array) -> bool:
+    steps = np.diff(values[:ENOUGH])
+    steps = steps[np.isfinite(steps)]
+    return steps.size > 0 and bool((steps >= 0).all()) and float(np.median(steps)) > 0.0
+
+
+def _derivatives(columns: Mapping[int, Channel]) -> dict[int, tuple[str, str]]:
+    """Place -> signal and reason, of pairs of which one is the other's derivative."""
+    found: dict[int, tuple[str, str]] = {}
+    long = {place: c for place, c in columns.items() if c.values.size >= 64 and not is_index(c.name)}
+    smooth = {place: _smoothed(np.nan_to_num(channel.values[:ENOUGH])) for place, channel in long.items()}
+    for place, channel in long.items():
+        rate = _rate_of(channel.values[:ENOUGH])
+        for other, second in long.items() if rate.size else ():
+            alike = other != place and second.values.size == channel.values.size
+            if alike and abs(_correlation(rate, smooth[other])) > DERIVATIVE:
+                found[place] = ("position", f"its derivative is '{second.name}'")
+                found[other] = ("velocity", f"is the derivative of '{channel.name}'")
+    return found
+
+
+def _rate_of(values: Array) -> Array:
+    """Smoothed derivative of a column a sample, leaps of a wrapped one left out; empty where it never changes."""
+    if not np.isfinite(values).all() or not np.ptp(values):
+        return np.empty(0)
+    rate = np.gradient(values)
+    rate[np.abs(rate) > 0.2 * np.ptp(values)] = 0.0
+    return _smoothed(rate)
+
+
+def _smoothed(values: Array) -> Array:
+    return np.convolve(values, np.ones(9) / 9.0, mode="same")
+
+
+def _correlation(one: Array, other: Array) -> float:
+    spread = float(np.std(one) * np.std(other))
+    return float(np.mean((one - one.mean()) * (other - other.mean()))) / spread if spread > 0.0 else 0.0
+
+
+def vendor_column(name: str) -> tuple[str, str | None, str] | None:
+    """The column of this name in COLUMNS; None if no known vendor has one."""
+    plain = name.strip().lower()
+    keys = (plain, plain.rsplit(".", 1)[-1], plain.split("[")[0].split(":")[0].replace("r00", "r"))
+    return next((COLUMNS[key] for key in keys if key in COLUMNS), None)

@@ -88,7 +88,7 @@ def regular(signals: Mapping[str, SampledSignal]) -> Regular:
     clock, values, duplicates = cleaned[lead]
     base = _find(clock, duplicates)
     placed = {name: _on_own_base(base, clock.time, array) for name, array in values.items()}
-    notes = list(_notes(base, clock))
+    notes = _notes(base, clock)
     time, valid = base.time, np.ones(base.time.size, dtype=bool)
     for key, (other, others, _) in cleaned.items():
         if key == lead:
@@ -96,14 +96,17 @@ def regular(signals: Mapping[str, SampledSignal]) -> Regular:
         for name, array in others.items():
             placed[name], known = _on_foreign_base(time, base, clock, other, array)
             valid &= known
-        notes.append(_foreign_note(list(others), leader, base, _find(other, 0)))
+        every = _find(other, 0).found.sample_period
+        sampled = f"{', '.join(others)} sampled every {every:g} s by a clock of its own"
+        notes.append(f"{sampled}; taken at the times of {leader}, every {base.found.sample_period:g} s")
     found = base.found
-    empty = _empty(signals)
-    if empty.size:
+    unknown = [signal.clock.time[signal.unknown] for signal in signals.values() if signal.unknown is not None]
+    if unknown:
         reach = (1.0 if found.resampled else 0.5) * found.sample_period
-        full = _distance(time, empty) >= reach
+        full = _distance(time, np.unique(np.concatenate(unknown))) >= reach
         time, placed, valid = time[full], {name: array[full] for name, array in placed.items()}, valid[full]
-        found = replace(found, holes=_holes(time, found.sample_period))
+        edges = np.flatnonzero(np.diff(time) > HOLE * found.sample_period)
+        found = replace(found, holes=tuple((float(time[k]), float(time[k + 1] - time[k])) for k in edges))
     if not valid.all():
         notes.append(f"{counted(int((~valid).sum()), 'sample')} left out where not every signal is known")
         time, placed = time[valid], {name: array[valid] for name, array in placed.items()}
@@ -140,22 +143,11 @@ def _without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Cloc
     return Clock(time[~again], clock.recorded[~again], clock.tick, clock.place), kept, int(again.sum())
 
 
-def _empty(signals: Mapping[str, SampledSignal]) -> Array:
-    """Times at which a signal has no value - s."""
-    times = [signal.clock.time[signal.unknown] for signal in signals.values() if signal.unknown is not None]
-    return np.unique(np.concatenate(times)) if times else np.empty(0)
-
-
 def _distance(time: Array, others: Array) -> Array:
     """From each time to the nearest of others, which increase - s."""
     bounded = np.concatenate([[-np.inf], others, [np.inf]])
     after = np.searchsorted(others, time) + 1
     return np.minimum(time - bounded[after - 1], bounded[after] - time)
-
-
-def _holes(time: Array, period: float) -> tuple[tuple[float, float], ...]:
-    step = np.diff(time)
-    return tuple((float(time[at]), float(step[at])) for at in np.flatnonzero(step > HOLE * period))
 
 
 def _on_own_base(base: _RegularTimes, time: Array, values: Array) -> Array:
@@ -202,9 +194,8 @@ def _on_foreign_base(
 def _notes(base: _RegularTimes, clock: Clock) -> list[str]:
     found, notes = base.found, []
     if found.resampled:
-        notes.append(
-            f"times jitter by up to {found.jitter:.0%} of a sample period; signals interpolated onto regular times"
-        )
+        jitter = f"times jitter by up to {found.jitter:.0%} of a sample period"
+        notes.append(f"{jitter}; signals interpolated onto regular times")
     elif base.time is not clock.time and clock.quantum > 2.0 * STEADY * found.sample_period:
         notes.append(f"times are rounded to {clock.quantum:g} s; replaced by the line through them")
     if found.interpolated:
@@ -222,12 +213,6 @@ def _notes(base: _RegularTimes, clock: Clock) -> list[str]:
 def counted(count: int, what: str) -> str:
     """`1 hole`, `2 holes`."""
     return f"{count} {what}{'s' * (count != 1)}"
-
-
-def _foreign_note(names: list[str], leader: str, base: _RegularTimes, other: _RegularTimes) -> str:
-    every, own = other.found.sample_period, base.found.sample_period
-    who = ", ".join(names)
-    return f"{who} sampled every {every:g} s by a clock of its own; taken at the times of {leader}, every {own:g} s"
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,23 +243,27 @@ def _find(clock: Clock, duplicates: int) -> _RegularTimes:
     contiguous = step[step <= LONGEST_STEP * period]
     edges = np.flatnonzero(step > LONGEST_STEP * period) + 1
     holes = tuple((float(time[edge - 1]), float(step[edge - 1])) for edge in edges)
-    segments = np.split(np.arange(time.size), edges) if edges.size else [np.arange(time.size)]
+    segments = np.split(time, edges)
     mean = float(contiguous.mean())
-    line = _line(time, segments, [np.arange(s.size, dtype=float) for s in segments], mean)
+    counts = [np.arange(times.size, dtype=float) for times in segments]
+    line, starts, spread = _line(segments, counts, mean)
     tolerance = max(clock.quantum * (1.0 + _SLOPE / np.sqrt(time.size)), 2.0 * STEADY * mean)
-    if line.spread > tolerance:
-        counts = [np.concatenate([[0.0], np.cumsum(np.maximum(np.rint(step[s[:-1]] / period), 1.0))]) for s in segments]
-        line = _line(time, segments, counts, period)
-    if line.spread > tolerance:
+    if spread > tolerance:
+        counts = [np.append(0.0, np.cumsum(np.maximum(np.rint(np.diff(times) / period), 1.0))) for times in segments]
+        line, starts, spread = _line(segments, counts, period)
+    if spread > tolerance:
         missing = int(np.maximum(np.rint(contiguous / period), 1.0).sum()) - contiguous.size
-        return _resampled(
-            time, segments, TimeBase(period, _jitter(contiguous, period), holes, duplicates, missing, True)
-        )
-    missing = int(sum(count[-1] + 1 - count.size for count in line.counts))
-    found = TimeBase(line.period, _jitter(contiguous, line.period), holes, duplicates, missing)
-    if line.spread <= EXACT * line.period and not missing:
+        found = TimeBase(period, _jitter(contiguous, period), holes, duplicates, missing, True)
+        placed = [t[0] + period * np.arange(int((t[-1] - t[0]) / period + EXACT) + 1) for t in segments]
+        return _RegularTimes(np.concatenate(placed), None, found)
+    missing = int(sum(count[-1] + 1 - count.size for count in counts))
+    found = TimeBase(line, _jitter(contiguous, line), holes, duplicates, missing)
+    if spread <= EXACT * line and not missing:
         return _RegularTimes(time, None, found)
-    return _snapped(line, found)
+    every = [np.arange(count[-1] + 1.0) for count in counts]
+    measured = np.concatenate([np.isin(all_of, count) for all_of, count in zip(every, counts, strict=True)])
+    placed = [start + line * all_of for start, all_of in zip(starts, every, strict=True)]
+    return _RegularTimes(np.concatenate(placed), None if measured.all() else measured, found)
 
 
 def _exact(time: Array) -> tuple[float, float] | None:
@@ -287,58 +276,22 @@ def _exact(time: Array) -> tuple[float, float] | None:
     return (period, spread) if spread <= EXACT else None
 
 
-@dataclass(frozen=True, eq=False)
-class _StraightLine:
-    """Fit t = start + k*T to the times of all segments: one period, one start a segment.
+def _line(segments: list[Array], counts: list[Array], guess: float) -> tuple[float, list[float], float]:
+    """Fit t = start + k*T to the times of all segments, k counts: T, start of each, largest spread in one - s each.
 
-    Attributes:
-        period: T - s.
-        starts: of the segments - s.
-        counts: k of each sample, a segment an array.
-        spread: largest peak-to-peak deviation within a segment - s.
+    Least squares; T is `guess` where no segment has two samples.
     """
-
-    period: float
-    starts: list[float]
-    counts: list[Array]
-    spread: float
-
-
-def _line(time: Array, segments: list[NDArray[np.intp]], counts: list[Array], guess: float) -> _StraightLine:
-    """Least squares of the times on their counts; `guess` where no segment has two samples."""
     along, across = 0.0, 0.0
-    for segment, count in zip(segments, counts, strict=True):
+    for times, count in zip(segments, counts, strict=True):
         centred = count - count.mean()
         # times relative to the guess keep the sums small: the slope to 1e-12 even far from t = 0
-        along += float(centred @ (time[segment] - time[segment[0]] - guess * count))
+        along += float(centred @ (times - times[0] - guess * count))
         across += float(centred @ centred)
     period = guess + along / across if across > 0.0 else guess
-    starts, spread = [], 0.0
-    for segment, count in zip(segments, counts, strict=True):
-        rest = time[segment] - period * count
-        starts.append(float(rest.mean()))
-        spread = max(spread, float(np.ptp(rest)))
-    return _StraightLine(period, starts, counts, spread)
+    rests = [times - period * count for times, count in zip(segments, counts, strict=True)]
+    return period, [float(rest.mean()) for rest in rests], max(float(np.ptp(rest)) for rest in rests)
 
 
 def _jitter(step: Array, period: float) -> float:
     """Largest deviation of a step from the nearest whole number of periods - share of the period."""
     return float(np.abs(step / period - np.maximum(np.rint(step / period), 1.0)).max())
-
-
-def _snapped(line: _StraightLine, found: TimeBase) -> _RegularTimes:
-    times, measured = [], []
-    for start, count in zip(line.starts, line.counts, strict=True):
-        every = np.arange(count[-1] + 1.0)
-        times.append(start + line.period * every)
-        measured.append(np.isin(every, count))
-    flags = np.concatenate(measured)
-    return _RegularTimes(np.concatenate(times), None if flags.all() else flags, found)
-
-
-def _resampled(time: Array, segments: list[NDArray[np.intp]], found: TimeBase) -> _RegularTimes:
-    times = []
-    for segment in segments:
-        first, last = time[segment[0]], time[segment[-1]]
-        times.append(first + found.sample_period * np.arange(int((last - first) / found.sample_period + EXACT) + 1))
-    return _RegularTimes(np.concatenate(times), None, found)

@@ -25,9 +25,9 @@ from bench.trace.wraps import Wraps
 if TYPE_CHECKING:
     from bench.trace.from_arrays import Arrays
 
-#: Magnitudes that no servo axis can have, far beyond any: a value within them may be wrong, one outside them certainly
-#: is, by a wrong unit or a damaged file, or its square overflows or vanishes.
-#: Largest magnitude of a signal - SI; of time it is 30,000 years, of position a spindle's turns in a year.
+#: Largest magnitude of a signal - SI -, far beyond any axis: one within it may be wrong, one outside certainly is, by a
+#: wrong unit or a damaged file, or its square overflows. Of time it is 30,000 years, of position a spindle's turns in a
+#: year.
 LARGEST = {
     "time": 1e12,
     "position": 1e12,
@@ -85,22 +85,16 @@ class Trace:
         if self.time.size < 2:
             raise InputError(self.origin, f"found {self.time.size} samples", "allowed: at least two")
         for name, values in {"time": self.time, **self.signals}.items():
+            where = f"{self.origin}: {name}"
             if values.shape != self.time.shape:
-                raise InputError(
-                    f"{self.origin}: {name}", f"found shape {values.shape}", f"allowed: {self.time.shape} as time has"
-                )
+                raise InputError(where, f"found shape {values.shape}", f"allowed: {self.time.shape} as time has")
             if not all_finite(values):
                 first = int(np.argmin(np.isfinite(values)))
-                raise InputError(
-                    f"{self.origin}: {name}", f"found {values[first]} at sample {first}", "allowed: finite numbers"
-                )
+                raise InputError(where, f"found {values[first]} at sample {first}", "allowed: finite numbers")
         if not (self.time[1:] > self.time[:-1]).all():
             first = int(np.argmax(np.diff(self.time) <= 0)) + 1
-            raise InputError(
-                f"{self.origin}: time",
-                f"does not increase at sample {first} ({self.time[first - 1]:g} s, then {self.time[first]:g} s)",
-                "allowed: increasing times",
-            )
+            found = f"does not increase at sample {first} ({self.time[first - 1]:g} s, then {self.time[first]:g} s)"
+            raise InputError(f"{self.origin}: time", found, "allowed: increasing times")
 
     def __reduce__(self) -> tuple[partial[Trace], tuple[()]]:
         """Pickled as it was given: other processes take traces, and a read-only view of a dict does not travel."""
@@ -184,9 +178,8 @@ class Trace:
     def between(self, start: float, stop: float) -> Trace:
         """The part with start <= time < stop - s."""
         first, last = np.searchsorted(self.time, [start, stop])
-        return replace(
-            self, time=self.time[first:last], signals={name: v[first:last] for name, v in self.signals.items()}
-        )
+        signals = {name: values[first:last] for name, values in self.signals.items()}
+        return replace(self, time=self.time[first:last], signals=signals)
 
 
 def assemble(recording: Recording, given: Mapping[str, str] | ReadingOptions | None = None) -> Trace:
@@ -210,17 +203,7 @@ def assemble(recording: Recording, given: Mapping[str, str] | ReadingOptions | N
 def on_time_base(
     found: InSI, recording: Recording, chosen: Mapping[str, SignalColumn], notes: tuple[str, ...]
 ) -> Trace:
-    """Trace of signals in SI units, with the sample times that they were recorded at.
-
-    Args:
-        found: signals.
-        recording: that they are of.
-        chosen: its columns that they were made of.
-        notes: what the user should know of these.
-
-    Raises:
-        InputError: times that run backwards or stand twice too often.
-    """
+    """Trace of the signals `found` in the `chosen` columns of a recording; raises as `regular`."""
     base = regular(found.signals)
     metadata = {**recording.metadata, "format": recording.format}
     dropped = unused(chosen, recording)

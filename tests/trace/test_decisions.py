@@ -6,7 +6,7 @@ import pytest
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.choose import GivenOptions
-from bench.trace.likely import likely_signals
+from bench.trace.inspect import likely_signals
 from bench.trace.trace import assemble, require_plausible
 
 
