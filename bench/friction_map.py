@@ -193,12 +193,7 @@ def plain_curve(velocity: Array, effort: Array) -> FrictionCurve:
 
 
 def bent_curve(name: str, velocity: Array, effort: Array) -> FrictionCurve:
-    """The curve with an effect through points, its shape the one that leaves least within what physics allows.
-
-    Args:
-        name: of an effect of speed alone, whose shapes are speeds.
-        velocity, effort: points - rad/s (m/s), N*m (N) - (n,).
-    """
+    """The curve with an effect of speed alone, its shape the one that leaves least of what physics allows."""
     shapes = len(catalogue()[name].shapes)
     if not shapes:
         return _fitted(name, (), velocity, effort)

@@ -116,9 +116,7 @@ class Difference:
     def relative(cls, baseline: Parameter, now: Parameter) -> Difference:
         """now/baseline - 1 with the error that both pass on to it; what recordings differ by is left to the range.
 
-        Args:
-            baseline: above zero.
-            now: the same quantity.
+        The baseline is above zero.
         """
         ratio = now.value / baseline.value
         error = float(np.hypot(baseline.std_error * ratio, now.std_error)) / baseline.value
@@ -175,11 +173,7 @@ class Comparison:
     result: str = UNDECIDED
 
     def tested(self, least_chance: float = 0.0) -> Comparison:
-        """With its chance: the largest of its differences, if all have one sign and it may alarm.
-
-        Args:
-            least_chance: lower bound, of another quantity that has to differ too.
-        """
+        """With its chance: the largest of its differences, if all have one sign and it may alarm; at least so much."""
         signs = {difference.value > 0.0 for difference in self.differences}
         if self.held_back or len(signs) != 1:
             return self

@@ -113,16 +113,11 @@ def between(found: Sequence[Parameter]) -> Between:
 
 
 def next_interval(mean: float, reach: float, count: int) -> tuple[float, float]:
-    """Prediction interval of the next value, mean -+ reach*sqrt(1 + 1/count) - the quantity's unit.
+    """Prediction interval of the next value after `count`, mean -+ reach*sqrt(1 + 1/count) - the quantity's unit.
 
     With reach = t*s, s the standard deviation of the values and t Student's at its degrees of freedom, this is exact
     for normal values of one variance, whatever share of it is their own error (G. J. Hahn, W. Q. Meeker, Statistical
     Intervals, 1991, section 4.7).
-
-    Args:
-        mean: of the values so far - the quantity's unit.
-        reach: half width of the interval around a mean that is known - the quantity's unit.
-        count: of the values so far.
     """
     wide = reach * math.sqrt(1.0 + 1.0 / count)
     return mean - wide, mean + wide
@@ -162,12 +157,7 @@ class ChangePoint:
 
 
 def change_point(values: Array, errors: Array) -> ChangePoint | None:
-    """The step that stands out most; None of fewer than three values.
-
-    Args:
-        values: in the order of time (n,).
-        errors: standard errors of each (n,).
-    """
+    """The step that stands out most of values in the order of time (n,) with errors (n,); None of fewer than three."""
     n = values.size
     if n < FEWEST:
         return None
@@ -195,12 +185,7 @@ def change_point(values: Array, errors: Array) -> ChangePoint | None:
 def expected(values: Array, errors: Array, place: int) -> tuple[tuple[float, float], tuple[float, float]]:
     """Intervals of 95 % of the next recording, as those before a step and those after it have it - the quantity's unit.
 
-    Their scatter is the variance pooled about both means, or that of the recordings' own errors.
-
-    Args:
-        values: in the order of time (n,), n >= 3.
-        errors: standard errors of each (n,).
-        place: of the first recording after the step, 1 to n - 1.
+    Their scatter is the variance pooled about both means, or that of the recordings' own errors (n,).
     """
     sides = np.split(values, [place])
     pooled = sum(float(((side - side.mean()) ** 2).sum()) for side in sides) / (values.size - 2)

@@ -34,12 +34,7 @@ EXPLAINED = "a motion in which inertia and friction take most of the effort, and
 
 
 def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
-    """Raise UndeterminedError for the first quantity that the rows do not determine.
-
-    Args:
-        equations: of every column, the constant included.
-        kind: of the axis.
-    """
+    """Raise UndeterminedError for the first quantity that rows of every column and a constant do not determine."""
     for refusal in _refusals(equations, kind).values():
         raise refusal
 
@@ -106,13 +101,7 @@ def _not_excited(equations: NormalEquations, kind: AxisKind) -> dict[str, Undete
 
 
 def require_significant(inertia: Parameter, kind: AxisKind, suspicions: Sequence[str]) -> None:
-    """Raise UndeterminedError if the interval of the inertia contains zero.
-
-    Args:
-        inertia: as found.
-        kind: of the axis.
-        suspicions: what else is suspicious about the recording, and may be why.
-    """
+    """Raise UndeterminedError, with what else is suspicious, if the interval of the inertia contains zero."""
     low, high = inertia.ci95
     if low <= 0.0 <= high:
         reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero", *suspicions])
@@ -120,13 +109,7 @@ def require_significant(inertia: Parameter, kind: AxisKind, suspicions: Sequence
 
 
 def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]) -> None:
-    """Raise UndeterminedError if the whole interval of the inertia, or of the load's, is negative.
-
-    Args:
-        parameters: as found.
-        kind: of the axis.
-        suspicions: what else is suspicious about the recording, and may be why.
-    """
+    """Raise UndeterminedError, with what else is suspicious, if the inertia, or the load's, is surely negative."""
     for name in (kind.inertia, "load_moment_of_inertia", ARMATURE):
         found = parameters.get(name)
         if found is not None and found.ci95[1] < 0.0:
@@ -137,15 +120,10 @@ def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, suspicio
 
 
 def require_sound(estimate: Estimate, kind: AxisKind, suspicions: Sequence[str]) -> None:
-    """Raise UndeterminedError if an estimate is meaningless.
+    """Raise UndeterminedError, with what else is suspicious about the recording, if an estimate is meaningless.
 
     Its inertia may be zero or is negative, the load's is negative, or the model explains less than half of the effort's
     variance.
-
-    Args:
-        estimate: as found.
-        kind: of the axis.
-        suspicions: what else is suspicious about the recording, and may be why.
     """
     require_masses(estimate.parameters, kind, suspicions)
     require_significant(estimate[kind.inertia], kind, suspicions)

@@ -125,10 +125,9 @@ def _beyond(inertia: float, rig: Rig) -> float:
 
 
 def modelled_effort(motion: Motion, estimate: Estimate, kind: AxisKind) -> Array:
-    """J*alpha + K_w*omega + K_0*sgn(omega) (+ M_0) - tau*dM/dt along a motion.
+    """J*alpha + K_w*omega + K_0*sgn(omega) (+ M_0) - tau*dM/dt along a motion (m,) - the effort's unit.
 
-    Returns:
-        (m,) - the effort's unit; nan where the direction is uncertain.
+    nan where the direction is uncertain.
     """
     moving = motion.direction != 0.0
     columns = {

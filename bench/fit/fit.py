@@ -169,15 +169,7 @@ class Fit:
         return self.beside.table(columns, delays(self.rows, self.hypothesis)[0 if of_motion else 1])
 
     def gains(self, columns: Array, width: int) -> Array:
-        """Squares that groups of columns would take from the residual beyond what is fitted - (N*m)**2 (N**2).
-
-        Args:
-            columns: (m, groups*width), group by group.
-            width: columns of a group.
-
-        Returns:
-            (groups,).
-        """
+        """Squares that groups of columns (m, groups*width) would take beyond what is fitted (groups,)."""
         return gains(
             columns if self.determined.all() else columns * self.determined[:, None], width, self.residual, self.span
         )
@@ -292,16 +284,9 @@ def explained(before: Fit, after: Fit) -> float:
 
 
 def gains(columns: Array, width: int, residual: Array, basis: Array) -> Array:
-    """Squares that groups of columns take from a residual (m,) beyond what an orthonormal basis (m, p) spans.
+    """Squares that groups of columns take from a residual (m,) beyond what an orthonormal basis (m, p) spans (groups,).
 
-    Args:
-        columns: (m, groups*width), group by group.
-        width: columns of a group.
-        residual: (m,).
-        basis: (m, p).
-
-    Returns:
-        (groups,) - the residual's unit squared.
+    Columns (m, groups*width) stand group by group; squares are in the residual's unit squared.
     """
     rows = np.ascontiguousarray(columns.T)
     full = np.sqrt(np.einsum("ij,ij->i", rows, rows))

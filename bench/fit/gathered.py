@@ -104,12 +104,7 @@ class Chosen:
 
 
 def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Chosen]:
-    """The solution at the chosen cut-off, unless one is given.
-
-    Args:
-        first: the recording, or its first part.
-        rig: of the axis.
-        cutoff: half-power frequency to take - Hz.
+    """The solution of a recording, or of its first part, at the chosen cut-off, unless one is given - Hz.
 
     Raises:
         UndeterminedError: the recording is too short, or never moves clearly.
@@ -149,12 +144,7 @@ def _solved(rows: Rows, hypothesis: Hypothesis, rig: Rig) -> Solution:
 
 
 def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
-    """The choice among estimates.
-
-    Args:
-        usable: that determine the inertia, from high to low cut-off.
-        kind: of the axis.
-    """
+    """The choice among estimates that determine the inertia, from high to low cut-off."""
     accepted = [usable[-1]]
     for tried in usable[-2::-1]:
         if not all(tried.agrees(lower) for lower in accepted):
@@ -249,12 +239,7 @@ class Gathered:
 
 
 def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Gathered:
-    """Normal equations of a recording, or of its consecutive parts.
-
-    Args:
-        trace: the recording, or an iterator over its parts.
-        rig: of the axis.
-        cutoff: half-power frequency of the filter instead of the one chosen from the data - Hz.
+    """Normal equations of a recording, or of its consecutive parts, at a cut-off - Hz -, or at the one the data choose.
 
     Raises:
         UndeterminedError: the recording is too short, or never moves clearly.

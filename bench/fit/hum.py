@@ -32,13 +32,7 @@ def with_hum(fitted: Fit) -> Fit:
 
 
 def mains(rows: Rows, residual: Array, known: tuple[float, ...] = ()) -> tuple[float, ...]:
-    """Lines of the mains that are known, and those that a residual shows beside - Hz.
-
-    Args:
-        rows: the recording.
-        residual: (m,) of the used rows, any unit.
-        known: lines that are in the model already - Hz.
-    """
+    """Lines of the mains that are known, and those that a residual (m,) of the used rows shows beside - Hz."""
     width, duration, recordings = rows.conditioning.filter.width, rows.scope.duration, _by_recording(rows, residual)
     found = list(known)
     for line in LINES:

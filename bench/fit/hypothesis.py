@@ -113,13 +113,7 @@ class Hypothesis:
 
 
 def in_line(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
-    """The hypothesis with what its terms see of each other's strengths as a fit found them.
-
-    Args:
-        hypothesis: that was fitted.
-        theta: its coefficients (p,).
-        owners: names of their columns (p,).
-    """
+    """The hypothesis with what its terms see of each other's strengths, as fitted coefficients (p,) have them."""
     found = _with_loads(_with_levels(hypothesis, theta, owners), theta, owners)
     return _with_pulls(found, theta, owners)
 

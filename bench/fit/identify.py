@@ -53,16 +53,10 @@ def estimated_alone(gathered: Gathered, rig: Rig) -> Estimate:
 
 
 def sound(estimate: Estimate, equations: NormalEquations, kind: AxisKind, suspicions: tuple[str, ...]) -> Estimate:
-    """The estimate, if its rows determine it and it means something.
-
-    Args:
-        estimate: as found.
-        equations: that it is from, of every column, the constant included.
-        kind: of the axis.
-        suspicions: what may be why if it does not.
+    """The estimate, if its equations, of every column and a constant, determine it and it means something.
 
     Raises:
-        RefusedEstimateError: else, with what is determined.
+        RefusedEstimateError: else, with what is determined, and with what else is suspicious.
     """
     try:
         require_determined(equations, kind)
@@ -105,14 +99,7 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solution) -> Estimate:
 
 
 def parameter_of(found: Solution, term: str, kind: AxisKind, effort_unit: str) -> Parameter:
-    """A coefficient of a solution with the interval that its covariance gives it.
-
-    Args:
-        found: the solution.
-        term: of the equation of motion.
-        kind: of the axis.
-        effort_unit: N*m, N, or what the rig allows.
-    """
+    """A coefficient of a solution with the interval that its covariance gives it."""
     value, error = found.of(term, found.theta), found.of(term, found.errors)
     interval = (value - found.reach * error, value + found.reach * error)
     return Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
@@ -360,12 +347,7 @@ class Joint:
 
     @classmethod
     def of(cls, members: Sequence[Member], excesses: Sequence[Excess]) -> Joint:
-        """Joint fit of recordings.
-
-        Args:
-            members: the recordings.
-            excesses: their variance in each quantity beyond their own errors (s,).
-        """
+        """Joint fit of recordings that vary beyond their own errors in each quantity (s,)."""
         between = np.array([found.variance for found in excesses])
         known = np.array([member.known for member in members])
         known = np.linalg.solve(np.eye(between.size) + known * between, known)

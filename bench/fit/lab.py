@@ -28,14 +28,7 @@ ACCELERATION_SHARE = 0.25
 
 
 def backward_difference(values: NDArray[np.float64], sample_period: float) -> NDArray[np.float64]:
-    """u'[k] = (u[k] - u[k-1])/T, first value 0.
-
-    Args:
-        values: (n,) samples of any length - any unit.
-        sample_period: T > 0 - s.
-
-    Returns:
-        (n,) - unit per second.
+    """u'[k] = (u[k] - u[k-1])/T of samples (n,) - any unit - a period T - s - apart, first value 0 - unit per second.
 
     Raises:
         InputError: T is not positive.
@@ -48,14 +41,9 @@ def backward_difference(values: NDArray[np.float64], sample_period: float) -> ND
 def mean_inertia(
     acceleration: NDArray[np.float64], torque: NDArray[np.float64]
 ) -> tuple[float, float, NDArray[np.bool_]]:
-    """J as the mean of M/alpha over samples with |alpha| >= alpha_max/4, for an axis without friction.
+    """J - kg*m**2 - as the mean of M/alpha - N*m, rad/s**2, (n,) - over |alpha| >= alpha_max/4, without friction.
 
-    Args:
-        acceleration: (n,) - rad/s**2.
-        torque: (n,) - N*m.
-
-    Returns:
-        J - kg*m**2, alpha_max - rad/s**2, and which samples were taken (n,).
+    Beside it alpha_max, and which samples were taken (n,).
 
     Raises:
         UndeterminedError: the axis never accelerates.
@@ -70,10 +58,7 @@ def mean_inertia(
 def least_squares(
     acceleration: NDArray[np.float64], velocity: NDArray[np.float64], torque: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    """J, K_w and K_0 of M = J*alpha + K_w*omega + K_0*sgn(omega) by least squares.
-
-    Args:
-        acceleration, velocity, torque: (n,) samples with |omega| >= 20 rad/s already chosen - rad/s**2, rad/s, N*m.
+    """J, K_w and K_0 of M = J*alpha + K_w*omega + K_0*sgn(omega) by least squares over the fast samples (n,).
 
     Returns:
         (3,) estimate, (3,) standard errors under independent residuals, and the remaining quadratic error E - (N*m)**2.

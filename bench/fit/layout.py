@@ -213,14 +213,7 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], movi
 
 
 def cut_beforehand(step: float) -> tuple[float, float]:
-    """What is known of what is cut off before it is measured, no more than a half of a step - N*m (N).
-
-    Args:
-        step: of the digit - N*m (N).
-
-    Returns:
-        The middle of that range, and the variance of a value that lies anywhere in it.
-    """
+    """Middle and variance of what may be cut off, nothing to half a step - N*m (N) -, before it is measured."""
     return 0.25 * step, (0.5 * step) ** 2 / 12.0
 
 

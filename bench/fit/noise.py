@@ -151,13 +151,8 @@ def colour(
 ) -> tuple[float, float]:
     """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white.
 
-    Lines that rounding leaves come and go with the speed, and stay with a steady one: neither is colour.
-
-    Args:
-        rows: the recording.
-        density: of white noise behind the filter, over angular frequency - (N*m)**2 (N**2).
-        lines: the same with what rounding leaves.
-        residual: (m,) of the used rows - N*m (N).
+    `lines` adds to the density of white noise what rounding leaves. Such lines come and go with the speed, and stay
+    with a steady one: neither is colour.
     """
     windows = _windows(rows, residual)
     count, length = windows.shape

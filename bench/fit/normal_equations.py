@@ -104,12 +104,9 @@ class NormalEquations:
         return np.diag(matrix) - np.einsum("ki,kij,kj->k", beside, symmetric_inverse(between, DEPENDENT), beside)
 
     def knowing(self, name: Name, value: float, weight: float) -> NormalEquations:
-        """The same equations and, as if it had been measured, what is known of one coefficient beforehand.
+        """The same equations and, as if it had been measured, about which value one coefficient has beforehand.
 
-        Args:
-            name: of the coefficient.
-            value: that it is about.
-            weight: variance of a row over that of the value.
+        Its weight is the variance of a row over that of the value.
         """
         gram, moment = np.zeros((1, *self.noise.shape)), np.zeros((1, self.noise.shape[0]))
         place = self.place(name)
@@ -145,14 +142,9 @@ def solved(gram: Array, moment: Array, noise: Array) -> tuple[Array, Array]:
 def bounded(
     gram: Array, moment: Array, noise: Array, bounds: Mapping[int, tuple[float, float]]
 ) -> tuple[Array, Array, tuple[int, ...]]:
-    """Coefficients as of `solved`, each held at its bound where it would lie beyond, one after the other.
+    """Coefficients (p,) as of `solved`, each held at its bound where it would lie beyond, one after the other.
 
-    Args:
-        gram, moment, noise: as of `solved`.
-        bounds: lowest and highest value of coefficients by their places.
-
-    Returns:
-        Coefficients (p,), the inverse of the matrix with all of them free (p, p), and the places of those held.
+    Bounds are by places; beside it the inverse of the matrix with all free (p, p), and the places of those held.
     """
     theta, inverse = solved(gram, moment, noise)
     held: list[int] = []
@@ -170,16 +162,7 @@ def bounded(
 def normal_equations(
     names: Iterable[Name], columns: Array, effort: Array, time: Array, noise: Array, width: float
 ) -> NormalEquations:
-    """Gather rows into blocks of time; blocks without rows do not appear.
-
-    Args:
-        names: of the columns (p,).
-        columns: (m, p).
-        effort: (m,) what they are to explain.
-        time: (m,) - s.
-        noise: (p, p) covariance of the noise of the columns in a row.
-        width: of the filter - s.
-    """
+    """Columns (m, p) of some names and effort (m,) gathered into blocks of time - s (m,); none without rows."""
     edges = block_edges(time, width)
     products = _products(columns, effort, edges)
     return NormalEquations(
@@ -213,12 +196,7 @@ def _products(columns: Array, effort: Array, edges: NDArray[np.int64]) -> Array:
 
 
 def block_edges(time: Array, width: float) -> NDArray[np.int64]:
-    """First rows of blocks of BLOCK_WIDTHS filter widths, longer ones where there would be more than BLOCKS; the end.
-
-    Args:
-        time: (m,) - s.
-        width: of the filter - s.
-    """
+    """First rows of blocks of BLOCK_WIDTHS filter widths - s -, of at most BLOCKS longer ones, and the end."""
     if not time.size:
         return np.empty(0, dtype=np.int64)
     count = int(np.clip((time[-1] - time[0]) / (BLOCK_WIDTHS * width), 1, BLOCKS))

@@ -189,12 +189,7 @@ class Rows:
         return max(1.0, 2.0 * np.sqrt(np.pi) * smooth.width / (smooth.stride * smooth.sample_period))
 
     def with_signals(self, change: Callable[[Signals], Signals], made_by: Hashable = None) -> Rows:
-        """The same rows over changed raw signals (a corrected angle, another friction level).
-
-        Args:
-            change: of each stretch's signals.
-            made_by: what tells this change from others, if columns made of it may be kept; else none are.
-        """
+        """The same rows over changed signals; columns of them are kept if `made_by` tells this change from others."""
         stretches = tuple(replace(p, signals=change(p.signals), spectra=Spectra()) for p in self.stretches)
         pairs = [(new.signals, old.signals) for new, old in zip(stretches, self.stretches, strict=True)]
         moved = any(new.position is not old.position or new.velocity is not old.velocity for new, old in pairs)

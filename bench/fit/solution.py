@@ -37,18 +37,11 @@ MOST = 0.9
 
 
 def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float]:
-    """Covariance of coefficients from the scores of blocks of time, and how far an interval of 95 % reaches.
+    """Covariance (p, p) of coefficients from scores of blocks of time (b, p), and the reach of 95 % in standard errors.
 
-    It is never less than the effort's white noise alone makes it, and reaches as Student's t does at as many degrees of
-    freedom as there are independent blocks.
-
-    Args:
-        scores: (b, p) of the blocks.
-        inverse: (p, p) of the normal equations' matrix.
-        least: variance of the effort's white noise between rows - the effort's unit squared.
-
-    Returns:
-        (p, p), and the reach in standard errors.
+    It is never less than the effort's white noise alone - `least`, the variance between rows - makes it by the
+    inverse of the equations' matrix (p, p), and reaches as Student's t does at as many degrees of freedom as there are
+    independent blocks.
     """
     middle, bandwidth = long_run_covariance(scores)
     independent = scores.shape[0] / bandwidth
@@ -62,10 +55,7 @@ def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float
 def misfit(columns: Array, residual: Array, floor: float) -> Array:
     """How far intervals of 95 % have to reach (p,) because of what stands above the noise; 0 where nothing does.
 
-    Args:
-        columns: (m, p) in order of time, acceleration and speed first.
-        residual: (m,) - the effort's unit.
-        floor: RMS that the sensors' noise leaves - the effort's unit.
+    Columns (m, p) are in order of time, acceleration and speed first; the floor is the RMS that the noise leaves.
     """
     above = 1.0 - (NOISE_ALONE * floor) ** 2 / max(float(np.mean(residual**2)), 1e-300)
     return np.sqrt(above) * left_out(columns, residual) if above > 0.0 else np.zeros(columns.shape[1])
@@ -80,10 +70,6 @@ def left_out(columns: Array, residual: Array) -> Array:
     largest of the three counts (delete-a-group jackknife, M. H. Quenouille, Biometrika 43, 1956, 353-360). Levels and
     quarters are equal in a mean of their shares of the rows and of the columns' power, so that none takes all rows that
     accelerate, nor all that are slow.
-
-    Args:
-        columns: (m, p) in order of time, acceleration and speed first.
-        residual: (m,).
     """
     scale = np.sqrt(np.sum(columns**2, axis=0))
     scaled = columns / np.where(scale > 0.0, scale, 1.0)
@@ -121,17 +107,11 @@ def _without_each(columns: Array, residual: Array, cuts: list[tuple[NDArray[np.i
 
 
 def long_run_covariance(scores: Array) -> tuple[Array, float]:
-    """Covariance of the sum of a correlated sequence, by the quadratic spectral kernel.
+    """Covariance (p, p) of the sum of a correlated sequence (b, p) of mean zero, by the quadratic spectral kernel.
 
-    S = sum over lags of k(lag/bandwidth)*Gamma(lag), with the bandwidth that is best for a first-order process fitted
-    to each column (Andrews, Heteroskedasticity and autocorrelation consistent covariance matrix estimation,
-    Econometrica 59(3), 1991, eqs. 2.7, 5.3, 6.2, 6.4).
-
-    Args:
-        scores: (b, p) sequence of mean zero; any unit.
-
-    Returns:
-        (p, p) covariance of its sum, and the bandwidth - lags.
+    S = sum over lags of k(lag/bandwidth)*Gamma(lag), with the bandwidth - lags, returned too - that is best for a
+    first-order process fitted to each column (Andrews, Heteroskedasticity and autocorrelation consistent covariance
+    matrix estimation, Econometrica 59(3), 1991, eqs. 2.7, 5.3, 6.2, 6.4).
     """
     count = scores.shape[0]
     bandwidth = _bandwidth(scores)
@@ -257,11 +237,7 @@ def solve(rows: Rows, hypothesis: Hypothesis, laid: Layout, equations: NormalEqu
     A drive latches its signals within one tick. Along a sine, shift and viscous friction are inseparable: noise that
     the drive feeds back gave a false shift of 4 ms and 26 times the friction.
 
-    Args:
-        rows: of the recording, or of its first part.
-        hypothesis, laid: of these rows, and its columns.
-        equations: of the whole recording, a constant last.
-        offset: whether the constant is fitted.
+    Rows are of the recording, or of its first part; equations of all of it, a constant last.
     """
     measured = equations if offset else equations.only(lambda name: name != OFFSET)
     informed, beforehand = with_digit(measured, hypothesis.step)
@@ -288,11 +264,7 @@ def with_digit(equations: NormalEquations, step: float) -> tuple[NormalEquations
     """The equations with a prior of the effort's last digit, if that is a column; and the variance it adds (p, p).
 
     Where torque and speed change sign together, truncation of the current and dry friction are inseparable. Truncation
-    is at most half a step, and the interval of friction includes that range; fitted freely, it took half of it.
-
-    Args:
-        equations: of the fitted columns.
-        step: of the digit - N*m (N); 0 where it is no column.
+    is at most half a step - N*m (N) -, and the interval of friction includes that range; fitted freely, it took half.
     """
     beforehand = np.zeros_like(equations.noise)
     if not step:

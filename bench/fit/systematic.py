@@ -28,14 +28,7 @@ SURE = 3.0
 
 
 def by_tolerance(first: Trace, rig: Rig, found: Solution, offset: bool) -> dict[Name, float]:
-    """Half widths at 95 % of coefficients by their names from the rig's tolerances, which are assumed independent.
-
-    Args:
-        first: the recording, or its first part.
-        rig: of the axis.
-        found: its solution at the chosen cut-off.
-        offset: whether that holds a constant.
-    """
+    """Half widths at 95 % of coefficients by their names from the rig's tolerances, taken for independent."""
     moved = np.zeros(found.theta.size)
     for other in rig.within_tolerance():
         rows = Rows.of(first, other, conditioning=found.rows.conditioning)
@@ -46,11 +39,7 @@ def by_tolerance(first: Trace, rig: Rig, found: Solution, offset: bool) -> dict[
 
 
 def by_hint(found: Solution) -> dict[str, float]:
-    """By how much the effect that a recording hints at would move J, K_w and K_0; empty without one.
-
-    Args:
-        found: of the recording, or of its first part, at the chosen cut-off.
-    """
+    """By how much the effect that a recording hints at would move J, K_w and K_0 of its solution; empty without one."""
     fitted = fit(found.rows, found.hypothesis)
     beside = hint(fitted, catalogue().values())
     if beside is None:
@@ -61,9 +50,7 @@ def by_hint(found: Solution) -> dict[str, float]:
 def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
     """The fit with the effect beside what is fitted that explains most, if that is more than chance does; else None.
 
-    Args:
-        fitted: what is known so far.
-        effects: of which those count that are linear in all their quantities, so that no search makes them fit.
+    Of the effects those count that are linear in all their quantities, so that no search makes them fit.
     """
     linear = [
         effect

@@ -51,13 +51,7 @@ class Check:
 
 
 def absent(name: str, found: str, allowed: str) -> Check:
-    """A check that does not apply to this recording.
-
-    Args:
-        name: of the check.
-        found: why not.
-        allowed: what would pass.
-    """
+    """A check that does not apply to this recording, with what was found."""
     return Check(name, "not_applicable", found, allowed)
 
 

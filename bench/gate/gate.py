@@ -57,12 +57,7 @@ class Gated:
 
 
 def gate(trace: Trace, rig: Rig | None = None, looks: Sequence[Look] = CHECKS) -> Gated:
-    """Run checks on a recording.
-
-    Args:
-        trace: the recording, or a part of one.
-        rig: of the axis, if known.
-        looks: the checks to run.
+    """Run checks on a recording, or on a part of one.
 
     Raises:
         InputError: rig and recording do not fit together, or a value that no axis can have.
@@ -89,12 +84,7 @@ def passed(trace: Trace, rig: Rig, looks: Sequence[Look] = CHECKS) -> Gated:
 
 
 def require(checks: Sequence[Check], trace: Trace) -> None:
-    """Raise the first check that fails.
-
-    Args:
-        checks: of a recording.
-        trace: the recording, or a part of it.
-    """
+    """Raise the first check of a recording, or of a part of it, that fails."""
     failed = next((check for check in checks if check.status == "fail"), None)
     if failed is not None:
         raise _error(failed, tuple(checks), trace)
@@ -113,10 +103,7 @@ def _error(failed: Check, checks: tuple[Check, ...], trace: Trace) -> BenchError
 def joined(parts: Sequence[Sequence[Check]]) -> tuple[Check, ...]:
     """Checks of a recording from those of its parts: the worst of each, without parts that are only unanswerable.
 
-    A part in which the axis stands still is no evidence against the others.
-
-    Args:
-        parts: the first with every check.
+    A part in which the axis stands still is no evidence against the others. The first part has every check.
     """
     names = [check.name for check in parts[0]]
     return tuple(_worst([one for part in parts for one in part if one.name == name]) for name in names)
