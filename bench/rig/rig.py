@@ -183,7 +183,11 @@ class Rig(RigTable):
             return (current, "A") if constant is None else (constant.torque(current), self.effort_unit)
         if "voltage" in trace:
             return self._effort_of_voltage(trace)
-        raise InputError(trace.origin, "holds no current, torque, force or voltage", "identification needs one of them")
+        raise InputError(
+            trace.origin,
+            "holds no current, torque, force or voltage",
+            "identification needs one of them; map it in the rig's [trace.columns]",
+        )
 
     def net_effort(self, trace: Trace) -> tuple[Array, str]:
         """Effort less all that is known to act, and its unit: what inertia, friction and effects are to explain."""

@@ -28,7 +28,8 @@ from bench.plant.sensing import reported_states
 from tests.effects.axes import AXIS, FREE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant, present, pushed
 from tests.plant.open_loop import open_loop
 
-EFFECTS = sorted(catalogue())
+#: Those of other packages are held by their own tests.
+EFFECTS = sorted(name for name, effect in catalogue().items() if type(effect).__module__.startswith("bench."))
 SHORT = Reversals(0.4).references()
 #: What methods of a step are of null values.
 NEUTRAL = (
@@ -39,7 +40,7 @@ NEUTRAL = (
 )
 #: Effects that the torque balance holds as columns of raw signals.
 BALANCED = [
-    name for name, effect in catalogue().items() if isinstance(effect, Columns) and not isinstance(effect, Coupling)
+    name for name in EFFECTS if isinstance(catalogue()[name], Columns) and not isinstance(catalogue()[name], Coupling)
 ]
 #: Effects that only take energy from the motion.
 DISSIPATIVE = [n for n in EFFECTS if isinstance(catalogue()[n], Friction) or n == "quadratic_drag"]

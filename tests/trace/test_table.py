@@ -7,6 +7,7 @@ import pytest
 
 from bench.errors import InputError
 from bench.trace.read import read, read_recording
+from bench.trace.readers.table import read_timed
 from tests.trace.recordings import csv_text, current, shared, velocity
 
 TIME = np.arange(500) * 1e-3
@@ -153,3 +154,8 @@ def test_laas_recording_reports_its_gaps():
 def test_laas_compensation_table_is_no_trace():
     with pytest.raises(InputError):
         read(shared("laas_anticogging", "cogging_tableau.txt"))
+
+
+def test_timed_lines_need_a_column_of_time():
+    with pytest.raises(InputError, match=r"x\.log: found columns speed \[rpm\]; allowed: one of them called time"):
+        read_timed(["1", "2"], 1, ["speed [rpm]"], ";", "x.log")

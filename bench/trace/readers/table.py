@@ -150,11 +150,13 @@ def read_timed(lines: Sequence[str], line: int, labels: Sequence[str], separator
         path: of the file.
 
     Raises:
-        InputError: as `read_lines`, or a text among the times.
+        InputError: as `read_lines`, no column of that name, or a text among the times.
     """
     layout = TableLayout(tuple(labels), separator, ".", 0, ("number",) * len(labels))
     channels, _ = read_lines(SampleLines("\n".join(lines).replace(",", ".").encode(), line), layout, path)
-    time = next(channel for channel in channels if channel.name == "time")
+    time = next((channel for channel in channels if channel.name == "time"), None)
+    if time is None:
+        raise InputError(path, f"found columns {', '.join(labels)}", "allowed: one of them called time")
     if time.defect is not None:
         raise time.defect
     return [replace(channel, time=time) for channel in channels if channel is not time]
