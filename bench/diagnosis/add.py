@@ -20,11 +20,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.arrays import NORMAL95, Array, rms
-from bench.diagnosis.model import BANDWIDTH, Extension, Stage, holding_bandwidth, present_of
+from bench.diagnosis.model import (
+    BANDWIDTH,
+    HOLDOUT,
+    RECORDING,
+    Extension,
+    HeldOut,
+    Recorded,
+    Stage,
+    VelocityGaps,
+    holding_bandwidth,
+    present_of,
+)
 from bench.diagnosis.name import NamedEffect, Suspects, named
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, same_axis
-from bench.diagnosis.tracking import HOLDOUT, RECORDING, HeldOut, Recorded, VelocityGaps
 from bench.effects.acting import DriveLimit
 from bench.effects.effect import Occasional
 from bench.errors import BenchError, InputError

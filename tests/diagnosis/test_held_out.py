@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from bench.diagnosis.model import HeldOut
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.tracking import HeldOut
 from tests.diagnosis.constructed import RIG, moved, recorded
 
 RECORDING, OTHER = recorded(moved(3.0)), recorded(moved(2.5), seed=1)

@@ -5,12 +5,11 @@ import pytest
 
 from bench.arrays import NORMAL95
 from bench.diagnosis.add import Numbers, refined, stepped
-from bench.diagnosis.model import Stage
+from bench.diagnosis.model import HeldOut, Stage
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, Step
-from bench.diagnosis.tracking import HeldOut
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
 from bench.statistics import Parameter
