@@ -45,7 +45,7 @@ def validate(
     from bench.report.parts import provenance
     from bench.report.terminal import progress
     from bench.report.validation import validation, validation_json, write_validation
-    from bench.validation.plan import AnyAxis, Hiding, Plan
+    from bench.validation.plan import Hiding, Plan, any_axis
     from bench.validation.validate import validate as run_validation
 
     if rig is None and str(profile) != DEFAULT:
@@ -53,7 +53,7 @@ def validate(
     hiding = Hiding.parse(effects)
     named = diagnose or (rig is not None and hiding.anything)  # what is hidden in one's own axis is to be named
     options = {"rigs": rigs, "seed": seed, "effects": effects, "diagnose": named, "profile": str(profile)}
-    population, basis = (AnyAxis(), provenance(None, [], options)) if rig is None else _own(rig, profile, options)
+    population, basis = (any_axis, provenance(None, [], options)) if rig is None else _own(rig, profile, options)
     plan = Plan(seed, hiding, named, population)
     with progress(f"validating on {rigs} runs") as done:
         found = run_validation(plan, rigs, workers, scheduler, done)

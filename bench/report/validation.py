@@ -24,8 +24,8 @@ from bench.report.numbers import number, sentence, share, unit_text
 from bench.report.parts import origin
 from bench.report.publish import markdown, write_document
 from bench.report.serial import known, picked, serialised
-from bench.validation.coverage import LEVELS, NOTHING, NOTHING_MISSING, Coverage, Group, Naming, Share
-from bench.validation.run import Run
+from bench.validation.coverage import LEVELS, NOTHING, NOTHING_MISSING, Coverage, Naming, Share
+from bench.validation.score import Run
 from bench.validation.validate import Validation
 
 SCHEMA = "bench.validate/1"
@@ -233,7 +233,7 @@ def _determined(runs: tuple[Run, ...]) -> tuple[doc.AnyPart, ...]:
     rows = []
     for term, symbol in SYMBOLS.items():
         scored = [one for run in plain for one in run.scored if one.by == "identify" and one.quantity == term]
-        found = Coverage.of("identify", Group("", len(plain), True), term, scored)
+        found = Coverage.of("identify", term, scored, len(plain))
         sure = Share(sum(abs(one.parameter.value) > one.half_width * one.scale for one in scored), len(plain))
         true = f"{scored[0].true:.4g} {unit_text(scored[0].parameter.unit)}" if scored else "–"
         rows.append((symbol, true, _of(sure), *map(_percent, (found.half_width, found.bias, found.typical))))

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import special
 
-from bench.validation.run import Run
-from bench.validation.score import TERMS, Named, Scored
+from bench.validation.score import TERMS, Named, Run, Scored
 
 #: Levels of the intervals that are compared with the truth.
 LEVELS = (0.5, 0.8, 0.95)
@@ -49,21 +48,6 @@ class Share:
 
 
 @dataclass(frozen=True)
-class Group:
-    """Runs that are counted together.
-
-    Attributes:
-        name: what they have in common.
-        runs: how many.
-        whole: whether these are all runs with so much hidden, or named, and not a part of them.
-    """
-
-    name: str
-    runs: int
-    whole: bool
-
-
-@dataclass(frozen=True)
 class Coverage:
     """One quantity over a group of runs.
 
@@ -97,27 +81,28 @@ class Coverage:
     whole: bool = True
 
     @classmethod
-    def of(cls, by: str, group: Group, quantity: str, scored: Sequence[Scored]) -> Coverage:
+    def of(
+        cls, by: str, quantity: str, scored: Sequence[Scored], runs: int, group: str = "", whole: bool = True
+    ) -> Coverage:
         """Coverage of a quantity; nan without estimates."""
         error, half = (np.array([getattr(one, name) for one in scored]) for name in ("error", "half_width"))
-        several = len(scored) > 1
-        spread = float(np.std(error, ddof=1)) if several else math.nan
-        typical = float(np.sqrt(np.mean(error**2))) if scored else math.nan
-        wide = float(np.sqrt(np.mean(half**2))) if scored else math.nan
+        told, nan = len(scored), math.nan
+        spread = float(np.std(error, ddof=1)) if told > 1 else nan
+        typical, wide = (float(np.sqrt(np.mean(values**2))) if told else nan for values in (error, half))
         return cls(
             by=by,
-            group=group.name,
+            group=group,
             quantity=quantity,
-            runs=group.runs,
-            told=len(scored),
-            bias=float(np.mean(error)) if scored else math.nan,
-            bias_error=spread / math.sqrt(len(scored)) if several else math.nan,
+            runs=runs,
+            told=told,
+            bias=float(np.mean(error)) if told else nan,
+            bias_error=spread / math.sqrt(told) if told > 1 else nan,
             spread=spread,
             typical=typical,
-            half_width=float(np.median(half)) if scored else math.nan,
-            width_over_error=wide / typical if typical > 0.0 else math.nan,
-            inside=tuple(Share(sum(one.inside(level) for one in scored), len(scored)) for level in LEVELS),
-            whole=group.whole,
+            half_width=float(np.median(half)) if told else nan,
+            width_over_error=wide / typical if typical > 0.0 else nan,
+            inside=tuple(Share(sum(one.inside(level) for one in scored), told) for level in LEVELS),
+            whole=whole,
         )
 
 
@@ -129,7 +114,7 @@ def coverage(runs: Sequence[Run]) -> list[Coverage]:
             scored = [one for run in some for one in run.scored if one.by == by and not one.effect]
             for term in TERMS:
                 those = [one for one in scored if one.quantity == term]
-                found.append(Coverage.of(by, Group(name, len(some), whole), term, those))
+                found.append(Coverage.of(by, term, those, len(some), name, whole))
     return found + _of_effects(runs)
 
 
@@ -146,41 +131,34 @@ def _groups(runs: Sequence[Run], by: str) -> Iterator[tuple[str, bool, list[Run]
             yield f"{name} named", True, [run for run in some if run.named is not None and run.named.exact]
 
 
+def _parts(run: Run) -> tuple[str, ...]:
+    """What runs of a kind differ in: plant, noise, kind of axis and motion."""
+    white = set(run.noise.split("/")) == {"white"}
+    return (
+        {"mujoco": "by MuJoCo", "independent": "by the integrator"}[run.plant],
+        "white noise" if white else "other noise too",
+        f"{run.kind} axis",
+        f"motion: {run.motion}",
+    )
+
+
 def _apart(runs: Sequence[Run]) -> Iterator[tuple[str, list[Run]]]:
-    """Runs by plant, noise, kind of axis and motion; not by what all share."""
-    for group_of in (_plant, _noise, _kind, _motion):
-        names = sorted({group_of(run) for run in runs})
-        for name in names if len(names) > 1 else ():
-            yield name, [run for run in runs if group_of(run) == name]
-
-
-def _plant(run: Run) -> str:
-    return {"mujoco": "by MuJoCo", "independent": "by the integrator"}[run.plant]
-
-
-def _noise(run: Run) -> str:
-    return "white noise" if set(run.noise.split("/")) == {"white"} else "other noise too"
-
-
-def _kind(run: Run) -> str:
-    return f"{run.kind} axis"
-
-
-def _motion(run: Run) -> str:
-    return f"motion: {run.motion}"
+    """Runs by each of their parts; not by what all share."""
+    for names in zip(*map(_parts, runs), strict=True):
+        distinct = sorted(set(names))
+        for part in distinct if len(distinct) > 1 else ():
+            yield part, [run for run, name in zip(runs, names, strict=True) if name == part]
 
 
 def _of_effects(runs: Sequence[Run]) -> list[Coverage]:
     """Quantities of the effects that were named where they are hidden."""
-    scored: dict[tuple[str, str], list[Scored]] = {}
-    for run in runs:
-        for one in run.scored:
-            if one.effect:
-                scored.setdefault((one.effect, one.quantity), []).append(one)
+    scored: dict[tuple[str, str], list[Scored]] = defaultdict(list)
+    for one in (one for run in runs for one in run.scored if one.effect):
+        scored[one.effect, one.quantity].append(one)
     hidden = Counter(name for run in runs if run.named is not None for name in run.hidden)
     return [
-        Coverage.of("diagnose", Group(effect, hidden[effect], False), quantity, scored[effect, quantity])
-        for effect, quantity in sorted(scored)
+        Coverage.of("diagnose", quantity, those, hidden[effect], effect, False)
+        for (effect, quantity), those in sorted(scored.items(), key=lambda entry: entry[0])
     ]
 
 

@@ -27,6 +27,8 @@ from bench.validation.plan import PLANTS, Case, Plant
 SMOOTHED = 5e-3
 #: In which a motion comes from rest, or to it, where its recording does not - s.
 RAMP = 0.1
+#: Signals that tell what moved an axis.
+EFFORTS = {"current", "torque", "force"}
 
 
 class Sampled:
@@ -69,8 +71,8 @@ class OwnAxis:
     sensors: Sensors
     plants: tuple[Plant, ...]
 
-    def plain(self, index: int, rng: np.random.Generator) -> Case:
-        """As the protocol has it."""
+    def __call__(self, index: int, rng: np.random.Generator) -> Case:
+        """A case of it, as of any population."""
         plant = self.plants[int(rng.integers(len(self.plants)))]
         sensors = replace(self.sensors, current_age=int(rng.integers(2)))
         return Case(index, plant, self.axis, self.rig, self.motion, self.motion_name, sensors)
@@ -92,7 +94,7 @@ def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
     """
     if rig.load is not None and rig.load.eccentric_mass is not None:
         raise InputError(f"{rig.source}: load.eccentric_mass", "found one", "allowed: none; the plants do not swing it")
-    if rig.simulation is None and recording is not None and _has_effort(recording):
+    if rig.simulation is None and recording is not None and EFFORTS & set(recording.signals):
         rig = rig.model_copy(update={"simulation": as_recorded(rig, recording)})
     require(rig, "validate")
     parameters, cascade = AxisParameters.from_rig(rig), Cascade.from_rig(rig)
@@ -101,9 +103,19 @@ def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
         motion = Sampled(references.time, references.velocity)
     else:
         motion = motion_of(recording)
+    constant, simulation, period = rig.motor.torque_per_ampere, rig.simulation, cascade.control_period
+    assert constant is not None and simulation is not None  # `require` has seen to it
+    sensors = Sensors(
+        sample_period=max(1, round(simulation.sample_period / period)) * period,
+        encoder_resolution=simulation.encoder_resolution,
+        velocity=Noise(white=simulation.velocity_noise, resolution=_step(recording, "velocity")),
+        current=Noise(white=simulation.current_noise, resolution=_step(recording, "current")),
+        position_recorded=recording is None or "position" in recording,
+    )
+    # the independent plant has a motor that does not saturate, and no load torque
+    plain = simulation.friction == "mechanics" and not simulation.load_torque and not constant.curvature
     axis = _axis(rig, parameters, cascade, motion.top)
-    sensors = _sensors(rig, recording, cascade.control_period)
-    return OwnAxis(rig, axis, Motion((motion,)), profile, sensors, _plants(rig))
+    return OwnAxis(rig, axis, Motion((motion,)), profile, sensors, PLANTS if plain else ("mujoco",))
 
 
 def motion_of(recording: Trace) -> Sampled:
@@ -122,10 +134,6 @@ def motion_of(recording: Trace) -> Sampled:
 def _known(time: Array, values: Array) -> tuple[Array, Array]:
     there = np.isfinite(values)
     return time[there], values[there]
-
-
-def _has_effort(recording: Trace) -> bool:
-    return bool({"current", "torque", "force"} & set(recording.signals))
 
 
 def as_recorded(rig: Rig, recording: Trace) -> Simulation:
@@ -153,8 +161,8 @@ def _step(recording: Trace | None, name: str) -> float:
 
 
 def _axis(rig: Rig, parameters: AxisParameters, cascade: Cascade, top_speed: float) -> Axis:
-    constant = rig.motor.torque_per_ampere
-    assert constant is not None and rig.drive is not None  # `require` has seen to it
+    constant, drive, winding = rig.motor.torque_per_ampere, rig.drive, winding_of(rig)
+    assert constant is not None and drive is not None  # `require` has seen to it
     axis = Axis(
         name=rig.name,
         inertia=parameters.inertia,
@@ -163,38 +171,15 @@ def _axis(rig: Rig, parameters: AxisParameters, cascade: Cascade, top_speed: flo
         rotor_inertia=parameters.motor_inertia,
         torque_constant=constant.constant,
         peak_current=float(cascade.torque_limit) / constant.constant,
-        position_gain=rig.drive.position_gain,
-        velocity_gain=rig.drive.velocity_gain,
-        integral_gain=rig.drive.integral_gain,
-        inertia_feedforward=rig.drive.inertia_feedforward,
+        position_gain=drive.position_gain,
+        velocity_gain=drive.velocity_gain,
+        integral_gain=drive.integral_gain,
+        inertia_feedforward=drive.inertia_feedforward,
         control_period=cascade.control_period,
         top_speed=top_speed,
         linear=not rig.axis_kind.turns,
     )
-    winding = winding_of(rig)
     if winding is None:
         return replace(axis, back_emf_constant=0.0)
-    return replace(
-        axis, resistance=winding.resistance, inductance=winding.inductance, back_emf_constant=winding.back_emf_constant
-    )
-
-
-def _sensors(rig: Rig, recording: Trace | None, control_period: float) -> Sensors:
-    simulation = rig.simulation
-    assert simulation is not None  # `require` has seen to it
-    ticks = max(1, round(simulation.sample_period / control_period))
-    return Sensors(
-        sample_period=ticks * control_period,
-        encoder_resolution=simulation.encoder_resolution,
-        velocity=Noise(white=simulation.velocity_noise, resolution=_step(recording, "velocity")),
-        current=Noise(white=simulation.current_noise, resolution=_step(recording, "current")),
-        position_recorded=recording is None or "position" in recording,
-    )
-
-
-def _plants(rig: Rig) -> tuple[Plant, ...]:
-    """Those that can be the axis: the independent one has a motor that does not saturate, and no load torque."""
-    simulation, constant = rig.simulation, rig.motor.torque_per_ampere
-    assert simulation is not None and constant is not None  # `require` has seen to it
-    plain = simulation.friction == "mechanics" and not simulation.load_torque and not constant.curvature
-    return PLANTS if plain else ("mujoco",)
+    known = {name: getattr(winding, name) for name in ("resistance", "inductance", "back_emf_constant")}
+    return replace(axis, **known)

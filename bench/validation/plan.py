@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from typing import Literal, Protocol
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -64,28 +64,20 @@ class Case:
         return tuple(effect.name for effect in self.effects)
 
 
-class Population(Protocol):
-    """What cases are drawn from."""
-
-    def plain(self, index: int, rng: np.random.Generator) -> Case:
-        """The case of an index, with nothing hidden."""
-        ...
+#: What cases are drawn from: the case of an index, with nothing hidden, by a generator of its own.
+Population = Callable[[int, np.random.Generator], Case]
 
 
-@dataclass(frozen=True)
-class AnyAxis:
-    """Axes, motions and sensors over all their ranges; these stand in `docs/validate.md`."""
-
-    def plain(self, index: int, rng: np.random.Generator) -> Case:
-        """As the protocol has it."""
-        linear = bool(rng.random() < LINEAR)
-        axis = replace(random_rig(rng, f"run {index}", linear=linear), control_period=CONTROL_PERIOD)
-        others = (1.0 - MIXED) / (len(MOTIONS) - 1)
-        name = str(rng.choice([*MOTIONS], p=[MIXED if k == 0 else others for k in range(len(MOTIONS))]))
-        motion = MOTIONS[name](axis, rng, float(rng.uniform(*DURATION)))
-        rig = Rig.of(tomllib.loads(rig_text(axis)), axis.name)
-        plant = PLANTS[int(rng.integers(len(PLANTS)))]
-        return Case(index, plant, axis, rig, motion, name, random_sensors(axis, rng))
+def any_axis(index: int, rng: np.random.Generator) -> Case:
+    """Axis, motion and sensors over all their ranges; these stand in `docs/validate.md`."""
+    linear = bool(rng.random() < LINEAR)
+    axis = replace(random_rig(rng, f"run {index}", linear=linear), control_period=CONTROL_PERIOD)
+    others = (1.0 - MIXED) / (len(MOTIONS) - 1)
+    name = str(rng.choice([*MOTIONS], p=[MIXED if k == 0 else others for k in range(len(MOTIONS))]))
+    motion = MOTIONS[name](axis, rng, float(rng.uniform(*DURATION)))
+    rig = Rig.of(tomllib.loads(rig_text(axis)), axis.name)
+    plant = PLANTS[int(rng.integers(len(PLANTS)))]
+    return Case(index, plant, axis, rig, motion, name, random_sensors(axis, rng))
 
 
 def hide(case: Case, names: Sequence[str], rng: np.random.Generator) -> Case:
@@ -144,13 +136,7 @@ class Hiding:
         return self.most > 0 or bool(self.names)
 
     def drawn(self, index: int, rng: np.random.Generator, axis: Axis) -> tuple[str, ...]:
-        """Names hidden in a run, of those that the axis can have.
-
-        Args:
-            index: of the run.
-            rng: of the run.
-            axis: of the run.
-        """
+        """Names hidden in a run, of those that its axis can have."""
         impossible = frozenset(name for name in HIDEABLE if not KINDS[name].possible(axis))
         if self.names:
             place = index % (len(self.names) + 1)
@@ -170,12 +156,12 @@ class Plan:
     """
 
     seed: int = 0
-    hiding: Hiding = field(default_factory=Hiding)
+    hiding: Hiding = Hiding()
     diagnose: bool = False
-    population: Population = field(default_factory=AnyAxis)
+    population: Population = any_axis
 
     def case(self, index: int) -> Case:
         """The case of an index."""
         rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(index,)))
-        plain = self.population.plain(index, rng)
+        plain = self.population(index, rng)
         return hide(plain, self.hiding.drawn(index, rng, plain.axis), rng)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.name import NamedEffect
-from bench.effects.effect import Effect
 from bench.statistics import Parameter
 from bench.validation.plan import Case
 
@@ -56,13 +56,7 @@ class Scored:
 
 
 def base(by: str, case: Case, parameters: Mapping[str, Parameter]) -> Iterator[Scored]:
-    """J, K_w and K_0, as far as they are determined.
-
-    Args:
-        by: identify or diagnose.
-        case: with the truth.
-        parameters: by the names of the contract.
-    """
+    """J, K_w and K_0, as far as they are determined, by identify or diagnose; parameters by the contract's names."""
     truth = (case.axis.inertia, case.axis.viscous, case.axis.coulomb)
     for term, true in zip(TERMS, truth, strict=True):
         name = case.rig.axis_kind.parameter(term)
@@ -76,17 +70,14 @@ def of_effects(case: Case, diagnosis: Diagnosis) -> Iterator[Scored]:
     for named in diagnosis.effects:
         truth = hidden.pop(named.name, {})
         angles = {quantity.name for quantity in named.effect.quantities if quantity.angle}
+        integers = {shape.quantity.name for shape in named.effect.shapes if shape.whole}
         for name, parameter in named.parameters.items():
-            if name in truth and parameter.std_error > 0.0 and name not in _integers(named.effect):
+            if name in truth and parameter.std_error > 0.0 and name not in integers:
                 true = truth[name]
                 if name in angles:
                     true = parameter.value + math.remainder(true - parameter.value, 2.0 * np.pi)
                 scale = 1.0 if name in angles or true == 0.0 else abs(true)
                 yield Scored("diagnose", named.name, name, true, scale, parameter)
-
-
-def _integers(effect: Effect) -> set[str]:
-    return {shape.quantity.name for shape in effect.shapes if shape.whole}
 
 
 @dataclass(frozen=True)
@@ -123,3 +114,35 @@ class Named:
     def exact(self) -> bool:
         """Whether the names are exactly those of the hidden effects."""
         return bool(self.verdict) and not self.false and not self.missed
+
+
+Status = Literal["done", "refused", "failed"]
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run.
+
+    Attributes:
+        index, plant, motion, kind, hidden, severity: as drawn.
+        noise: of speed and current, as white/hum.
+        sample_period, duration: of the recording - s.
+        status: done; refused by `identify`, which tells what it knows all the same; failed where there is no recording.
+        reason: why it is not done.
+        scored: quantities, by `identify` and by `diagnose`.
+        named: by `diagnose`, if it was asked.
+    """
+
+    index: int
+    plant: str
+    motion: str
+    kind: str
+    noise: str
+    sample_period: float
+    duration: float
+    hidden: tuple[str, ...]
+    severity: float
+    status: Status = "done"
+    reason: str = ""
+    scored: tuple[Scored, ...] = ()
+    named: Named | None = None

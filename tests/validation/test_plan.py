@@ -7,11 +7,10 @@ from bench.effects.catalogue import catalogue
 from bench.errors import InputError
 from bench.validation.independent.effects import KINDS
 from bench.validation.plan import HIDEABLE, Hiding, Plan
-from bench.validation.run import TOGETHER, carried_out, pieces, record
-from bench.validation.validate import validate
-from tests.validation.population import Short
+from bench.validation.validate import TOGETHER, carried_out, pieces, record, validate
+from tests.validation.population import short
 
-PLAN = Plan(5, population=Short())
+PLAN = Plan(5, population=short)
 
 
 def test_a_case_depends_on_seed_and_index_alone():
@@ -19,7 +18,7 @@ def test_a_case_depends_on_seed_and_index_alone():
     again = [PLAN.case(index) for index in range(4)]
     assert [case.axis for case in few] == [again[3].axis, again[1].axis]
     assert [case.sensors for case in few] == [again[3].sensors, again[1].sensors]
-    assert Plan(6, population=Short()).case(1).axis != few[1].axis
+    assert Plan(6, population=short).case(1).axis != few[1].axis
 
 
 def test_a_recording_is_the_same_bit_for_bit_alone_and_beside_others():

@@ -15,15 +15,14 @@ from bench.validation.coverage import (
     NOTHING_MISSING,
     REFUSED,
     Coverage,
-    Group,
     Share,
     coverage,
     naming,
 )
 from bench.validation.plan import Plan
-from bench.validation.run import drawn
 from bench.validation.score import Named, Scored
-from tests.validation.population import Short
+from bench.validation.validate import drawn
+from tests.validation.population import short
 
 
 def parameter(value, error, reach=1.959963984540054):
@@ -41,7 +40,7 @@ def test_an_interval_of_any_level_is_a_students(degrees, level):
 
 def test_a_share_of_true_values_from_an_array_counts_in_whole_numbers_that_json_writes():
     scored = [Scored("diagnose", "", "inertia", np.float64(3.0), 3.0, parameter(3.0, 0.2))] * 2
-    found = Coverage.of("diagnose", Group("nulls", 2, True), "inertia", scored)
+    found = Coverage.of("diagnose", "inertia", scored, 2, "nulls")
     assert [type(share.count) for share in found.inside] == [int] * len(LEVELS)
 
 
@@ -58,7 +57,7 @@ def test_coverage_of_what_is_as_uncertain_as_it_says_is_nominal(degrees):
         Scored("identify", "", "inertia", 1.0, 1.0, parameter(1.0 + 0.1 * z, 0.1 * s, stats.t.ppf(0.975, degrees)))
         for z, s in zip(rng.standard_normal(4000), error, strict=True)
     ]
-    found = Coverage.of("identify", Group("g", 4100, True), "inertia", scored)
+    found = Coverage.of("identify", "inertia", scored, 4100, "g")
     assert found.told == 4000
     for level, share in zip(LEVELS, found.inside, strict=True):
         low, high = share.bounds
@@ -99,7 +98,7 @@ def test_names_are_held_against_what_is_hidden(given, hidden, false, missed):
 
 
 def runs():
-    plain = drawn(Plan(5, population=Short()).case(0))
+    plain = drawn(Plan(5, population=short).case(0))
     scored = Scored("diagnose", "", "inertia", 1.0, 1.0, parameter(1.05, 0.1))
     right = Named("explained", ("unbalance",))
     return (
