@@ -52,10 +52,7 @@ def fly(stiffness_factor: float = 1.0, release: float = RELEASE) -> Flight:
 
     Args:
         stiffness_factor: of the spring against the model's.
-        release: angle of the arm at which the ball is let go - rad.
-
-    Raises:
-        SimulationError: it diverged or never reached the release.
+        release: angle of the arm at which the ball is let go - rad; SimulationError where it never gets there.
     """
     model = mujoco.MjModel.from_xml_path(str(asset("mjcf", "catapult.xml")))
     data = mujoco.MjData(model)
@@ -136,8 +133,7 @@ def by_orthogonal_solver(matrix: Array, b: Array) -> Array:
 def fit_path(y: Array, z: Array) -> tuple[Array, float]:
     """Coefficients (3,) - 1/m, 1, m - and remaining quadratic error E - m**2 - of points (n,) - m.
 
-    Raises:
-        UndeterminedError: all points at fewer than three places y.
+    Raises UndeterminedError where all points lie at fewer than three places y.
     """
     matrix = columns(y)
     if np.linalg.matrix_rank(matrix) < matrix.shape[1]:

@@ -1,4 +1,7 @@
-"""Beside the tasks, on the embedded example: estimators compared, friction emulated, gear and load torque."""
+"""Beside the tasks, on the embedded example: estimators compared, friction emulated, gear and load torque.
+
+Each raises InputError where the example's rig lacks what the simulation needs.
+"""
 
 from __future__ import annotations
 
@@ -40,11 +43,7 @@ HEAVIER = 6.0
 
 
 def estimators(recordings: LabRecordings) -> TaskResult:
-    """RMS error of the course's estimators and the bench's over recordings of one motion with fresh sensor noise.
-
-    Raises:
-        InputError: the example's rig lacks what the simulation needs.
-    """
+    """RMS error of the course's estimators and the bench's over recordings of one motion with fresh sensor noise."""
     rig = recordings.example
     truth = AxisParameters.from_rig(rig)
     known = np.array([truth.inertia, truth.viscous_friction_coefficient, truth.coulomb_friction])
@@ -101,11 +100,7 @@ def record_each(rig: Rig) -> dict[str, Trace]:
 
 
 def emulated_friction(recordings: LabRecordings) -> TaskResult:
-    """Simulate friction in mechanics and software, identify each as the course does and by the default estimator.
-
-    Raises:
-        InputError: the example's rig lacks what the simulation needs.
-    """
+    """Simulate friction in mechanics and software, identify each as the course does and by the default estimator."""
     rig = recordings.example
     torque_constant(rig)
     truth = AxisParameters.from_rig(rig)
@@ -153,11 +148,7 @@ def geared(rig: Rig) -> Rig:
 
 
 def equation_of_motion(recordings: LabRecordings) -> TaskResult:
-    """Simulate and identify M = J*alpha + K_w*omega + K_0*sgn(omega) + M_load/i, J = J_motor + J_load/i**2.
-
-    Raises:
-        InputError: the example's rig lacks what the simulation needs.
-    """
+    """Simulate and identify M = J*alpha + K_w*omega + K_0*sgn(omega) + M_load/i, J = J_motor + J_load/i**2."""
     axis = geared(recordings.example)
     truth = AxisParameters.from_rig(axis)
     found = {name: parameter.value for name, parameter in identify(simulate(axis).trace, axis).parameters.items()}

@@ -158,11 +158,7 @@ class ColumnLabel:
 
 
 def flights_of_text(content: bytes, where: str) -> FoundFlights:
-    """Flights of a table in text.
-
-    Raises:
-        InputError: no table of points y, z; names line or column.
-    """
+    """Flights of a table in text; raises InputError, with line or column, where it is no table of points y, z."""
     text = text_of(content).splitlines()
     lines = [(k, line.strip("\r\n")) for k, line in enumerate(text, 1) if line.strip(" ;,\t\r")]
     header = next((k for k, (_, line) in enumerate(lines) if not _LETTER.search(_NAN.sub("", line))), None)
@@ -176,15 +172,10 @@ def flights_of_text(content: bytes, where: str) -> FoundFlights:
 def flights_of_mat(content: bytes, where: str) -> FoundFlights:
     """Flights of a MAT file: y and z as vectors or (n, flights) matrices, y1, z1, ..., or matrices of two columns.
 
-    Raises:
-        InputError: a damaged file, or none of these in it.
+    Raises InputError where it is damaged, or holds none of these.
     """
     arrays = {name: value for name, value in load_mat(content, where).items() if not name.startswith("__")}
-    pairs = _pairs({name.lower(): np.asarray(value) for name, value in arrays.items()})
-    points = [np.stack(pair, axis=1) for pair in pairs]
-    if not points:
-        points = [matrix for value in arrays.values() for matrix in _matrices(value)]
-    return _checked(points, where), False
+    return _checked(_matrices(arrays), where), False
 
 
 def _cells(lines: Sequence[tuple[int, str]], where: str) -> tuple[Callable[[str], Cells], Array]:
@@ -273,25 +264,24 @@ def _metres(column: ColumnLabel, values: Array, where: str) -> Array:
     return convert(values, unit, "m")
 
 
-def _pairs(arrays: Mapping[str, np.ndarray]) -> list[tuple[Array, Array]]:
-    """y and z of each flight from variables of these names, numbered or not, one flight a column."""
-    pairs = []
+def _pairs(arrays: Mapping[str, np.ndarray]) -> list[Array]:
+    """y and z (n, 2) of each flight from variables of these names, numbered or not, one flight a column."""
+    pairs: list[Array] = []
     for name, y in arrays.items():
         match = re.fullmatch(r"y_?(\d*)", name)
         z = arrays.get("z" + name[1:]) if match else None
         if z is None or z.shape != y.shape or y.dtype.kind not in "fiu" or not 1 <= y.ndim <= 2:
             continue
         columns = (y, z) if y.ndim == 2 else (y[:, None], z[:, None])
-        pairs += list(zip(*(np.asarray(side, dtype=np.float64).T for side in columns), strict=True))
+        pairs += [*np.stack(columns, axis=-1).astype(np.float64).swapaxes(0, 1)]
     return pairs
 
 
 def _matrices(value: object) -> list[Array]:
     """Matrices of two columns y, z, or three with a time first; in cells, structs or (flights, n, 2) arrays too."""
     if isinstance(value, dict):
-        sides = {name.lower(): np.asarray(side) for name, side in value.items()}
-        pairs = _pairs(sides)
-        return [np.stack(pair, axis=1) for pair in pairs] or [m for side in value.values() for m in _matrices(side)]
+        pairs = _pairs({name.lower(): np.asarray(side) for name, side in value.items()})
+        return pairs or [matrix for side in value.values() for matrix in _matrices(side)]
     if isinstance(value, list) or (isinstance(value, np.ndarray) and (value.dtype == object or value.ndim == 3)):
         return [matrix for part in value for matrix in _matrices(part)]
     if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiu" or value.ndim != 2:

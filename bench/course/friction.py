@@ -37,8 +37,7 @@ def filtered_acceleration(run: LabRun, width: int = WIDTH, delay: int = DELAY) -
 
     Args:
         run: that was recorded.
-        width: differences in a mean.
-        delay: samples by which the mean is set back.
+        width, delay: differences in a mean, and samples by which it is set back.
     """
     mean = np.convolve(run.acceleration[1:], np.full(width, 1.0 / width), mode="valid")
     first = width - delay  # the mean comes with its last difference, that of sample `width`
@@ -56,8 +55,7 @@ def in_step(run: LabRun) -> LabRun:
 def fast_samples(run: LabRun) -> LabRun:
     """Samples with |omega| >= 20 rad/s on t_sync, where alpha_filt belongs to the other signals.
 
-    Raises:
-        UndeterminedError: the recording is too short or too slow.
+    Raises UndeterminedError where the recording is too short or too slow.
     """
     least = f"a run that passes {LEAST_SPEED:g} rad/s in both directions"
     if run.time.size <= WIDTH + 1:

@@ -64,16 +64,10 @@ class Decline:
 
 
 def extrapolated_corner(velocity: Array, current: Array) -> float:
-    """Speed at which the line through the falling current meets the current's top - rad/s.
+    """Speed at which the line through the falling current meets the current's top - rad/s; as `decline` of a run-up.
 
     In the circuit U = R*Iq + Ke*omega at full voltage, current falls linearly with speed, so the line is the physics
     and the corner that of the datasheet's curve. (Torque does not: kT rises as the current falls.)
-
-    Args:
-        velocity, current: (n,) of one run-up - rad/s, A.
-
-    Raises:
-        UndeterminedError: the current does not fall to half while the axis accelerates.
     """
     top, _, slope, offset = _fall(velocity, current)
     return (top - offset) / slope
@@ -134,11 +128,7 @@ def _fall(velocity: Array, current: Array) -> tuple[float, NDArray[np.int64], fl
 
 
 def start(run: LabRun, rig: Rig) -> int:
-    """First sample of full torque, more than 3.0 N*m with the lab's motor.
-
-    Raises:
-        UndeterminedError: the torque never comes near its peak.
-    """
+    """First sample of full torque, more than 3.0 N*m with the lab's motor; UndeterminedError where there is none."""
     least = FULL_SHARE * (rig.motor.peak_torque or 0.0)
     full = run.torque > least
     if not full.any():
@@ -166,11 +156,7 @@ def datasheet_curve(rig: Rig) -> tuple[Array, Array]:
 
 
 def measured_at_speeds(velocity: Array, torque: Array) -> Array:
-    """M_max at SPEEDS - N*m, the median of the samples within HALF_BIN on the way up; NaN where there is none.
-
-    Args:
-        velocity, torque: (n,) of the run-up - rad/s, N*m.
-    """
+    """M_max of a run-up (n,) at SPEEDS - N*m: median within HALF_BIN on the way up; NaN where there is no sample."""
     up = slice(0, int(np.argmax(velocity)) + 1)
     near = (np.abs(velocity[up] - speed / RPM) <= HALF_BIN for speed in SPEEDS)
     return np.array([np.median(torque[up][samples]) if samples.any() else math.nan for samples in near])

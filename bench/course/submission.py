@@ -89,11 +89,7 @@ def form(student: str) -> str:
 
 
 def find_submissions(folder: Path) -> list[Path]:
-    """Filled forms in a folder and its subfolders, in the order of their names.
-
-    Raises:
-        InputError: no such folder, or none in it.
-    """
+    """Filled forms in a folder and those below, in the order of their names; InputError without any."""
     if not folder.is_dir():
         raise InputError(folder, "no such folder", "give the folder of the submissions")
     found = [path for path in sorted(folder.rglob("*")) if path.suffix.lower() in ENDINGS and _is_form(path)]

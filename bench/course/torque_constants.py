@@ -14,11 +14,7 @@ from bench.rig.rig import Rig
 
 
 def datasheet_points(rig: Rig) -> tuple[Array, Array]:
-    """I0 and Imax - A - and the torque constants M0/I0 and Mmax/Imax - N*m/A.
-
-    Raises:
-        InputError: the motor lacks one of the four values.
-    """
+    """I0 and Imax - A - and torque constants M0/I0 and Mmax/Imax - N*m/A; InputError where one value is missing."""
     values = [getattr(rig.motor, name) for name in DATASHEET]
     if None in values:
         raise InputError(f"{rig.source}: motor", "found no kT(Iq)", f"give {', '.join(DATASHEET)}")

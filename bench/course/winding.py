@@ -125,8 +125,7 @@ class WindingRun:
 def run_winding(winding: WindingModel, axis: AxisParameters, demand: Array) -> WindingRun:
     """Let an axis follow a speed - rad/s, (steps,) at every STEP - through its motor's winding.
 
-    Raises:
-        SimulationError: it diverged.
+    Raises SimulationError where it diverges.
     """
     model = _model(winding, axis)
     data = mujoco.MjData(model)
