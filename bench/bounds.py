@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Protocol
+from gzip import GzipFile
+from typing import IO
 
 from bench.errors import InputError
 
@@ -48,11 +49,7 @@ RAISE = "--max-size raises the bound where the file is to be trusted"
 
 @contextmanager
 def bounded(size: str | None) -> Iterator[None]:
-    """Within the block files may have and expand to `size`, e.g. `8 GB`, at any ratio; None changes nothing.
-
-    Raises:
-        InputError: no size.
-    """
+    """Within the block files may have and expand to `size`, e.g. `8 GB`, at any ratio; None changes nothing."""
     if size is None:
         yield
         return
@@ -87,33 +84,18 @@ def require_size(where: object, size: float) -> None:
 def require_expansion(where: object, size: float, stored: int) -> None:
     """Raise InputError naming `where` if a file of `stored` bytes must not expand to `size`."""
     if size > bounds().most(stored):
-        raise too_much(where, stored, f"{shown(size)}")
+        raise too_much(where, stored, shown(size))
 
 
 def require_ratio(where: object, size: float, stored: int) -> None:
     """The same of what is read a piece at a time, and may be as long as it likes."""
     if size > max(bounds().ratio * stored, bounds().small):
-        raise InputError(
-            where,
-            f"expands to {shown(size)} out of {shown(stored)}",
-            f"allowed: {bounds().ratio:g} times its size; {RAISE}",
-        )
+        found = f"expands to {shown(size)} out of {shown(stored)}"
+        raise InputError(where, found, f"allowed: {bounds().ratio:g} times its size; {RAISE}")
 
 
-class Readable(Protocol):
-    """What a file, a gzip or a member of a zip has."""
-
-    def read(self, size: int, /) -> bytes:
-        """At most `size` bytes, none at the end."""
-        ...
-
-
-def read_bounded(expanding: Readable, where: object, stored: int) -> bytes:
-    """All that comes out of what expands `stored` bytes, a piece at a time.
-
-    Raises:
-        InputError: more comes out than may; names `where`.
-    """
+def read_bounded(expanding: IO[bytes] | GzipFile, where: object, stored: int) -> bytes:
+    """All that comes out of what expands `stored` bytes, a piece at a time; InputError where it is too much."""
     most, pieces, size = bounds().most(stored), [], 0
     while piece := expanding.read(_PIECE):
         size += len(piece)

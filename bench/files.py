@@ -25,11 +25,7 @@ _UNDER_WAY = re.compile(r"\.bench-[0-9a-f]{12}-.*", re.DOTALL)
 
 
 def read_bytes(path: str | Path, kind: str) -> bytes:
-    """Content of a regular file.
-
-    Args:
-        path: of it.
-        kind: what it should be, for messages, e.g. `a trace`.
+    """Content of a regular file; `kind` is what it should be, for messages, e.g. `a trace`.
 
     Raises:
         InputError: not there, not a regular file, not readable, or beyond the bound on size.
@@ -126,11 +122,8 @@ def whole(path: str | Path, make_folder: bool = True) -> Iterator[Path]:
     """A temporary path beside `path` that takes its name once the block has ended well, and is gone otherwise.
 
     The file is on the disk before it takes the name. Links are followed; permissions are those of the file that is
-    replaced, else what the umask leaves. What a run that was killed has left beside `path` is removed.
-
-    Args:
-        path: of the output.
-        make_folder: whether its folder is made where there is none.
+    replaced, else what the umask leaves. What a run that was killed has left beside `path` is removed. `make_folder`
+    makes its folder where there is none.
 
     Raises:
         InputError: the place cannot be written to, or is an input.
@@ -152,9 +145,8 @@ def whole(path: str | Path, make_folder: bool = True) -> Iterator[Path]:
             os.close(handle)
             temporary.unlink(missing_ok=True)
     except OSError as error:
-        raise InputError(
-            path, f"cannot be written ({reason(error)})", "name a file in a folder that can be written to"
-        ) from error
+        found = f"cannot be written ({reason(error)})"
+        raise InputError(path, found, "name a file in a folder that can be written to") from error
 
 
 def _begun(target: Path) -> tuple[Path, int]:
@@ -181,33 +173,31 @@ def _remove_left(folder: Path) -> None:
 
     for name in filter(_UNDER_WAY.fullmatch, os.listdir(folder)):  # noqa: PTH208 (a name is enough)
         left = folder / name
-        with suppress(OSError):  # locked, or not ours to remove: it does no harm
-            handle = os.open(left, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                left.unlink()
-            finally:
-                os.close(handle)
+        # locked, or not ours to remove: it does no harm
+        with suppress(OSError), _handle(left, os.O_NOFOLLOW | os.O_NONBLOCK) as handle:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            left.unlink()
 
 
 def _flush(path: Path) -> None:
     """Flush a file, or the names in a folder, to the disk; folders only where the system allows it."""
-    if path.is_dir() and os.name != "posix":
-        return
-    handle = os.open(path, os.O_RDONLY)
+    if os.name == "posix" or not path.is_dir():
+        with _handle(path) as handle:
+            os.fsync(handle)
+
+
+@contextmanager
+def _handle(path: Path, flags: int = 0) -> Iterator[int]:
+    handle = os.open(path, os.O_RDONLY | flags)
     try:
-        os.fsync(handle)
+        yield handle
     finally:
         os.close(handle)
 
 
 @contextmanager
 def held(folder: Path) -> Iterator[None]:
-    """Make a folder and lock it for writing: another run of the bench waits until this one is done.
-
-    Raises:
-        InputError: it cannot be made.
-    """
+    """Make a folder and lock it for writing: another run of the bench waits until this one is done."""
     import fcntl
 
     try:

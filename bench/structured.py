@@ -17,11 +17,7 @@ TOO_MANY_DIGITS = "holds an integer of thousands of digits"
 
 
 def read_toml(path: str | Path, kind: str) -> dict[str, Any]:
-    """Tables of a TOML file.
-
-    Args:
-        path: of it.
-        kind: what it should be, for messages, e.g. `a rig file`.
+    """Tables of a TOML file; `kind` is what it should be, for messages, e.g. `a rig file`.
 
     Raises:
         InputError: it cannot be read, is no TOML, is nested too deep or holds a number of too many digits.

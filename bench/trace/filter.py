@@ -70,22 +70,19 @@ class GaussianFilter:
         return math.sqrt(self.sample_period * power)
 
     def __call__(self, values: Array, *orders: int, lag: float = 0.0) -> Array:
-        """Filtered derivatives of one signal over a stretch without holes.
+        """Filtered derivatives (orders, m) of one signal, at samples margin, margin + stride, ... below n - margin.
 
         Args:
-            values: (n,) samples, n > 2*margin.
+            values: samples (n,) of a stretch without holes, n > 2*margin.
             orders: which derivatives, 0 for the smoothed signal.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag - s.
-
-        Returns:
-            (orders, m), at samples margin, margin + stride, ... below n - margin.
         """
         return self.columns([[(values, order)] for order in orders], lag)
 
     def columns(
         self, columns: Sequence[Column], lag: float | Sequence[float] = 0.0, spectra: Spectra | None = None
     ) -> Array:
-        """Filtered sums of derivatives of several signals; a signal that occurs again is transformed once.
+        """Filtered sums of derivatives of several signals (columns, m); a signal that occurs again is transformed once.
 
         The line between the ends of a signal is filtered by itself, in closed form: a transform takes the stretch for
         one period, and the step from its end back to its start has power at every frequency, of which the filter's
@@ -97,9 +94,6 @@ class GaussianFilter:
             columns: each a sum of terms, samples (n,) and the order of the derivative to be taken of them.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
             spectra: transforms of signals that other filters want, too.
-
-        Returns:
-            (columns, m), at the samples of `__call__`.
         """
         signals = list({id(values): values for column in columns for values, _ in column}.values())
         count = signals[0].size

@@ -44,9 +44,8 @@ def recording_of(
     names = [channel.name for channel in channels]
     for name in units:
         if name not in names:
-            raise InputError(
-                f"{origin}: unit of {name}", f"no such column{nearest(name, names)}", f"found: {', '.join(names)}"
-            )
+            found = f"no such column{nearest(name, names)}"
+            raise InputError(f"{origin}: unit of {name}", found, f"found: {', '.join(names)}")
     channels = [replace(channel, unit=units.get(channel.name, channel.unit)) for channel in channels]
     _require_units(channels, columns)
     timed = "time" in columns or any(signal_of(name) == "time" for name in names)
@@ -55,9 +54,8 @@ def recording_of(
         raise InputError(f"{origin}: time", found, "allowed: one of them")
     if sample_period is not None:
         samples = max((channel.values.size for channel in channels), default=0)
-        channels.append(
-            Channel("time", "s", np.arange(samples, dtype=np.float64) * _period(sample_period, origin), origin)
-        )
+        times = np.arange(samples, dtype=np.float64) * _period(sample_period, origin)
+        channels.append(Channel("time", "s", times, origin))
     return Recording(tuple(channels), FORMAT, origin)
 
 
@@ -93,9 +91,8 @@ def _table(frame: ArrowStream, origin: str) -> pa.Table:
         raise InputError(origin, f"found {type(frame).__name__}", allowed) from error
     except pa.ArrowException as error:
         reason = " ".join(str(error).split())
-        raise InputError(
-            origin, f"the data frame cannot be read ({reason})", "allowed: columns of one type each; drop the others"
-        ) from error
+        found = f"the data frame cannot be read ({reason})"
+        raise InputError(origin, found, "allowed: columns of one type each; drop the others") from error
 
 
 def _require_units(channels: Sequence[Channel], columns: Mapping[str, str]) -> None:
@@ -103,8 +100,9 @@ def _require_units(channels: Sequence[Channel], columns: Mapping[str, str]) -> N
     names = {channel.name for channel in channels}
     for channel in channels:
         signal = signal_of(channel.name)
-        needed = signal is not None and signal not in columns and (signal == channel.name or signal not in names)
-        if signal is not None and needed and channel.unit is None:
+        if signal is None or channel.unit is not None or signal in columns:
+            continue
+        if signal == channel.name or signal not in names:
             usual = "s" if signal == "time" else SI_UNITS[signal][0]
             allowed = f'allowed: units={{"{channel.name}": "{usual}"}} or another unit of it'
             raise InputError(f"{channel.origin}: {channel.name}", "has no unit", allowed)

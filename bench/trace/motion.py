@@ -108,7 +108,7 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
 
     Args:
         trace: the recording.
-        effort: (n,) torque or force over it.
+        effort: torque or force over it - (n,).
         cutoff: half-power frequency to take instead of the chosen one - Hz.
 
     Raises:
@@ -150,13 +150,7 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
 
 
 def _rounded(stretches: Sequence[Array], smooth: GaussianFilter, noise: float) -> tuple[Array, Array] | None:
-    """Spectrum of a source that is reported in steps; None where they are lost in its noise, which makes them white.
-
-    Args:
-        stretches: of the source, its SI unit (n,).
-        smooth: the recording's filter.
-        noise: white noise of the source - its SI unit.
-    """
+    """Spectrum of a source that is reported in steps; None where they are lost in its noise, which makes them white."""
     step = common_step(np.concatenate(stretches), noise)
     if not step:
         return None
@@ -197,13 +191,9 @@ def known_sign(speed: Array, threshold: float) -> Array:
 
 
 def _least_cutoff(signs: Sequence[Array], sample_period: float) -> float:
-    """Lowest cut-off that still leaves KEPT of the rows - Hz.
+    """Lowest cut-off that still leaves KEPT of the rows, by the signs of the speed in each stretch - Hz.
 
     A filter of width s loses 3.1*s at both ends of each run of one sign, where its reach spans a reversal.
-
-    Args:
-        signs: of the speed, stretch by stretch.
-        sample_period: s.
     """
     runs = np.concatenate([_runs(sign) for sign in signs]) * sample_period
     widths = LEAST_WIDTH * sample_period * 1.1 ** np.arange(80)
@@ -223,12 +213,8 @@ def _coherence(pairs: Sequence[tuple[Array, Array]], sample_period: float, order
 
     At least sixteen half-overlapping windows, as the estimate's bias is about one over their number; none spans a hole,
     so no longer than the stretches that hold most of the samples. As `scipy.signal.coherence` has it (Hann windows,
-    each less its mean); importing that costs 0.3 s.
-
-    Args:
-        pairs: source and effort, stretch by stretch.
-        sample_period: s.
-        order: of the source's derivative that is acceleration.
+    each less its mean); importing that costs 0.3 s. Pairs are source and effort of a stretch, the order is that of the
+    source's derivative that is acceleration.
     """
     sizes = np.sort([effort.size - order for _, effort in pairs])[::-1]
     usual = int(sizes[np.searchsorted(np.cumsum(sizes), 0.5 * sizes.sum())])
@@ -300,10 +286,10 @@ def _filtered(trace: Trace, effort: Array, conditioning: Conditioning, block: sl
     torque = effort[block]
     made = ((source, order), (source, order + 1), (torque, 0), (torque, 1), (sign, 0))
     rows = smooth.columns([[term] for term in made])
-    velocity, acceleration, torque, rate, direction = rows
+    direction = rows[-1]
     direction[np.abs(direction) < 1.0 - ONE_SIGN] = 0.0
     time = trace.time[block][smooth.margin : (block.stop - block.start) - smooth.margin : smooth.stride]
-    return time, velocity, acceleration, torque, rate, direction
+    return time, *rows
 
 
 def known_column(trace: Trace, part: slice) -> Column:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import pyarrow as pa
@@ -31,9 +32,7 @@ JOINT = 0.01
 
 
 def stream(
-    path: str | Path,
-    columns: Mapping[str, str] | ReadingOptions | None = None,
-    chunk: int = CHUNK,
+    path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = None, chunk: int = CHUNK
 ) -> Iterator[Trace]:
     """Consecutive traces of at most `chunk` samples (one more at the end), which together are the recording.
 
@@ -41,44 +40,28 @@ def stream(
     that are signals are read, chunk by chunk; other formats are read whole and cut. In Parquet the time base is found
     for each chunk, so a recording with jitter is interpolated onto a regular base in each.
 
-    Args:
-        path: file of any format.
-        columns: signal -> column name with unit, or all that a rig's `[trace]` tells, as for `read`.
-        chunk: samples, at least 2.
-
-    Raises:
-        InputError: as `read` does, while iterating.
+    Path and columns are as for `read`, which raises the same, here while iterating; a chunk has at least 2 samples.
     """
     how = reading_options(columns)
-    if _is_parquet(Path(path)) and how.sample_period is None and not _counts_from_first_moment(str(path)):
+    if how.sample_period is None and _is_parquet(Path(path)):
         return _parquet(str(path), how, chunk)
     return cut(read(path, columns), chunk)
 
 
 def _is_parquet(path: Path) -> bool:
+    """Whether a file is Parquet without timestamps, which count from the first one, unknown to later chunks."""
     try:
         if not path.is_file() or readable(path) != str(path):  # a pipe waits for its writer; Arrow opens UTF-8 names
             return False
         with path.open("rb") as file:
-            return file.read(len(MAGIC)) == MAGIC
-    except (OSError, ValueError):
+            parquet = file.read(len(MAGIC)) == MAGIC
+        return parquet and not any(is_moment(field.type) for field in pq.read_schema(str(path)))
+    except (*DAMAGE, ValueError):
         return False  # `read` says what is wrong with it
 
 
-def _counts_from_first_moment(path: str) -> bool:
-    """Whether a Parquet file holds timestamps, which count from the first one, unknown to later chunks."""
-    try:
-        return any(is_moment(field.type) for field in pq.read_schema(path))
-    except DAMAGE:
-        return True  # `read` says what is wrong with it
-
-
 def _continues(last: Trace | None, time: Array, period: float, origin: str) -> bool:
-    """Whether samples follow the last chunk without a hole.
-
-    Raises:
-        InputError: they begin before it has ended.
-    """
+    """Whether samples follow the last chunk without a hole; InputError where they begin before it has ended."""
     if last is None:
         return False
     step = float(time[0] - last.time[-1])
@@ -90,15 +73,13 @@ def _continues(last: Trace | None, time: Array, period: float, origin: str) -> b
 
 def cut(trace: Trace, chunk: int = CHUNK) -> Iterator[Trace]:
     """The same for a recording in memory; see `stream`."""
-    start, last = 0, None
-    while start < len(trace):
-        stop = start + chunk if len(trace) - start > chunk + 1 else len(trace)
+    edges, last = [*range(0, max(len(trace) - 1, 1), chunk), len(trace)], None
+    for start, stop in pairwise(edges):
         time = trace.time[start:stop]
         part = {name: values[start:stop] for name, values in trace.signals.items()}
         follows = _continues(last, time, trace.sample_period, trace.origin)
         last = replace(trace, time=time, signals=part, continues=follows)
         yield last
-        start = stop
 
 
 def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:

@@ -40,12 +40,7 @@ HALF = 0.45
 
 @dataclass(frozen=True)
 class Wraps:
-    """Wraps of a position that were undone.
-
-    Attributes:
-        period: of the position - rad (m).
-        count: number of jumps.
-    """
+    """Wraps of a position that were undone: its period - rad (m) - and the number of jumps."""
 
     period: float
     count: int
@@ -70,18 +65,14 @@ def jumps(position: Array, time: Array) -> NDArray[np.intp]:
     near = passed <= LONGEST_STEP * float(np.median(passed))
     far &= near
     others = step[near & ~far]
-    if not far.any() or not others.any() or step[far].min() < ISOLATED * others.max():
-        return none
-    return np.flatnonzero(far)
+    alone = far.any() and others.any() and step[far].min() >= ISOLATED * others.max()
+    return np.flatnonzero(far) if alone else none
 
 
 def period_of(position: Array, places: NDArray[np.intp], count: float = 0.0) -> float | None:
-    """Period by which a position (n,) jumps at `places` - rad (m); None where the jumps are not of one period.
+    """Period by which a position (n,) - rad (m) - jumps at `places`; None where the jumps are not of one period.
 
-    Args:
-        position: rad (m).
-        places: (m,) steps that are jumps.
-        count: what one count of the file is worth - rad (m); 0 where it is not known.
+    A count of the file is worth `count` - rad (m), 0 where it is not known.
     """
     step = np.diff(position)
     usual = step.copy()
@@ -160,9 +151,7 @@ def _turns(
     if not doubtful.any():
         return turns
     if speed is None:
-        raise InputError(
-            place(int(np.argmax(doubtful)) + 1),
-            f"the position moves by half of its period {period:.6g} from one sample to the next",
-            "allowed: less, or a recorded velocity; record faster",
-        )
+        found = f"the position moves by half of its period {period:.6g} from one sample to the next"
+        allowed = "allowed: less, or a recorded velocity; record faster"
+        raise InputError(place(int(np.argmax(doubtful)) + 1), found, allowed)
     return np.rint((steps - 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)) / period)

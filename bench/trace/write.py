@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import IO
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -41,12 +42,12 @@ def write(trace: Trace, path: str | Path, units: Mapping[str, str] | None = None
     labels = {"time": "s", **trace.units}
     if trace.axis_kind.turns:
         labels |= {name: unit for name, unit in defaults.items() if same_dimension(unit, labels[name])}
-    labels |= _checked(units or {}, labels, path)
-    columns = {f"time [{labels['time']}]": _in_unit("time", trace.time, labels["time"])}
-    for name, values in trace.signals.items():
-        columns[f"{name} [{labels[name]}]"] = _in_unit(name, values, labels[name])
-    with whole(path) as temporary:
-        WRITERS[ending](pa.table(columns), temporary)
+    _check(units or {}, labels, path)
+    labels |= units or {}
+    signals = {"time": trace.time, **trace.signals}
+    columns = {f"{name} [{labels[name]}]": _in_unit(name, values, labels[name]) for name, values in signals.items()}
+    with whole(path) as temporary, temporary.open("wb") as file:
+        WRITERS[ending](pa.table(columns), file)
 
 
 def _in_unit(name: str, values: Array, unit: str) -> Array:
@@ -54,49 +55,30 @@ def _in_unit(name: str, values: Array, unit: str) -> Array:
     return values if scale.factor == 1.0 and not scale.offset else (values - scale.offset) / scale.factor
 
 
-def _checked(units: Mapping[str, str], labels: Mapping[str, str], path: Path) -> dict[str, str]:
-    checked = {}
+def _check(units: Mapping[str, str], labels: Mapping[str, str], path: Path) -> None:
     for name, unit in units.items():
+        where = f"{path}: unit of {name}"
         if name not in labels:
-            raise InputError(
-                f"{path}: unit of {name}", "the trace holds no such signal", f"allowed: {', '.join(labels)}"
-            )
-        scale = scale_in(name, unit, f"{path}: unit of {name}")
-        if scale.unit != labels[name]:
-            raise InputError(f"{path}: unit of {name}", f"found '{unit}'", f"allowed: a unit of {labels[name]}")
-        checked[name] = unit
-    return checked
+            raise InputError(where, "the trace holds no such signal", f"allowed: {', '.join(labels)}")
+        if scale_in(name, unit, where).unit != labels[name]:
+            raise InputError(where, f"found '{unit}'", f"allowed: a unit of {labels[name]}")
 
 
-def _csv(table: pa.Table, path: Path) -> None:
-    with path.open("wb") as file:
-        file.write(_header(table))
-        csv.write_csv(table, file, csv.WriteOptions(include_header=False))
+def _csv(table: pa.Table, file: IO[bytes] | gzip.GzipFile) -> None:
+    file.write((",".join(table.column_names) + "\n").encode())
+    csv.write_csv(table, file, csv.WriteOptions(include_header=False))
 
 
-def _csv_gz(table: pa.Table, path: Path) -> None:
+def _csv_gz(table: pa.Table, file: IO[bytes]) -> None:
     # no name and no time inside, so that the same trace gives the same bytes
-    with path.open("wb") as raw, gzip.GzipFile("", "wb", fileobj=raw, mtime=0) as file:
-        file.write(_header(table))
-        csv.write_csv(table, file, csv.WriteOptions(include_header=False))
+    with gzip.GzipFile("", "wb", fileobj=file, mtime=0) as packed:
+        _csv(table, packed)
 
 
-def _header(table: pa.Table) -> bytes:
-    return (",".join(table.column_names) + "\n").encode()
-
-
-def _parquet(table: pa.Table, path: Path) -> None:
-    with path.open("wb") as file:  # Arrow itself opens no name that is not UTF-8
-        pq.write_table(table, file)
-
-
-def _machine_expert(table: pa.Table, path: Path) -> None:
-    path.write_bytes(machine_expert_trace(table))
-
-
-WRITERS: dict[str, Callable[[pa.Table, Path], None]] = {
+#: Files are opened first: Arrow itself opens no name that is not UTF-8.
+WRITERS: dict[str, Callable[[pa.Table, IO[bytes]], object]] = {
     ".csv": _csv,
     ".csv.gz": _csv_gz,
-    ".parquet": _parquet,
-    ".trace": _machine_expert,
+    ".parquet": pq.write_table,
+    ".trace": lambda table, file: file.write(machine_expert_trace(table)),
 }
