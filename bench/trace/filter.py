@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
-import scipy.fft
 from numpy.typing import NDArray
 
 from bench.arrays import Array
@@ -118,7 +118,7 @@ class GaussianFilter:
                     slope += 0.0 if order else rise
             if late:
                 total *= 1.0 + 1j * omega * late
-            row[:] = np.asarray(scipy.fft.irfft(total, size // self.stride))[first:last]
+            row[:] = np.fft.irfft(total, size // self.stride)[first:last]
             row += constant + slope * at
         return found
 
@@ -136,11 +136,15 @@ class Spectra:
         """
         if (id(values), size) not in self._known:
             straight = np.linspace(values[0], values[-1], values.size)
-            self._known[id(values), size] = values, np.asarray(scipy.fft.rfft(values - straight, size))
+            self._known[id(values), size] = values, np.fft.rfft(values - straight, size)
         return self._known[id(values), size][1]
 
 
+@cache
 def fast_length(length: int) -> int:
-    """Shortest length for a fast transform that holds `length` samples."""
-    fast = scipy.fft.next_fast_len(length, real=True)
-    return length if fast is None else fast
+    """Shortest product of powers of 2, 3 and 5 that is not below a length, as `scipy.fft.next_fast_len`.
+
+    Its import takes 0.15 s; NumPy's transforms take as long as SciPy's.
+    """
+    odd = (3**i * 5**j for i in range(length.bit_length()) for j in range(length.bit_length() // 2 + 1))
+    return min(m << (-(-length // m) - 1).bit_length() for m in odd)

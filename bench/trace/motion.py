@@ -9,7 +9,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.fft
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
@@ -232,7 +231,7 @@ def _spectra(values: NDArray[np.float64], length: int) -> NDArray[np.complex128]
     """Spectra of half-overlapping Hann windows of a signal (n,), each less its mean - (windows, length//2 + 1)."""
     windows = np.lib.stride_tricks.sliding_window_view(values, length)[:: length - length // 2]
     taper = np.hanning(length + 1)[:-1]
-    return np.asarray(scipy.fft.rfft((windows - windows.mean(axis=1, keepdims=True)) * taper))
+    return np.fft.rfft((windows - windows.mean(axis=1, keepdims=True)) * taper)
 
 
 @dataclass(frozen=True)
