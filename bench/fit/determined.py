@@ -87,15 +87,13 @@ def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, Undetermi
 
 def _not_excited(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
     """Why each term is not determined of whose column too little is independent of noise and of the others."""
-    terms = (INERTIA, VISCOUS, COULOMB)
-    shares = dict(zip(terms, equations.independent_shares(terms).tolist(), strict=True))
     return {
         term: UndeterminedError(
             kind.in_words(term),
             f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise",
             RECORD[term],
         )
-        for term, share in shares.items()
+        for term, share in equations.shares_of_axis.items()
         if not share >= INDEPENDENT_SHARE
     }
 

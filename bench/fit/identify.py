@@ -148,13 +148,15 @@ def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
     excesses = {term: _excess(members, kind, term) for term in terms}
     joint = Joint.of(members, list(excesses.values()))
     parameters = {}
-    for term, value, error, reach in zip(terms, *(row.tolist() for row in joint.numbers), strict=True):
+    for term, *numbers in zip(terms, joint.theta, joint.errors, joint.reaches, strict=True):
+        value, error, reach = map(float, numbers)
         tolerance = float(np.mean([member.tolerances[kind.parameter(term)] for member in members]))
         interval = (value - reach, value + reach)
         found = Parameter(value, kind.parameter_unit(term, unit), error, interval)
         parameters[kind.parameter(term)] = found.widened(tolerance)
     filters = [one.rows.conditioning.filter for one in gathered]
     left = joint.left(members)
+    variation = float(whole.power.sum()) - float(whole.moment[:, whole.place(OFFSET)].sum()) ** 2 / whole.count
     estimate = Estimate(
         estimator="regression",
         parameters=parameters | load_inertia(parameters, rig),
@@ -170,7 +172,7 @@ def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
             *_offset(gathered, members, rig),
             *negative(parameters, kind),
         ),
-        explained=1.0 - left / max(_variation(whole), 1e-300),
+        explained=1.0 - left / max(variation, 1e-300),
         checks=joined([one.checks for one in gathered]),
         recordings=tuple(member.alone for member in members),
         between=_between(members, kind),
@@ -228,7 +230,7 @@ class Member:
         except UndeterminedError as refusal:
             reason = str(refusal)
         known = {} if found is None else found.parameters
-        kept = {name: one for name, one in known.items() if name != kind.inertia or not _holds_zero(one)}
+        kept = {name: one for name, one in known.items() if name != kind.inertia or one.ci95[0] * one.ci95[1] > 0.0}
         return cls(
             gathered,
             terms,
@@ -321,11 +323,6 @@ def _along(gathered: Gathered, kind: AxisKind) -> Parameter | None:
     return alone.widened(bare.of(COULOMB, bare.misfit), gathered.doubt[COULOMB])
 
 
-def _holds_zero(found: Parameter) -> bool:
-    low, high = found.ci95
-    return low <= 0.0 <= high
-
-
 @dataclass(frozen=True, eq=False)
 class Joint:
     """Joint estimate of the shared terms.
@@ -339,11 +336,6 @@ class Joint:
     theta: Array
     errors: Array
     reaches: Array
-
-    @property
-    def numbers(self) -> tuple[Array, Array, Array]:
-        """Values, standard errors and half widths (s,) each."""
-        return self.theta, self.errors, self.reaches
 
     @classmethod
     def of(cls, members: Sequence[Member], excesses: Sequence[Excess]) -> Joint:
@@ -365,11 +357,6 @@ class Joint:
         """Sum of squared residuals of all recordings, each with its own shift and hum - the effort's unit squared."""
         away = [self.theta - member.theta for member in members]
         return sum(m.solution.power + float(d @ m.matrix @ d) for m, d in zip(members, away, strict=True))
-
-
-def _variation(whole: NormalEquations) -> float:
-    """Sum of squares of the effort less its mean, over all recordings - the effort's unit squared."""
-    return float(whole.power.sum()) - float(whole.moment[:, whole.place(OFFSET)].sum()) ** 2 / whole.count
 
 
 def _require_distinct(gathered: Sequence[Gathered]) -> None:
@@ -440,7 +427,8 @@ def _offset(gathered: Sequence[Gathered], members: Sequence[Member], rig: Rig) -
     kind, asked = rig.axis_kind, rig.model_copy(update={"offset": True})
     members = [Member.of(one, asked) for one in gathered]
     excesses = [_excess(members, kind, term) for term in members[0].terms]
-    value, _, reach = (float(row[-1]) for row in Joint.of(members, excesses).numbers)
+    joint = Joint.of(members, excesses)
+    value, reach = float(joint.theta[-1]), float(joint.reaches[-1])
     if abs(value) > reach:
         unit = kind.parameter_unit(OFFSET, gathered[0].effort_unit)
         yield (

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, symmetric_inverse
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 
 #: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
 BLOCK_WIDTHS = 8.0
@@ -102,6 +103,12 @@ class NormalEquations:
         matrix = self._scaled[np.ix_(places, places)]
         beside, between = matrix[others, at[:, None]], matrix[others[:, :, None], others[:, None, :]]
         return np.diag(matrix) - np.einsum("ki,kij,kj->k", beside, symmetric_inverse(between, DEPENDENT), beside)
+
+    @cached_property
+    def shares_of_axis(self) -> dict[str, float]:
+        """Independent shares of J, K_w and K_0 by their terms."""
+        terms = INERTIA, VISCOUS, COULOMB
+        return dict(zip(terms, self.independent_shares(terms).tolist(), strict=True))
 
     def knowing(self, name: Name, value: float, weight: float) -> NormalEquations:
         """The same equations and, as if it had been measured, about which value one coefficient has beforehand.
@@ -206,6 +213,8 @@ def block_edges(time: Array, width: float) -> NDArray[np.int64]:
 
 def join(parts: Sequence[NormalEquations]) -> NormalEquations:
     """Normal equations of a recording from those of its stretches, in order; all of the same columns."""
+    if len(parts) == 1:
+        return parts[0]
     sums = {
         name: np.concatenate([getattr(part, name) for part in parts]) for name in ("gram", "moment", "power", "rows")
     }

@@ -98,8 +98,8 @@ class _Tracking:
     def polished(self, start: Estimate) -> Estimate:
         """The estimate with the least velocity gap, searched from `start`."""
         first = self._theta(start)
-        lower = np.where(np.array(self.columns) == OFFSET, -np.inf, 0.0)
-        lower[0] = 0.1 * first[0]
+        least = {INERTIA: 0.1 * start[self.rig.axis_kind.inertia].value, OFFSET: -np.inf}
+        lower = np.array([least.get(column, 0.0) for column in self.columns])
         found = scipy.optimize.least_squares(
             lambda theta: self._difference(theta, start),
             np.maximum(first, lower),
@@ -120,14 +120,14 @@ class _Tracking:
         return np.array([estimate[name].value for name in self.names])
 
     def _difference(self, theta: Array, start: Estimate) -> Array:
+        values, kind = dict(zip(self.columns, theta.tolist(), strict=True)), self.rig.axis_kind
         axis = AxisParameters(
-            inertia=theta[0],
-            viscous_friction_coefficient=max(theta[1], 0.0),
-            coulomb_friction=max(theta[2], 0.0),
-            load_torque=theta[3] if theta.size > 3 else 0.0,
-            kind=self.rig.axis_kind,
+            inertia=values[INERTIA],
+            viscous_friction_coefficient=max(values[VISCOUS], 0.0),
+            coulomb_friction=max(values[COULOMB], 0.0),
+            load_torque=values.get(OFFSET, 0.0),
+            kind=kind,
         )
-        held = SoftTracking(
-            AxisModel(axis), self.trace, self.effort, start["misalignment"].value, self._theta(start)[0]
-        )
+        late, inertia = start["misalignment"].value, start[kind.inertia].value
+        held = SoftTracking(AxisModel(axis), self.trace, self.effort, late, inertia)
         return track(held).velocity - self.velocity

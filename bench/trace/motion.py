@@ -196,7 +196,9 @@ def _least_cutoff(signs: Sequence[Array], sample_period: float) -> float:
     """
     runs = np.concatenate([_runs(sign) for sign in signs]) * sample_period
     widths = LEAST_WIDTH * sample_period * 1.1 ** np.arange(80)
-    kept = np.array([np.sum(np.maximum(runs - 2.0 * SIGN_REACH * width, 0.0)) for width in widths])
+    runs, lost = np.sort(runs), 2.0 * SIGN_REACH * widths
+    longer = np.searchsorted(runs, lost)
+    kept = np.append(np.cumsum(runs[::-1])[::-1], 0.0)[longer] - lost * (runs.size - longer)
     widest = float(widths[np.flatnonzero(kept >= KEPT * kept[0])[-1]])
     return GaussianFilter(widest, sample_period).cutoff
 
