@@ -40,9 +40,7 @@ def embedded() -> dict[str, Any]:
 
 def simulated_with(rig: Rig, **truth: float | str) -> Rig:
     """The same axis with other true values, names as in `[simulation]`, SI; InputError where it cannot be simulated."""
-    if rig.simulation is None:
-        raise InputError(f"{rig.source}: simulation", "missing", "a simulated axis needs a table [simulation]")
-    return rig.model_copy(update={"simulation": rig.simulation.model_copy(update=truth)})
+    return rig.model_copy(update={"simulation": rig.simulated.model_copy(update=truth)})
 
 
 def without_friction(rig: Rig) -> Rig:

@@ -103,8 +103,8 @@ def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
         motion = Sampled(references.time, references.velocity)
     else:
         motion = motion_of(recording)
-    constant, simulation, period = rig.motor.torque_per_ampere, rig.simulation, cascade.control_period
-    assert constant is not None and simulation is not None  # `require` has seen to it
+    constant, simulation, period = rig.motor.torque_per_ampere, rig.simulated, cascade.control_period
+    assert constant is not None  # `require` has seen to it
     sensors = Sensors(
         sample_period=max(1, round(simulation.sample_period / period)) * period,
         encoder_resolution=simulation.encoder_resolution,
