@@ -138,11 +138,7 @@ class GradedClass:
 
 
 def grade_class(submissions: Path, truth: Path) -> GradedClass:
-    """Grade every submission of a folder.
-
-    Args:
-        submissions: folder.
-        truth: sealed file.
+    """Grade every submission of a folder by a sealed truth.
 
     Raises:
         InputError: no submissions, no truth, or two submissions of one student.
@@ -188,11 +184,7 @@ def read_truth_of_class(path: Path) -> Mapping[str, Any]:
 
 
 def grade(submission: Submission, known: Mapping[str, Any]) -> GradedStudent:
-    """Grade every quantity of the form.
-
-    Args:
-        submission: of one student.
-        known: of the same student, from `read_truth_of_class`.
+    """Grade every quantity of a student's form by what `read_truth_of_class` knows.
 
     Raises:
         InputError: the submission's student is not in it; names those that are.

@@ -115,16 +115,13 @@ def record_class(folder: Path, students: int, seed: int, progress: Progress = la
     """Simulate every student's axis and write folders `student-01`, ..., and the truth beside the folder of them all.
 
     Args:
-        folder: of the class, new or empty.
-        students: how many.
+        folder: of the class, new or empty; InputError where it is not.
+        students: how many; InputError below one.
         seed: of everything drawn.
         progress: called with the share done.
 
     Returns:
         The students' folders, and the file of the truth.
-
-    Raises:
-        InputError: fewer than one student, or a folder that is not empty.
     """
     if students < 1:
         raise InputError("--students", f"found {students}", "allowed: 1 or more")

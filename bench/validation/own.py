@@ -84,13 +84,9 @@ def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
     What the rig does not say of the simulated axis and its sensors, in `[simulation]`, is taken from the recording.
 
     Args:
-        rig: with `[drive]`.
+        rig: with `[drive]`; InputError where it or the recording lack something.
         profile: name of a motion (`bench.plant.profiles`), or what the recording is called.
-        recording: of the motion; None to take the named one.
-
-    Raises:
-        InputError: rig or recording lack something.
-        UndeterminedError: what the rig does not say, the recording does not tell.
+        recording: of the motion; None to take the named one. UndeterminedError where it does not tell what it has to.
     """
     if rig.load is not None and rig.load.eccentric_mass is not None:
         raise InputError(f"{rig.source}: load.eccentric_mass", "found one", "allowed: none; the plants do not swing it")
@@ -137,11 +133,7 @@ def _known(time: Array, values: Array) -> tuple[Array, Array]:
 
 
 def as_recorded(rig: Rig, recording: Trace) -> Simulation:
-    """What a recording tells of an axis that the rig says nothing of: inertia and friction.
-
-    Raises:
-        UndeterminedError: it does not tell one of them.
-    """
+    """Inertia and friction of an axis as a recording tells them; UndeterminedError where it does not."""
     found = identify(recording, rig)
     inertia, viscous, coulomb = (found[rig.axis_kind.parameter(term)].value for term in (INERTIA, VISCOUS, COULOMB))
     values = {

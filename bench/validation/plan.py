@@ -39,13 +39,10 @@ class Case:
     Attributes:
         index: of the run.
         plant: that moves it.
-        axis: true values.
-        rig: what is known of the axis.
-        motion: that its drive is told to make.
-        motion_name: of its kind.
+        axis, rig: its true values, and what is known of it.
+        motion, motion_name: that its drive is told to make, and its kind.
         sensors: that record it.
-        effects: hidden in it.
-        severity: of these, as drawn.
+        effects, severity: hidden in it, as strong as was drawn.
     """
 
     index: int
