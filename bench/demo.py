@@ -26,27 +26,22 @@ def demo(out: Path, progress: Callable[[float], None]) -> tuple[Document, list[P
     Raises:
         InputError: the folder cannot be written to.
     """
+    rig, trace = load_rig(asset("data", "rigs", "sh30701p.toml")), out / "trace.csv.gz"
     with held(out):
-        return _demo(out, progress)
-
-
-def _demo(out: Path, progress: Callable[[float], None]) -> tuple[Document, list[Path]]:
-    rig = load_rig(asset("data", "rigs", "sh30701p.toml"))
-    simulated = simulate(rig, progress=lambda share: progress(0.6 * share))
-    trace = out / "trace.csv.gz"
-    write(simulated.trace, trace)
-    truth = write_truth(trace, simulated.truth)
-    progress(0.8)
-    estimate = identify(read(trace), rig)
-    axis = simulated.truth.parameters
-    known = {
-        "moment_of_inertia": axis.inertia,
-        "viscous_friction_coefficient": axis.viscous_friction_coefficient,
-        "coulomb_friction_torque": axis.coulomb_friction,
-        "load_moment_of_inertia": axis.inertia - axis.motor_inertia,
-    }
-    title, motions = f"{rig.name}, simulated in MuJoCo", moved([trace], rig, estimate)
-    found = identification(title, rig.axis_kind, estimate, motions=motions, truth=known)
-    files = write_document(out, found)
+        simulated = simulate(rig, progress=lambda share: progress(0.6 * share))
+        write(simulated.trace, trace)
+        truth = write_truth(trace, simulated.truth)
+        progress(0.8)
+        estimate = identify(read(trace), rig)
+        axis = simulated.truth.parameters
+        known = {
+            "moment_of_inertia": axis.inertia,
+            "viscous_friction_coefficient": axis.viscous_friction_coefficient,
+            "coulomb_friction_torque": axis.coulomb_friction,
+            "load_moment_of_inertia": axis.inertia - axis.motor_inertia,
+        }
+        title, motions = f"{rig.name}, simulated in MuJoCo", moved([trace], rig, estimate)
+        found = identification(title, rig.axis_kind, estimate, motions=motions, truth=known)
+        files = write_document(out, found)
     progress(1.0)
     return found, [trace, truth, *files]

@@ -118,20 +118,18 @@ def require_writable(path: str | Path) -> Path:
 
 
 @contextmanager
-def whole(path: str | Path, make_folder: bool = True) -> Iterator[Path]:
+def whole(path: str | Path) -> Iterator[Path]:
     """A temporary path beside `path` that takes its name once the block has ended well, and is gone otherwise.
 
     The file is on the disk before it takes the name. Links are followed; permissions are those of the file that is
-    replaced, else what the umask leaves. What a run that was killed has left beside `path` is removed. `make_folder`
-    makes its folder where there is none.
+    replaced, else what the umask leaves. Its folder is made; what a run that was killed has left in it is removed.
 
     Raises:
         InputError: the place cannot be written to, or is an input.
     """
     target = require_writable(path)
     try:
-        if make_folder:
-            target.parent.mkdir(parents=True, exist_ok=True)
+        target.parent.mkdir(parents=True, exist_ok=True)
         _remove_left(target.parent)
         temporary, handle = _begun(target)
         try:
@@ -218,7 +216,7 @@ def held(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
-def write_text(path: str | Path, text: str, make_folder: bool = True) -> None:
+def write_text(path: str | Path, text: str) -> None:
     """Write a text file, UTF-8, whole or not at all; what no text may hold (half a surrogate) is written as \\udc80."""
-    with whole(path, make_folder) as temporary:
+    with whole(path) as temporary:
         temporary.write_bytes(text.encode("utf-8", errors="backslashreplace"))

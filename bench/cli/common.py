@@ -125,7 +125,7 @@ def write_json(path: Path, text: str) -> None:
     if path == STDOUT:
         typer.echo(text)
     else:
-        write_text(path, text + "\n", make_folder=False)
+        write_text(path, text + "\n")
 
 
 def write_page(path: Path | None, document: Document) -> None:
@@ -168,13 +168,7 @@ def refusal_as_json(path: Path | None, schema: str) -> Iterator[None]:
 
 
 def tell(document: Document, files: Iterable[Path | None] = (), json: Path | None = None) -> None:
-    """Show a result and list what was written of it, unless standard output is JSON; then warn.
-
-    Args:
-        document: of the result.
-        files: that were written; None is skipped.
-        json: where the result went as JSON.
-    """
+    """Show a result and list the files that were written of it, unless standard output is its `json`; then warn."""
     if json != STDOUT:
         from bench.report.terminal import show
 
@@ -210,13 +204,7 @@ def warn(warnings: Iterable[str]) -> None:
 
 @dataclass(frozen=True)
 class Subject:
-    """What a recording is of.
-
-    Attributes:
-        rig: of the axis.
-        read: how its recordings are read whole.
-        robot: whether it is a joint of one.
-    """
+    """What a recording is of: an axis or a robot's joint, and how its recordings are read whole."""
 
     rig: bench.Rig
     read: Callable[[Path], bench.Trace]

@@ -12,7 +12,7 @@ from typing import Any
 from bench.baseline.check import Checked
 from bench.baseline.model import RESPONSE_TORQUE
 from bench.baseline.state import GAPS, NamedHere, RemainingGap
-from bench.comparison.difference import CHANGED, SAME, UNDECIDED, Comparison, Measured
+from bench.comparison.difference import CHANGED, SAME, UNDECIDED, Comparison
 from bench.names import short, words
 from bench.report import document as doc
 from bench.report.continuous_integration import Finding
@@ -153,12 +153,8 @@ def _values(effect: NamedHere) -> str:
     """Quantities of an effect, without angles, whose zero is arbitrary, and without those in its label."""
     counted = {slot.quantity.name for slot, _ in effect.whole}
     names = [q.name for q in effect.effect.quantities if not q.angle and q.name not in counted]
-    return ", ".join(f"{name.replace('_', ' ')} {with_unit(effect.quantities[name])}" for name in names)
-
-
-def with_unit(found: Measured) -> str:
-    """A value with its unit, for display."""
-    return f"{formatted(found.value, found.unit)}{displayed_unit(found.unit)}"
+    values = ((name, effect.quantities[name]) for name in names)
+    return ", ".join(f"{words(name)} {formatted(of.value, of.unit)}{displayed_unit(of.unit)}" for name, of in values)
 
 
 def displayed_unit(unit: str) -> str:

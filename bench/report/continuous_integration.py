@@ -35,11 +35,8 @@ class Finding:
     """What was found of one quantity.
 
     Attributes:
-        name: of the quantity.
-        result: `same`, `changed` or `undecided`.
-        sentence: the same in words.
-        values: in the baseline, now, and the margin; None where there is none - unit.
-        unit: of these.
+        result, sentence: `same`, `changed` or `undecided`, and the same in words.
+        values: in the baseline, now, and the margin; None where there is none - `unit`.
     """
 
     name: str

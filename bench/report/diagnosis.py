@@ -137,8 +137,7 @@ def write_diagnosis(
 
     Args:
         out: folder, made if it is not there.
-        found: by the diagnosis.
-        title: rig and recordings.
+        found, title: the diagnosis, and its rig and recordings.
         provenance: of the files it came from.
         ending: of the pictures' files, one of `bench.report.figures.FORMATS`.
 

@@ -48,8 +48,7 @@ def identification_json(
     """The estimate as the contract's JSON.
 
     Args:
-        estimate: what was identified.
-        refinement: what polishing did, where it was asked for.
+        estimate, refinement: what was identified, and what polishing did, where it was asked for.
         refused: why the recording cannot answer, where it cannot.
         provenance: of the files it came from; null where it came from none.
     """
@@ -117,14 +116,7 @@ class Moved:
 def moved(
     traces: Sequence[Path], rig: Rig, estimate: Estimate, read: Callable[[Path], Trace] | None = None
 ) -> list[Moved]:
-    """Motions of the files that an estimate came from; of one that is very long, its first part.
-
-    Args:
-        traces: the files.
-        rig: of the axis.
-        estimate: what was identified.
-        read: how its files are read, unless part by part as the rig says.
-    """
+    """Motions of the files that an estimate came from; of a very long one its first part, unless `read` reads it."""
     found, cutoff = [], estimate.cutoff if estimate.cutoff > 0.0 else None
     shift = rig.axis_kind.parameter(MISALIGNMENT)  # of torque against speed, which each recording has of its own
     for index, trace in enumerate(traces):
@@ -149,10 +141,8 @@ def identification(
     """The document of an identification.
 
     Args:
-        title: rig and recordings.
-        kind: of the axis.
-        estimate: what was identified.
-        refinement: what polishing did, where it was asked for.
+        title, kind: rig and recordings, and kind of the axis.
+        estimate, refinement: what was identified, and what polishing did, where it was asked for.
         motions: of its recordings, for a page and pictures; () without.
         provenance: of the files it came from.
         truth: true values by the parameters' names, in their units, where they are known.

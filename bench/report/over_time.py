@@ -29,14 +29,7 @@ STEPS, NOTHING = 65534, -32768
 
 @dataclass(frozen=True)
 class Grid:
-    """Intervals of equal length.
-
-    Attributes:
-        start: of the first - s.
-        step: of each - s.
-        count: of them.
-        single: whether an interval is a sample period, so that one value stands for it.
-    """
+    """Intervals of length `step` - s - from `start` - s - on; one value stands for a `single` one, a sample period."""
 
     start: float
     step: float
@@ -45,13 +38,7 @@ class Grid:
 
     @classmethod
     def of(cls, time: Array, curves: int, share: float = 1.0) -> Grid:
-        """Grid for so many curves of a recording.
-
-        Args:
-            time: of its samples - s - (n,).
-            curves: that a page shows over it.
-            share: of what the page may hold that this recording may take.
-        """
+        """Grid for so many curves over time - s - (n,) - that may take a share of what a page may hold."""
         most = share * min(max(FEW, MORE * time.size), MOST) / curves
         period = float(np.median(np.diff(time[: min(time.size, 10_000)])))
         span = float(time[-1] - time[0])
@@ -110,7 +97,6 @@ class Plotted:
         values: as measured (n,).
         left: measured less modelled, for each model (n,); None where it says nothing.
         modelled: what a model's signal is called.
-        apart: whether what is left has a panel of its own, on its own scale.
         name: what the values are called.
     """
 
@@ -120,7 +106,6 @@ class Plotted:
     values: Values
     left: Sequence[Values | None] = ()
     modelled: str = "simulated"
-    apart: bool = True
     name: str = "measured"
 
     @property
@@ -131,7 +116,7 @@ class Plotted:
     @property
     def curves(self) -> int:
         """How many curves it takes."""
-        return 1 + (2 if self.apart else 1) * len(self.shown)
+        return 1 + 2 * len(self.shown)
 
 
 def time_graph(
@@ -142,21 +127,17 @@ def time_graph(
     choices: Sequence[str] = (),
     part: float = 1.0,
 ) -> TimeGraph:
-    """Signals over one time axis.
+    """Signals from top to bottom over the time of a recording - s - (n,).
 
     Args:
-        title, alternative: of the graph.
-        time: of the recording - s - (n,).
-        signals: from top to bottom.
+        title, alternative, time, signals: of the graph.
         choices: names of the models.
         part: of what a page may hold that this graph may take.
     """
     grid = Grid.of(time, sum(signal.curves for signal in signals), part)
-    panels: list[TimePanel] = []
-    for signal in signals:
-        panels += _panels(signal, grid, choices)
+    panels = tuple(panel for signal in signals for panel in _panels(signal, grid, choices))
     found = {"start": grid.start, "step": grid.step, "count": grid.count}
-    return TimeGraph(title=title, alternative=alternative, choices=tuple(choices), panels=tuple(panels), **found)
+    return TimeGraph(title=title, alternative=alternative, choices=tuple(choices), panels=panels, **found)
 
 
 def _panels(signal: Plotted, grid: Grid, choices: Sequence[str]) -> list[TimePanel]:
@@ -166,9 +147,8 @@ def _panels(signal: Plotted, grid: Grid, choices: Sequence[str]) -> list[TimePan
     for k, left in signal.shown:
         samples = grid.samples(places, signal.values - left)
         curves.append(TimeCurve(name=signal.modelled, role="model", choice=k, samples=samples))
-        if signal.apart:
-            name = choices[k] if k < len(choices) else "left"
-            rest.append(TimeCurve(name=name, role="left", choice=k, samples=grid.samples(places, left)))
+        name = choices[k] if k < len(choices) else "left"
+        rest.append(TimeCurve(name=name, role="left", choice=k, samples=grid.samples(places, left)))
     found = [TimePanel(label=signal.label, unit=unit, curves=tuple(curves))]
     if rest:
         label = f"{signal.label}, {signal.name} less {signal.modelled}"

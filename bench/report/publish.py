@@ -21,16 +21,13 @@ HTML, DATA = "report.html", "report.json"
 def write_document(
     folder: Path, document: Document, ending: str = ".png", beside: Mapping[str, str] | None = None
 ) -> list[Path]:
-    """Write all of a document into a folder, which is made if it is not there.
+    """Write page, data, pictures and files to take along of a document into a folder; the paths written.
 
     Args:
-        folder: to write to.
-        document: whose page, data, pictures and files to take along are written.
+        folder: made if it is not there.
+        document: of a result.
         ending: of the pictures, one of `bench.report.figures.FORMATS`.
         beside: more files by their names, which the page does not hold.
-
-    Returns:
-        Paths written.
 
     Raises:
         InputError: the folder cannot be written to.
@@ -64,14 +61,11 @@ def write_html(path: Path, document: Document) -> None:
 
 
 def rebuild(folders: list[Path], script: Path | None = None) -> list[Path]:
-    """Regenerate the pages of folders from their data.
+    """Regenerate the pages of folders from their data; the paths written.
 
     Args:
         folders: with a `report.json` each.
         script: file to write that all of them share; each holds its own without.
-
-    Returns:
-        Paths written.
 
     Raises:
         InputError: a folder without a page's data, or data of something else.

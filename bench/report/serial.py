@@ -16,10 +16,7 @@ from bench.structured import json_text
 
 
 def serialised(content: Mapping[str, Any]) -> str:
-    """A result as the contract's JSON.
-
-    Args:
-        content: of plain values, dataclasses, mappings, sequences and arrays.
+    """Plain values, dataclasses, mappings, sequences and arrays as the contract's JSON.
 
     Raises:
         UndeterminedError: a number of it is not finite; one that may be unknown goes through `known` first.

@@ -90,14 +90,7 @@ def _grid(table: Table) -> Grid:
 
 @contextmanager
 def progress(what: str) -> Iterator[Callable[[float], None]]:
-    """A bar on standard error for one piece of work, if that is a terminal; gone when the work is done.
-
-    Args:
-        what: is being done.
-
-    Returns:
-        Function to be called with the share done, 0 to 1.
-    """
+    """A bar on standard error for a piece of work, if that is a terminal, to be called with the share done, 0 to 1."""
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:

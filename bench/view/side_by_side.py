@@ -71,10 +71,11 @@ def along_recording(model: str | Path, replayed: Replay) -> SideBySide:
     if not np.isfinite(replayed.position_simulated).any():
         allowed = "allowed: a model with [parameters], as diagnose writes it where MuJoCo can have the model"
         raise InputError(f"{model}: parameters", "missing, so that nothing can move", allowed)
+    effort = {kind.effort_unit: kind.effort for kind in KINDS}.get(replayed.effort_unit, "effort")
     return SideBySide(
         kind=next(kind for kind in KINDS if kind.speed_unit == replayed.speed_unit),
         ghost_is="measured",
-        simulated_is=f"The recorded {_effort(replayed)} drives the model, which is held softly to the recording.",
+        simulated_is=f"The recorded {effort} drives the model, which is held softly to the recording.",
         time=replayed.time,
         ghost=replayed.position,
         position=replayed.position_simulated,
@@ -107,7 +108,3 @@ def along_profile(path: str | Path, rig: Rig, profile: str) -> SideBySide:
         ghost_velocity=asked.velocity,
         velocity=states.velocity[:, 0],
     )
-
-
-def _effort(replayed: Replay) -> str:
-    return {kind.effort_unit: kind.effort for kind in KINDS}.get(replayed.effort_unit, "effort")

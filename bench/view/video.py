@@ -48,14 +48,7 @@ def prepare(path: Path) -> None:
 
 
 def write_video(path: Path, shown: SideBySide, scene: Scene, slowed: float, done: Callable[[float], None]) -> None:
-    """Write a video of a motion, whole or not at all.
-
-    Args:
-        path: of it.
-        shown: model and ghost.
-        scene: that they are drawn into.
-        slowed: how many times slower than the motion it plays.
-        done: called with the share done.
+    """Write a video of model and ghost in a scene, so many times slower than the motion; whole or not at all.
 
     Raises:
         InputError: a video too long, no encoder, no way to render, or a place that cannot be written.
@@ -94,11 +87,7 @@ def _encoder() -> Any:  # noqa: ANN401 - an optional library
 
 @contextmanager
 def _renderer(model: mujoco.MjModel) -> Iterator[mujoco.Renderer]:
-    """MuJoCo's renderer of a model.
-
-    Raises:
-        InputError: nothing on this machine renders.
-    """
+    """MuJoCo's renderer of a model; InputError where nothing on this machine renders."""
     import mujoco
 
     try:
