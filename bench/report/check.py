@@ -17,7 +17,7 @@ from bench.names import short, words
 from bench.report import document as doc
 from bench.report.continuous_integration import Finding
 from bench.report.numbers import effort_word, number, sentence, share, unit_text
-from bench.report.serial import known, picked, serialised
+from bench.report.serial import as_json, known, picked, serialised
 
 SCHEMA = "bench.check/1"
 #: Units shown in another one, with the factor.
@@ -36,7 +36,7 @@ def check_json(checked: Checked) -> str:
     """The check as the contract's JSON."""
     baseline, now = checked.baseline, checked.now
     came = {name: [_effect(*pair) for pair in getattr(checked, name)] for name in ("appeared", "gone")}
-    gaps = {name: {"unit": unit, "baseline": _gap(was), "now": _gap(left)} for name, unit, was, left in _gaps(checked)}
+    gaps = {name: {"unit": unit, "baseline": was, "now": left} for name, unit, was, left in _gaps(checked)}
     return serialised(
         {
             "schema": SCHEMA,
@@ -44,7 +44,7 @@ def check_json(checked: Checked) -> str:
             "says": headline(checked),
             "false_alarm_rate": checked.false_alarm_rate,
             "comparisons": checked.family,
-            "quantities": [_comparison(one) for one in checked.comparisons if not one.effect],
+            "quantities": [one for one in checked.comparisons if not one.effect],
             "effects": came,
             "verdict": {"baseline": baseline.verdict or None, "now": now.verdict or None},
             "gap": gaps,
@@ -54,7 +54,8 @@ def check_json(checked: Checked) -> str:
     )
 
 
-def _comparison(one: Comparison) -> dict[str, Any]:
+@as_json.register
+def _(one: Comparison) -> dict[str, Any]:
     return {
         **picked(one, "name", "unit", "baseline", "now", "difference95"),
         "std_error": None if one.difference is None else one.difference.std_error,
@@ -80,8 +81,9 @@ def _effect(effect: NamedHere, one: Comparison) -> dict[str, Any]:
     }
 
 
-def _gap(gap: RemainingGap | None) -> dict[str, Any] | None:
-    return None if gap is None else picked(gap, "after", "noise_floor")
+@as_json.register
+def _(gap: RemainingGap) -> dict[str, Any]:
+    return picked(gap, "after", "noise_floor")
 
 
 def _gaps(checked: Checked) -> Iterator[tuple[str, str, RemainingGap | None, RemainingGap | None]]:

@@ -30,7 +30,7 @@ from bench.report.numbers import coordinate_word, effort_word, interval, number,
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
 from bench.report.publish import write_document
-from bench.report.serial import known, picked, serialised
+from bench.report.serial import as_json, known, picked, serialised
 
 SCHEMA = "bench.diagnose/1"
 #: Between rows of the motion to record next - s.
@@ -51,7 +51,7 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
         for each, kind in zip(found.effects, kinds, strict=True)
     ]
     velocity = {  # models held to the recording by a cascade, fed with the recorded effort
-        **_gap_json(found.velocity),
+        **as_json(found.velocity),
         "loop": {"kind": "held", "bandwidth": {"value": found.bandwidth, "unit": "rad/s"}},
         "closed_loop": _before_after(found.closed_loop),
         "refined": _before_after(found.refined),
@@ -60,14 +60,14 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
         "schema": SCHEMA,
         **picked(found, "verdict", "because"),
         "effects": effects,
-        "where": _where_json(found.where),
-        "unexplained": {"share": found.unexplained_share, "where": _where_json(found.unexplained_where)},
+        "where": found.where,
+        "unexplained": {"share": found.unexplained_share, "where": found.unexplained_where},
         "parameters": found.parameters,
         **recordings_json(found.recordings, found.between, provenance),
-        "gap": {"torque": _gap_json(found.torque), "velocity": velocity},
-        "steps": [_step_json(step) for step in found.steps[1:]],
+        "gap": {"torque": found.torque, "velocity": velocity},
+        "steps": found.steps[1:],
         "rejected": found.rejected,
-        "holdout": _holdout_json(found.holdout),
+        "holdout": found.holdout,
         "next_experiment": _experiment_json(found),
         "stopped": found.stopped,
         "provenance": provenance,
@@ -77,21 +77,24 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
     return serialised(content)
 
 
-def _where_json(accounts: Sequence[Where]) -> list[dict[str, Any]]:
-    return [picked(account, "coordinate", "region", "unit", "share") for account in accounts]
+@as_json.register
+def _(account: Where) -> dict[str, Any]:
+    return picked(account, "coordinate", "region", "unit", "share")
 
 
 def _before_after(pair: tuple[float, float] | None) -> dict[str, float] | None:
     return None if pair is None else {"before": pair[0], "after": pair[1]}
 
 
-def _gap_json(gap: Gap) -> dict[str, Any]:
+@as_json.register
+def _(gap: Gap) -> dict[str, Any]:
     content = picked(gap, "unit", "noise_floor")
     content |= {"identify": _before_after(gap.identify), "holdout": _before_after(gap.holdout)}
     return content if gap.judged is None else content | {"judged": {"share": gap.judged[0], "after": gap.judged[1]}}
 
 
-def _step_json(step: Shrunk) -> dict[str, Any]:
+@as_json.register
+def _(step: Shrunk) -> dict[str, Any]:
     """Gaps after an addition, of the recording and of the holdout; null where there is none."""
     content: dict[str, Any] = {"effect": step.effect}
     for name, gaps in (("torque_gap", step.torque), ("velocity_gap", step.velocity)):
@@ -99,7 +102,8 @@ def _step_json(step: Shrunk) -> dict[str, Any]:
     return content
 
 
-def _holdout_json(compared: SameAxis) -> dict[str, Any]:
+@as_json.register
+def _(compared: SameAxis) -> dict[str, Any]:
     """Whether the holdout is of the same axis; what each of the two recordings tells of what differs."""
     differs = [
         {

@@ -303,6 +303,11 @@ class Neighbours(Part):
     files: tuple[Neighbour, ...]
 
 
+def neighbours(files: Mapping[str, str]) -> Neighbours:
+    """Links to files by their names, and what they are."""
+    return Neighbours(files=tuple(Neighbour(name=name, about=about) for name, about in files.items()))
+
+
 AnyPart = Annotated[
     Paragraph | Points | Code | Table | TimeGraph | Moving | Chart | Intervals | HeatMap | Downloads | Neighbours,
     Field(discriminator="kind"),

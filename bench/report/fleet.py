@@ -17,7 +17,7 @@ from bench.fleet.summary import ALARM, STATUSES, Changed, Summary
 from bench.names import short, words
 from bench.report import document as doc
 from bench.report.numbers import SPACE, number, sentence, share, unit_text
-from bench.report.serial import picked, serialised
+from bench.report.serial import as_json, picked, serialised
 
 SCHEMA = "bench.fleet/1"
 #: Rows of a table, charts, and recordings in one of them: a page of a large fleet stays small, the table has all.
@@ -45,7 +45,7 @@ def fleet_json(fleet: Fleet, provenance: Mapping[str, Any]) -> str:
         "axes": summary.axes,
         "false_alarm_rate": ALARM,
         "compared": summary.compared,
-        "changed": [_changed(one) for one in summary.changed],
+        "changed": summary.changed,
         "named": summary.shown,
         "attention": summary.concerns,
         "table": TABLE,
@@ -54,7 +54,8 @@ def fleet_json(fleet: Fleet, provenance: Mapping[str, Any]) -> str:
     return serialised(content)
 
 
-def _changed(one: Changed) -> dict[str, Any]:
+@as_json.register
+def _(one: Changed) -> dict[str, Any]:
     step = one.step
     difference = step.after - step.before
     before, after = one.counts
@@ -85,7 +86,6 @@ def fleet_document(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any
     shown = (doc.section("effects", "Effects that axes show", effects),)
     rows_of = "a row for each recording: parameters, errors, verdict, reason, provenance"
     files = {TABLE: rows_of, summary_file: "all that this page says, without a bound on its length"}
-    beside = doc.Neighbours(files=tuple(doc.Neighbour(name=file, about=about) for file, about in files.items()))
     options = ", ".join(key for key, value in provenance["options"].items() if value) or "none"
     return doc.Document(
         title=f"{name}: fleet",
@@ -97,7 +97,7 @@ def fleet_document(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any
             doc.section("people", "Who needs a person first", _people(summary)),
             doc.section("changes", "What changed", *_changes(fleet)),
             *(shown if summary.shown else ()),
-            doc.section("recordings", "Recordings", _statuses(summary), beside),
+            doc.section("recordings", "Recordings", _statuses(summary), doc.neighbours(files)),
         ),
         origin=(
             f"servobench {provenance['version']}; manifest sha256 {provenance['manifest_sha256']}",

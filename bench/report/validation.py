@@ -23,7 +23,7 @@ from bench.report import document as doc
 from bench.report.numbers import number, sentence, share, unit_text
 from bench.report.parts import origin
 from bench.report.publish import markdown, write_document
-from bench.report.serial import known, picked, serialised
+from bench.report.serial import as_json, known, picked, serialised
 from bench.validation.coverage import LEVELS, NOTHING, NOTHING_MISSING, Coverage, Naming, Share
 from bench.validation.score import Run
 from bench.validation.validate import Validation
@@ -69,23 +69,24 @@ def validation_json(found: Validation, provenance: Mapping[str, Any]) -> str:
 def _coverage_json(found: Coverage) -> dict[str, Any]:
     names = (field.name for field in fields(found) if field.name != "inside")
     told = {name: known(each) if isinstance(each, float) else each for name, each in picked(found, *names).items()}
-    inside = [{"level": level, **_share_json(each)} for level, each in zip(LEVELS, found.inside, strict=True)]
+    inside = [{"level": level, **as_json(each)} for level, each in zip(LEVELS, found.inside, strict=True)]
     return {**told, "inside": inside}
 
 
-def _share_json(found: Share) -> dict[str, Any]:
+@as_json.register
+def _(found: Share) -> dict[str, Any]:
     return {**picked(found, "count", "of"), "share": found.value if found.of else None, "bounds95": found.bounds}
 
 
 def _naming_json(found: Naming) -> dict[str, Any]:
     return {
-        "nulls_with_false_name": _share_json(found.nulls),
-        "nulls_by_motion": {name: _share_json(each) for name, each in found.nulls_by_motion.items()},
-        "with_false_name": _share_json(found.false),
-        "with_false_name_explained": _share_json(found.silent),
-        "named_exactly": _share_json(found.exact),
-        "refused": _share_json(found.refused),
-        "named": {name: _share_json(each) for name, each in found.named.items()},
+        "nulls_with_false_name": found.nulls,
+        "nulls_by_motion": found.nulls_by_motion,
+        "with_false_name": found.false,
+        "with_false_name_explained": found.silent,
+        "named_exactly": found.exact,
+        "refused": found.refused,
+        "named": found.named,
         "falsely_named": found.falsely,
         "confusion": found.confusion,
     }
@@ -104,8 +105,7 @@ def validation(found: Validation, provenance: Mapping[str, Any], command: str, o
         sections.append(doc.section("parts", "The same, by parts of these runs", *parts, detail=True))
     if naming is not None:
         sections.append(doc.section("names", "Whether names are right", *_naming(naming)))
-    beside = doc.Neighbours(files=tuple(doc.Neighbour(name=name, about=about) for name, about in FILES.items()))
-    sections.append(doc.section("runs", "All runs", _outcomes(found.runs), beside))
+    sections.append(doc.section("runs", "All runs", _outcomes(found.runs), doc.neighbours(FILES)))
     low = any(one.inside[-1].bounds[1] < LEVEL for one in first)
     false = naming is not None and naming.false.count > 0
     return doc.Document(
