@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -368,12 +369,10 @@ def _with_time_unit(given: dict[int, Guess], channels: Sequence[Channel]) -> dic
 
 
 def _in_si(channel: Channel, guess: Guess) -> Array | None:
-    if guess.unit is None:
-        return None
-    try:
-        return channel.values[:ENOUGH] * scale_of(guess.unit, wanted_units(guess.signal)).factor
-    except UnitError:
-        return None
+    with suppress(UnitError):
+        if guess.unit is not None:
+            return channel.values[:ENOUGH] * scale_of(guess.unit, wanted_units(guess.signal)).factor
+    return None
 
 
 def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> list[Guess]:

@@ -66,9 +66,8 @@ def _require_alike(traces: Sequence[Trace]) -> None:
                 if one.units[name] != other.units[name]:
                     found = f"found {other.units[name]}, in {one.origin} {one.units[name]}"
                     raise InputError(f"{other.origin}: {name}", found, "allowed: one unit in all recordings")
-            if set(one.signals) == set(other.signals) and all(
-                np.array_equal(one[name], other[name]) for name in one.signals
-            ):
+            alike = set(one.signals) == set(other.signals)
+            if alike and all(np.array_equal(one[name], other[name]) for name in one.signals):
                 found = f"found the same recording as {one.origin}"
                 raise InputError(other.origin, found, "allowed: each recording once; twice would count as two")
 

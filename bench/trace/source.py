@@ -5,6 +5,7 @@ from __future__ import annotations
 import codecs
 import gzip
 import io
+import re
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -68,6 +69,16 @@ class FileFormat:
 def begins(*marks: bytes) -> Callable[[Source], bool]:
     """Whether a file begins with one of these bytes, as a function of it."""
     return lambda source: source.content.startswith(marks)
+
+
+def shows(pattern: re.Pattern[str]) -> Callable[[Source], bool]:
+    """Whether the head of a file holds a pattern, as a function of it."""
+    return lambda source: pattern.search(source.head) is not None
+
+
+def no_samples(source: Source) -> InputError:
+    """The error of a text that ends with its header."""
+    return InputError(source.path, "found a header and no samples", "allowed: at least two samples")
 
 
 def decode(content: bytes) -> str:

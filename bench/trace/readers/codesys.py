@@ -22,7 +22,7 @@ from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label, with_shared_times
 from bench.trace.readers.table import BLANKS, read_timed
 from bench.trace.readers.xml import parse, root_name
-from bench.trace.source import FileFormat, Source
+from bench.trace.source import FileFormat, Source, no_samples, shows
 from bench.units import convert
 
 #: Units of the lab's PLC variables: a reported assumption.
@@ -35,13 +35,9 @@ LAB_UNITS: dict[str, str] = {
 }
 _UNITS_COMMENT = "units: "
 _MICROSECONDS = 32
-_VARIABLE = re.compile(r"^\d+\.Variable;", re.MULTILINE)
+_EXPORT = re.compile(r"\A\s*\[key\]|^\d+\.Variable;", re.MULTILINE)
 _FLAGS = re.compile(r"[0-9]{1,19}")
 _STAMPS = re.compile(r"^[ \t]*(?:Timestamp|Zeitstempel)[ \t]*\((ms|us|µs)\)[ \t]+(\S.*)$", re.MULTILINE)
-
-
-def _recognises_xml(source: Source) -> bool:
-    return root_name(source) == "Trace"
 
 
 def _read_xml(source: Source) -> Recording:
@@ -96,10 +92,6 @@ def _number(text: str, place: str) -> float:
         raise InputError(place, found, "allowed: a number") from error
 
 
-def _recognises_csv(source: Source) -> bool:
-    return source.head.lstrip().startswith("[key]") or _VARIABLE.search(source.head) is not None
-
-
 def _read_csv(source: Source) -> Recording:
     keys: dict[str, str] = {}
     samples: dict[str, list[str]] = {}
@@ -126,10 +118,6 @@ def _read_csv(source: Source) -> Recording:
     return _recording(CODESYS_CSV, source, channels, keys)
 
 
-def _recognises_text(source: Source) -> bool:
-    return _STAMPS.search(source.head) is not None
-
-
 def _read_text(source: Source) -> Recording:
     text = source.text()
     header = _STAMPS.search(text)
@@ -137,7 +125,7 @@ def _read_text(source: Source) -> Recording:
     titles = [line.strip() for line in text[: header.start()].splitlines() if line.strip()]
     below = text[header.end() :].splitlines()[1:]
     if not any(line.strip() for line in below):
-        raise InputError(source.path, "found a header and no samples", "allowed: at least two samples")
+        raise no_samples(source)
     line = len(text[: header.end()].splitlines()) + 1
     channels = read_timed(below, line, (f"time [{header[1]}]", *header[2].split()), BLANKS, source.path)
     metadata = dict(zip(["title", "project"], titles, strict=False))
@@ -145,12 +133,14 @@ def _read_text(source: Source) -> Recording:
 
 
 #: The trace editor's own file: `.trace`, or the same as `.xml`.
-CODESYS_XML = FileFormat("CODESYS / Machine Expert trace", (".trace", ".xml"), _recognises_xml, _read_xml)
+CODESYS_XML = FileFormat(
+    "CODESYS / Machine Expert trace", (".trace", ".xml"), lambda s: root_name(s) == "Trace", _read_xml
+)
 #: A header of `key; value` lines (`Flags` 16: times in ms, 32: us), then per variable `N.Variable; name`, further keys,
 #: `N.Data;` and lines `; time; value`.
-CODESYS_CSV = FileFormat("CODESYS / Machine Expert CSV export", (), _recognises_csv, _read_csv)
+CODESYS_CSV = FileFormat("CODESYS / Machine Expert CSV export", (), shows(_EXPORT), _read_csv)
 #: A title and the project's path, then `Timestamp(ms) VarA VarB` (German `Zeitstempel(ms)`).
-CODESYS_TEXT = FileFormat("CODESYS / Machine Expert text export", (), _recognises_text, _read_text)
+CODESYS_TEXT = FileFormat("CODESYS / Machine Expert text export", (), shows(_STAMPS), _read_text)
 
 
 def machine_expert_trace(table: pa.Table) -> bytes:

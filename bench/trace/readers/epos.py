@@ -12,14 +12,10 @@ from collections.abc import Iterable
 from bench.errors import InputError
 from bench.trace.channel import Recording
 from bench.trace.readers.table import read_timed
-from bench.trace.source import FileFormat, Source
+from bench.trace.source import FileFormat, Source, no_samples, shows
 
 _HEAD = re.compile(r"^(EPOS Studio Version|Sampling period|Recorded samples):;", re.MULTILINE)
 _TOLD = ("Date", "Firmware Version", "EPOS Studio Version", "Sampling period")
-
-
-def _recognises(source: Source) -> bool:
-    return _HEAD.search(source.head) is not None
 
 
 def _read(source: Source) -> Recording:
@@ -33,7 +29,7 @@ def _read(source: Source) -> Recording:
         raise InputError(place, f"found {len(units)} units", f"allowed: {len(names)}, as there are names")
     samples, notes = _measured(lines[head + 2 :], head + 3)
     if not any(samples):
-        raise InputError(source.path, "found a header and no samples", "allowed: at least two samples")
+        raise no_samples(source)
     labels = [f"{name or 'time'} [{unit}]" for name, unit in zip(names, units, strict=True)]
     channels = read_timed(samples, head + 3, labels, ";", source.path)
     told = (line.rstrip(",").strip('"').split(":;", 1) for line in lines[:head] if ":;" in line)
@@ -41,7 +37,7 @@ def _read(source: Source) -> Recording:
     return Recording(tuple(channels), EPOS.format, source.path, metadata, tuple(notes))
 
 
-EPOS = FileFormat("maxon EPOS recorder CSV", (), _recognises, _read)
+EPOS = FileFormat("maxon EPOS recorder CSV", (), shows(_HEAD), _read)
 
 
 def _measured(lines: Iterable[str], first: int) -> tuple[list[str], list[str]]:

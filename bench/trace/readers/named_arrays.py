@@ -127,10 +127,6 @@ def _array(loaded: np.lib.npyio.NpzFile, name: str) -> np.ndarray:
         raise
 
 
-def _is_hdf5(source: Source) -> bool:
-    return source.content.startswith(_HDF5) or source.content[512:520] == _HDF5
-
-
 def _read_hdf5(source: Source) -> Recording:
     h5py = library("h5py", source.path, HDF5.format)
     channels: list[Channel] = []
@@ -180,10 +176,6 @@ def _text(value: object) -> str:
     return plain.decode("utf-8", errors="replace") if isinstance(plain, bytes) else str(plain)
 
 
-def _is_mat(source: Source) -> bool:
-    return source.content.startswith(_MAT) and not source.content.startswith(_MAT_OF_HDF5)
-
-
 def _read_mat(source: Source) -> Recording:
     """Recording of a MAT file; fields of a struct are `struct.field`."""
     channels: list[Channel] = []
@@ -197,8 +189,14 @@ def _read_mat(source: Source) -> Recording:
 
 
 NUMPY = FileFormat("NumPy", (".npz", ".npy"), _is_numpy, _read_numpy)
-HDF5 = FileFormat("HDF5", (".h5", ".hdf5"), _is_hdf5, _read_hdf5)
-MAT = FileFormat("MAT", (".mat",), _is_mat, _read_mat)
+#: Perhaps behind the header of a MAT file.
+HDF5 = FileFormat("HDF5", (".h5", ".hdf5"), lambda s: _HDF5 in (s.content[:8], s.content[512:520]), _read_hdf5)
+MAT = FileFormat(
+    "MAT",
+    (".mat",),
+    lambda source: source.content.startswith(_MAT) and not source.content.startswith(_MAT_OF_HDF5),
+    _read_mat,
+)
 
 
 def load_mat(content: bytes, where: str) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.arrow import compute, floats, seconds, speaks_of_moment
 from bench.trace.signals import signal_of, unit_of
-from bench.trace.source import FileFormat, Source, decode, utf8
+from bench.trace.source import FileFormat, Source, decode, no_samples, utf8
 from bench.units.conversion import is_unit, scale_of
 from bench.units.grammar import UnitError
 
@@ -98,7 +98,7 @@ def _read(source: Source) -> Recording:
         if len(lines) > 1 and all(is_number(line.strip()) for line in lines[1:10]):
             allowed = "allowed: at least two, one of them velocity or position"
             raise InputError(f"{source.path}: line 1", "found one column", allowed)
-        raise InputError(source.path, "found a header and no samples", "allowed: at least two samples")
+        raise no_samples(source)
     content, start = utf8(source.content), 0
     for _ in range(layout.start):
         start = content.find(b"\n", start) + 1

@@ -20,7 +20,7 @@ from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
 from bench.trace.readers.table import SampleLines, TableLayout, channel_of_cells, parsed
-from bench.trace.source import FileFormat, Source, decode
+from bench.trace.source import FileFormat, Source, decode, no_samples, shows
 
 _HEAD = re.compile(r"\AName[\t;,].*^(Starttime of export|Data-Type|SymbolName)[\t;,]", re.DOTALL | re.MULTILINE)
 _NUMBER = re.compile(r"\s*[+-]?\d")
@@ -28,10 +28,6 @@ _TICKS = re.compile(r"[0-9]{1,19}")
 _FILETIME = re.compile(rb"\s*\d{17,19}\D")
 _LAST_MOMENT = 2.6e17  # us; a date of Python ends with the year 9999
 _NO_SCALING = {"Offset": "0", "ScaleFactor": "1", "Unit Offset": "0", "Unit ScaleFactor": "1"}
-
-
-def _recognises(source: Source) -> bool:
-    return _HEAD.match(source.head) is not None
 
 
 def _read(source: Source) -> Recording:
@@ -60,7 +56,7 @@ def _read(source: Source) -> Recording:
     return Recording(with_shared_times(channels), TWINCAT.format, source.path, _metadata(header))
 
 
-TWINCAT = FileFormat("TwinCAT Scope CSV", (), _recognises, _read)
+TWINCAT = FileFormat("TwinCAT Scope CSV", (), shows(_HEAD), _read)
 
 
 def _split(source: Source, separator: str) -> tuple[list[list[str]], bytes, int]:
@@ -76,7 +72,7 @@ def _split(source: Source, separator: str) -> tuple[list[list[str]], bytes, int]
         if any(cells):
             header.append(cells)
         start, line = end + 1, line + 1
-    raise InputError(source.path, "found a header and no samples", "allowed: at least two samples")
+    raise no_samples(source)
 
 
 def _names(header: list[list[str]], source: Source) -> list[str]:

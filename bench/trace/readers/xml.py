@@ -44,10 +44,6 @@ def parse(source: Source) -> ElementTree.Element:
     return root
 
 
-def _is_response(source: Source) -> bool:
-    return root_name(source).startswith("ResponseTest")
-
-
 def _refuse(source: Source) -> NoReturn:
     raise InputError(
         source.path,
@@ -56,4 +52,6 @@ def _refuse(source: Source) -> NoReturn:
     )
 
 
-SINUMERIK = FileFormat("Sinumerik frequency response (refused)", (), _is_response, _refuse)
+SINUMERIK = FileFormat(
+    "Sinumerik frequency response (refused)", (), lambda source: root_name(source).startswith("ResponseTest"), _refuse
+)
