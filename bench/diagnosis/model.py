@@ -18,9 +18,9 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.recordings import Recordings
 from bench.effects.acting import RaisesFriction
-from bench.effects.axis import Moment
 from bench.effects.effect import Detected, Effect, Occasional
 from bench.effects.present import Present
+from bench.effects.signals import Moment
 from bench.errors import InputError
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis

@@ -12,10 +12,9 @@ from typing import ClassVar
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import Columns, Detectable, Effect, lagged, unlagged
 from bench.effects.mjcf import Spec
-from bench.effects.signals import Scope, Signals
+from bench.effects.signals import Axis, Moment, Number, Scope, Signals, Values
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 

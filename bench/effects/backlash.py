@@ -30,11 +30,10 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, splined
 from bench.effects.acting import Native, Spring
-from bench.effects.axis import Axis, Number
 from bench.effects.effect import Contact, Coupling, Fitted, Load, Replacing
 from bench.effects.mjcf import Spec, add_coupling_joint
 from bench.effects.shape import FREQUENCY, Shape, Shapes, extended
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Axis, Base, Number, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 

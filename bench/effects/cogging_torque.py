@@ -9,10 +9,9 @@ Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003,
 from collections.abc import Mapping, Sequence
 
 from bench.effects.acting import Native
-from bench.effects.axis import Axis
 from bench.effects.effect import Repeatable
 from bench.effects.mjcf import Spec, passive_motor
-from bench.effects.signals import Signals
+from bench.effects.signals import Axis, Signals
 from bench.effects.waves import PHASE, Wave, followed, harmonics, sine_and_cosine
 from bench.trace.filter import Column
 from bench.units import Quantity

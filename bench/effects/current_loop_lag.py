@@ -11,9 +11,8 @@ from dataclasses import replace
 
 from bench.arrays import Array, namespace
 from bench.effects.acting import TorqueLag
-from bench.effects.axis import Number, Values
 from bench.effects.effect import Distortion, MotionLag, lagged
-from bench.effects.signals import Scope, Signals
+from bench.effects.signals import Number, Scope, Signals, Values
 
 
 class CurrentLoopLag(MotionLag, Distortion, TorqueLag):

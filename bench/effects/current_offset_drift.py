@@ -13,9 +13,8 @@ drives, IEEE Transactions on Industry Applications 34(2), 1998 (offset errors of
 from collections.abc import Sequence
 
 from bench.effects.acting import MisreadEffort
-from bench.effects.axis import Axis, Number, Values
 from bench.effects.effect import Columns
-from bench.effects.signals import Scope, Signals
+from bench.effects.signals import Axis, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 

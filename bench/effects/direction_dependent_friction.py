@@ -12,10 +12,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import DirectedFriction, Native, ResistingTorque
-from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import OfSpeed
 from bench.effects.mjcf import AXIS, Spec, add_resisting_torque
-from bench.effects.signals import Scope, Signals
+from bench.effects.signals import Axis, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 

@@ -16,10 +16,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import FollowsLoad, LoadTorque
-from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import CopiesTorque, Fitted, Replacing
 from bench.effects.shape import Shape, grid_of
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 

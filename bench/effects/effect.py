@@ -28,9 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array, recursive_filter
-from bench.effects.axis import Axis, Values
 from bench.effects.shape import LAG, Shape, Shapes, grid_of, is_pitch
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Axis, Base, Scope, Signals, Values
 from bench.rig.rig import Rig
 from bench.trace.filter import Column, GaussianFilter
 from bench.trace.trace import Trace

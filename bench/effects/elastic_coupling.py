@@ -23,11 +23,10 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter, splined
 from bench.effects.acting import Native
-from bench.effects.axis import Axis
 from bench.effects.effect import Coupling, FiltersMotion, Load
 from bench.effects.mjcf import Spec, add_coupling_joint
 from bench.effects.shape import FREQUENCY, Shape, Shapes
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Axis, Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 

@@ -11,9 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from bench.effects.acting import RaisesFriction
-from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import CopiesTorque
-from bench.effects.signals import Signals
+from bench.effects.signals import Axis, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 

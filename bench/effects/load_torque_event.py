@@ -11,10 +11,9 @@ import numpy as np
 
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.acting import ResistingTorque
-from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import Contact, Fitted, Occasional, OuterTorque, Proposal
 from bench.effects.shape import Shape, Shapes
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 

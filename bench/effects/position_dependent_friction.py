@@ -8,8 +8,7 @@ A - relative amplitude; q - angle - rad.
 from collections.abc import Sequence
 
 from bench.effects.acting import ScalesFriction
-from bench.effects.axis import Axis, Moment, Number, Values
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.effects.waves import PHASE, OncePerRevolution, sine_and_cosine, wave
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -12,9 +12,8 @@ import numpy as np
 
 from bench.arrays import namespace
 from bench.effects.acting import ResistingTorque, VaryingInertia
-from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import Columns
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.effects.waves import PHASE, Wave, harmonics, wave
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from bench.axis_kind import ROTARY, AxisKind
-from bench.effects.axis import Axis
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
+from bench.effects.signals import Axis
 from bench.errors import InputError
 from bench.names import nearest
 from bench.units import Quantity, parse

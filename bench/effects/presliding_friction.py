@@ -17,10 +17,9 @@ import numpy as np
 
 from bench.arrays import Array, recurrence
 from bench.effects.acting import CarriesFriction, Native
-from bench.effects.axis import Axis
 from bench.effects.mjcf import AXIS, BRISTLES, Spec, passive_motor
 from bench.effects.shape import ANGLE, Shape, Shapes
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Axis, Base, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 

@@ -10,10 +10,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import Native
-from bench.effects.axis import Axis
 from bench.effects.effect import OfSpeed, OuterTorque
 from bench.effects.mjcf import AXIS, Spec
-from bench.effects.signals import Signals
+from bench.effects.signals import Axis, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 

@@ -1,13 +1,23 @@
-"""What effects are given of a recording: raw samples of a stretch, and what the recording is able to show."""
+"""What effects are given: samples of a recording and what it is able to show; a simulated axis, its state in a step.
+
+What belongs to a simulation is numbers, or arrays (k,) of axes side by side, of any library of the array API standard.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.trace.filter import Column
+
+#: A number, or an array (k,): those of the array API standard have no static type in common.
+Number = Any
+#: Values of an effect's quantities by their names - SI.
+Values = Mapping[str, Number]
 
 
 @dataclass(frozen=True)
@@ -94,3 +104,55 @@ class Scope:
     def spacing(self) -> float:
         """Distance of wave numbers that the travel just tells apart: half a cycle over it - 1 (rad/m)."""
         return math.pi / self.travel
+
+
+@dataclass(frozen=True)
+class Winding:
+    """Motor winding: k_T - N*m/A (N/A), R - ohm, L - H, K_e - V*s/rad (V*s/m)."""
+
+    torque_constant: Number
+    resistance: Number
+    inductance: Number
+    back_emf_constant: Number
+
+
+@dataclass(frozen=True)
+class Axis:
+    """The axis, as far as effects need it; numbers, or arrays (k,).
+
+    Attributes:
+        inertia: total inertia J - kg*m**2 (kg).
+        motor_inertia: its part on the motor's side of a coupling - kg*m**2 (kg).
+        viscous: K_w - N*m*s/rad (N*s/m).
+        coulomb: K_0 - N*m (N).
+        peak_effort: motor torque at peak current - N*m (N).
+        winding: None if the rig does not give it.
+    """
+
+    inertia: Number
+    motor_inertia: Number
+    viscous: Number
+    coulomb: Number
+    peak_effort: Number
+    winding: Winding | None = None
+
+
+@dataclass(frozen=True)
+class Moment:
+    """State of axes at the middle of a step.
+
+    Attributes:
+        time: since the recording's start - s -; a number, or (k,).
+        position: rad (m) - (k,).
+        velocity: rad/s (m/s) - (k,).
+        effort: of the motor - N*m (N) - (k,).
+        began: start of the recording, counted from that of the first where several are joined - s -; a number, or (k,).
+        load: resisting torque of the load, as the transmission carries it, where friction follows it - N*m (N) - (k,).
+    """
+
+    time: Number
+    position: Number
+    velocity: Number
+    effort: Number
+    began: Number = 0.0
+    load: Number = 0.0

@@ -12,10 +12,9 @@ import numpy as np
 
 from bench.arrays import namespace
 from bench.effects.acting import RaisesFriction
-from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import OfSpeed
 from bench.effects.shape import SPEED, Shape, Shapes
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 

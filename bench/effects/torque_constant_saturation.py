@@ -9,9 +9,8 @@ dM/dI = kT*(1 - 3*d*(I/I_peak)**2) > 0, so d is 1/3 at most.
 from collections.abc import Sequence
 
 from bench.effects.acting import TorqueLoss
-from bench.effects.axis import Axis, Number, Values
 from bench.effects.effect import CopiesTorque
-from bench.effects.signals import Signals
+from bench.effects.signals import Axis, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 

@@ -10,9 +10,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import ConstantTorque, Native
-from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.mjcf import Spec, add_resisting_torque
-from bench.effects.signals import Scope, Signals
+from bench.effects.signals import Axis, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 

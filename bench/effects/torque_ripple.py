@@ -9,9 +9,8 @@ Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003,
 from collections.abc import Mapping, Sequence
 
 from bench.effects.acting import ScalesTorque
-from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import CopiesTorque, Repeatable
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.effects.waves import PHASE, Wave, followed, harmonics, sine_and_cosine, wave
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -8,10 +8,9 @@ A - N*m; q - angle - rad.
 from collections.abc import Mapping, Sequence
 
 from bench.effects.acting import LoadTorque, Native
-from bench.effects.axis import Axis, Moment, Number, Values
 from bench.effects.effect import OuterTorque
 from bench.effects.mjcf import Spec, passive_motor
-from bench.effects.signals import Signals
+from bench.effects.signals import Axis, Moment, Number, Signals, Values
 from bench.effects.waves import PHASE, OncePerRevolution, sine_and_cosine, wave
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -13,8 +13,8 @@ import numpy as np
 
 from bench.arrays import NORMAL95, namespace
 from bench.effects.acting import DriveLimit
-from bench.effects.axis import Axis, Number, Values, Winding
 from bench.effects.effect import Detected, smoothed
+from bench.effects.signals import Axis, Number, Values, Winding
 from bench.errors import InputError
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter

@@ -11,10 +11,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.arrays import Array, namespace
-from bench.effects.axis import Number, Values
 from bench.effects.effect import Effect
 from bench.effects.shape import Shape
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Base, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 

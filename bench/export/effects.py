@@ -23,8 +23,8 @@ from mujoco.batch import Batch
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.effects.axis import Number
 from bench.effects.mjcf import AXIS, BRISTLES
+from bench.effects.signals import Number
 from bench.errors import InputError
 from bench.plant.model_file import StoredModel, load_model
 from bench.plant.stepped_effects import Joints, SimulationJoint, SteppedEffects, per_axis

@@ -38,11 +38,11 @@ from bench.effects.acting import (
     RaisesFriction,
     ScalesFriction,
 )
-from bench.effects.axis import Axis, Winding
 from bench.effects.effect import Coupling, Effect
 from bench.effects.mjcf import AXIS, LOAD, LOAD_TORQUE, MOTOR
 from bench.effects.mjcf import DRIVE as DRIVE
 from bench.effects.present import Present
+from bench.effects.signals import Axis, Winding
 from bench.errors import InputError
 from bench.rig.load import Load
 from bench.rig.rig import Rig

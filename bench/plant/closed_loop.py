@@ -14,7 +14,7 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.axis import Number
+from bench.effects.signals import Number
 from bench.plant.axis_model import AxisModel
 from bench.plant.stepped_effects import per_axis
 

@@ -18,8 +18,8 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.effects.acting import MisreadMotion
-from bench.effects.axis import Number
 from bench.effects.mjcf import DRIVE
+from bench.effects.signals import Number
 from bench.errors import InputError
 from bench.plant.axis_model import AxisParameters
 from bench.plant.closed_loop import ClosedLoop, Controller, Tick

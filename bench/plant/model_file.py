@@ -24,9 +24,9 @@ import mujoco
 import tomli_w
 
 from bench.axis_kind import AxisKind, axis_kind
-from bench.effects.axis import Winding
 from bench.effects.mjcf import LOAD, MOTOR
 from bench.effects.present import Present, known_quantity, named, parse_value
+from bench.effects.signals import Winding
 from bench.errors import InputError
 from bench.names import nearest
 from bench.plant.axis_model import FLOOR, NO_MASS, AxisModel, AxisParameters, effect_values, parameter_quantities

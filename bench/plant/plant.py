@@ -11,8 +11,8 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.effects.acting import Friction
-from bench.effects.axis import Winding
 from bench.effects.present import Present
+from bench.effects.signals import Winding
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
 from bench.plant.closed_loop import ClosedLoop, Controller, Listed

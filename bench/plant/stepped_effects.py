@@ -38,10 +38,10 @@ from bench.effects.acting import (
     TorqueLoss,
     VaryingInertia,
 )
-from bench.effects.axis import Axis, Moment, Number, Winding
 from bench.effects.effect import Effect
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.effects.present import Present
+from bench.effects.signals import Axis, Moment, Number, Winding
 from bench.plant.axis_model import AxisModel
 
 Kind = TypeVar("Kind", bound=Effect)

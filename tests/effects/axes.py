@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.signal import lsim
 
-from bench.effects.axis import Winding
 from bench.effects.present import Present
+from bench.effects.signals import Winding
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.closed_loop import States
 from bench.plant.drive import Cascade, References

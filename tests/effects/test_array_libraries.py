@@ -24,8 +24,8 @@ from bench.effects.acting import (
     TorqueLoss,
     VaryingInertia,
 )
-from bench.effects.axis import Axis, Moment, Winding
 from bench.effects.catalogue import catalogue
+from bench.effects.signals import Axis, Moment, Winding
 from bench.plant.axis_model import AxisParameters
 from tests.effects.axes import PERIOD, VALUES, model
 

@@ -16,12 +16,11 @@ from bench.effects.acting import (
     ScalesTorque,
     TorqueLoss,
 )
-from bench.effects.axis import Moment
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Columns, Coupling, Effect
 from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.present import Present
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Base, Moment, Signals
 from bench.plant.axis_model import build_spec
 from bench.plant.run import run
 from bench.plant.sensing import reported_states

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.effects.axis import Axis, Moment
 from bench.effects.catalogue import catalogue
-from bench.effects.signals import Base
+from bench.effects.signals import Axis, Base, Moment
 from tests.effects.axes import FREE, Present, moved, signals
 from tests.effects.recording import signals as recording
 

@@ -18,7 +18,6 @@ from bench.effects.acting import (
     ScalesFriction,
     Spring,
 )
-from bench.effects.axis import Moment
 from bench.effects.effect import (
     Columns,
     CopiesTorque,
@@ -31,6 +30,7 @@ from bench.effects.effect import (
     OuterTorque,
     Repeatable,
 )
+from bench.effects.signals import Moment
 from bench.effects.waves import OncePerRevolution, Wave
 from bench.plant.axis_model import build_spec
 from bench.validation.independent import KINDS
