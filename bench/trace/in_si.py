@@ -43,10 +43,7 @@ class Clock:
 
     @cached_property
     def quantum(self) -> float:
-        """Step of the decimal grid that all recorded times lie on - s; 0 if there is none.
-
-        Times printed with k decimals stand on the grid 10**-k.
-        """
+        """Step of the decimal grid 10**-k, as of times printed with k decimals, that all lie on - s; 0 if there is none."""
         for decimals in range(7):
             scaled = self.recorded * 10.0**decimals
             rounding = max(1e-6, 4.0 * float(np.spacing(np.abs(scaled).max())))
@@ -86,13 +83,9 @@ def in_si(
     how: ReadingOptions,
     wrapping: dict[str, Unwrapping] | None = None,
 ) -> InSI:
-    """Bring chosen channels to SI.
+    """Bring the chosen channels of a recording to SI.
 
-    Args:
-        chosen: by signal.
-        recording: whose channels they are.
-        how: it is to be read.
-        wrapping: what was found of positions in the pieces before, where a recording is read in pieces.
+    `wrapping` is what was found of positions in the pieces before, where a recording is read in pieces.
 
     Raises:
         InputError: no signal, an infinite value, hardly a number, lengths that differ, times that the sample period

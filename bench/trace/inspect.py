@@ -196,11 +196,7 @@ class Inspection:
 
 
 def inspect(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = None) -> Inspection:
-    """Look into a recording.
-
-    Args:
-        path: file of any format.
-        columns: as for `bench.trace.read.read`.
+    """Look into a recording; path and columns as for `bench.trace.read.read`.
 
     Raises:
         InputError: no table or container that the bench knows; a column that the rig names is not there, or has no

@@ -113,12 +113,8 @@ def common_step(values: Array, least: float) -> float:
 def rounding_spectrum(stretches: Sequence[Array], smooth: GaussianFilter, step: float) -> tuple[Array, Array]:
     """Angular frequencies - rad/s (k,) - and the power of what rounding leaves there - the signal's unit squared (k,).
 
-    White noise of a variance has that value at all frequencies. The way is read from the signal itself, smoothed.
-
-    Args:
-        stretches: regular samples (n,) without a hole.
-        smooth: tells the way from the steps.
-        step: q.
+    White noise of a variance has that value at all frequencies. The way is read from the signal itself - stretches of
+    regular samples (n,) without a hole -, smoothed.
     """
     every = replace(smooth, width=SMOOTHER * smooth.width, stride=1)
     omega = np.pi / smooth.sample_period * np.linspace(0.0, 1.0, WINDOW // 2 + 1)
