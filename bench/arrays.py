@@ -63,7 +63,7 @@ def symmetric_inverse(matrix: Array, least: float) -> Array:
 
 
 def recurrence(kept: Array, added: Array) -> Array:
-    """y[k] = kept[k]*y[k - 1] + added[k] (n,) that begins at zero, by doubling the reach of each sum; kept in 0 to 1."""
+    """y[k] = kept[k]*y[k - 1] + added[k] (n,) that begins at zero, by doubling the reach of sums; kept in 0 to 1."""
     kept, found = kept.copy(), added.copy()
     reach = 1
     while reach < found.size and kept[reach:].any():

@@ -43,7 +43,7 @@ class Clock:
 
     @cached_property
     def quantum(self) -> float:
-        """Step of the decimal grid 10**-k, as of times printed with k decimals, that all lie on - s; 0 if there is none."""
+        """Step of the decimal grid that all recorded times lie on, 10**-k of times with k decimals - s; 0: none."""
         for decimals in range(7):
             scaled = self.recorded * 10.0**decimals
             rounding = max(1e-6, 4.0 * float(np.spacing(np.abs(scaled).max())))
