@@ -11,7 +11,7 @@ from bench.assets import asset
 from bench.course import pdf
 from bench.course.recordings import LabRecordings
 from bench.course.report import Cover, course_table, lab_document, task_section, write_lab_report
-from bench.course.result import TaskResult
+from bench.course.result import Number, TaskResult
 from bench.errors import InputError
 from bench.report.document import Picture
 from bench.report.figures import drawn
@@ -193,3 +193,16 @@ def test_the_advice_keeps_its_brackets_on_the_terminal():
     with shown.capture() as kept:
         shown.print(rendered(course_table([TaskResult(key="6", title="Inertia", reason=reason)])))
     assert '[trace.columns]velocity="column[unit]"' in "".join(kept.get().split())
+
+
+def test_the_truth_has_a_column_where_any_number_has_one():
+    known, measured = Number("J", 1.0, "kg·cm²", truth=1.01), Number("E", 2.0, "N²·m²")
+    headings = [
+        [
+            column.heading
+            for block in task_section(TaskResult((), numbers, key="9", title="x")).blocks
+            for column in block.columns
+        ]
+        for numbers in ((known, measured), (measured,))
+    ]
+    assert ["truth" in each for each in headings] == [True, False]

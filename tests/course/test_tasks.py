@@ -1,5 +1,7 @@
 """Every number of every task against the truth of the synthetic recordings, closed forms, or the datasheet."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -230,3 +232,10 @@ def test_10_the_corner_is_where_the_decline_begins_whatever_the_lag(lag):
     assert found.no_load == pytest.approx(voltage / ke, rel=2e-3)
     if lag >= 3e-3:  # the line through the fall takes the lag for a shift
         assert found.extrapolated - corner > 20.0 / RPM
+
+
+def test_9_what_is_left_of_all_samples_is_a_small_part_of_the_torque(done):
+    (told,) = [finding for finding in done["9"].findings if "of the torque; over the fitted samples" in finding]
+    share = float(re.search(r"([\d.]+) ?% of the torque", told)[1])
+    print(told)
+    assert share < 10.0

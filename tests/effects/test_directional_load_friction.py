@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bench.effects.catalogue import catalogue
 from bench.effects.present import Present
+from bench.effects.signals import Base
 from tests.effects.axes import FREE, VALUES, moved, present, signals
 
 NAME = "directional_load_friction"
@@ -28,3 +30,8 @@ def test_without_a_load_it_is_load_dependent_friction():
     same = Present.of("load_dependent_friction", {"load_friction_coefficient": VALUES[NAME]["motor_coefficient"]})
     motions = [signals(moved([each], 0.1, 1.0, parameters=dry))[2] for each in (present(NAME), same)]
     np.testing.assert_array_equal(*motions)
+
+
+def test_the_coefficient_of_the_load_is_told_beside_that_of_the_motor():
+    found = catalogue()[NAME].report([0.2], (3.0,), Base(1.0, 0.0, 0.0))
+    assert found == {"motor_coefficient": 0.2, "load_ratio": 3.0, "load_coefficient": pytest.approx(0.6)}

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import fit_bare
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
+from bench.fit.hypothesis import Hypothesis, Term, in_line
 from bench.fit.identify import identify
 from bench.fit.rows import Rows
 from bench.trace.trace import Trace
@@ -91,3 +93,14 @@ def test_a_clean_recording_in_one_direction_leaves_noise_alone(duration, period)
     trace = Trace(motion.time, signals, {"position": "rad", "current": "A"}, "one way")
     narrowest = 1.0 / period
     assert fit_bare(Rows.of(trace, RIG, cutoff=narrowest)).chi < 1.12
+
+
+def test_others_see_strengths_of_dry_friction_as_share_of_coulombs():
+    terms = [
+        Term(catalogue()[name], shape) for name, shape in (("stribeck_friction", (5.0,)), ("cogging_torque", (6.0,)))
+    ]
+    theta, owners = np.array([1e-3, 2e-4, 0.05, 0.02, 0.3, 0.4]), [INERTIA, VISCOUS, COULOMB, 0, 1, 1]
+    found = in_line(Hypothesis(tuple(terms)), theta, np.array(owners, dtype=object))
+    assert [term.level for term in found.terms] == [(pytest.approx(0.4),), ()]
+    theta[2] = 0.0
+    assert [term.level for term in in_line(found, theta, np.array(owners, dtype=object)).terms] == [(), ()]

@@ -85,3 +85,11 @@ def test_noise_over_the_steps_leaves_its_characteristic_function_of_what_roundin
 
 def test_what_is_cut_off_is_evenly_spread_over_half_a_step():
     assert cut_beforehand(0.4) == pytest.approx((0.1, 0.2**2 / 12.0))
+
+
+@pytest.mark.parametrize(("step", "seen"), [(0.2 * 0.999, False), (0.2 * 1.001, True)])
+def test_a_digit_matters_from_a_tenth_of_the_noise_on(step, seen):
+    rows = Rows.of(recorded(lambda current: current), RIG)
+    noise = rows.conditioning.effort_noise * rows.conditioning.filter.noise_gain(0)
+    stepped = replace(rows, conditioning=replace(rows.conditioning, effort_step=step * noise))
+    assert (plain(stepped).step > 0.0) == seen

@@ -67,3 +67,11 @@ def test_a_draft_is_a_rig_that_works_as_far_as_the_file_tells(tmp_path, head, ma
     rig = load_rig(tmp_path / "rig.toml")
     assert mapped - {"time"} <= set(rig.trace.columns)
     assert tomllib.loads(text)["motor"] == {"model": "SH30701P"}
+
+
+@pytest.mark.parametrize(("head", "asked"), [("Zeit [s],Winkel [°],M [Nm]", False), ("Winkel [°],M [Nm]", True)])
+def test_a_draft_asks_for_the_sample_period_of_what_holds_no_time_alone(tmp_path, head, asked):
+    path = tmp_path / "run.csv"
+    cells = head.count(",") + 1
+    path.write_text("\n".join([head, *(",".join([f"{k}"] * cells) for k in range(300))]))
+    assert ("sample_period" in draft(inspect(path))) == asked

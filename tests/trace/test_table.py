@@ -7,7 +7,7 @@ import pytest
 
 from bench.errors import InputError
 from bench.trace.read import read, read_recording
-from bench.trace.readers.table import read_timed
+from bench.trace.readers.table import find_layout, read_timed
 from tests.trace.recordings import csv_text, current, shared, velocity
 
 TIME = np.arange(500) * 1e-3
@@ -159,3 +159,9 @@ def test_laas_compensation_table_is_no_trace():
 def test_timed_lines_need_a_column_of_time():
     with pytest.raises(InputError, match=r"x\.log: found columns speed \[rpm\]; allowed: one of them called time"):
         read_timed(["1", "2"], 1, ["speed [rpm]"], ";", "x.log")
+
+
+def test_lines_whose_width_is_the_same_in_less_than_half_of_them_are_no_table():
+    widths = [",".join("1" * count) for count in (2, 2, 3, 4, 5)]
+    assert find_layout(widths) is None
+    assert find_layout([*widths, "1,1"]) is not None

@@ -60,7 +60,8 @@ def reaches(folder: Path, anew: bool) -> list[Reach]:
     if anew or not any(folder.glob("*.json")):
         folder.mkdir(parents=True, exist_ok=True)
         command = [sys.executable, "-m", "pytest", "-q", "-p", "tests.studies.mutation.reach", "--no-header", "--tb=no"]
-        subprocess.run(command, cwd=ROOT, env={**os.environ, **ENVIRONMENT, REACH: str(folder)}, check=True)
+        reach = {REACH: str(folder.resolve())}  # tests change the working folder
+        subprocess.run(command, cwd=ROOT, env={**os.environ, **ENVIRONMENT, **reach}, check=True)
     parts = [json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.json")]
     found = [Reach(part["path"], part["seconds"], frozenset(part["ran"])) for part in parts]
     return sorted(found, key=lambda reach: reach.seconds)
@@ -76,7 +77,9 @@ def fate(mutant: Mutant, tests: Sequence[Reach], copy: Path, most: float) -> Fat
         most: seconds of tests that it is shown to, as they take without it.
     """
     folder = "/".join(("tests", *mutant.path.split("/")[1:2]))
-    seeing = sorted((t for t in tests if t.sees(mutant)), key=lambda t: (not t.path.startswith(folder), t.seconds))
+    # what a fixture of the session runs is counted for the first file alone that asks for it
+    seeing = [test for test in tests if test.sees(mutant) or test.path.startswith(f"{folder}/")]
+    seeing.sort(key=lambda test: (not test.path.startswith(folder), test.seconds))
     path, began, shown, spent = copy / mutant.path, time.monotonic(), 0, 0.0
     text = path.read_text(encoding="utf-8")
     changed = mutant.applied(text)
