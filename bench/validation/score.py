@@ -12,7 +12,7 @@ import numpy as np
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.name import NamedEffect
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 from bench.validation.plan import Case
 
 #: Terms of the equation of motion that are judged.

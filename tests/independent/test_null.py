@@ -33,7 +33,7 @@ from bench.validation.independent.effects import (
     VoltageLimit,
 )
 from bench.validation.independent.plant import Plant
-from tests.independent.axes import PLAIN, run
+from tests.independent.axes import FREE, PLAIN, run
 
 NULL = [
     StribeckFriction(PLAIN.coulomb, 1.0),
@@ -105,3 +105,12 @@ def test_effects_act_alike_alone_and_among_neighbours_whom_they_leave_alone():
         heard = [np.abs(alone[name] - bare[name]).max() for name in ("velocity", "measured_velocity")]
         heard.append(np.abs(plant.recorded_current - alone["current"][-1]).max())
         assert max(heard) > 1e-6, effect.name
+
+
+def test_a_derived_effect_acts_as_the_one_it_is_derived_from():
+    class Rubber(TorsionSpring):
+        name = "rubber"
+
+    states = [run(Plant([FREE], [[kind(30.0)]], velocity=5.0), 0.0, 0.05) for kind in (TorsionSpring, Rubber)]
+    np.testing.assert_array_equal(states[0]["velocity"], states[1]["velocity"])
+    assert states[0]["velocity"][-1, 0] < 4.99
