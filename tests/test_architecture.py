@@ -18,7 +18,7 @@ PAGE_MAKERS = sorted((ROOT / "docs" / "_ext").glob("*.py"))
 LAYERS = (
     {"errors", "names", "bounds", "files", "structured", "assets", "allocation"},
     {"jobs"},
-    {"units", "axis_kind", "arrays", "statistics"},
+    {"units", "axis_kind", "arrays", "parameter"},
     {"comparison"},
     {"trace"},
     {"rig"},

@@ -27,7 +27,7 @@ import numpy as np
 from scipy import special
 
 from bench.arrays import Array
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 
 #: Number of recordings in a baseline from which on the spread is theirs alone, by Student's t. With fewer it is the
 #: larger of theirs and the stated one: at 2 degrees of freedom and 30 comparisons at 1 % an interval is 55 standard

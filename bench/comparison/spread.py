@@ -26,7 +26,7 @@ import numpy as np
 from scipy import special
 
 from bench.arrays import NORMAL95, Array
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 
 #: Probability of a false warning that recordings differ, over all quantities together.
 ALARM = 0.01

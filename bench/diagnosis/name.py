@@ -20,7 +20,7 @@ from bench.fit.fit import Fit, fit
 from bench.fit.quantities import uncertain
 from bench.fit.shapes import unbiased
 from bench.fit.systematic import hint
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 
 
 @dataclass(frozen=True)

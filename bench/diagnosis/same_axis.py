@@ -22,7 +22,7 @@ from bench.fit.layout import lay_out
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.solution import equations_of
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 
 #: Factors by which J, K_w and K_0 of one axis may differ between recordings without a warning.
 REPORTED = (1.01, 1.3, 1.1)

@@ -25,9 +25,9 @@ from bench.fit.estimate import Alone
 from bench.fit.fit import Fit
 from bench.fit.stored import Balance
 from bench.gate.check import Check
+from bench.parameter import Parameter
 from bench.plant.measured_motion import measured_velocity
 from bench.plant.model_file import StoredModel
-from bench.statistics import Parameter
 from bench.trace.noise import white_noise
 
 

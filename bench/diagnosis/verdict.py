@@ -18,8 +18,8 @@ from bench.diagnosis.name import NamedEffect, Suspects
 from bench.diagnosis.recordings import Recordings
 from bench.fit.fit import Fit
 from bench.fit.rows import Rows
+from bench.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.statistics import Parameter
 from bench.trace.trace import Trace
 
 #: Share of the samples that stand at exactly the largest value, in rows of so many, which no motion and no noise make.

@@ -24,12 +24,12 @@ from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.shapes import shaped
 from bench.names import words
+from bench.parameter import Parameter
 from bench.plant.drive import References
 from bench.plant.plant import Plant
 from bench.plant.profiles import PROFILES, MotionLimits, full_torque, plan
 from bench.plant.simulate import simulate
 from bench.rig.rig import Rig
-from bench.statistics import Parameter
 from bench.trace.trace import Trace
 
 #: Profiles to choose from: not the one that demands more than the motor has.

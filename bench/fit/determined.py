@@ -10,7 +10,7 @@ from bench.fit.estimate import Estimate
 from bench.fit.normal_equations import NormalEquations
 from bench.fit.rows import ONE_WAY
 from bench.names import words
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 
 #: Least number of rows for each column of the regression.
 ROWS_PER_COLUMN = 20

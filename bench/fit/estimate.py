@@ -13,8 +13,8 @@ from bench.axis_kind import ARMATURE, COULOMB, INERTIA, MISALIGNMENT, OFFSET, VI
 from bench.comparison.spread import Between
 from bench.errors import UndeterminedError
 from bench.gate.check import Check
+from bench.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.statistics import Parameter
 from bench.trace.motion import Motion
 
 

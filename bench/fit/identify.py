@@ -34,8 +34,8 @@ from bench.fit.layout import BASE
 from bench.fit.normal_equations import NormalEquations, join, solved
 from bench.fit.solution import NOISE_ALONE, SURE, Solution
 from bench.gate.gate import joined
+from bench.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.statistics import Parameter
 from bench.trace.trace import Trace
 
 

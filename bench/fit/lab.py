@@ -17,8 +17,8 @@ from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import RECORD
 from bench.fit.estimate import Estimate, Residual, load_inertia
+from bench.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.statistics import Parameter
 from bench.trace.trace import Trace
 
 #: The course drops slower samples - rad/s.

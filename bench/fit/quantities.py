@@ -21,7 +21,7 @@ from bench.fit.layout import lay_out
 from bench.fit.normal_equations import block_edges, solved
 from bench.fit.rows import Rows
 from bench.fit.solution import estimated, misfit
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 
 #: Step of a numerical derivative, relative.
 STEP = 1e-4

@@ -26,8 +26,8 @@ from bench.fit.identify import identify
 from bench.fleet.manifest import Manifest
 from bench.gate.check import Check
 from bench.gate.gate import UnanswerableError
+from bench.parameter import Parameter
 from bench.rig.rig import Rig, load_rig
-from bench.statistics import Parameter
 from bench.structured import json_text, parse_json
 from bench.trace.choose import axes_of
 from bench.trace.read import read_recording

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 
 #: Keeps a value, its interval and its unit on one line.
 SPACE = "\N{NO-BREAK SPACE}"

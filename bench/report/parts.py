@@ -12,9 +12,9 @@ from bench.files import read_text, sha256
 from bench.fit.estimate import Alone
 from bench.gate.check import Check
 from bench.names import readable, words
+from bench.parameter import Parameter
 from bench.report.document import Downloads, File, Points, Section, Series, Table, section, table
 from bench.report.numbers import interval, number, unit_text
-from bench.statistics import Parameter
 
 
 def parameters_table(

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from bench.gate.check import Check
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 from bench.structured import json_text
 
 

@@ -9,7 +9,7 @@ from scipy.stats import binomtest, norm
 from scipy.stats import t as student
 
 from bench.comparison.difference import ENOUGH, NOT_EQUIVALENT, Difference, Measured
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 
 
 @pytest.mark.parametrize("degrees", [3.0, 40.0, math.inf])

@@ -7,7 +7,7 @@ from scipy import stats
 from bench.arrays import NORMAL95
 from bench.comparison.spread import Excess, between, excess
 from bench.diagnosis.same_axis import widened
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 
 
 def numbers(values, error):

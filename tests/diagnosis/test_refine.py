@@ -12,7 +12,7 @@ from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, Step
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 from tests.diagnosis.constructed import COULOMB, INERTIA, RIG, VISCOUS, moved, recorded
 from tests.diagnosis.hand_made import term
 

@@ -23,8 +23,8 @@ from bench.diagnosis.verdict import (
 )
 from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
+from bench.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.statistics import Parameter
 from tests.diagnosis.constructed import COULOMB, RIG, bare, moved, offset, recorded
 from tests.diagnosis.hand_made import level, made
 

@@ -2,9 +2,9 @@
 
 import pytest
 
+from bench.parameter import Parameter
 from bench.report.html import ticks
 from bench.report.numbers import interval, number, share, unit_text
-from bench.statistics import Parameter
 
 
 def told(text):

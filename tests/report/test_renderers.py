@@ -10,6 +10,7 @@ import pytest
 
 from bench.errors import UndeterminedError
 from bench.gate.check import Check
+from bench.parameter import Parameter
 from bench.report import figures
 from bench.report.document import (
     Chart,
@@ -30,7 +31,6 @@ from bench.report.html import Ruler, drawn
 from bench.report.publish import markdown
 from bench.report.serial import known, picked, serialised
 from bench.report.terminal import rendered, show, writable
-from bench.statistics import Parameter
 
 NUMBERS = table(
     "numbers", ("of", "value>", "why~"), [("inertia", "(1.3100 ± 0.0012)·10⁻³", "because"), ("a|b", "−2", "")]

@@ -8,7 +8,7 @@ from scipy import stats
 
 from bench.diagnosis.name import NamedEffect
 from bench.effects.catalogue import catalogue
-from bench.statistics import Parameter
+from bench.parameter import Parameter
 from bench.validation.coverage import (
     LEVELS,
     NOTHING,
