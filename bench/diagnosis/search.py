@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from bench.diagnosis.policy import Policy, worth
 from bench.effects.effect import Effect, Replacing
@@ -177,7 +178,8 @@ def replacement(fitted: Fit, effect: Replacing, policy: Policy) -> Fit | None:
     """The hypothesis with an effect in the place of those it replaces, if that explains clearly more."""
     kept = [term for term in fitted.terms if term.effect.name not in effect.replaces]
     current = fit(fitted.rows, fitted.hypothesis.with_terms(kept))
-    shape = effect.in_place_of(current) if current.hypothesis.admits(effect) else None
+    promises = partial(policy.promises, current)
+    shape = effect.in_place_of(current, promises) if current.hypothesis.admits(effect) else None
     if shape is None:
         return None
     first = fit(fitted.rows, current.hypothesis.plus(Term(effect, shape)))

@@ -22,13 +22,13 @@ E. M. Ronchetti, Robust Statistics, 2nd ed., 2009, ch. 7; B. Efron, R. J. Tibshi
 1993, sec. 8.6.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array, splined
+from bench.arrays import Array, splined, symmetric_inverse
 from bench.effects.acting import Native, Spring
 from bench.effects.effect import Contact, Coupling, Fitted, Load, Replacing
 from bench.effects.mjcf import Spec, add_coupling_joint
@@ -115,9 +115,9 @@ class Backlash(Replacing, Coupling, Contact, Native):
         columns = fitted.seen(lambda signals: dead_zone_columns(signals, shapes), of_motion=True)
         return np.abs(columns[:, 1:] - columns[:, :1]).max(axis=1)
 
-    def in_place_of(self, fitted: Fitted) -> tuple[float, ...]:
+    def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
         """By likelihood over gaps and contacts."""
-        return likeliest_shape(fitted)
+        return likeliest_shape(fitted, promises)
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Gap, and what the contact's frequency and damping ratio are with the load's inertia."""
@@ -168,57 +168,63 @@ def load_positions(angle: Array, sample_period: float, shapes: Array) -> Array:
     count, size = -(-(angle.size - 1) // length), len(shapes)
     fine = np.pad(between, (0, count * length * substeps + 1 - between.size), mode="edge")
     windows = fine[np.arange(length * substeps + 1)[:, None] + length * substeps * np.arange(count)]
-    firsts = length * np.arange(count)
-    position = np.repeat(angle[firsts][:, None], size, axis=1)
-    velocity = np.repeat((slopes[substeps * firsts] / sample_period)[:, None], size, axis=1)
+    twist = np.zeros((count, size))
+    travel = np.repeat((slopes[substeps * length * np.arange(count)] / substeps)[:, None], size, axis=1)
     found = np.empty((length, count, size))
     window, shape = (pairs.ravel() for pairs in np.indices((count, size)))
     while window.size:
-        start = position[window, shape], velocity[window, shape]
-        moved, last, speed = _run(windows, window, shapes[shape], start, sample_period / substeps)
-        found[:, window, shape] = moved[substeps - 1 :: substeps]
+        start = twist[window, shape], travel[window, shape]
+        twists, last, way = _run(windows, window, shapes[shape], start, sample_period / substeps, substeps)
+        found[:, window, shape] = twists
         inside = window + 1 < count
-        window, shape, last, speed = window[inside] + 1, shape[inside], last[inside], speed[inside]
-        away = np.abs(last - position[window, shape])
-        away = np.maximum(away, np.abs(speed - velocity[window, shape]) / shapes[shape, 1])
-        position[window, shape], velocity[window, shape] = last, speed
+        window, shape, last, way = window[inside] + 1, shape[inside], last[inside], way[inside]
+        away = np.abs(way - travel[window, shape]) * (substeps / sample_period) / shapes[shape, 1]
+        away = np.maximum(away, np.abs(last - twist[window, shape]))
+        twist[window, shape], travel[window, shape] = last, way
         apart = away > CLOSED * shapes[shape, 0]
         window, shape = window[apart], shape[apart]
     samples = found.transpose(1, 0, 2).reshape(count * length, size)
-    return np.concatenate([np.full((1, size), angle[0]), samples[: angle.size - 1]])
+    return angle[:, None] - np.concatenate([np.zeros((1, size)), samples[: angle.size - 1]])
 
 
 def _run(
-    angles: Array, window: NDArray[np.intp], shapes: Array, start: tuple[Array, Array], step: float
+    angles: Array, window: NDArray[np.intp], shapes: Array, start: tuple[Array, Array], step: float, every: int
 ) -> tuple[Array, Array, Array]:
-    """Positions at the ends of all steps (steps, p), and the last position and velocity, of windows with shapes (p, 4).
+    """Twists p after every so many steps (steps/every, k) of windows with shapes (k, 4), and the last with the travel.
 
-    Trapezoidal rule, implicit where a step ends in contact.
+    Trapezoidal rule, implicit where a step ends in contact. The travel is what the load goes in a step - rad (m).
     """
     gap, frequency, damping, spring = shapes.T
     above, below, half_step = 0.5 * gap, -0.5 * gap, 0.5 * step
-    push = half_step * frequency**2 + 2.0 * damping * frequency
-    resist = half_step * frequency**2 - 2.0 * damping * frequency
-    implicit = push / (1.0 + half_step * push)
-    explicit = resist / (1.0 + half_step * push)
-    springs, pull = bool(spring.any()), step * spring
-    position, velocity = start
-    moved = np.empty((angles.shape[0] - 1, position.size))
-    twist = angles[0][window] - position
-    before = twist - np.minimum(np.maximum(twist, below), above)
-    for k in range(moved.shape[0]):
-        angle = angles[k + 1][window]
-        ahead = position + step * velocity
-        twist = angle - ahead
-        after = twist - np.minimum(np.maximum(twist, below), above)
-        impulse = np.where(after != 0.0, implicit * after + explicit * before, resist * before)
+    push = half_step * (half_step * frequency**2 + 2.0 * damping * frequency)
+    resist = half_step * (half_step * frequency**2 - 2.0 * damping * frequency)
+    implicit, explicit, pull = push / (1.0 + push), resist / (1.0 + push), half_step * step * spring
+    springs = bool(spring.any())
+    twist, travel = start
+    found = np.empty(((angles.shape[0] - 1) // every, twist.size))
+    ahead, after, before, moved, held = np.empty((5, twist.size))
+    np.subtract(twist, twist.clip(below, above), out=before)
+    touched = before != 0.0
+    for k, rise in enumerate(np.diff(angles, axis=0), 1):
+        rise.take(window, out=ahead, mode="clip")
+        ahead += twist
+        ahead -= travel
+        np.subtract(ahead, ahead.clip(below, above, out=after), out=after)
+        touches = after != 0.0
+        np.multiply(implicit, after, out=moved)
+        moved += np.multiply(explicit, before, out=held)
+        parts = (touched > touches).nonzero()[0]
+        moved[parts] = resist[parts] * before[parts]
         if springs:
-            impulse -= pull * (position + half_step * velocity)
-        velocity = velocity + impulse
-        position = np.add(ahead, half_step * impulse, out=moved[k])
-        twist = angle - position
-        before = twist - np.minimum(np.maximum(twist, below), above)
-    return moved, position, velocity
+            moved -= pull * (angles[k - 1].take(window) - twist + 0.5 * travel)
+        travel += moved
+        travel += moved
+        np.subtract(ahead, moved, out=twist)
+        np.subtract(twist, twist.clip(below, above, out=before), out=before)
+        touched = before != 0.0
+        if k % every == 0:
+            found[k // every - 1] = twist
+    return found, twist, travel
 
 
 def dead_zone_columns(signals: Signals, shapes: Array) -> list[Column]:
@@ -252,8 +258,11 @@ class Likely:
         return np.column_stack([self.shape[:3] * factors, np.full(len(factors), self.spring_rate)])
 
 
-def likeliest_shape(fitted: Fitted) -> tuple[float, ...]:
-    """Gap, contact's frequency and damping ratio, and spring's rate beside a fit without them; see `load_positions`."""
+def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
+    """Gap, contact's frequency and damping ratio, and spring's rate beside a fit without them; see `load_positions`.
+
+    None where no shape of the first grid takes squares that promise more.
+    """
 
     def likeliest(shapes: Array) -> list[Likely]:
         columns = _columns(fitted, shapes)
@@ -262,8 +271,12 @@ def likeliest_shape(fitted: Fitted) -> tuple[float, ...]:
 
     travel = fitted.scope.rms_speed * fitted.scope.width
     contacts = contacts_of(fitted.scope)
-    axes = [np.array(GAPS) * travel, np.array(contacts), np.array([DAMPING]), np.array(sorted(_spring_rates(fitted)))]
-    tried = likeliest(np.stack([m.ravel() for m in np.meshgrid(*axes, indexing="ij")], axis=1))
+    axes = [np.array(contacts), np.array(GAPS) * travel, np.array([DAMPING]), np.array(sorted(_spring_rates(fitted)))]
+    grid = np.stack([m.ravel() for m in np.meshgrid(*axes, indexing="ij")], axis=1)[:, [1, 0, 2, 3]]
+    softest_first = np.split(grid, len(contacts))  # each in steps of its own, of which a soft one needs few
+    if not any(promises(float(fitted.gains(_columns(fitted, part), 1).max())) for part in softest_first):
+        return None
+    tried = likeliest(grid)
     starts = [next(found for found in tried if found.shape[1] == contact) for contact in contacts]
     starts = sorted(starts, key=lambda likely: likely.misfit)[:STARTS]
     for level in range(1, ROUNDS):
@@ -281,12 +294,12 @@ def contact_spread(fitted: Fitted, shape: Array, place: int) -> Array:
     """Covariance (3, 3) of gap, frequency and damping of a fit's dead zone, of a shape (4,) and a column's place."""
     offsets = np.stack([m.ravel() for m in np.meshgrid(*AROUND, indexing="ij")], axis=1)
     shapes = np.column_stack([shape[:3] * np.exp(offsets), np.full(len(offsets), shape[3])])
-    others, effort = fitted.columns.copy(), fitted.effort
+    others, effort = fitted.columns.T.copy(), fitted.effort
     time = fitted.time
     edges = np.unique(np.searchsorted(time, np.arange(time[0], time[-1], STRETCH)))
     misfits = []
     for column in _columns(fitted, shapes).T:
-        others[:, place] = column
+        others[place] = column
         misfits.append(np.add.reduceat(cauchy(others, effort, SCALE * fitted.floor)[1], edges))
     rng = np.random.default_rng(0)
     drawn = rng.multinomial(edges.size, np.full(edges.size, 1.0 / edges.size), size=DRAWS)
@@ -321,23 +334,23 @@ def _stiffness(fitted: Fitted, theta: Array) -> float:
 
 
 def _likely(fitted: Fitted, shape: Array, column: Array) -> Likely:
-    theta, rows = cauchy(np.column_stack([fitted.columns, column]), fitted.effort, SCALE * fitted.floor)
+    theta, unlikely = cauchy(np.vstack([fitted.columns.T, column]), fitted.effort, SCALE * fitted.floor)
     rate = float(shape[3])
     if rate > 0.0:
         stiffness = _stiffness(fitted, theta[:-1])
         rate = stiffness / float(theta[-1]) if theta[-1] > 0.0 and stiffness > 0.0 else rate
-    return Likely(shape, float(rows.sum()), rate)
+    return Likely(shape, float(unlikely.sum()), rate)
 
 
 def cauchy(columns: Array, effort: Array, scale: float) -> tuple[Array, Array]:
-    """Coefficients (p,) by reweighted least squares, and each row's negative logarithm of Cauchy's likelihood (m,)."""
-    size = np.sqrt(np.mean(columns**2, axis=0)) + 1e-300
-    columns = columns / size
+    """Coefficients (p,) of columns (p, m) by reweighted least squares; each row's -log of Cauchy's likelihood (m,)."""
+    size = np.sqrt(np.einsum("ij,ij->i", columns, columns) / effort.size) + 1e-300
+    columns = columns / size[:, None]
     weight, left, theta = np.ones(effort.size), effort, np.zeros(size.size)
     for _ in range(REWEIGHTED):
-        weighted = columns.T * weight
-        theta = np.linalg.lstsq(weighted @ columns, weighted @ effort, rcond=1e-12)[0]
-        left = effort - columns @ theta
+        weighted = columns * weight
+        theta = symmetric_inverse(weighted @ columns.T, 1e-12) @ (weighted @ effort)
+        left = effort - theta @ columns
         weight = 1.0 / (1.0 + (left / scale) ** 2)
     return theta / size, np.log1p((left / scale) ** 2)
 

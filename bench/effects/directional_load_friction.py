@@ -11,7 +11,7 @@ Source: M. Duclusaud, G. Passault, V. Padois, O. Ly, Extended friction models fo
 actuators, 2024, arXiv 2410.08650 (model M5; M6 adds squares to its rise at low speed).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -43,7 +43,7 @@ class DirectionalLoadFriction(CopiesTorque, Replacing, FollowsLoad):
         """Magnitude of both torques, against the motion."""
         return [[(signals.sign * np.abs(signals.torque + shape[0] * signals.load), 0)]]
 
-    def in_place_of(self, fitted: Fitted) -> tuple[float, ...] | None:
+    def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
         """The best ratio beside a load, or none without one."""
         if not fitted.places(LoadTorque).size:
             return None

@@ -327,5 +327,8 @@ class Replacing(Effect):
         return []
 
     @abstractmethod
-    def in_place_of(self, fitted: Fitted) -> tuple[float, ...] | None:
-        """Its most likely shape in a fit without the effects that it replaces; None where it can be none."""
+    def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
+        """Its most likely shape in a fit without the effects that it replaces; None where it can be none.
+
+        `promises` says of the squares that a grid's shape takes whether a search from it is worth it.
+        """
