@@ -20,12 +20,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.arrays import NORMAL95, Array, rms
+from bench.diagnosis.held_out import HeldOut
 from bench.diagnosis.model import (
     BANDWIDTH,
     HOLDOUT,
     RECORDING,
     Extension,
-    HeldOut,
     Recorded,
     Stage,
     VelocityGaps,
@@ -37,6 +37,7 @@ from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, same_axis
 from bench.effects.acting import DriveLimit
 from bench.effects.effect import Occasional
+from bench.effects.waves import Wave
 from bench.errors import BenchError, InputError
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
@@ -172,13 +173,16 @@ def rejection(
     gaps.simulate((each.whole, judge) for each in (judged, *without) if without)
     floor = NULL * white_noise(measured_velocity(recordings.trace))
     for index, less in reversed(list(enumerate(without))):
-        if judged.occasional(index) and (not judge.events or held_out.rows != RECORDING):
+        if judged.a(Occasional, index) and (not judge.events or held_out.rows != RECORDING):
             continue
-        if held_out.judge.effort.size:  # empty if the axis never moves
-            balances = (Balance.of(each.whole.fitted).repeating(judge.events) for each in (less, judged))
-            before, after = (balance.gap(held_out.judge) for balance in balances)
-            if after > before:
-                return index, _grows(f"torque gap of the {judge.name}", before, after, judged.rig.effort_unit)
+        if not held_out.determines(judged.whole.fitted, extension.whole.fitted, index):
+            continue
+        balances = (Balance.of(each.whole.fitted).repeating(judge.events) for each in (less, judged))
+        before, after = (balance.gap(held_out.judge) for balance in balances)
+        if after > before:
+            return index, _grows(f"torque gap of the {judge.name}", before, after, judged.rig.effort_unit)
+        if not gaps.in_phase(judged.whole, judge) and (judged.a(Wave, index) or not gaps.in_phase(less.whole, judge)):
+            continue
         before, after = (gaps.of(each.whole, judge) for each in (less, judged))
         allowed = float(np.hypot(before, floor))
         worse = min(before, after) < judge.varies and after > allowed

@@ -16,19 +16,19 @@ from numpy.typing import NDArray
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.diagnosis.name import Suspects
-from bench.diagnosis.recordings import Recordings
 from bench.effects.acting import RaisesFriction
 from bench.effects.effect import Detected, Effect, Occasional
 from bench.effects.present import Present
 from bench.effects.signals import Moment
+from bench.effects.waves import Wave
 from bench.errors import InputError
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.rows import Rows
 from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
-from bench.plant.measured_motion import in_stretches, measured_velocity
+from bench.plant.measured_motion import in_stretches, measured_position, measured_velocity
 from bench.plant.model_file import Mounting, StoredModel
-from bench.plant.tracking import SoftTracking, track_all
+from bench.plant.tracking import SoftTracking, Tracked, track_all
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -36,13 +36,12 @@ from bench.trace.trace import Trace
 #: shared cases the effects found reduce the gap by a median factor of 15 at 10, 16 at 20 and 14 at 40 rad/s; at 20 none
 #: fails to track (docs/diagnose.md).
 BANDWIDTH, MOST = 20.0, 100.0
+#: Phase from which on a wave of position out of phase leaves more torque than no wave, |exp(j*phase) - 1| > 1 - rad.
+OUT_OF_PHASE = math.pi / 3.0
 #: Number of speeds at which the slope of friction is evaluated, and the lowest as share of the top speed.
 SPEEDS, SLOWEST = 400, 1e-3
-#: Share of a recording, at its end, that is held out if there is no holdout recording.
-HELD_OUT = 1.0 / 3.0
 #: Names of fitted and of judging motion.
-RECORDING, FIRST_PART = "recording", "first two thirds of the recording"
-HOLDOUT, LAST_THIRD = "holdout", "last third of the recording"
+RECORDING, HOLDOUT = "recording", "holdout"
 #: Velocities that are kept for every addition: half the memory, and never summed.
 Residual = NDArray[np.float32]
 
@@ -175,10 +174,10 @@ class Extension:
             return replace(self, hypothesis=self.hypothesis.without(index))
         return replace(self, outside=(*self.outside[: index - own], *self.outside[index - own + 1 :]))
 
-    def occasional(self, index: int) -> bool:
-        """Whether an effect may occur in one recording and not in another."""
+    def a(self, kind: type[Effect], index: int) -> bool:
+        """Whether an effect of the torque balance is of a kind."""
         terms = self.hypothesis.terms
-        return index < len(terms) and isinstance(terms[index].effect, Occasional)
+        return index < len(terms) and isinstance(terms[index].effect, kind)
 
 
 @dataclass(frozen=True)
@@ -201,15 +200,18 @@ class Recorded:
 
     @classmethod
     def of(
-        cls, name: str, trace: Trace, rig: Rig, since: float = -np.inf, until: float = np.inf, events: bool = True
+        cls, name: str, trace: Trace, rig: Rig, over: NDArray[np.bool_] | bool = True, events: bool = True
     ) -> Recorded:
-        """A recording whose gap is taken from `since` until `until` - s."""
-        judged = (trace.time >= since) & (trace.time < until) & in_stretches(trace)
-        return cls(name, trace, rig.net_effort(trace)[0], judged, events)
+        """A recording whose gap is taken over some samples (n,)."""
+        return cls(name, trace, rig.net_effort(trace)[0], in_stretches(trace) & over, events)
 
     def difference(self, simulated: Array) -> Array:
         """Simulated less measured velocity at the judged samples - rad/s (m/s)."""
         return (simulated - measured_velocity(self.trace))[self.judged]
+
+    def drift(self, simulated: Array) -> float:
+        """RMS of simulated less measured position at the judged samples - rad (m)."""
+        return rms((simulated - measured_position(self.trace))[self.judged])
 
     def gap(self, simulated: Array | None) -> float:
         """RMS of measured less simulated velocity at the judged samples - rad/s (m/s); nan where there is none."""
@@ -230,6 +232,21 @@ class Recorded:
         return SoftTracking(model, self.trace, self.effort, stored.misalignment, inertia)
 
 
+@dataclass(frozen=True)
+class Held:
+    """A model held to a recording; nothing of it without a model, or where it diverged.
+
+    Attributes:
+        gap: velocity gap at the judged samples - rad/s (m/s).
+        residual: measured less simulated velocity at all of them - rad/s (m/s) - (n,).
+        drift: RMS of the simulated position from the measured one - rad (m).
+    """
+
+    gap: float = math.nan
+    residual: Residual | None = None
+    drift: float = math.nan
+
+
 class VelocityGaps:
     """Velocity gaps of models along recordings, each simulated once.
 
@@ -240,69 +257,45 @@ class VelocityGaps:
 
     def __init__(self, bandwidth: float, inertia: float) -> None:
         self.bandwidth, self.inertia = bandwidth, inertia
-        self._known: dict[tuple[object, ...], tuple[float, Residual | None]] = {}
+        self._known: dict[tuple[object, ...], Held] = {}
 
     def simulate(self, pairs: Iterable[tuple[Stage, Recorded]]) -> None:
         """Simulate models along recordings in parallel, unless done before."""
         asked = {_key(stage, recorded): (stage.model, recorded) for stage, recorded in pairs}
         new = {key: pair for key, pair in asked.items() if key not in self._known}
         run = {key: (model, recorded) for key, (model, recorded) in new.items() if model is not None}
-        velocities = self.velocities([model for model, _ in run.values()], [recorded for _, recorded in run.values()])
-        self._known |= dict.fromkeys(new, (math.nan, None))
-        for (key, (_, recorded)), velocity in zip(run.items(), velocities, strict=True):
-            self._known[key] = recorded.gap(velocity), None if velocity is None else recorded.residual(velocity)
+        tracked = self._tracked([model for model, _ in run.values()], [recorded for _, recorded in run.values()])
+        self._known |= dict.fromkeys(new, Held())
+        for (key, (_, recorded)), one in zip(run.items(), tracked, strict=True):
+            if one is not None:
+                gap, left = recorded.gap(one.velocity), recorded.residual(one.velocity)
+                self._known[key] = Held(gap, left, recorded.drift(one.position))
 
     def of(self, stage: Stage, recorded: Recorded) -> float:
         """RMS of measured less simulated velocity - rad/s (m/s); nan without a model, or where it diverged."""
-        self.simulate([(stage, recorded)])
-        return self._known[_key(stage, recorded)][0]
+        return self._held(stage, recorded).gap
 
     def residual(self, stage: Stage, recorded: Recorded) -> Residual | None:
         """Measured less simulated velocity along a recording; None without a model, or where it diverged."""
-        self.simulate([(stage, recorded)])
-        return self._known[_key(stage, recorded)][1]
+        return self._held(stage, recorded).residual
+
+    def in_phase(self, stage: Stage, recorded: Recorded) -> bool:
+        """Whether a model's waves of position act where the axis has them, so that its velocity tells of them."""
+        numbers = [term.effect.wave_number(term.shape) for term in stage.fitted.terms if isinstance(term.effect, Wave)]
+        return not numbers or max(numbers) * self._held(stage, recorded).drift < OUT_OF_PHASE
 
     def velocities(self, models: Iterable[StoredModel], recordings: Iterable[Recorded]) -> list[Array | None]:
         """Velocities of models along recordings, one each, (n,) - rad/s (m/s); None where one diverged."""
+        return [None if each is None else each.velocity for each in self._tracked(models, recordings)]
+
+    def _tracked(self, models: Iterable[StoredModel], recordings: Iterable[Recorded]) -> list[Tracked | None]:
         held = [r.holding(model, self.inertia) for model, r in zip(models, recordings, strict=True)]
-        return [None if each is None else each.velocity for each in track_all(held, self.bandwidth)]
+        return track_all(held, self.bandwidth)
+
+    def _held(self, stage: Stage, recorded: Recorded) -> Held:
+        self.simulate([(stage, recorded)])
+        return self._known[_key(stage, recorded)]
 
 
 def _key(stage: Stage, recorded: Recorded) -> tuple[object, ...]:
     return (stage.rows, tuple(term.key for term in stage.fitted.terms), stage.outside, recorded.name)
-
-
-@dataclass(frozen=True)
-class HeldOut:
-    """Motion by which additions are judged; the judged fits do not use it.
-
-    Attributes:
-        fitted: rows that judged fits use.
-        rows: their name.
-        judge: rows they are judged by.
-        recorded: the same for simulations.
-        seen: motion that simulations may be fitted to.
-    """
-
-    fitted: Rows
-    rows: str
-    judge: Rows
-    recorded: Recorded
-    seen: Recorded
-
-    @classmethod
-    def of(cls, recordings: Recordings, trusted: bool, events: bool) -> HeldOut:
-        """A holdout that is `trusted` to be of this axis, with the recording's events or not; else the last third."""
-        if recordings.holdout is not None and recordings.holdout_rows is not None and trusted:
-            recorded = Recorded.of(HOLDOUT, recordings.holdout, recordings.rig, events=events)
-            seen = Recorded.of(RECORDING, recordings.trace, recordings.rig)
-            return cls(recordings.rows, RECORDING, recordings.holdout_rows, recorded, seen)
-        time = recordings.trace.time
-        split = float(time[0] + (1.0 - HELD_OUT) * (time[-1] - time[0]))
-        recorded = Recorded.of(LAST_THIRD, recordings.trace, recordings.rig, split)
-        smooth, after = recordings.rows.conditioning.filter, split - time[0]
-        away = smooth.margin * smooth.sample_period  # within which the filter mixes both sides
-        fitted = recordings.rows.selected(lambda time: time < after - away)
-        judge = recordings.rows.selected(lambda time: time >= after + away)
-        seen = Recorded.of(FIRST_PART, recordings.trace, recordings.rig, until=split)
-        return cls(fitted, FIRST_PART, judge, recorded, seen)

@@ -17,7 +17,7 @@ from bench.diagnosis.next_experiment import NextExperiment, propose
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, apart
 from bench.diagnosis.search import Searched, Step
-from bench.diagnosis.verdict import Gap, Shown, impacts, left_open, suspicions, verdict
+from bench.diagnosis.verdict import Gap, Shown, impacts, left_open, out_of_phase, suspicions, verdict
 from bench.diagnosis.where import Profile, Where, profiles, where
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
@@ -182,6 +182,7 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
             *suspicions(recordings.trace, rig, kept.parameters),
             *left_open(recordings.rows, kind),
             *impacts(whole, unit),
+            *out_of_phase(added),
             *several.warnings,
             *added.warnings,
         ],

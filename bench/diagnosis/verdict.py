@@ -96,10 +96,15 @@ def unfinished(shown: Shown) -> str:
 
 def moves_worse(shown: Shown) -> str:
     """The model moves worse than the bare axis, by more than noise: in the recording that shows it first."""
-    gap = shown.velocity
-    for name, pair in (("recording", gap.identify), ("holdout", gap.holdout)):
-        if shown.effects and pair is not None and pair[1] > math.hypot(pair[0], gap.noise_floor):
-            return f"simulated motion of the {name} is worse with it: {pair[0]:.3g} -> {pair[1]:.3g} {gap.unit}"
+    if not shown.effects:
+        return ""
+    gap, added = shown.velocity, shown.added
+    for recorded, pair in zip(added.recorded, (gap.identify, gap.holdout), strict=False):
+        if pair is None or pair[1] <= math.hypot(pair[0], gap.noise_floor):
+            continue
+        if added.gaps.in_phase(added.extension.whole, recorded):
+            name, before, after = recorded.name, *pair
+            return f"simulated motion of the {name} is worse with it: {before:.3g} -> {after:.3g} {gap.unit}"
     return ""
 
 
@@ -201,6 +206,16 @@ def impacts(fitted: Fit, unit: str) -> list[str]:
         f"{100.0 * share:.0f} % of the rows follow impacts so closely that their torque hangs on instants which the "
         f"recording does not tell: the verdict is by the others, on which {fitted.rms:.3g} {unit} are left; the torque "
         "gap counts all"
+    ]
+
+
+def out_of_phase(added: Added) -> list[str]:
+    """A warning of recordings along which simulated waves lose the phase of the measured motion."""
+    lost = [each.name for each in added.recorded if not added.gaps.in_phase(added.extension.whole, each)]
+    return [
+        f"the simulated position leaves the {name}'s by more than waves of it allow: they are judged by their torque "
+        "at the measured position, and the velocity gap says nothing of them"
+        for name in lost
     ]
 
 

@@ -265,7 +265,7 @@ def _sure(found: Diagnosis) -> str:
             f"{number(after, gap.unit, 3)}, where noise alone leaves {number(gap.noise_floor, digits=3)}."
         )
     elif found.effects:
-        lines.append("The last third of the recording, kept from the fit, bears it out; no holdout was given.")
+        lines.append("A third of the recording, kept from the fit, bears it out; no holdout was given.")
     if found.holdout.same is False:
         lines.append("The holdout is of another axis, or of this one changed.")
     lines += [

@@ -5,7 +5,8 @@ import pytest
 
 from bench.arrays import NORMAL95
 from bench.diagnosis.add import Numbers, refined, stepped
-from bench.diagnosis.model import HeldOut, Stage
+from bench.diagnosis.held_out import HeldOut
+from bench.diagnosis.model import Stage
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import Recordings

@@ -16,6 +16,7 @@ from bench.diagnosis.verdict import (
     holdout_apart,
     moves_worse,
     negative_friction,
+    out_of_phase,
     remains,
     undetermined,
     unfinished,
@@ -41,7 +42,15 @@ def named(name, **quantities):
 
 
 def shown(
-    *effects, velocity=None, torque=None, friction=(0.08, 0.001), seconds=4.0, chi=1.0, stopped=None, withheld=False
+    *effects,
+    velocity=None,
+    torque=None,
+    friction=(0.08, 0.001),
+    seconds=4.0,
+    chi=1.0,
+    stopped=None,
+    withheld=False,
+    in_phase=True,
 ):
     """What a diagnosis shows, with what a test does not ask for as it is where all is well."""
     quiet = Gap("SI", 0.01, (0.1, 0.01), None)
@@ -54,6 +63,11 @@ def shown(
         recordings=SimpleNamespace(trace=SimpleNamespace(time=np.linspace(0.0, seconds, 5))),
         suspects=SimpleNamespace(policy=Policy(), searched=searched, withheld=withheld),
         whole=made(level(100.0 * chi**2)),
+        added=SimpleNamespace(
+            recorded=[SimpleNamespace(name="recording"), SimpleNamespace(name="holdout")],
+            extension=SimpleNamespace(whole=None),
+            gaps=SimpleNamespace(in_phase=lambda stage, recorded: in_phase),
+        ),
     )
 
 
@@ -75,6 +89,11 @@ def test_a_model_that_moves_worse_explains_nothing(identify, holdout, said):
     against = moves_worse(shown(SPRING, velocity=Gap("rad/s", 0.027, identify, holdout)))
     assert said in against
     assert bool(said) == bool(against)
+
+
+def test_a_model_whose_waves_lost_their_phase_is_not_judged_by_its_speed():
+    worse = shown(SPRING, velocity=Gap("rad/s", 0.027, (0.50, 3.39), None), in_phase=False)
+    assert (moves_worse(worse), out_of_phase(worse.added) != []) == ("", True)
 
 
 @pytest.mark.parametrize(

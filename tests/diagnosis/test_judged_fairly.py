@@ -1,0 +1,75 @@
+"""Without a holdout no true name is lost to how a recording is cut, or to a simulation that cannot keep its phase.
+
+Truth from the independent integrator.
+"""
+
+import pytest
+
+from bench.diagnosis.diagnosis import diagnose
+from bench.rig.rig import load_rig
+from bench.validation.independent import simulate, write_rig
+from bench.validation.independent.effects import KINDS
+from bench.validation.independent.references import Motion, Ramps, slow_reversals
+from tests.diagnosis.test_add import AXIS, SENSORS, STEP
+from tests.kept import kept
+
+OFFSET, COGGING, HARMONIC = 0.1, 0.15, 60.0
+STANDS, JERK = 5.0, 0.02
+
+
+def strokes(speeds):
+    """To each speed - rad/s - and to rest again, one after the other."""
+    points = [(0.0, 0.0)]
+    for speed in speeds:
+        time, rise = points[-1][0], abs(speed) / 600.0
+        points += [(time + rise, speed), (time + rise + 0.15, speed)]
+        points += [(time + 2.0 * rise + 0.15, 0.0), (time + 2.0 * rise + 0.2, 0.0)]
+    return Ramps(points, JERK)
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """An axis that runs forward, stands, and runs backward; and one that runs slowly over strong cogging."""
+    there = strokes([10.0, 40.0, -2.0, 80.0, 25.0, -2.0, 60.0, 15.0, 90.0])
+    back = strokes([-30.0, -70.0, -12.0, -50.0])
+    motions = [
+        Motion((there, Ramps([(0.0, 0.0), (STANDS, 0.0)], JERK), back)),
+        Motion(
+            (
+                strokes([10.0, -40.0, 8.0, -25.0, 6.0, -15.0, 30.0]),
+                slow_reversals([4.0, 3.0, 6.0, 2.0], 0.6, JERK),
+                strokes([-30.0, -7.0, -12.0, 5.0]),
+            )
+        ),
+    ]
+    effects = [
+        (KINDS["torque_offset"](OFFSET), KINDS["slow_memory_friction"](0.8, 0.5, 40.0)),
+        (KINDS["cogging_torque"](COGGING, HARMONIC, 0.4),),
+    ]
+    together = [AXIS] * 2, motions, effects, [SENSORS] * 2
+    traces = kept(lambda: [run.trace for run in simulate(*together, seed=3, longest_step=STEP)], __file__)
+    path = tmp_path_factory.mktemp("rig") / "rig.toml"
+    write_rig(AXIS, path)
+    return load_rig(path), *traces
+
+
+def test_an_axis_that_stands_in_the_middle_keeps_its_constant_torque(recorded):
+    """Beside friction that no catalogue holds. Its first two thirds go forward, where an offset is friction."""
+    rig, stands, _ = recorded
+    found = diagnose(stands, rig)
+    assert found.rejected == ()
+    (named,) = found.effects
+    assert named.name == "direction_dependent_friction"  # forward less backward is twice an offset
+    assert named.parameters["coulomb_difference"].value == pytest.approx(2.0 * OFFSET, rel=0.02)
+    assert found.verdict == "unexplained_remainder"
+
+
+def test_a_wave_whose_simulation_loses_its_phase_is_judged_by_its_torque(recorded):
+    """Held softly, the simulated axis slips over cogs whose stiffness exceeds the cascade's: A*n > 0.37*J*w**2."""
+    rig, _, cogging = recorded
+    found = diagnose(cogging, rig)
+    assert found.verdict == "explained"
+    (named,) = found.effects
+    assert named.parameters["harmonic"].value == HARMONIC
+    assert named.parameters["amplitude"].value == pytest.approx(COGGING, rel=0.02)
+    assert any("judged by their torque at the measured position" in warning for warning in found.warnings)
