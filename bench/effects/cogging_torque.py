@@ -6,18 +6,19 @@ A - amplitude - N*m; n - harmonic, cycles per revolution, two or more; q - angle
 Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003, ch. 5.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
+from bench.arrays import Array
 from bench.effects.acting import Native
 from bench.effects.effect import Repeatable
 from bench.effects.mjcf import Spec, passive_motor
 from bench.effects.signals import Axis, Signals
-from bench.effects.waves import PHASE, Wave, followed, harmonics, sine_and_cosine
+from bench.effects.waves import PHASE, Harmonic, followed, harmonics
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class CoggingTorque(Wave, Repeatable, Native):
+class CoggingTorque(Harmonic, Repeatable, Native):
     """See the module."""
 
     name = "cogging_torque"
@@ -25,9 +26,10 @@ class CoggingTorque(Wave, Repeatable, Native):
     shapes = (harmonics(2, 80),)
     quantities = (Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0), shapes[0].quantity, PHASE)
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+    def of_wave(self, signals: Signals, number: float, sine: Array, cosine: Array) -> list[Column]:
         """sin(n*q) and cos(n*q), nothing where the wave is faster than the samples can follow."""
-        return sine_and_cosine(signals, shape[0], followed(signals, shape[0]))
+        seen = followed(signals, number)
+        return [[(seen * sine, 0)], [(seen * cosine, 0)]]
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """A passive DC motor that cogs, whose sign is that of driving."""

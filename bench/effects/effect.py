@@ -180,6 +180,10 @@ class Columns(Effect):
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Resisting torque per unit of each strength - N*m (N) per unit - (n,), unfiltered."""
 
+    def columns_of(self, signals: Signals, shapes: Shapes) -> list[Column]:
+        """Columns of several shapes, one after the other."""
+        return [column for shape in shapes for column in self.columns(signals, shape)]
+
 
 class CopiesTorque(Columns):
     """Columns computed from the measured torque, which so contain its noise."""
@@ -212,8 +216,8 @@ class Coupling(Columns):
     """
 
     def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
-        """Columns of several shapes, one after the other; `loads` act on the load, as far as it lets them."""
-        return [column for shape in shapes for column in self.columns(signals, shape)]
+        """The same; `loads` act on the load, as far as it lets them."""
+        return super().columns_of(signals, shapes)
 
     @abstractmethod
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array | NDArray[np.complex128]:

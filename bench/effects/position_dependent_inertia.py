@@ -6,20 +6,15 @@ A - relative amplitude; n - harmonic; q - angle - rad. Lagrange's equation of th
 With J*sin(n*q)*alpha = d/dt(J*sin(n*q)*omega) - J*n*cos(n*q)*omega**2, only raw products are differentiated.
 """
 
-from collections.abc import Sequence
-
-import numpy as np
-
-from bench.arrays import namespace
+from bench.arrays import Array, namespace
 from bench.effects.acting import ResistingTorque, VaryingInertia
-from bench.effects.effect import Columns
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
-from bench.effects.waves import PHASE, Wave, harmonics, wave
+from bench.effects.waves import PHASE, Harmonic, harmonics, wave
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class PositionDependentInertia(Wave, Columns, VaryingInertia, ResistingTorque):
+class PositionDependentInertia(Harmonic, VaryingInertia, ResistingTorque):
     """See the module."""
 
     name = "position_dependent_inertia"
@@ -31,14 +26,10 @@ class PositionDependentInertia(Wave, Columns, VaryingInertia, ResistingTorque):
         PHASE,
     )
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+    def of_wave(self, signals: Signals, number: float, sine: Array, cosine: Array) -> list[Column]:
         """Sine and cosine variation."""
-        angle, omega = shape[0] * signals.position, signals.velocity
-        half = 0.5 * shape[0] * omega**2
-        return [
-            [(omega * np.sin(angle), 1), (-half * np.cos(angle), 0)],
-            [(omega * np.cos(angle), 1), (half * np.sin(angle), 0)],
-        ]
+        omega, half = signals.velocity, 0.5 * number * signals.velocity**2
+        return [[(omega * sine, 1), (-half * cosine, 0)], [(omega * cosine, 1), (half * sine, 0)]]
 
     def unit(self, base: Base) -> float:
         """Mean inertia."""

@@ -8,15 +8,16 @@ Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003,
 
 from collections.abc import Mapping, Sequence
 
+from bench.arrays import Array
 from bench.effects.acting import ScalesTorque
 from bench.effects.effect import CopiesTorque, Repeatable
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
-from bench.effects.waves import PHASE, Wave, followed, harmonics, sine_and_cosine, wave
+from bench.effects.waves import PHASE, Harmonic, followed, harmonics, wave
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class TorqueRipple(Wave, CopiesTorque, Repeatable, ScalesTorque):
+class TorqueRipple(Harmonic, CopiesTorque, Repeatable, ScalesTorque):
     """See the module."""
 
     name = "torque_ripple"
@@ -28,9 +29,10 @@ class TorqueRipple(Wave, CopiesTorque, Repeatable, ScalesTorque):
         PHASE,
     )
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+    def of_wave(self, signals: Signals, number: float, sine: Array, cosine: Array) -> list[Column]:
         """M*sin(n*q) and M*cos(n*q), nothing where the wave is faster than the samples can follow."""
-        return sine_and_cosine(signals, shape[0], signals.torque * followed(signals, shape[0]))
+        torque = signals.torque * followed(signals, number)
+        return [[(torque * sine, 0)], [(torque * cosine, 0)]]
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """What resists is taken off the motor's torque, so the sign turns."""

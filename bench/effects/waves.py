@@ -6,13 +6,15 @@ A - amplitude; n - harmonic, the wave number of a pitch - rad/m - on a linear ax
 s, c - strengths; q - position - rad (m).
 """
 
-from collections.abc import Mapping, Sequence
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench.arrays import Array, namespace
-from bench.effects.effect import Effect
-from bench.effects.shape import Shape
+from bench.effects.effect import Columns, Effect
+from bench.effects.shape import Shape, Shapes
 from bench.effects.signals import Base, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -38,6 +40,23 @@ class Wave(Effect):
         amplitude, phase = amplitude_and_phase(*strengths)
         harmonic = super().report((), shape, base)
         return {self.quantities[0].name: amplitude / self.unit(base), **harmonic, PHASE.name: phase}
+
+
+class Harmonic(Wave, Columns):
+    """A wave of torque whose harmonic is searched."""
+
+    @abstractmethod
+    def of_wave(self, signals: Signals, number: float, sine: Array, cosine: Array) -> list[Column]:
+        """Columns of a wave of such a wave number, whose sine and cosine (n,) are given."""
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Sine and cosine."""
+        return self.columns_of(signals, [shape])
+
+    def columns_of(self, signals: Signals, shapes: Shapes) -> list[Column]:
+        """Of waves of several harmonics, one after the other."""
+        waves = turned(signals.position, [shape[0] for shape in shapes])
+        return [column for number, wave in waves for column in self.of_wave(signals, number, *wave)]
 
 
 class OncePerRevolution(Wave):
@@ -67,6 +86,20 @@ def sine_and_cosine(signals: Signals, number: float, of: Array | float) -> list[
     """Columns of a wave of such a wave number, times what it is a wave of (n,)."""
     angle = number * signals.position
     return [[(of * np.sin(angle), 0)], [(of * np.cos(angle), 0)]]
+
+
+def turned(position: Array, numbers: Sequence[float]) -> Iterator[tuple[float, tuple[Array, Array]]]:
+    """Each wave number with sin(n*q) and cos(n*q) (n,); a row at equal distances turns on, a twentieth of the time."""
+    first, last, few = numbers[0], numbers[-1], len(numbers)
+    even = few > 2 and bool(np.abs(np.linspace(first, last, few) - numbers).max() <= 1e-12 * abs(last))
+    if not even:
+        yield from ((number, (np.sin(number * position), np.cos(number * position))) for number in numbers)
+        return
+    wave: NDArray[np.complex128] = np.exp(1j * first * position)
+    turn: NDArray[np.complex128] = np.exp(1j * (last - first) / (few - 1) * position)
+    for number in numbers:
+        yield number, (wave.imag, wave.real)
+        wave = wave * turn
 
 
 def followed(signals: Signals, number: float) -> Array:

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.effects.acting import Friction
 from bench.effects.effect import Columns, Contact, Coupling, Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
 from bench.fit.hypothesis import Hypothesis, Term, hang_together, in_line, with_friction, with_load
 from bench.fit.layout import DIGIT, Layout, delays, lay_out, rounding, seen_by
 from bench.fit.noise import Floor, noise_power
 from bench.fit.normal_equations import bounded, solved
-from bench.fit.rows import Rows
+from bench.fit.rows import ColumnsOf, Rows
 from bench.trace.filter import Column
 
 #: Rounds in which levels of dry friction that multiply are brought in line.
@@ -202,16 +203,37 @@ class Fit:
         return [proposal for part in parts for proposal in self._by_columns(effect, part)]
 
     def _by_columns(self, effect: Columns, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
+        def made(signals: Signals) -> Sequence[Column]:
+            return effect.columns_of(signals, shapes)
+
+        rows, (moving, resting) = seen_by(self.rows, self.hypothesis), delays(self.rows, self.hypothesis)
+        known = effect.columns_of, tuple(shapes)
         if isinstance(effect, Coupling):  # of the motion alone, which most terms leave as it is
-            lag = delays(self.rows, self.hypothesis)[0]
-            made_of = (effect.columns_of, tuple(shapes), lag, self.beside.motion)
-            columns = self.rows.memory.get(
-                made_of, lambda: self.beside.table(lambda s: effect.columns_of(s, shapes), lag)
-            )
-        else:
-            columns = self.seen(lambda s: [one for shape in shapes for one in effect.columns(s, shape)], False)
-        worth = self.gains(columns, columns.shape[1] // len(shapes))
+            columns = rows.memory.get((*known, moving, rows.motion), lambda: self.beside.table(made, moving))
+            worth = self.gains(columns, columns.shape[1] // len(shapes))
+        elif isinstance(effect, Friction) or not self.determined.all():
+            columns = self.seen(made, False)
+            worth = self.gains(columns, columns.shape[1] // len(shapes))
+        else:  # their products with each other are kept, those with what is fitted need none of them filtered
+            tables: list[Array] = []
+
+            def own() -> Array:
+                tables.append(rows.table(made, resting))
+                return _own(tables[0], tables[0].shape[1] // len(shapes))
+
+            grams = rows.memory.get((*known, resting, rows.made_by), own)
+            products = tables[0].T @ self._targets if tables else self._against(made)
+            worth = _taken(grams, products, self._targets)
         return [Proposal(shape, float(gain)) for shape, gain in zip(shapes, worth, strict=True)]
+
+    @cached_property
+    def _targets(self) -> Array:
+        """What columns are held against: the basis of what is fitted, and the residual (m, p + 1)."""
+        return np.column_stack([self.span, self.residual])
+
+    @cached_property
+    def _against(self) -> Callable[[ColumnsOf], Array]:
+        return seen_by(self.rows, self.hypothesis).against(self._targets, delays(self.rows, self.hypothesis)[1])
 
 
 def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
@@ -288,12 +310,26 @@ def gains(columns: Array, width: int, residual: Array, basis: Array) -> Array:
 
     Columns (m, groups*width) stand group by group; squares are in the residual's unit squared.
     """
-    rows = np.ascontiguousarray(columns.T)
-    full = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-    rows = rows - (rows @ basis) @ basis.T
-    scale = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-    rows *= np.where(scale > 1e-4 * np.maximum(full, 1e-300), 1.0 / np.maximum(scale, 1e-300), 0.0)[:, None]
-    shared = (rows @ residual).reshape(-1, width)
-    groups = rows.reshape(-1, width, rows.shape[1])
-    inverse = symmetric_inverse(groups @ groups.transpose(0, 2, 1), 1e-8)
+    targets = np.column_stack([basis, residual])
+    return _taken(_own(columns, width), columns.T @ targets, targets)
+
+
+def _own(columns: Array, width: int) -> Array:
+    """Inner products of the columns (m, groups*width) of each group (groups, width, width)."""
+    groups = np.ascontiguousarray(columns.T).reshape(-1, width, columns.shape[0])
+    return groups @ groups.transpose(0, 2, 1)
+
+
+def _taken(own: Array, products: Array, targets: Array) -> Array:
+    """See `gains`: of inner products of each group (groups, width, width) and with an orthonormal basis and a residual.
+
+    The products (groups*width, p + 1) are those with the targets (m, p + 1).
+    """
+    beside, left = np.split(products.reshape(*own.shape[:2], -1), [-1], axis=2)
+    full = np.sqrt(np.einsum("gii->gi", own))
+    own = own - beside @ beside.transpose(0, 2, 1)
+    scale = np.sqrt(np.maximum(np.einsum("gii->gi", own), 0.0))
+    weight = np.where(scale > 1e-4 * np.maximum(full, 1e-300), 1.0 / np.maximum(scale, 1e-300), 0.0)
+    shared = (left[:, :, 0] - beside @ (targets[:, :-1].T @ targets[:, -1])) * weight
+    inverse = symmetric_inverse(own * weight[:, :, None] * weight[:, None, :], 1e-8)
     return np.einsum("gi,gij,gj->g", shared, inverse, shared)

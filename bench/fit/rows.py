@@ -249,6 +249,27 @@ class Rows:
         """
         return _table(self.stretches, self.conditioning.filter, columns, lag, of_signals)
 
+    def against(self, targets: Array, lag: float = 0.0) -> Callable[[ColumnsOf], Array]:
+        """Inner products (k, t) of columns with targets (m, t), for which no column has to be filtered itself."""
+        smooth = self.conditioning.filter
+        own = np.split(targets.T, np.cumsum([part.places.size for part in self.stretches])[:-1], axis=1)
+        spread = [np.zeros((targets.shape[1], part.used.size)) for part in self.stretches]
+        for part, whole, chosen in zip(self.stretches, spread, own, strict=True):
+            whole[:, part.places] = chosen
+        back: dict[tuple[int, int], Array] = {}
+
+        def product(number: int, values: Array, order: int) -> Array:
+            if (number, order) not in back:
+                back[number, order] = smooth.backwards(spread[number], values.size, order, lag)
+            return back[number, order] @ values
+
+        def products(columns: ColumnsOf) -> Array:
+            tables = enumerate(columns(part.signals) for part in self.stretches)
+            parts = [[np.sum([product(at, *t) for t in column], axis=0) for column in table] for at, table in tables]
+            return np.sum(np.array(parts), axis=0)
+
+        return products
+
     def kept(self, made_of: Hashable, columns: ColumnsOf, lag: Lag = 0.0, *, of_signals: bool = False) -> Array:
         """The same, made once of what tells these columns from others."""
         key = made_of, lag, self.made_by

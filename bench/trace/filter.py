@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,16 +96,12 @@ class GaussianFilter:
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
             spectra: transforms of signals that other filters want, too.
         """
-        signals = list({id(values): values for column in columns for values, _ in column}.values())
-        count = signals[0].size
-        size = self.stride * fast_length(math.ceil(count / self.stride))
-        kept = size // self.stride // 2 + 1
-        omega = 2.0 * math.pi / (size * self.sample_period) * np.arange(kept)
-        gain = np.exp(-0.5 * (omega * self.width) ** 2) / self.stride
-        gains = {order: (1j * omega) ** order * gain if order else gain for column in columns for _, order in column}
+        count = columns[0][0][0].size
+        size, omega, at = self._layout(count)
+        kept, first, last = omega.size, at[0] // self.stride, at[-1] // self.stride + 1
+        orders = {order for column in columns for _, order in column}
+        gains = {order: self._gain(omega, order) / self.stride for order in orders}
         spectra = Spectra() if spectra is None else spectra
-        first, last = self.margin // self.stride, -(-(count - self.margin) // self.stride)
-        at = self.stride * np.arange(first, last)
         found = np.empty((len(columns), at.size))
         for row, column, late in zip(found, columns, np.broadcast_to(lag, len(columns)).tolist(), strict=True):
             total = np.zeros(kept, dtype=complex)
@@ -121,6 +118,36 @@ class GaussianFilter:
             row[:] = np.fft.irfft(total, size // self.stride)[first:last]
             row += constant + slope * at
         return found
+
+    def backwards(self, targets: Array, count: int, order: int, lag: float = 0.0) -> Array:
+        """The transpose of `columns`: products (t, n) with `count` samples that filtered they have with targets (t, m).
+
+        So many columns are held against few targets without a transform of each.
+        """
+        size, omega, at = self._layout(count)
+        placed = np.zeros((len(targets), size // self.stride))
+        placed[:, at // self.stride] = targets
+        spectrum = np.fft.rfft(placed) * (self._gain(omega, order) * (1.0 + 1j * omega * lag)).conj()
+        if self.stride > 1 and not placed.shape[1] % 2:
+            spectrum[:, -1] *= 0.5  # what is the Nyquist frequency of the rows is none of the samples
+        found = np.fft.irfft(np.pad(spectrum, ((0, 0), (0, size // 2 + 1 - omega.size))), size)[:, :count]
+        total, share, rate = targets.sum(axis=1), np.arange(count) / (count - 1), 1.0 / (count - 1) / self.sample_period
+        last = targets @ at / (count - 1) + lag * rate * total if order == 0 else rate * total * (order == 1)
+        first = total * (order == 0) - last
+        straight = found @ share
+        found[:, 0] += first - (found.sum(axis=1) - straight)
+        found[:, -1] += last - straight
+        return found
+
+    def _layout(self, count: int) -> tuple[int, Array, NDArray[np.intp]]:
+        """Length of the transform of so many samples, angular frequencies kept - rad/s -, and samples that go out."""
+        size = self.stride * fast_length(math.ceil(count / self.stride))
+        omega = 2.0 * math.pi / (size * self.sample_period) * np.arange(size // self.stride // 2 + 1, dtype=np.float64)
+        return size, omega, np.arange(self.margin, count - self.margin, self.stride)
+
+    def _gain(self, omega: Array, order: int) -> NDArray[Any]:
+        gain = np.exp(-0.5 * (omega * self.width) ** 2)
+        return (1j * omega) ** order * gain if order else gain
 
 
 class Spectra:

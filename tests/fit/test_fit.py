@@ -10,6 +10,8 @@ from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import fit_bare
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
+from bench.effects.shape import grid_of
+from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term, in_line
 from bench.fit.identify import identify
 from bench.fit.rows import Rows
@@ -93,6 +95,20 @@ def test_a_clean_recording_in_one_direction_leaves_noise_alone(duration, period)
     trace = Trace(motion.time, signals, {"position": "rad", "current": "A"}, "one way")
     narrowest = 1.0 / period
     assert fit_bare(Rows.of(trace, RIG, cutoff=narrowest)).chi < 1.12
+
+
+@pytest.mark.parametrize("name", ["cogging_torque", "torque_ripple", "position_dependent_inertia"])
+def test_what_shapes_would_take_is_the_same_without_filtering_them_again(name):
+    rows, effect = Rows.of(recorded(moved()), RIG), catalogue()[name]
+    shapes = grid_of(effect.shapes, rows.scope)
+    wave_beside = fit(
+        rows, Hypothesis((Term(catalogue()["cogging_torque"], (6.0,)), Term(catalogue()["torque_offset"])))
+    )
+    fit_bare(rows).tried(effect, shapes)  # which filters them, and keeps their products with each other
+    again = [proposal.gain for proposal in wave_beside.tried(effect, shapes)]
+    columns = wave_beside.seen(lambda s: [one for shape in shapes for one in effect.columns(s, shape)], of_motion=False)
+    expected = wave_beside.gains(columns, columns.shape[1] // len(shapes))
+    assert again == pytest.approx(expected, rel=1e-8, abs=1e-9 * wave_beside.squares)
 
 
 def test_others_see_strengths_of_dry_friction_as_share_of_coulombs():

@@ -86,6 +86,19 @@ def test_columns_are_sums_of_their_terms():
     assert np.abs(found).max() < 2e-4
 
 
+@pytest.mark.parametrize("samples", [997, 1200])
+@pytest.mark.parametrize("stride", [1, 2, 4])
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_targets_sent_backwards_meet_raw_samples_as_they_meet_filtered_ones(samples, stride, order):
+    rng, smooth, lag = np.random.default_rng(2), GaussianFilter(1.6e-3 * stride, PERIOD, stride), 4e-3
+    walk = np.cumsum(rng.normal(size=samples))  # whose ends differ
+    (filtered,) = smooth(walk, order, lag=lag)
+    targets = rng.normal(size=(3, filtered.size))
+    expected = targets @ filtered
+    found = smooth.backwards(targets, samples, order, lag) @ walk
+    assert found == pytest.approx(expected, rel=0.0, abs=1e-12 * np.linalg.norm(filtered) * np.sqrt(filtered.size))
+
+
 def test_what_lies_six_widths_away_is_not_seen():
     smooth = GaussianFilter(10e-3, PERIOD, stride=2)
     assert smooth.margin == 60
