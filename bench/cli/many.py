@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,6 +13,7 @@ from bench.cli import common
 from bench.cli.common import STDOUT, JsonOption
 from bench.errors import InputError, UndeterminedError
 from bench.files import keeping, sha256, write_text
+from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
 if TYPE_CHECKING:
@@ -21,33 +23,50 @@ if TYPE_CHECKING:
 SUMMARY = "summary.json"
 
 
+Effects = Annotated[
+    str, typer.Option("--effects", help="Hidden in each run: a count as 0-3; or names, or all, each in turn.")
+]
+Profile = Annotated[
+    Path, typer.Option("--profile", help=f"With --rig, its motion: a recording's file, or {', '.join(NAMES)}.")
+]
+Into = Annotated[Path | None, typer.Option("--into", help="Instead: your recording, to put known effects into.")]
+EffectOption = Annotated[list[str] | None, typer.Option("--effect", help="With --into, instead of all. Repeatable.")]
+Strength = Annotated[
+    list[float] | None,
+    typer.Option("--strength", help="With --into, over what it leaves; else the least named is sought. Repeatable."),
+]
+Scheduler = Annotated[str | None, typer.Option("--scheduler", help="Dask cluster to work on, e.g. tcp://host:8786.")]
+
+
 def validate(
     rigs: Annotated[int, typer.Option("--rigs", help="Runs: an axis, a motion and noise each.", min=1)] = 64,
     seed: Annotated[int, typer.Option("--seed", help="Of all that is drawn.", min=0)] = 0,
-    effects: Annotated[
-        str, typer.Option("--effects", help="Hidden in each run: a count as 0-3; or names, or all, each in turn.")
-    ] = "0",
+    effects: Effects = "0",
     diagnose: Annotated[
         bool, typer.Option("--diagnose", help="Name what is missing too, a second or two a run.")
     ] = False,
     rig: Annotated[Path | None, typer.Option("--rig", help="Your own axis instead of any: its rig file.")] = None,
-    profile: Annotated[
-        Path, typer.Option("--profile", help=f"With --rig, its motion: a recording's file, or {', '.join(NAMES)}.")
-    ] = Path(DEFAULT),
+    profile: Profile = Path(DEFAULT),
+    into: Into = None,
+    effect: EffectOption = None,
+    strength: Strength = None,
     workers: Annotated[int | None, typer.Option("--workers", help="Processes on this machine.", min=1)] = None,
-    scheduler: Annotated[
-        str | None, typer.Option("--scheduler", help="Dask cluster to work on, e.g. tcp://host:8786.")
-    ] = None,
+    scheduler: Scheduler = None,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for page, tables, figures and JSON.")] = None,
 ) -> None:
-    """Monte Carlo on synthetic recordings: how far off numbers are, and how often intervals and names hold."""
+    """How far off numbers are, how often intervals and names hold: by Monte Carlo, or of effects in your recording."""
     from bench.report.parts import provenance
     from bench.report.terminal import progress
     from bench.report.validation import validation, validation_json, write_validation
     from bench.validation.plan import Hiding, Plan, any_axis
     from bench.validation.validate import validate as run_validation
 
+    if into is not None:
+        _into(into, rig, effect or [], strength or [], seed, workers, json, out)
+        return
+    if effect or strength:
+        raise InputError("--effect or --strength", "found without --into", "allowed: with a recording to put them into")
     if rig is None and str(profile) != DEFAULT:
         raise InputError("--profile", "found without --rig", "allowed: with the rig whose motion it is")
     hiding = Hiding.parse(effects)
@@ -63,6 +82,39 @@ def validate(
     written = [] if out is None else write_validation(out, found, basis, command, rig is not None)
     if json is not None:
         common.write_json(json, validation_json(found, basis))
+    common.tell(document, written, json)
+
+
+def _into(
+    into: Path,
+    rig: Path | None,
+    effects: list[str],
+    strengths: list[float],
+    seed: int,
+    workers: int | None,
+    json: Path | None,
+    out: Path | None,
+) -> None:
+    """Known effects in one's own recording."""
+    from bench.report.injection import injections, injections_json
+    from bench.report.parts import provenance
+    from bench.report.publish import write_document
+    from bench.report.terminal import progress
+    from bench.validation.into import inject
+
+    if rig is None:
+        raise InputError("--into", "found without --rig", "allowed: with the rig of the recording's axis")
+    if not all(0.0 < one < math.inf for one in strengths):
+        raise InputError("--strength", f"found {min(strengths):g}", "allowed: positive numbers, as 2 or 5")
+    known = bench.load_rig(rig)
+    options = {"effect": effects, "strength": strengths, "seed": seed}
+    with progress(f"putting effects into {into.name}") as done:
+        found = inject(bench.read(into, known.trace), known, effects, strengths, seed, workers, done)
+    basis = provenance(rig, [into], options)
+    text, document = injections_json(found, basis), injections(found, basis, readable(into.name))
+    written = [] if out is None else write_document(out, document, beside={"injections.json": text + "\n"})
+    if json is not None:
+        common.write_json(json, text)
     common.tell(document, written, json)
 
 

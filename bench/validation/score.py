@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -13,6 +13,8 @@ from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.name import NamedEffect
 from bench.parameter import Parameter
+from bench.validation.independent.effects import Effect as Hidden
+from bench.validation.independent.rig import Axis
 from bench.validation.plan import Case
 
 #: Terms of the equation of motion that are judged.
@@ -64,9 +66,9 @@ def base(by: str, case: Case, parameters: Mapping[str, Parameter]) -> Iterator[S
             yield Scored(by, "", term, true, true, parameters[name])
 
 
-def of_effects(case: Case, diagnosis: Diagnosis) -> Iterator[Scored]:
-    """Quantities of the effects that are named and hidden, without integers, which have no interval."""
-    hidden = {effect.name: effect.quantities(case.axis) for effect in case.effects}
+def of_effects(effects: Iterable[Hidden], axis: Axis, diagnosis: Diagnosis) -> Iterator[Scored]:
+    """Quantities of the effects that are named and hidden in an axis, without integers, which have no interval."""
+    hidden = {effect.name: effect.quantities(axis) for effect in effects}
     for named in diagnosis.effects:
         truth = hidden.pop(named.name, {})
         angles = {quantity.name for quantity in named.effect.quantities if quantity.angle}

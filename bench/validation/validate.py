@@ -147,7 +147,7 @@ def diagnosed(run: Run, case: Case, trace: Trace) -> Run:
         found = diagnose(trace, case.rig)
     except BenchError as refused:
         return replace(run, named=Named(missed=case.hidden, reason=str(refused)))
-    scored = (*run.scored, *base("diagnose", case, found.parameters), *of_effects(case, found))
+    scored = (*run.scored, *base("diagnose", case, found.parameters), *of_effects(case.effects, case.axis, found))
     return replace(run, scored=scored, named=Named.of(found.verdict, found.effects, case.hidden))
 
 

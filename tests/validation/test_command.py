@@ -30,7 +30,8 @@ def folder(tmp_path_factory):
 
 
 def test_a_command_of_each_kind_is_shown():
-    assert [command[0] for command in COMMANDS] == ["validate", "rigs", "validate", "validate"]
+    told = ["validate", "rigs", "validate", "validate", "simulate", "validate", "validate"]
+    assert [command[0] for command in COMMANDS] == told
 
 
 def test_the_json_is_the_contracts(folder):
@@ -60,9 +61,39 @@ def test_files_of_a_run_agree_with_each_other(folder):
     assert "This motion on this drive" in (home / "report.html").read_text(encoding="utf-8")
 
 
+def test_the_least_that_ones_own_recording_shows_is_told(folder):
+    found = json.loads((folder / "least.json").read_text(encoding="utf-8"))
+    assert found["schema"] == "bench.validate.into/1"
+    assert found["recording"]["verdict"] == "nothing_missing"
+    assert len(found["cases"]) == 10
+    assert [(name, least["unit"]) for name, least in found["least_named"].items()] == [
+        ("cogging_torque", "N*m"),
+        ("stribeck_friction", "N*m"),
+    ]
+    for name, least in found["least_named"].items():
+        named = [one["size"]["value"] for one in found["cases"] if one["effect"] == name and one["fate"] == "right"]
+        assert least["value"] == min(named)
+
+
+def test_what_was_put_in_is_told_with_the_truth(folder):
+    found = json.loads((folder / "two.json").read_text(encoding="utf-8"))
+    assert "least_named" not in found
+    assert [one["strength"] for one in found["fates"]] == [2.0, 5.0]
+    for case in found["cases"]:
+        told = case["quantities"]["torque"]
+        assert (case["fate"], case["names"]) == ("right", ["torque_offset"])
+        assert told["found"]["ci95"][0] < told["true"] < told["found"]["ci95"][1]
+        assert abs(told["true"]) == pytest.approx(case["strength"] * found["recording"]["left"]["value"], rel=0.1)
+    assert {"report.html", "injections.json"} <= {path.name for path in (folder / "into").iterdir()}
+
+
 @pytest.mark.parametrize(
     ("options", "told"),
     [
+        (["--into", "run.csv"], "--into: found without --rig"),
+        (["--effect", "backlash"], "found without --into"),
+        (["--into", "run.csv", "--rig", "my.toml", "--effect", "coging_torque"], "did you mean 'cogging_torque'"),
+        (["--into", "run.csv", "--rig", "my.toml", "--strength", "-2"], "--strength: found -2"),
         (["--effects", "3-1"], "allowed: 0 to 6"),
         (["--profile", "monday.csv"], "allowed: with the rig"),
         (["--rig", "my.toml", "--profile", "monday.csv"], "allowed: the file of a recording"),

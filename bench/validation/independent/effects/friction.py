@@ -21,7 +21,7 @@ class StribeckFriction(Effect):
 
     @classmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
-        rise = (0.6 + 1.8 * about(severity, rng)) * axis.coulomb
+        rise = (min(0.6, 4.0 * severity) + 1.8 * about(severity, rng)) * axis.coulomb
         return cls(axis.coulomb + rise, axis.top_speed * rng.uniform(0.02, 0.05))
 
     def friction_excess(self, rows: Rows) -> np.ndarray:

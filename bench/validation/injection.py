@@ -1,0 +1,372 @@
+"""Known effects put into a recording: the motion stays as it was, what drives it or what is read of it changes.
+
+Had the axis had the effect and moved as it did, its drive would have had to give more torque, so an effect on the axis
+adds to the recorded effort; one of a sensor changes the signal that it reads. The formulas are those of the independent
+axis; the speed and acceleration that they ask for come from a local cubic through the raw samples, so that nothing is
+shared with what identification makes of the recording. What the recording has of its own stays in it: the truth of the
+effect is known, on the noise of a real machine.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from scipy.signal import lfilter, savgol_filter
+
+from bench.arrays import Array, rms
+from bench.errors import InputError
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+from bench.validation.independent.effects import KINDS, Effect
+from bench.validation.independent.effects.effect import Rows
+from bench.validation.independent.rig import Axis
+from bench.validation.plan import HIDEABLE
+
+#: Width of the local cubic: samples at least, and time - s. Of a motion of 20 Hz, sampled at 1 kHz, it leaves 99 %.
+SAMPLES, WIDTH = 7, 12e-3
+#: Speed, over the noise of the cubic's speed, above which its sign is sure: noise alone passes it in 1 of 16,000.
+SURE = 4.0
+#: Hooks through which an effect acts on the motion itself.
+MOVING = frozenset({"driven_current", "remember"})
+#: Steps in a swing of a load on its contact: its frequency is right to 0.7 %.
+STEPS = 16
+#: Severities between which an effect of a wanted size is sought, the ratio at which the search ends, and the one by
+#: which the size may fall short where physics ends before it. Beyond the last severity it is no axis any more.
+SEVERITIES, CLOSE, SHORT = (1e-4, 30.0), 1.03, 1.1
+#: Steps in which what drives the axis is found, and the share of it that it is found to.
+TRIES, EXACT = 200, 1e-9
+
+
+@dataclass(frozen=True)
+class Host:
+    """A recording that effects are put into.
+
+    Attributes:
+        trace: with a position, or a velocity.
+        rig: of its axis, which says what drives it.
+        axis: J, K_w, K_0, torque constant, peak current and the rest that effects refer to.
+        load: torque of what a gear carries, as far as the recording knows it - N*m (N) (m,); None if not at all.
+    """
+
+    trace: Trace
+    rig: Rig
+    axis: Axis
+    load: Array | None = None
+
+
+@dataclass(frozen=True)
+class StandIn:
+    """All samples of a recording, in the place of the plant that the formulas of effects ask - (m,) each.
+
+    Attributes:
+        parts, period: stretches without a hole, and the sample period in them - s.
+        midtime: from the recording's start - s.
+        position, velocity, acceleration: of the axis - rad, rad/s, rad/s**2.
+        direction: sign of the speed, 0 where the axis may rest: friction at rest takes what it is given.
+        motor_torque, acting_current: that move it - N*m (N), A.
+        inertia, load_inertia, viscous, coulomb, torque_constant, peak_current: as `independent.rig.Axis` has them; the
+            second is what a coupling would join to the motor.
+        load: as `Host` has it.
+    """
+
+    parts: tuple[slice, ...]
+    period: float
+    midtime: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    direction: Array
+    motor_torque: Array
+    acting_current: Array
+    inertia: Array
+    load_inertia: Array
+    viscous: Array
+    coulomb: Array
+    torque_constant: Array
+    peak_current: Array
+    load: Array | None
+
+    @property
+    def load_torque(self) -> Array:
+        """Of what a gear carries - N*m (N); InputError where it is not known."""
+        if self.load is None:
+            raise InputError(
+                "load torque", "found none in the recording", "allowed: an axis that is known to carry one"
+            )
+        return self.load
+
+    def driven_by(self, torque: Array) -> StandIn:
+        """The same motion under another motor torque - N*m (N) (m,)."""
+        return replace(self, motor_torque=torque, acting_current=torque / self.torque_constant)
+
+
+def stand_in(host: Host, trace: Trace | None = None) -> StandIn:
+    """The motion of a recording, or of what was made of it, by a local cubic through its samples."""
+    trace, axis = trace or host.trace, host.axis
+    effort = host.rig.effort(trace)[0]
+    position, velocity, acceleration, direction = np.concatenate([_motion(trace, p) for p in trace.segments], axis=1)
+    constants = (axis.inertia, axis.inertia - axis.rotor_inertia, axis.viscous, axis.coulomb)
+    inertia, load_inertia, viscous, coulomb = (np.full(len(trace), each) for each in constants)
+    torque_constant, peak_current = (np.full(len(trace), each) for each in (axis.torque_constant, axis.peak_current))
+    return StandIn(
+        trace.segments,
+        trace.sample_period,
+        trace.time - trace.time[0],
+        position,
+        velocity,
+        acceleration,
+        direction,
+        effort,
+        effort / torque_constant,
+        inertia,
+        load_inertia,
+        viscous,
+        coulomb,
+        torque_constant,
+        peak_current,
+        host.load,
+    )
+
+
+def _cubic(values: Array, period: float, order: int = 0) -> Array:
+    """The local cubic through even samples, or a derivative of it - their unit over s**order (m,)."""
+    width = min(max(SAMPLES, int(WIDTH / period)) | 1, (values.size - 1) | 1)
+    return np.asarray(savgol_filter(values, width, min(3, width - 1), order, period))
+
+
+def _motion(trace: Trace, part: slice) -> Array:
+    """Position, speed, acceleration and direction in one stretch without a hole (4, m)."""
+    period = trace.sample_period
+    if "position" in trace:
+        position, velocity, acceleration = (_cubic(trace["position"][part], period, order) for order in range(3))
+    else:
+        velocity, acceleration = (_cubic(trace["velocity"][part], period, order) for order in range(2))
+        position = np.concatenate([[0.0], np.cumsum(0.5 * period * (velocity[1:] + velocity[:-1]))])
+    noise = float(np.median(np.abs(velocity - _cubic(velocity, period)))) / 0.6745
+    least = max(SURE * noise, 1e-9 * float(np.abs(velocity).max()))
+    return np.stack([position, velocity, acceleration, np.sign(velocity) * (np.abs(velocity) > least)])
+
+
+def hooks(kind: type[Effect]) -> set[str]:
+    """Through which effects of a kind act: those that the class, or one that it is derived from, defines."""
+    return {hook for each in kind.mro() if each not in Effect.mro() for hook in vars(each)}
+
+
+#: Names of the catalogue that can be put into a recording: those of the independent axis that leave the motion to it.
+INJECTABLE = tuple(name for name in HIDEABLE if not hooks(KINDS[name]) & MOVING)
+
+
+def injected(host: Host, effect: Effect) -> Trace:
+    """The recording of the same motion, had the axis had an effect of the independent axis.
+
+    Raises:
+        InputError: an effect that acts on the motion itself, as a voltage limit, on a signal that is not recorded, or
+            that is so strong that the axis cannot have moved as it did.
+    """
+    acts = hooks(type(effect))
+    if unable := acts & MOVING:
+        raise InputError(effect.name, f"acts by {', '.join(unable)}", "allowed: what leaves the motion as it is")
+    if acts & {"measured", "filtered"}:
+        return _read_otherwise(host.trace, effect, acts)
+    seen = stand_in(host)
+    current = _reported(effect, acts, seen.driven_by(_needed(effect, acts, seen)))
+    return _driven(host, effect, current * seen.torque_constant)
+
+
+def _needed(effect: Effect, acts: set[str], seen: StandIn) -> Array:
+    """Motor torque that the motion takes with the effect - N*m (N) (m,)."""
+    rows, torque = Rows(seen, slice(None), effect), seen.motor_torque
+    if "resisting_torque" in acts:
+        torque = torque + effect.resisting_torque(rows)
+    if "added_inertia" in acts:
+        torque = torque + effect.added_inertia(rows) * seen.acceleration
+    if "bristle_torque" in acts:
+        torque = torque + np.abs(seen.direction) * _bristles(effect, rows) - seen.coulomb * seen.direction
+    if "transmitted_torque" in acts:
+        torque = torque - _behind_coupling(effect, rows)
+    if acts & {"friction_excess", "friction_difference", "friction_factor"}:  # of the very torque that overcomes it
+        return _solved(lambda at: at - _friction(effect, acts, seen.driven_by(at)), torque, effect)
+    return torque
+
+
+def _friction(effect: Effect, acts: set[str], seen: StandIn) -> Array:
+    """Dry friction beyond K_0, against the motion - N*m (N) (m,)."""
+    rows, level = Rows(seen, slice(None), effect), seen.coulomb
+    if "friction_excess" in acts:
+        level = level + effect.friction_excess(rows)
+    if "friction_difference" in acts:
+        level = level + 0.5 * seen.direction * effect.friction_difference(rows)
+    if "friction_factor" in acts:
+        level = level * effect.friction_factor(rows)
+    return (np.maximum(level, 0.0) - seen.coulomb) * seen.direction
+
+
+def _bristles(effect: Effect, rows: Rows) -> Array:
+    """Torque of bristles that the motion bends, straight at the start of each stretch - N*m (N) (m,)."""
+    level, bent = np.maximum(rows.coulomb, 1e-12), np.zeros_like(rows.position)
+    for part in rows.plant.parts:
+        speeds = np.diff(rows.position[part]) / rows.plant.period
+        for k, speed in enumerate(speeds, part.start):
+            bent[k + 1] = effect.bend(speed, level[k], bent[k], rows.plant.period)
+    return effect.bristle_torque(rows, level, bent)
+
+
+def _behind_coupling(effect: Effect, rows: Rows) -> Array:
+    """Torque that a load behind a coupling does not ask of the motor that a rigid one would - N*m (N) (m,).
+
+    With the motor's motion given, twist obeys J_l*twist'' + transmitted(twist, twist') = J_l*alpha; the motor carries
+    what is transmitted in the place of J_l*alpha.
+    """
+    load, period = rows.load_inertia[0], rows.plant.period
+    far = np.array(1e6)  # in contact, whatever the gap: there what is transmitted rises by the stiffness
+    stiffness = effect.transmitted_torque(rows, 2.0 * far, 0.0 * far) - effect.transmitted_torque(rows, far, 0.0 * far)
+    count = math.ceil(STEPS * period * math.sqrt(float(stiffness) / float(far) / load) / (2.0 * math.pi))
+    step, less = period / count, np.zeros_like(rows.position)
+    for part in rows.plant.parts:
+        twist = rate = np.zeros(())
+        for k, alpha in enumerate(rows.acceleration[part], part.start):
+            less[k] = load * alpha - effect.transmitted_torque(rows, twist, rate)
+            for _ in range(count):
+                rate = rate + step * (alpha - effect.transmitted_torque(rows, twist, rate) / load)
+                twist = twist + step * rate
+    return less
+
+
+def _solved(function: Callable[[Array], Array], wanted: Array, effect: Effect) -> Array:
+    """Where a function that is nearly its argument is as wanted (m,); InputError where it is not near enough."""
+    at, missing = wanted, wanted - function(wanted)
+    scale = float(np.abs(wanted).max() + np.abs(missing).max())
+    for _ in range(TRIES):
+        most = float(np.abs(missing).max())
+        if most <= EXACT * scale:
+            return at
+        if most > scale / EXACT:
+            break
+        at = at + missing
+        missing = wanted - function(at)
+    raise InputError(effect.name, "found so strong that no torque moves the axis as it moved", "allowed: a weaker one")
+
+
+def _reported(effect: Effect, acts: set[str], seen: StandIn) -> Array:
+    """Current that is recorded while one makes the torque that moves the axis - A (m,)."""
+    current = seen.acting_current
+
+    def delivered(at: Array) -> Array:
+        """What one acts like; where the rig tells no peak current, the largest that is recorded is it."""
+        peak = np.maximum(seen.peak_current, np.abs(at).max())
+        rows = Rows(replace(seen, acting_current=at, peak_current=peak), slice(None), effect)
+        return at * effect.torque_factor(rows)
+
+    if "torque_factor" in acts:
+        current = _solved(delivered, current, effect)
+    if "true_current" in acts:
+        current = _solved(lambda at: effect.true_current(Rows(seen, slice(None), effect), at), current, effect)
+    if acts & {"acting_current", "recorded_current"}:
+        constant: float = effect.time_constant  # type: ignore[attr-defined]
+        lagging = partial(_ahead if "acting_current" in acts else behind, period=seen.period, constant=constant)
+        current = np.concatenate([lagging(current[part]) for part in seen.parts])
+    return current
+
+
+def _ahead(values: Array, period: float, constant: float) -> Array:
+    """What the values are behind: T*dx/dt + x, the slope by the local cubic - any unit (m,)."""
+    return values + constant * _cubic(values, period, 1)
+
+
+def behind(values: Array, period: float, constant: float) -> Array:
+    """Values behind T*dy/dt = x - y, settled at the first; exact where x is linear between samples - any unit (m,).
+
+    Args:
+        values: x.
+        period: between them - s.
+        constant: T - s.
+    """
+    kept = math.exp(-period / constant)
+    lag = lfilter([constant / period * (1.0 - kept)], [1.0, -kept], np.diff(values, prepend=values[0]))
+    return values - lag
+
+
+def _read_otherwise(trace: Trace, effect: Effect, acts: set[str]) -> Trace:
+    """The recording with another reading of its sensor of position and speed."""
+    signals = {name: trace[name] for name in ("position", "velocity") if name in trace}
+    if "filtered" in acts:
+        constant, velocity = effect.time_constant, trace["velocity"]  # type: ignore[attr-defined]
+        late = [behind(velocity[part], trace.sample_period, constant) for part in trace.segments]
+        signals["velocity"] = np.concatenate(late)
+    else:
+        read = effect.measured(trace["position"], signals.get("velocity", np.zeros(len(trace))))
+        signals = {name: values for name, values in zip(("position", "velocity"), read, strict=True) if name in signals}
+    return trace.with_signals(signals, {})
+
+
+def _driven(host: Host, effect: Effect, effort: Array) -> Trace:
+    """The recording with another effort, in the signal that tells it."""
+    trace, rig = host.trace, host.rig
+    name = next(each for each in (rig.axis_kind.effort, "current", "voltage") if each in trace)
+
+    def told(values: Array) -> Array:
+        return rig.effort(trace.with_signals({name: values}, {}))[0]
+
+    step = np.full(len(trace), 1e-6 * float(np.abs(trace[name]).max() or 1.0))
+    gain = float(np.median((told(step) - told(0.0 * step)) / step))
+    return trace.with_signals({name: _solved(lambda at: told(at / gain), effort, effect) / gain}, {})
+
+
+def disturbance(host: Host, made: Trace) -> tuple[float, float]:
+    """How much torque a change of a recording makes, and how much of it J, K_w and K_0 cannot take up - N*m (N).
+
+    RMS over the rows in motion of M - J*alpha - K_w*omega - K_0*sgn(omega), in `made` less in the recording: with the
+    axis' own values, and after the best change of them (and of the offset that the rig may tell of). A change of the
+    reported speed alone is judged by that speed, though a position be recorded.
+    """
+    trace, axis = host.trace, host.axis
+    changed = {name for name in trace.signals if not np.array_equal(trace[name], made[name])}
+    if changed == {"velocity"} and "position" in trace:
+        trace, made = trace.without("position"), made.without("position")
+    before, after = stand_in(host, trace), stand_in(host, made)
+    moving = before.direction != 0.0
+    plain = np.stack([after.acceleration, after.velocity, after.direction])
+    values = np.array([axis.inertia, axis.viscous, axis.coulomb])
+    more = after.motor_torque - before.motor_torque
+    more = (more - values @ (plain - [before.acceleration, before.velocity, before.direction]))[moving]
+    columns = np.stack([*plain, *[np.ones(moving.size)] * host.rig.offset], axis=1)[moving]
+    return rms(more), rms(more - columns @ np.linalg.lstsq(columns, more, rcond=None)[0])
+
+
+def drawn(host: Host, kind: str, size: float, seed: int) -> Effect | None:
+    """An effect of a kind that leaves a wanted RMS beyond what J, K_w and K_0 take up.
+
+    Args:
+        host: that it is to be put into.
+        kind: name of the effect.
+        size: the second RMS of its `disturbance` - N*m (N).
+        seed: of its other parameters.
+
+    Returns:
+        None if the axis cannot have it, or not of this size.
+    """
+    if not KINDS[kind].possible(host.axis):
+        return None
+    duration = float(host.trace.time[-1] - host.trace.time[0])
+
+    def of(severity: float) -> Effect:
+        return KINDS[kind].draw(host.axis, severity, np.random.default_rng(seed), duration)
+
+    def reached(severity: float) -> float:
+        try:
+            return disturbance(host, injected(host, of(severity)))[1]
+        except InputError:  # the axis cannot have it so strong
+            return math.inf
+
+    (low, high), below = SEVERITIES, 0.0
+    if not reached(high) > size:
+        return None
+    while high > CLOSE * low:
+        middle = math.sqrt(low * high)
+        now = reached(middle)
+        low, high, below = (low, middle, below) if now > size else (middle, high, now)
+    return of(low) if below > size / SHORT else None

@@ -1,0 +1,276 @@
+"""What a diagnosis makes of known effects that are put into a recording: how large each has to be to be named."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.diagnosis.diagnosis import Diagnosis, diagnose
+from bench.effects.catalogue import catalogue
+from bench.errors import BenchError, InputError
+from bench.jobs.each import each
+from bench.jobs.process import Failure, Limits
+from bench.names import nearest
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+from bench.validation.coverage import UNEXPLAINED
+from bench.validation.independent.effects import KINDS, Effect
+from bench.validation.independent.effects.effect import Rows
+from bench.validation.independent.rig import Axis
+from bench.validation.injection import INJECTABLE, Host, disturbance, drawn, injected, stand_in
+from bench.validation.score import Named, Scored, of_effects
+
+#: What becomes of an effect. Right: named, and nothing else is that was not before; part: something else, too; flagged:
+#: not named, and a remainder is left or a refusal says why; missed: neither; wrong: not named, and something else is.
+RIGHT, PART, FLAGGED, MISSED, WRONG = FATES = ("right", "part", "flagged", "missed", "wrong")
+#: Effects whose torque a gear carries.
+LOADS = frozenset(name for name, kind in KINDS.items() if kind.transmitted)
+#: The name of what no catalogue holds, beside names.
+NONE = ""
+#: Strengths between which the least is sought, over what the recording leaves, and how often: its step is then 19 %.
+SPAN, TRIALS = (0.1, 25.6), 5
+#: For one effect: ten times what five diagnoses of a large recording take - s.
+DEADLINE = 3600.0
+
+
+@dataclass(frozen=True)
+class Own:
+    """A recording before anything is put into it, as its own diagnosis sees it.
+
+    Attributes:
+        host: the recording, and its axis as diagnosed.
+        names, verdict: of its own diagnosis.
+        taken: these names, and what it cannot tell from them.
+        left, unit: RMS that it leaves, noise included, and its unit.
+    """
+
+    host: Host
+    names: tuple[str, ...]
+    verdict: str
+    taken: frozenset[str]
+    left: float
+    unit: str
+
+
+def own(trace: Trace, rig: Rig) -> Own:
+    """By a diagnosis of the recording as it is, which may refuse it as `diagnose` does."""
+    found = diagnose(trace, rig)
+    plain = Host(trace, rig, axis_of(found, trace, rig))
+    left, gap = found.torque.identify, found.torque
+    assert left is not None
+    taken = frozenset(name for one in found.effects for name in (one.name, *one.ambiguous_with))
+    names = tuple(one.name for one in found.effects)
+    return Own(replace(plain, load=_load(plain, found)), names, found.verdict, taken, left[1], gap.unit)
+
+
+def axis_of(found: Diagnosis, trace: Trace, rig: Rig) -> Axis:
+    """The axis as a diagnosis found it; half of its inertia is the load's where the rig does not tell the rotor's."""
+    values = (found.parameters[rig.axis_kind.parameter(term)].value for term in (INERTIA, VISCOUS, COULOMB))
+    inertia, viscous, coulomb = values
+    constant, rotor = rig.motor.torque_per_ampere, rig.motor.inertia
+    per_ampere = 1.0 if constant is None else constant.constant
+    axis = Axis(
+        name=rig.name,
+        inertia=inertia,
+        viscous=max(viscous, 0.0),
+        coulomb=max(coulomb, 0.0),
+        rotor_inertia=rotor if 0.0 < rotor < inertia else 0.5 * inertia,
+        torque_constant=per_ampere,
+        peak_current=rig.motor.peak_current or float(np.abs(rig.effort(trace)[0]).max()) / per_ampere,
+        velocity_gain=100.0 * inertia,  # a drive of 16 Hz, which bears lags of some milliseconds
+        linear=not rig.axis_kind.turns,
+    )
+    return replace(axis, top_speed=float(np.abs(stand_in(Host(trace, rig, axis)).velocity).max()))
+
+
+def _load(host: Host, found: Diagnosis) -> Array | None:
+    """Torque of the load that the rig knows, or that the diagnosis names - N*m (N) (m,)."""
+    known = host.rig.effort(host.trace)[0] - host.rig.own_effort(host.trace)[0]
+    loads = [KINDS[one.name](**one.values) for one in found.effects if one.name in LOADS]
+    if not loads and not known.any():
+        return None
+    seen = stand_in(host)
+    return sum((np.asarray(load.resisting_torque(Rows(seen, slice(None), load))) for load in loads), known)
+
+
+@dataclass(frozen=True)
+class Injection:
+    """An effect put into a recording, and what the diagnosis made of it.
+
+    Attributes:
+        effect, strength: its name, and the RMS torque that J, K_w and K_0 cannot take up of it over what the recording
+            leaves.
+        quantity, size, unit: what tells how large it is, the first quantity of its name.
+        torque: RMS of all its torque - unit of `Own.left`.
+        fate: one of `FATES`.
+        names: given now, and not before.
+        verdict, reason: of the diagnosis; why there is none.
+        scored: its quantities beside the truth, where it is named.
+        probabilities: of the effect's name, of others that are new, and of `NONE`.
+        seconds: of CPU that the diagnosis took - s.
+    """
+
+    effect: str
+    strength: float
+    quantity: str
+    size: float
+    unit: str
+    torque: float
+    fate: str = FLAGGED
+    names: tuple[str, ...] = ()
+    verdict: str = ""
+    reason: str = ""
+    scored: tuple[Scored, ...] = ()
+    probabilities: Mapping[str, float] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    @property
+    def named(self) -> bool:
+        """Whether the effect is named."""
+        return self.fate in (RIGHT, PART)
+
+
+def put_into(own: Own, name: str, strength: float, seed: int) -> Injection | None:
+    """Put an effect into a recording and diagnose it; None if the axis cannot have it, or has it already.
+
+    Args:
+        own: the recording.
+        name: of the effect.
+        strength: over what the recording leaves.
+        seed: of its other parameters.
+    """
+    effect = None if name in own.taken else drawn(own.host, name, strength * own.left, seed)
+    if effect is None:
+        return None
+    made, known = injected(own.host, effect), catalogue()[name].quantities[0]
+    size, unit = effect.quantities(own.host.axis)[known.name], own.host.rig.axis_kind.unit(known, own.unit)
+    case = Injection(name, strength, known.name, size, unit, disturbance(own.host, made)[0])
+    began = time.process_time()
+    try:
+        found = diagnose(made, own.host.rig)
+    except BenchError as refused:
+        return replace(case, reason=" ".join(str(refused).split()), probabilities={NONE: 1.0})
+    return judged(replace(case, seconds=time.process_time() - began), own, effect, found)
+
+
+def judged(case: Injection, own: Own, effect: Effect, found: Diagnosis) -> Injection:
+    """The case with what a diagnosis says of it."""
+    named = Named.of(found.verdict, found.effects, (*own.names, case.effect))
+    is_named, remains = case.effect not in named.missed, found.verdict == UNEXPLAINED
+    known = (PART if named.false else RIGHT) if is_named else ""
+    fate = known or (WRONG if named.false else FLAGGED if remains else MISSED)
+    new = (*[case.effect] * is_named, *named.false)
+    scored = tuple(of_effects([effect], own.host.axis, found))
+    told = {"names": new, "verdict": found.verdict, "probabilities": believed(found, new)}
+    return replace(case, fate=fate, scored=scored, **told)
+
+
+def believed(found: Diagnosis, new: Sequence[str]) -> dict[str, float]:
+    """Probabilities of new names, and of none: a diagnosis is sure of its names, and of a remainder without one."""
+    return dict.fromkeys(new, 1.0) if new else {NONE: float(found.verdict == UNEXPLAINED)}
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One effect that is tried in a recording.
+
+    Attributes:
+        own: the recording.
+        name: of the effect.
+        strengths: that are tried; () where the least that is named is sought.
+        seed: of its other parameters.
+    """
+
+    own: Own
+    name: str
+    strengths: tuple[float, ...]
+    seed: int
+
+
+def tried(trial: Trial) -> tuple[Injection, ...]:
+    """At each strength asked for, or at those that close in on the least that is named."""
+    if trial.strengths:
+        at = (put_into(trial.own, trial.name, strength, trial.seed) for strength in trial.strengths)
+        return tuple(case for case in at if case is not None)
+    (low, high), cases = SPAN, []
+    for _ in range(TRIALS):
+        middle = math.sqrt(low * high)
+        case = put_into(trial.own, trial.name, middle, trial.seed)
+        low, high = (low, middle) if case is not None and case.named else (middle, high)
+        cases += [] if case is None else [case]
+    return tuple(cases)
+
+
+@dataclass(frozen=True)
+class Injections:
+    """What became of known effects in a recording.
+
+    Attributes:
+        own: the recording.
+        cases: what was tried, by effect and strength.
+        sought: whether the least that is named was sought.
+        unable: names that the axis cannot have, at no strength that was tried, or has already.
+        failed: names whose work gave no result, and why.
+    """
+
+    own: Own
+    cases: tuple[Injection, ...]
+    sought: bool
+    unable: tuple[str, ...]
+    failed: Mapping[str, str]
+
+    @property
+    def least(self) -> dict[str, Injection | None]:
+        """By effect the weakest that was named; None of one that never was."""
+        found: dict[str, Injection | None] = {}
+        for case in sorted(self.cases, key=lambda case: -case.strength):
+            found[case.effect] = case if case.named else found.get(case.effect)
+        return dict(sorted(found.items()))
+
+
+def inject(
+    trace: Trace,
+    rig: Rig,
+    names: Sequence[str] = (),
+    strengths: Sequence[float] = (),
+    seed: int = 0,
+    workers: int | None = None,
+    progress: Callable[[float], None] = lambda share: None,
+) -> Injections:
+    """Put known effects into a recording, each alone, and see what its diagnosis makes of them.
+
+    Args:
+        trace: the recording.
+        rig: of its axis.
+        names: of effects; all without.
+        strengths: over what the recording leaves; without, the least that is named is sought.
+        seed: of their other parameters.
+        workers: processes on this machine; None: one a core.
+        progress: called with the share done.
+
+    Raises:
+        InputError: a name that cannot be put into a recording, or what `diagnose` raises of the recording as it is.
+    """
+    for name in names:
+        if name not in INJECTABLE:
+            found = f"found '{name}'{nearest(name, list(INJECTABLE))}"
+            raise InputError("--effect", found, f"allowed: some of {', '.join(INJECTABLE)}")
+    itself, asked = own(trace, rig), tuple(names) or INJECTABLE
+    trials = [Trial(itself, name, tuple(strengths), seed) for name in asked]
+    cases: dict[str, tuple[Injection, ...]] = {}
+    failed: dict[str, str] = {}
+    for place, outcome in each(tried, trials, Limits(deadline=DEADLINE), workers):
+        if isinstance(outcome, Failure):
+            failed[asked[place]] = outcome.reason
+        else:
+            cases[asked[place]] = tuple(sorted(outcome, key=lambda case: case.strength))
+        progress((len(cases) + len(failed)) / len(asked))
+    ordered = tuple(case for name in asked for case in cases.get(name, ()))
+    unable = tuple(name for name in asked if name in cases and not cases[name])
+    return Injections(itself, ordered, not strengths, unable, failed)
