@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.arrays import NORMAL95, Array, rms
+from bench.diagnosis.clipped import clipped
 from bench.diagnosis.held_out import HeldOut
 from bench.diagnosis.model import (
     BANDWIDTH,
@@ -33,12 +34,17 @@ from bench.diagnosis.model import (
     present_of,
 )
 from bench.diagnosis.name import NamedEffect, Suspects, named
+from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, same_axis
 from bench.effects.acting import DriveLimit
 from bench.effects.effect import Occasional
 from bench.effects.waves import Wave
-from bench.errors import BenchError, InputError
+from bench.errors import BenchError, InputError, UndeterminedError
+from bench.fit.determined import refused_masses
+from bench.fit.estimate import load_inertia
+from bench.fit.fit import Fit
+from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.parameter import Parameter
@@ -92,6 +98,7 @@ class Added:
 
     Attributes:
         extension: the effects accepted, fitted to the whole recording.
+        stages: the model after none, one, ... all of them.
         gaps: velocity gaps, simulated for every addition.
         recorded: the recording, and the holdout where there is one.
         rejected: the others, with the reason.
@@ -101,9 +108,11 @@ class Added:
         warnings: about a holdout of another axis, or a model that MuJoCo cannot simulate.
         closed_loop: velocity gap under the drive of the rig, without and with the effect that is visible only there -
             rad/s (m/s); None without such an effect.
+        refused: why a parameter is not determined beside the effects, by its name; the model is then the last that is.
     """
 
     extension: Extension
+    stages: tuple[Stage, ...]
     gaps: VelocityGaps
     recorded: tuple[Recorded, ...]
     rejected: tuple[Rejected, ...]
@@ -112,10 +121,15 @@ class Added:
     compared: SameAxis
     warnings: tuple[str, ...]
     closed_loop: tuple[float, float] | None
+    refused: Mapping[str, str]
 
 
 def add(recordings: Recordings, suspects: Suspects) -> Added:
-    """Try every effect, keep those that held-out motion confirms, and refine their model."""
+    """Try every effect, keep those that held-out motion confirms, and refine their model.
+
+    Raises:
+        UndeterminedError: nothing is missing, and the recording does not determine the inertia.
+    """
     found = suspects.searched.last
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.holdout_rows)
@@ -127,25 +141,66 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     closed_loop = closed_loop_gap(recordings, extension)
     rejected: list[Rejected] = []
     while True:
-        gaps = holding(extension, recordings)
+        refused = refusals(recordings, extension.whole.fitted)
+        modelled = last_determined(recordings, extension, suspects.policy) if refused else extension.whole
+        gaps = holding(extension, modelled, recordings)
         against = rejection(recordings, suspects, held_out, extension, gaps) or unlimited(extension, closed_loop)
         if against is None:
             break
         rejected.append(Rejected(extension.names[against[0]], against[1]))
         extension = extension.less(against[0])
-    gaps.simulate((stage, each) for stage in extension.stages for each in recorded)
-    problem = [f"not added to the MuJoCo model: {extension.whole.problem}"] if extension.whole.problem else []
+    stages = without_models(extension.stages, modelled, refused)
+    gaps.simulate((stage, each) for stage in stages for each in recorded)
+    kept = refined(recordings, stages[-1], suspects, held_out, gaps)
+    if refused:
+        told = {name: found for name, found in kept.parameters.items() if name not in refused}
+        kept = replace(kept, model=modelled.model if modelled else None, parameters=told)
+    problem = [f"not added to the MuJoCo model: {stages[-1].problem}"] if stages[-1].problem else []
     return Added(
         extension=extension,
+        stages=stages,
         gaps=gaps,
         recorded=tuple(recorded),
         rejected=tuple(rejected),
-        refined=refined(recordings, extension.whole, suspects, held_out, gaps),
+        refined=kept,
         repeats=repeats,
         compared=compared,
         warnings=(*compared.warnings, *problem),
         closed_loop=closed_loop,
+        refused={name: refusal.reason for name, refusal in refused.items()},
     )
+
+
+def refusals(recordings: Recordings, fitted: Fit) -> dict[str, UndeterminedError]:
+    """Why the inertia, or the load's alone, is not determined beside the effects of a fit, by name."""
+    found, rig = uncertain(fitted).base(recordings.base_units), recordings.rig
+    masses = found | load_inertia(found, rig)
+    return refused_masses(masses, rig.axis_kind, clipped(recordings.trace, rig))
+
+
+def last_determined(recordings: Recordings, extension: Extension, policy: Policy) -> Stage | None:
+    """The last stage that determines the inertia; None where none does because of what is missing from the model.
+
+    Raises:
+        UndeterminedError: nothing is missing, and the recording does not determine it.
+    """
+    refused: dict[str, UndeterminedError] = {}
+    for stage in reversed(extension.stages):
+        refused = refusals(recordings, stage.fitted)
+        if not refused:
+            return stage
+    if not policy.remains(extension.stages[0].fitted):
+        raise next(iter(refused.values()))
+    return None
+
+
+def without_models(
+    stages: Sequence[Stage], modelled: Stage | None, refused: Mapping[str, UndeterminedError]
+) -> tuple[Stage, ...]:
+    """Stages without a MuJoCo model after the last one whose inertia is determined."""
+    count = next((index for index, stage in enumerate(stages) if stage is modelled), -1) + 1
+    later = [replace(stage, model=None, problem=str(next(iter(refused.values())))) for stage in stages[count:]]
+    return (*stages[:count], *later)
 
 
 def everywhere(balance: Balance, other: Rows | None) -> bool:
@@ -155,13 +210,12 @@ def everywhere(balance: Balance, other: Rows | None) -> bool:
     return balance.repeating(True).gap(other) < balance.gap(other)
 
 
-def holding(extension: Extension, recordings: Recordings) -> VelocityGaps:
-    """Velocity gaps under a cascade that holds every model of an extension to the recording."""
-    stored = extension.whole.model
-    if stored is None:
-        return VelocityGaps(BANDWIDTH, extension.stages[0].fitted.base.inertia)
+def holding(extension: Extension, modelled: Stage | None, recordings: Recordings) -> VelocityGaps:
+    """Velocity gaps under a cascade that holds every model of an extension to the recording, `modelled` the last."""
+    if modelled is None or modelled.model is None:
+        return VelocityGaps(BANDWIDTH, extension.stages[0].fitted.base.inertia if modelled else None)
     top = float(np.abs(measured_velocity(recordings.trace)).max())
-    return VelocityGaps(holding_bandwidth(stored.model, top), extension.whole.fitted.base.inertia)
+    return VelocityGaps(holding_bandwidth(modelled.model.model, top), modelled.fitted.base.inertia)
 
 
 def rejection(

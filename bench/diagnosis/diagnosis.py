@@ -5,19 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from bench.axis_kind import INERTIA
 from bench.diagnosis.add import add
 from bench.diagnosis.doubts import DOUBTS, Doubt
 from bench.diagnosis.name import name
 from bench.diagnosis.policy import POLICY, Policy
 from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.show import Diagnosis, show
-from bench.diagnosis.verdict import suspicions
 from bench.diagnosis.where import where
-from bench.fit.determined import require_masses, require_significant
-from bench.fit.estimate import load_inertia
-from bench.fit.fit import Fit
-from bench.fit.quantities import uncertain
 from bench.gate.gate import joined, passed
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
@@ -55,17 +49,7 @@ def diagnose(
     bare = fit_bare(recordings.rows)
     located = where(bare, rig.axis_kind, recordings.unit, recordings.current)
     suspects = name(recordings, bare, excluded, policy, doubts)
-    _require_weight(recordings, suspects.searched.last)
     progress(0.6)
     added = add(recordings, suspects)
     progress(0.9)
     return replace(show(recordings, bare, located, suspects, added), checks=joined([each.checks for each in gated]))
-
-
-def _require_weight(recordings: Recordings, fitted: Fit) -> None:
-    """Refuse effects with which the recording no longer determines the inertia, before a model is made of them."""
-    kind = recordings.rig.axis_kind
-    found = uncertain(fitted).base(recordings.base_units)
-    suspected = suspicions(recordings.trace, recordings.rig, {})
-    require_significant(found[kind.parameter(INERTIA)], kind, suspected)
-    require_masses(found | load_inertia(found, recordings.rig), kind, suspected)

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -53,7 +54,7 @@ def stored_model(fitted: Fit, outside: Sequence[Present], rig: Rig) -> StoredMod
         InputError: MuJoCo cannot have the effects with these values, or no inertia.
     """
     inertia, viscous, coulomb = (fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB))
-    if inertia <= 0.0:
+    if inertia <= mujoco.mjMINVAL:
         raise InputError(rig.source, f"found an inertia of {inertia:.3g}", "allowed: above zero")
     motor = rig.motor.rotor_inertia or rig.motor.moving_mass or 0.0
     coupling = fitted.hypothesis.coupling
@@ -226,7 +227,7 @@ class Recorded:
         """Standard deviation of the measured velocity: a larger gap means no tracking at all - rad/s (m/s)."""
         return float(np.std(measured_velocity(self.trace)[self.judged]))
 
-    def holding(self, stored: StoredModel, inertia: float) -> SoftTracking:
+    def holding(self, stored: StoredModel, inertia: float | None) -> SoftTracking:
         """A model that tracks it by a cascade designed for an inertia - kg*m**2 (kg)."""
         model = stored.model if self.events else without_events(stored.model)
         return SoftTracking(model, self.trace, self.effort, stored.misalignment, inertia)
@@ -252,10 +253,10 @@ class VelocityGaps:
 
     Args:
         bandwidth: of the tracking cascade - rad/s.
-        inertia: for which the cascade is designed - kg*m**2 (kg).
+        inertia: for which the cascade is designed, each model's own if None - kg*m**2 (kg).
     """
 
-    def __init__(self, bandwidth: float, inertia: float) -> None:
+    def __init__(self, bandwidth: float, inertia: float | None) -> None:
         self.bandwidth, self.inertia = bandwidth, inertia
         self._known: dict[tuple[object, ...], Held] = {}
 
@@ -298,4 +299,5 @@ class VelocityGaps:
 
 
 def _key(stage: Stage, recorded: Recorded) -> tuple[object, ...]:
-    return (stage.rows, tuple(term.key for term in stage.fitted.terms), stage.outside, recorded.name)
+    terms = tuple(term.key for term in stage.fitted.terms)
+    return (stage.rows, terms, stage.outside, stage.model is None, recorded.name)

@@ -157,7 +157,7 @@ class Policy:
 
         And no more where it is not.
         """
-        if not _physical(after, len(after.terms) - 1):
+        if not self.physical(after):
             return False
         left = float(np.sum(before.residual[after.determined] ** 2))
         excess = max(left - after.count * before.floor**2, 0.0)

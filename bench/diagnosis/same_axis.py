@@ -125,7 +125,7 @@ def apart(recordings: Recordings, whole: Fit, parameters: Mapping[str, Parameter
         return Apart(found)
     alone = _each(recordings, whole)
     warnings, spread = [], {}
-    for name in recordings.base_units:
+    for name in filter(found.__contains__, recordings.base_units):
         own = [one.parameters[name] for one in alone if name in one.parameters]
         if len(own) < 2:
             continue

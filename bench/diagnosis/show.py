@@ -107,6 +107,7 @@ class Diagnosis:
         holdout: whether it is of the same axis, and in what it differs.
         next_experiment: that tells apart what this recording does not.
         rejected: names that held-out motion spoke against.
+        refused: why a parameter is not determined beside the effects, by its name; the model is the last that has all.
         stopped: what ended the search before it was done; None if nothing did.
         model, balance: with all effects; no model where MuJoCo cannot have them.
         courses: the recordings over time beside the model as it grew.
@@ -131,6 +132,7 @@ class Diagnosis:
     refined: tuple[float, float] | None
     steps: list[Shrunk]
     rejected: tuple[Rejected, ...]
+    refused: Mapping[str, str]
     holdout: SameAxis
     next_experiment: NextExperiment | None
     stopped: str | None
@@ -170,6 +172,7 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
         refined=kept.gap,
         steps=steps,
         rejected=added.rejected,
+        refused=added.refused,
         holdout=added.compared,
         next_experiment=propose(recordings, suspects, added),
         stopped=searched.stopped,
@@ -192,11 +195,11 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
 def courses(recordings: Recordings, added: Added) -> tuple[Course, ...]:
     """The recording, and the holdout where there is one, beside the bare axis and the model after each addition."""
     laid_out = [rows for rows in (recordings.rows, recordings.holdout_rows) if rows is not None]
-    balances = [Balance.of(stage.fitted).repeating(added.repeats) for stage in added.extension.stages]
+    balances = [Balance.of(stage.fitted).repeating(added.repeats) for stage in added.stages]
     found = []
     for rows, recorded in zip(laid_out, added.recorded, strict=True):
         trace = recorded.trace
-        left = [added.gaps.residual(stage, recorded) for stage in added.extension.stages]
+        left = [added.gaps.residual(stage, recorded) for stage in added.stages]
         if added.refined.gap is not None and added.refined.model is not None:
             (simulated,) = added.gaps.velocities([added.refined.model], [recorded])
             left[-1] = None if simulated is None else recorded.residual(simulated)
@@ -213,7 +216,7 @@ def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
             tuple(rms(course.torque_left[k]) for course in shown),
             tuple(_rms_known(course.velocity_left[k]) for course in shown),
         )
-        for k, stage in enumerate(added.extension.stages)
+        for k, stage in enumerate(added.stages)
     ]
 
 

@@ -14,18 +14,15 @@ import numpy as np
 from bench.arrays import rms
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS, AxisKind
 from bench.diagnosis.add import Added
+from bench.diagnosis.clipped import clipped
 from bench.diagnosis.name import NamedEffect, Suspects
 from bench.diagnosis.recordings import Recordings
 from bench.fit.fit import Fit
 from bench.fit.rows import Rows
+from bench.names import words
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-
-#: Share of the samples that stand at exactly the largest value, in rows of so many, which no motion and no noise make.
-CLIPPED, IN_A_ROW = 0.005, 5
-#: Distance from the drive's own limit within which standing there is the drive's doing and the value true.
-AT_LIMIT = 0.02
 
 
 @dataclass(frozen=True)
@@ -86,6 +83,12 @@ def remains(shown: Shown) -> str:
     if not shown.suspects.policy.remains(shown.whole):
         return ""
     return f"the torque gap is {shown.whole.chi:.3g} times what noise leaves"
+
+
+def refused(shown: Shown) -> str:
+    """A parameter is not determined beside the effects: the first, of which others follow, and why."""
+    told = (f"{words(name)} is not determined: {reason}" for name, reason in shown.added.refused.items())
+    return next(told, "")
 
 
 def unfinished(shown: Shown) -> str:
@@ -152,6 +155,7 @@ def holdout_apart(shown: Shown) -> str:
 #: In the order in which they are listed.
 OBJECTIONS: tuple[Callable[[Shown], str], ...] = (
     remains,
+    refused,
     unfinished,
     moves_worse,
     undetermined,
@@ -175,13 +179,12 @@ def _with_interval(name: str, found: Parameter) -> str:
 def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> list[str]:
     """Warnings: less inertia than the rotor alone has, or a signal that stands at the end of its range."""
     inertia, rotor = parameters.get("moment_of_inertia"), rig.motor.rotor_inertia
-    clipped = _clipped(trace, rig)
     if inertia is None or rotor is None or inertia.unit != "kg*m**2" or inertia.ci95[1] >= rotor:
-        return clipped
+        return clipped(trace, rig)
     return [
         f"the moment of inertia, {inertia.value:.3g} kg*m**2, is less than the rotor's alone, {rotor:.3g} kg*m**2: "
         "check the units of current and speed and the torque constant",
-        *clipped,
+        *clipped(trace, rig),
     ]
 
 
@@ -217,29 +220,3 @@ def out_of_phase(added: Added) -> list[str]:
         "at the measured position, and the velocity gap says nothing of them"
         for name in lost
     ]
-
-
-def _clipped(trace: Trace, rig: Rig) -> list[str]:
-    found = []
-    for name in ("current", "torque", "force"):
-        if name not in trace:
-            continue
-        for side in (1.0, -1.0):
-            values = side * trace[name]
-            top = float(values.max())
-            peak = rig.motor.peak_current if name == "current" else None
-            limited = peak is not None and abs(top / peak - 1.0) < AT_LIMIT
-            standing = _in_a_row(values == top)
-            if top > 0.0 and standing > CLIPPED * len(trace) and not limited:
-                found.append(
-                    f"{standing / len(trace):.1%} of {name} stand at exactly {side * top:.4g} {trace.units[name]}: "
-                    "the end of its range? What lies beyond is lost"
-                )
-    return found
-
-
-def _in_a_row(standing: np.ndarray) -> int:
-    """How many samples stand in runs of IN_A_ROW or longer."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], standing, [False]]).astype(int)))
-    runs = edges[1::2] - edges[::2]
-    return int(runs[runs >= IN_A_ROW].sum())

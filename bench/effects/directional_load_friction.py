@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import FollowsLoad, LoadTorque
-from bench.effects.effect import CopiesTorque, Fitted, Replacing
+from bench.effects.effect import LOSSIEST, CopiesTorque, Fitted, Replacing
 from bench.effects.shape import Shape, grid_of
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.trace.filter import Column
@@ -32,7 +32,7 @@ class DirectionalLoadFriction(CopiesTorque, Replacing, FollowsLoad):
     name = "directional_load_friction"
     summary = "friction by transmitted torque differs between driving and being driven"
     quantities = (
-        Quantity("motor_coefficient", "K_m", "dimensionless", lower=0.0, null=0.0),
+        Quantity("motor_coefficient", "K_m", "dimensionless", lower=0.0, upper=LOSSIEST, null=0.0),
         Quantity("load_ratio", "K_e/K_m", "dimensionless", lower=0.0),
     )
     derived = (Quantity("load_coefficient", "K_e", "dimensionless", lower=0.0),)

@@ -21,6 +21,8 @@ from bench.effects.waves import PHASE, OncePerRevolution, amplitude_and_phase
 from bench.trace.filter import Column
 from bench.units import Quantity
 
+#: Amplitudes that are tried where the bare axis tells no inertia - rad.
+AMPLITUDES = (1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3)
 #: Newton steps that turn a measured into a true angle: the error after k of them is below e**(2**k).
 STEPS = 5
 
@@ -42,16 +44,23 @@ class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
         return replace(signals, position=angle, velocity=velocity)
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
-        """To first order, where the balance is linear in both shapes: it lacks J times the acceleration's error."""
+        """To first order, where the balance is linear in both shapes: it lacks J times the acceleration's error.
+
+        J is that beside both. Where another effect takes it, so that no amplitude that there may be follows, a range
+        of amplitudes is tried.
+        """
 
         def errors(signals: Signals) -> list[Column]:
             angle, speed = signals.position, signals.velocity
             return [[(speed * np.cos(angle), 1)], [(-speed * np.sin(angle), 1)]]
 
         columns = fitted.seen(errors, of_motion=True)
-        gain = float(fitted.gains(columns, 2)[0])
-        sine, cosine = np.linalg.lstsq(columns, fitted.residual, rcond=None)[0] / -fitted.base.inertia
-        return [Proposal((float(sine), float(cosine)), gain)]
+        beside = np.column_stack([fitted.columns, columns])
+        inertia, *_, sine, cosine = np.linalg.lstsq(beside, fitted.effort, rcond=None)[0].tolist()
+        error = float(np.hypot(sine, cosine))
+        if error < self.quantities[0].upper * inertia:
+            return [Proposal((-sine / inertia, -cosine / inertia), float(fitted.gains(columns, 2)[0]))]
+        return fitted.tried(self, [(-share * sine / error, -share * cosine / error) for share in AMPLITUDES])
 
     def reach(self, shape: Sequence[float], k: int) -> float:
         """A third of the amplitude."""

@@ -11,13 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from bench.effects.acting import RaisesFriction
-from bench.effects.effect import CopiesTorque
+from bench.effects.effect import LOSSIEST, CopiesTorque
 from bench.effects.signals import Axis, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
-
-#: Share of the torque that friction takes at most; at one, torque would explain itself whatever it did.
-LOSSIEST = 0.7
 
 
 class LoadDependentFriction(CopiesTorque, RaisesFriction):

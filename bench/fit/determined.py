@@ -98,23 +98,30 @@ def _not_excited(equations: NormalEquations, kind: AxisKind) -> dict[str, Undete
     }
 
 
-def require_significant(inertia: Parameter, kind: AxisKind, suspicions: Sequence[str]) -> None:
-    """Raise UndeterminedError, with what else is suspicious, if the interval of the inertia contains zero."""
-    low, high = inertia.ci95
-    if low <= 0.0 <= high:
-        reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {inertia.unit}, holds zero", *suspicions])
-        raise UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
+def refused_masses(
+    parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]
+) -> dict[str, UndeterminedError]:
+    """Why the inertia, or the load's alone, is none, by name, with what else is suspicious.
 
-
-def require_masses(parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]) -> None:
-    """Raise UndeterminedError, with what else is suspicious, if the inertia, or the load's, is surely negative."""
+    The interval of the inertia contains zero, or one of them is surely negative. Without an inertia there is no load's.
+    """
+    refused: dict[str, UndeterminedError] = {}
     for name in (kind.inertia, "load_moment_of_inertia", ARMATURE):
         found = parameters.get(name)
-        if found is not None and found.ci95[1] < 0.0:
-            low, high = found.ci95
+        if found is None:
+            continue
+        low, high = found.ci95
+        if kind.inertia in refused:
+            without = f"{kind.in_words(INERTIA)} is not determined"
+            refused[name] = UndeterminedError(words(name), without, refused[kind.inertia].record)
+        elif high < 0.0:
             reason = f"it comes out negative, {found.value:.3g} {found.unit} ({low:.3g} to {high:.3g})"
             advice = {kind.inertia: TURNED, ARMATURE: LINKS}.get(name, SMALLER)
-            raise UndeterminedError(words(name), "; ".join([reason, *suspicions]), advice)
+            refused[name] = UndeterminedError(words(name), "; ".join([reason, *suspicions]), advice)
+        elif name == kind.inertia and low <= 0.0:
+            reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {found.unit}, holds zero", *suspicions])
+            refused[name] = UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
+    return refused
 
 
 def require_sound(estimate: Estimate, kind: AxisKind, suspicions: Sequence[str]) -> None:
@@ -123,8 +130,8 @@ def require_sound(estimate: Estimate, kind: AxisKind, suspicions: Sequence[str])
     Its inertia may be zero or is negative, the load's is negative, or the model explains less than half of the effort's
     variance.
     """
-    require_masses(estimate.parameters, kind, suspicions)
-    require_significant(estimate[kind.inertia], kind, suspicions)
+    for refusal in refused_masses(estimate.parameters, kind, suspicions).values():
+        raise refusal
     if estimate.explained < LEAST_EXPLAINED:
         share = f"the model explains {max(estimate.explained, 0.0):.0%} of the {kind.effort}'s variance"
         raise UndeterminedError(f"{kind.in_words(INERTIA)} and friction", "; ".join([share, *suspicions]), EXPLAINED)

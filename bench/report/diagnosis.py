@@ -67,6 +67,7 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
         "gap": {"torque": found.torque, "velocity": velocity},
         "steps": found.steps[1:],
         "rejected": found.rejected,
+        "refused": found.refused,
         "holdout": found.holdout,
         "next_experiment": _experiment_json(found),
         "stopped": found.stopped,
@@ -244,8 +245,11 @@ def _sensors(found: Diagnosis) -> list[str]:
 def _answers(found: Diagnosis) -> dict[str, str]:
     kind = _kind(found)
     names = "; ".join(f"{_named(effect)}: {effect.effect.summary}" for effect in found.effects)
+    inertia = found.parameters.get(kind.inertia)
     return {
-        f"{sentence(kind.in_words(INERTIA))}?": f"{interval(found.parameters[kind.parameter(INERTIA)])} (95 %)",
+        f"{sentence(kind.in_words(INERTIA))}?": "Not determined beside what is missing: " + found.refused[kind.inertia]
+        if inertia is None
+        else f"{interval(inertia)} (95 %)",
         "What was missing?": names or "No effect of the catalogue.",
         "How sure?": _sure(found),
         "Does it move like the axis now?": _moves(found.velocity, bool(found.effects)),
@@ -413,6 +417,7 @@ def _beside(found: Diagnosis) -> list[doc.Section]:
         f"velocity gap {name}: {number(pair[0])} to {number(pair[1], unit)}" for name, pair in pairs.items() if pair
     ]
     lines += [f"rejected: {words(one.name)}, {one.reason}" for one in found.rejected]
+    lines += [f"refused: {words(name)}, {reason}" for name, reason in found.refused.items()]
     lines += [f"stopped: {found.stopped}"] if found.stopped else []
     if found.unexplained_where:
         lines.append(f"unexplained: {share(found.unexplained_share)} of the gap")

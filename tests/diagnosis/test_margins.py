@@ -144,10 +144,13 @@ def test_a_name_that_only_damps_noise_goes():
 
 
 @pytest.mark.parametrize(
-    ("saved", "strength", "taken"), [(499.0, 1.0, False), (501.0, 1.0, True), (501.0, -1.0, False)]
+    ("saved", "strength", "inertia", "taken"),
+    [(499.0, 1.0, 1.0, False), (501.0, 1.0, 1.0, True), (501.0, -1.0, 1.0, False), (501.0, 1.0, -1e-9, False)],
 )
-def test_what_replaces_takes_half_of_what_stands_above_the_floor_physically(saved, strength, taken):
-    assert replaces(made(level(1100.0), OFFSET), made(level(1100.0 - saved), SPRING, strengths=(strength,))) is taken
+def test_what_replaces_takes_half_of_what_stands_above_the_floor_physically(saved, strength, inertia, taken):
+    """Its own strength, and the inertia that it leaves: what copies torque may take both."""
+    after = made(level(1100.0 - saved), SPRING, strengths=(strength,), inertia=inertia)
+    assert replaces(made(level(1100.0), OFFSET), after) is taken
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from bench.diagnosis.verdict import (
     moves_worse,
     negative_friction,
     out_of_phase,
+    refused,
     remains,
     undetermined,
     unfinished,
@@ -51,6 +52,7 @@ def shown(
     stopped=None,
     withheld=False,
     in_phase=True,
+    refused=None,
 ):
     """What a diagnosis shows, with what a test does not ask for as it is where all is well."""
     quiet = Gap("SI", 0.01, (0.1, 0.01), None)
@@ -64,6 +66,7 @@ def shown(
         suspects=SimpleNamespace(policy=Policy(), searched=searched, withheld=withheld),
         whole=made(level(100.0 * chi**2)),
         added=SimpleNamespace(
+            refused=refused or {},
             recorded=[SimpleNamespace(name="recording"), SimpleNamespace(name="holdout")],
             extension=SimpleNamespace(whole=None),
             gaps=SimpleNamespace(in_phase=lambda stage, recorded: in_phase),
@@ -198,6 +201,7 @@ AGAINST = {
     moves_worse: shown(SPRING, velocity=Gap("rad/s", 0.01, (0.1, 0.2), None)),
     undetermined: shown(named("torsion_spring", stiffness=(0.1, 0.11))),
     negative_friction: shown(SPRING, friction=(-0.08, 0.001)),
+    refused: shown(SPRING, refused={"moment_of_inertia": "its interval holds zero"}),
     holdout_apart: shown(SPRING, torque=Gap("N*m", 0.01, (0.1, 0.008), (0.1, 0.04))),
 }
 

@@ -1,0 +1,117 @@
+"""A parameter that is not determined beside what was named is refused by itself: the rest of the answer stands.
+
+Truth from the independent integrator: an axis so slow, and with so much dry friction, that friction in proportion to
+the torque explains any torque, if nobody asks whether that is physical.
+"""
+
+import json
+
+import numpy as np
+import pytest
+
+from bench.baseline.observe import observe
+from bench.diagnosis import add as adding
+from bench.diagnosis.diagnosis import diagnose
+from bench.effects.catalogue import catalogue
+from bench.errors import UndeterminedError
+from bench.plant.model_file import load_model
+from bench.report.diagnosis import diagnosis, diagnosis_json, write_diagnosis
+from bench.rig.rig import load_rig
+from bench.validation.independent import Axis, Noise, Sensors, simulate, write_rig
+from bench.validation.independent.effects import KINDS
+from bench.validation.independent.references import Motion, slow_reversals
+from tests.diagnosis.off import without
+from tests.kept import kept
+
+AXIS = Axis(
+    "axis", 1.5e-3, 8e-4, 0.5, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
+)
+SENSORS = Sensors(velocity=Noise(white=0.003), current=Noise(white=2e-3), encoder_resolution=2e-5)
+STIFFNESS = 0.02
+#: Names that are tried: a spring, and friction by torque.
+TRIED = frozenset(catalogue()) - {"torsion_spring", "load_dependent_friction"}
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """Rig, and the axis on a spring."""
+    speeds = [6.0, 8.0, 4.0, 7.0, 5.0, 9.0]
+    motion = Motion((slow_reversals(speeds, 0.25, 0.02), slow_reversals(speeds[::-1], 0.25, 0.02)))
+    one = [AXIS], [motion], [(KINDS["torsion_spring"](STIFFNESS),)], [SENSORS]
+    trace = kept(lambda: simulate(*one, seed=3, longest_step=62.5e-6)[0].trace, __file__)
+    path = tmp_path_factory.mktemp("rig") / "rig.toml"
+    write_rig(AXIS, path)
+    return load_rig(path), trace
+
+
+@pytest.fixture(scope="module")
+def lacking(recorded):
+    """Diagnosed by a policy that takes what is not physical: friction takes the whole torque."""
+    rig, trace = recorded
+    return diagnose(trace, rig, excluded=TRIED, policy=without("physical"))
+
+
+def test_names_that_take_the_inertia_are_a_remainder_and_leave_the_other_parameters(lacking):
+    assert [effect.name for effect in lacking.effects] == ["load_dependent_friction"]
+    assert lacking.verdict == "unexplained_remainder"
+    assert set(lacking.refused) == {"moment_of_inertia", "load_moment_of_inertia"}
+    assert "holds zero" in lacking.refused["moment_of_inertia"]
+    assert lacking.because[0].startswith("moment of inertia is not determined: its interval")
+    assert set(lacking.parameters) == {"viscous_friction_coefficient", "coulomb_friction_torque"}
+
+
+def test_its_model_is_the_last_that_has_an_inertia(lacking, recorded, tmp_path):
+    """Here the bare axis, whose J the spring biases by k/w**2 at most."""
+    assert lacking.model is not None
+    assert lacking.model.model.effects == ()
+    assert lacking.model.model.parameters.inertia == pytest.approx(AXIS.inertia, rel=0.5)
+    assert np.isnan(lacking.steps[-1].velocity).all()
+    assert np.isfinite(lacking.steps[0].velocity).all()
+    write_diagnosis(tmp_path / "found", lacking, "axis")
+    assert load_model(tmp_path / "found" / "model.toml").model.effects == ()
+
+
+def test_it_is_told_in_json_on_the_terminal_and_on_the_page(lacking):
+    content = json.loads(diagnosis_json(lacking))
+    assert content["refused"] == lacking.refused
+    assert "moment_of_inertia" not in content["parameters"]
+    assert content["gap"]["velocity"]["identify"] is None
+    shown = diagnosis(lacking, "axis")
+    assert "Not determined beside what is missing: its interval" in shown.answers["Moment of inertia?"]
+    (beside,) = (section for section in shown.sections if section.key == "beside")
+    assert any("refused: moment of inertia, its interval" in item for item in beside.blocks[0].items)
+
+
+def test_physics_of_the_catalogue_names_the_spring(recorded):
+    rig, trace = recorded
+    found = diagnose(trace, rig, excluded=TRIED)
+    assert (found.verdict, found.refused) == ("explained", {})
+    assert found.effects[0].parameters["stiffness"].value == pytest.approx(STIFFNESS, rel=0.01)
+    assert found.parameters["moment_of_inertia"].value == pytest.approx(AXIS.inertia, rel=0.01)
+
+
+def test_where_what_is_missing_takes_the_inertia_of_the_bare_axis_there_is_no_model(recorded, monkeypatch):
+    """No step determines J: a remainder without a MuJoCo model. A baseline of it holds the other numbers."""
+    rig, trace = recorded
+    refuse_all(monkeypatch)
+    found = diagnose(trace, rig, excluded=frozenset(catalogue()))
+    assert (found.verdict, found.effects, found.model) == ("unexplained_remainder", [], None)
+    assert found.velocity.identify is None
+    assert json.loads(diagnosis_json(found))["model"]["mjcf"] is None
+    assert diagnosis(found, "axis").answers["Does it move like the axis now?"].startswith("Not known")
+    state = observe(trace, rig).state
+    assert "moment_of_inertia" not in state.quantities and "coulomb_friction_torque" in state.quantities
+
+
+def test_where_nothing_is_missing_the_recording_is_refused(recorded, monkeypatch):
+    """As before: its J is not determined, and no name is the reason."""
+    rig, trace = recorded
+    refuse_all(monkeypatch)
+    with pytest.raises(UndeterminedError, match="moment of inertia cannot be determined: too quiet"):
+        diagnose(trace, rig, excluded=TRIED, policy=without("remains"))
+
+
+def refuse_all(monkeypatch):
+    """No fit determines the inertia."""
+    refusal = UndeterminedError("moment of inertia", "too quiet", "a motion that accelerates")
+    monkeypatch.setattr(adding, "refusals", lambda recordings, fitted: {"moment_of_inertia": refusal})
