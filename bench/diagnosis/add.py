@@ -128,7 +128,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     """Try every effect, keep those that held-out motion confirms, and refine their model.
 
     Raises:
-        UndeterminedError: nothing is missing, and the recording does not determine the inertia.
+        UndeterminedError: nothing is missing, and the recording does not determine the inertia, or the load's.
     """
     found = suspects.searched.last
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
@@ -154,7 +154,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     kept = refined(recordings, stages[-1], suspects, held_out, gaps)
     if refused:
         told = {name: found for name, found in kept.parameters.items() if name not in refused}
-        kept = replace(kept, model=modelled.model if modelled else None, parameters=told)
+        kept = replace(kept, model=kept.model or (modelled and modelled.model), parameters=told)
     problem = [f"not added to the MuJoCo model: {stages[-1].problem}"] if stages[-1].problem else []
     return Added(
         extension=extension,
@@ -182,16 +182,17 @@ def last_determined(recordings: Recordings, extension: Extension, policy: Policy
     """The last stage that determines the inertia; None where none does because of what is missing from the model.
 
     Raises:
-        UndeterminedError: nothing is missing, and the recording does not determine it.
+        UndeterminedError: nothing is missing, and a mass is not determined.
     """
-    refused: dict[str, UndeterminedError] = {}
     for stage in reversed(extension.stages):
         refused = refusals(recordings, stage.fitted)
-        if not refused:
-            return stage
-    if not policy.remains(extension.stages[0].fitted):
+        if recordings.rig.axis_kind.inertia not in refused:
+            break
+    else:
+        stage, refused = None, refusals(recordings, extension.stages[0].fitted)
+    if refused and not policy.remains(extension.stages[0].fitted):
         raise next(iter(refused.values()))
-    return None
+    return stage
 
 
 def without_models(

@@ -103,6 +103,17 @@ def test_where_what_is_missing_takes_the_inertia_of_the_bare_axis_there_is_no_mo
     assert "moment_of_inertia" not in state.quantities and "coulomb_friction_torque" in state.quantities
 
 
+def test_a_load_that_comes_out_negative_leaves_inertia_and_model(recorded):
+    """A rig with the rotor of another motor, and a spring that is not to be tried."""
+    rig, trace = recorded
+    other = rig.model_copy(update={"motor": rig.motor.model_copy(update={"rotor_inertia": 3.0 * AXIS.inertia})})
+    found = diagnose(trace, other, excluded=frozenset(catalogue()))
+    assert set(found.refused) == {"load_moment_of_inertia"}
+    assert "moment_of_inertia" in found.parameters and "load_moment_of_inertia" not in found.parameters
+    assert found.verdict == "unexplained_remainder" and found.model is not None
+    assert any("less than the rotor's alone" in warning for warning in found.warnings)
+
+
 def test_where_nothing_is_missing_the_recording_is_refused(recorded, monkeypatch):
     """As before: its J is not determined, and no name is the reason."""
     rig, trace = recorded
