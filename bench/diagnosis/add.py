@@ -27,6 +27,7 @@ from bench.diagnosis.model import (
     HOLDOUT,
     RECORDING,
     Extension,
+    Placed,
     Recorded,
     Stage,
     VelocityGaps,
@@ -39,7 +40,6 @@ from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, same_axis
 from bench.effects.acting import DriveLimit
 from bench.effects.effect import Occasional
-from bench.effects.waves import Wave
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.fit.determined import refused_masses
 from bench.fit.estimate import load_inertia
@@ -236,7 +236,7 @@ def rejection(
         before, after = (balance.gap(held_out.judge) for balance in balances)
         if after > before:
             return index, _grows(f"torque gap of the {judge.name}", before, after, judged.rig.effort_unit)
-        if not gaps.in_phase(judged.whole, judge) and (judged.a(Wave, index) or not gaps.in_phase(less.whole, judge)):
+        if not gaps.in_phase(judged.whole, judge) and (judged.a(Placed, index) or not gaps.in_phase(less.whole, judge)):
             continue
         before, after = (gaps.of(each.whole, judge) for each in (less, judged))
         allowed = float(np.hypot(before, floor))

@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import UnionType
 
 import mujoco
 import numpy as np
@@ -18,7 +19,7 @@ from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.diagnosis.name import Suspects
 from bench.effects.acting import RaisesFriction
-from bench.effects.effect import Detected, Effect, Occasional
+from bench.effects.effect import Contact, Detected, Effect, Occasional
 from bench.effects.present import Present
 from bench.effects.signals import Moment
 from bench.effects.waves import Wave
@@ -39,6 +40,8 @@ from bench.trace.trace import Trace
 BANDWIDTH, MOST = 20.0, 100.0
 #: Phase from which on a wave of position out of phase leaves more torque than no wave, |exp(j*phase) - 1| > 1 - rad.
 OUT_OF_PHASE = math.pi / 3.0
+#: What acts where the position says: waves, and parts that meet.
+Placed = Wave | Contact
 #: Number of speeds at which the slope of friction is evaluated, and the lowest as share of the top speed.
 SPEEDS, SLOWEST = 400, 1e-3
 #: Names of fitted and of judging motion.
@@ -175,7 +178,7 @@ class Extension:
             return replace(self, hypothesis=self.hypothesis.without(index))
         return replace(self, outside=(*self.outside[: index - own], *self.outside[index - own + 1 :]))
 
-    def a(self, kind: type[Effect], index: int) -> bool:
+    def a(self, kind: type[Effect] | UnionType, index: int) -> bool:
         """Whether an effect of the torque balance is of a kind."""
         terms = self.hypothesis.terms
         return index < len(terms) and isinstance(terms[index].effect, kind)
@@ -281,9 +284,10 @@ class VelocityGaps:
         return self._held(stage, recorded).residual
 
     def in_phase(self, stage: Stage, recorded: Recorded) -> bool:
-        """Whether a model's waves of position act where the axis has them, so that its velocity tells of them."""
-        numbers = [term.effect.wave_number(term.shape) for term in stage.fitted.terms if isinstance(term.effect, Wave)]
-        return not numbers or max(numbers) * self._held(stage, recorded).drift < OUT_OF_PHASE
+        """Whether what a model has over position acts where the axis has it, as far as there is a simulation."""
+        placed = ((term.effect, term.shape) for term in stage.fitted.terms)
+        numbers = [effect.wave_number(shape) for effect, shape in placed if isinstance(effect, Placed)]
+        return not numbers or not max(numbers) * self._held(stage, recorded).drift > OUT_OF_PHASE
 
     def velocities(self, models: Iterable[StoredModel], recordings: Iterable[Recorded]) -> list[Array | None]:
         """Velocities of models along recordings, one each, (n,) - rad/s (m/s); None where one diverged."""

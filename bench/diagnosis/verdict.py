@@ -213,10 +213,10 @@ def impacts(fitted: Fit, unit: str) -> list[str]:
 
 
 def out_of_phase(added: Added) -> list[str]:
-    """A warning of recordings along which simulated waves lose the phase of the measured motion."""
+    """A warning of recordings along which simulated waves, or impacts, lose the phase of the measured motion."""
     lost = [each.name for each in added.recorded if not added.gaps.in_phase(added.extension.whole, each)]
     return [
-        f"the simulated position leaves the {name}'s by more than waves of it allow: they are judged by their torque "
-        "at the measured position, and the velocity gap says nothing of them"
+        f"the simulated position leaves the {name}'s by more than waves or impacts allow: they are judged by their "
+        "torque at the measured position, and the velocity gap says nothing of them"
         for name in lost
     ]

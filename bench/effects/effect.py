@@ -240,6 +240,10 @@ class Contact(Columns):
     """Parts that meet and part: what their impacts leave comes in bursts, and the instant of one hangs on the last."""
 
     @abstractmethod
+    def wave_number(self, shape: Sequence[float]) -> float:
+        """A turn over the width in which they are apart: its product with an error of position is one of phase."""
+
+    @abstractmethod
     def open_torque(self, fitted: Fitted, shape: Sequence[float]) -> Array:
         """By how much its torque is undetermined in each row - N*m (N) per unit of its strength - (m,)."""
 

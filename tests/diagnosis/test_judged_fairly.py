@@ -5,11 +5,19 @@ Truth from the independent integrator.
 
 import pytest
 
+from bench.diagnosis import model as modelling
 from bench.diagnosis.diagnosis import diagnose
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Hypothesis
+from bench.fit.rows import Rows
+from bench.plant.tracking import Tracked
 from bench.rig.rig import load_rig
 from bench.validation.independent import simulate, write_rig
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import Motion, Ramps, slow_reversals
+from tests.diagnosis.constructed import RIG, moved
+from tests.diagnosis.constructed import recorded as made_up
+from tests.diagnosis.hand_made import term
 from tests.diagnosis.test_add import AXIS, SENSORS, STEP
 from tests.kept import kept
 
@@ -72,4 +80,26 @@ def test_a_wave_whose_simulation_loses_its_phase_is_judged_by_its_torque(recorde
     (named,) = found.effects
     assert named.parameters["harmonic"].value == HARMONIC
     assert named.parameters["amplitude"].value == pytest.approx(COGGING, rel=0.02)
-    assert any("judged by their torque at the measured position" in warning for warning in found.warnings)
+    assert any("torque at the measured position" in warning for warning in found.warnings)
+
+
+@pytest.mark.parametrize(
+    ("one", "drift", "kept"),
+    [
+        (term("cogging_torque", 60.0), 0.017, True),
+        (term("cogging_torque", 60.0), 0.018, False),
+        (term("backlash", 0.06, 639.0, 0.5, 0.0), 0.0099, True),
+        (term("backlash", 0.06, 639.0, 0.5, 0.0), 0.0101, False),
+        (term("torsion_spring"), 1.0, True),
+    ],
+)
+def test_phase_is_kept_within_a_sixth_of_a_turn_of_the_wave_or_of_the_gap(monkeypatch, one, drift, kept):
+    """A wave out of phase by p leaves |exp(j*p) - 1| of itself: all of it from pi/3 on."""
+    trace = made_up(moved(2.0))
+    away = Tracked(trace["position"] + drift, trace["velocity"])
+    monkeypatch.setattr(modelling, "track_all", lambda held, bandwidth: [away for _ in held])
+    bare, fitted = (fit(Rows.of(trace, RIG), Hypothesis(terms)) for terms in ((), (one,)))
+    model = modelling.Stage.of("", bare, (), RIG, "recording").model
+    stage = modelling.Stage(one.effect.name, fitted, (), "recording", model)
+    gaps = modelling.VelocityGaps(20.0, fitted.base.inertia)
+    assert gaps.in_phase(stage, modelling.Recorded.of("recording", trace, RIG)) is kept
