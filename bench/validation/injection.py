@@ -63,18 +63,15 @@ class StandIn:
     """All samples of a recording, in the place of the plant that the formulas of effects ask - (m,) each.
 
     Attributes:
-        parts, period: stretches without a hole, and the sample period in them - s.
+        host, parts: the recording, and its stretches without a hole.
         midtime: from the recording's start - s.
         position, velocity, acceleration: of the axis - rad, rad/s, rad/s**2.
         direction: sign of the speed, 0 where the axis may rest: friction at rest takes what it is given.
-        motor_torque, acting_current: that move it - N*m (N), A.
-        inertia, load_inertia, viscous, coulomb, torque_constant, peak_current: as `independent.rig.Axis` has them; the
-            second is what a coupling would join to the motor.
-        load: as `Host` has it.
+        motor_torque, acting_current, peak_current: that move it, and its most - N*m (N), A, A.
     """
 
+    host: Host
     parts: tuple[slice, ...]
-    period: float
     midtime: Array
     position: Array
     velocity: Array
@@ -82,54 +79,34 @@ class StandIn:
     direction: Array
     motor_torque: Array
     acting_current: Array
-    inertia: Array
-    load_inertia: Array
-    viscous: Array
-    coulomb: Array
-    torque_constant: Array
     peak_current: Array
-    load: Array | None
+
+    def __getattr__(self, name: str) -> Array:
+        """A constant of the axis."""
+        return np.full(self.midtime.size, getattr(self.host.axis, name))
 
     @property
     def load_torque(self) -> Array:
         """Of what a gear carries - N*m (N); InputError where it is not known."""
-        if self.load is None:
+        if self.host.load is None:
             raise InputError(
                 "load torque", "found none in the recording", "allowed: an axis that is known to carry one"
             )
-        return self.load
+        return self.host.load
 
     def driven_by(self, torque: Array) -> StandIn:
         """The same motion under another motor torque - N*m (N) (m,)."""
-        return replace(self, motor_torque=torque, acting_current=torque / self.torque_constant)
+        return replace(self, motor_torque=torque, acting_current=torque / self.host.axis.torque_constant)
 
 
 def stand_in(host: Host, trace: Trace | None = None) -> StandIn:
     """The motion of a recording, or of what was made of it, by a local cubic through its samples."""
-    trace, axis = trace or host.trace, host.axis
-    effort = host.rig.effort(trace)[0]
+    trace = trace or host.trace
     position, velocity, acceleration, direction = np.concatenate([_motion(trace, p) for p in trace.segments], axis=1)
-    constants = (axis.inertia, axis.inertia - axis.rotor_inertia, axis.viscous, axis.coulomb)
-    inertia, load_inertia, viscous, coulomb = (np.full(len(trace), each) for each in constants)
-    torque_constant, peak_current = (np.full(len(trace), each) for each in (axis.torque_constant, axis.peak_current))
-    return StandIn(
-        trace.segments,
-        trace.sample_period,
-        trace.time - trace.time[0],
-        position,
-        velocity,
-        acceleration,
-        direction,
-        effort,
-        effort / torque_constant,
-        inertia,
-        load_inertia,
-        viscous,
-        coulomb,
-        torque_constant,
-        peak_current,
-        host.load,
-    )
+    effort, time = host.rig.effort(trace)[0], trace.time - trace.time[0]
+    peak = np.full(len(trace), host.axis.peak_current)
+    seen = StandIn(host, trace.segments, time, position, velocity, acceleration, direction, effort, effort, peak)
+    return seen.driven_by(effort)
 
 
 def _cubic(values: Array, period: float, order: int = 0) -> Array:
@@ -208,10 +185,10 @@ def _friction(effect: Effect, acts: set[str], seen: StandIn) -> Array:
 def _bristles(effect: Effect, rows: Rows) -> Array:
     """Torque of bristles that the motion bends, straight at the start of each stretch - N*m (N) (m,)."""
     level, bent = np.maximum(rows.coulomb, 1e-12), np.zeros_like(rows.position)
+    period = rows.plant.host.trace.sample_period
     for part in rows.plant.parts:
-        speeds = np.diff(rows.position[part]) / rows.plant.period
-        for k, speed in enumerate(speeds, part.start):
-            bent[k + 1] = effect.bend(speed, level[k], bent[k], rows.plant.period)
+        for k, speed in enumerate(np.diff(rows.position[part]) / period, part.start):
+            bent[k + 1] = effect.bend(speed, level[k], bent[k], period)
     return effect.bristle_torque(rows, level, bent)
 
 
@@ -221,7 +198,8 @@ def _behind_coupling(effect: Effect, rows: Rows) -> Array:
     With the motor's motion given, twist obeys J_l*twist'' + transmitted(twist, twist') = J_l*alpha; the motor carries
     what is transmitted in the place of J_l*alpha.
     """
-    load, period = rows.load_inertia[0], rows.plant.period
+    axis, period = rows.plant.host.axis, rows.plant.host.trace.sample_period
+    load = axis.inertia - axis.rotor_inertia
     far = np.array(1e6)  # in contact, whatever the gap: there what is transmitted rises by the stiffness
     stiffness = effect.transmitted_torque(rows, 2.0 * far, 0.0 * far) - effect.transmitted_torque(rows, far, 0.0 * far)
     count = math.ceil(STEPS * period * math.sqrt(float(stiffness) / float(far) / load) / (2.0 * math.pi))
@@ -267,7 +245,9 @@ def _reported(effect: Effect, acts: set[str], seen: StandIn) -> Array:
         current = _solved(lambda at: effect.true_current(Rows(seen, slice(None), effect), at), current, effect)
     if acts & {"acting_current", "recorded_current"}:
         constant: float = effect.time_constant  # type: ignore[attr-defined]
-        lagging = partial(_ahead if "acting_current" in acts else behind, period=seen.period, constant=constant)
+        lagging = partial(
+            _ahead if "acting_current" in acts else behind, period=seen.host.trace.sample_period, constant=constant
+        )
         current = np.concatenate([lagging(current[part]) for part in seen.parts])
     return current
 

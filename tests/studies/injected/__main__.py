@@ -112,7 +112,7 @@ def main(
     one_in: Annotated[int, typer.Option(min=1, help="Every so many-th case.")] = 1,
     seed: int = 1,
     jobs: Annotated[int, typer.Option(min=1)] = 2,
-    out: Annotated[Path | None, typer.Option(help="Folder for injected.md, or names.md.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for table.md, or names.md.")] = None,
     stable: Annotated[bool, typer.Option("--stability", help="Instead: do names stay?")] = False,
     write: Annotated[Path | None, typer.Option(help="Instead: write cases as folders into this one.")] = None,
     cases: Annotated[int, typer.Option(min=1, help="With --write, so many.")] = 60,
@@ -132,7 +132,7 @@ def main(
         typer.echo(f"{written(chosen, cases, write, by_name, owns)} cases in {write}")
         return
     rows = rows_of([(case, owns[case.source]) for case in chosen], kept_in(seed), jobs)
-    publish(markdown([rows[case.name] for case in chosen], by_name, owns, refused, command), out, "injected.md")
+    publish(markdown([rows[case.name] for case in chosen], by_name, owns, refused, command), out, "table.md")
 
 
 def publish(told: str, out: Path | None, name: str) -> None:

@@ -122,9 +122,9 @@ def kept_in(seed: int) -> Path:
 
 
 def keep(path: Path, row: Row) -> None:
-    """Append a row, whole: a run that is killed goes on where it was."""
+    """Append a row, on a line of its own even behind one that was cut off: a run goes on where it was killed."""
     with path.open("a", encoding="utf-8") as file:
-        file.write(json.dumps(asdict(row)) + "\n")
+        file.write(f"\n{json.dumps(asdict(row))}\n")
 
 
 def kept(path: Path) -> Iterator[Row]:

@@ -1,0 +1,108 @@
+"""The study draws, keeps and counts as it says."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import bench
+from bench.trace.trace import Trace
+from bench.validation.injection import INJECTABLE
+from bench.validation.into import NONE
+from tests.shared import needs_shared
+from tests.studies.injected.cases import FAILED, STRENGTHS, Case, Row, draw, keep, kept, write_case
+from tests.studies.injected.sources import Source, real
+from tests.studies.injected.stability import HALVES, NOISE, WHOLE, compared, markdown, variants
+from tests.studies.injected.table import calibration_error, headline, pairs
+from tests.validation.test_into import OWN
+
+CASE = Case("axis/r1", "cogging_torque", 2.0, 7)
+ROW = Row(
+    CASE, "right", ("cogging_torque",), "explained", "", {"cogging_torque": 0.9}, 1.5, {"amplitude": (1, 2, 0, 3)}
+)
+
+
+def test_every_effect_meets_every_recording_at_every_strength_once():
+    cases = draw(["one", "two"], (), 1)
+    assert len(cases) == len(set(cases)) == 2 * len(INJECTABLE) * len(STRENGTHS)
+    assert cases != draw(["one", "two"], (), 2)
+    assert {case.own_seed for case in draw(["one"], (), 1)} <= {case.own_seed for case in cases}
+
+
+def test_rows_outlast_a_run_that_is_killed(tmp_path):
+    path = tmp_path / "rows.jsonl"
+    failed = replace(ROW, case=replace(CASE, strength=5.0), fate=FAILED)
+    for row in (ROW, failed):
+        keep(path, row)
+    path.write_text(path.read_text(encoding="utf-8") + '{"case": {"sour', encoding="utf-8")
+    assert list(kept(path)) == [ROW]  # what failed is tried again
+    assert list(kept(tmp_path / "none")) == []
+
+
+def test_a_row_goes_on_after_one_that_was_cut_off(tmp_path):
+    path = tmp_path / "rows.jsonl"
+    path.write_text('{"case": {"sour', encoding="utf-8")
+    keep(path, ROW)
+    assert list(kept(path)) == [ROW]
+
+
+@pytest.mark.parametrize(
+    ("told", "error"),
+    [([(1.0, True)] * 3 + [(1.0, False)], 0.25), ([(0.5, True), (0.5, False)], 0.0), ([(0.9, True)], 0.1), ([], 0.0)],
+)
+def test_calibration_error(told, error):
+    assert calibration_error(told) == pytest.approx(error)
+
+
+def test_what_no_catalogue_holds_is_no_name():
+    flagged = replace(ROW, probabilities={NONE: 1.0, "backlash": 0.2})
+    assert pairs([ROW, flagged]) == [(0.9, True), (0.2, False)]
+    assert "| mean probability of the true name | 0.450 |" in headline([ROW, flagged])
+
+
+def test_names_are_compared_with_variants_and_other_rounds():
+    sources = [Source("axis", f"axis/{name}", None, None) for name in ("r1", "r2")]
+    said = {
+        "axis/r1": {WHOLE: ("a",), NOISE: ("a",), HALVES[0]: ("a", "b"), HALVES[1]: None},
+        "axis/r2": {WHOLE: ("a",), NOISE: (), HALVES[0]: ("a",), HALVES[1]: ("a",)},
+    }
+    assert ("rounds", "axis/r1, axis/r2", ("a",), ("a",)) in list(compared(sources, said))
+    told = markdown(sources, said, "command")
+    for line in (f"| {NOISE} | 1 | 1 | 0 |", f"| {HALVES[0]} | 1 | 1 | 0 |", f"| {HALVES[1]} | 1 | 0 | 1 |"):
+        assert line in told
+    assert "| rounds | 1 | 0 | 0 |" in told
+
+
+def test_variants_keep_all_samples_and_add_the_noise_that_there_is():
+    time, rng = 1e-3 * np.arange(4000), np.random.default_rng(1)
+    signals = {"velocity": np.sin(time) + 0.01 * rng.normal(size=time.size), "current": np.cos(time)}
+    trace = Trace(time, signals, {"velocity": "rad/s", "current": "A"}, "made")
+    made = dict(variants(trace, 3))
+    assert len(made[HALVES[0]]) + len(made[HALVES[1]]) == len(trace)
+    assert np.std(made[NOISE]["velocity"] - trace["velocity"]) == pytest.approx(0.01, rel=0.1)
+
+
+def test_a_case_is_written_with_its_truth(tmp_path):
+    rig = tmp_path / "rig.toml"
+    rig.write_text(
+        'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\n[trace.columns]\ntime = "t"\n'
+    )
+    source = Source("axis", "axis/r1", tmp_path / "run.csv", rig)
+    swings = OWN.host.trace.with_signals({"current": np.cos(5.0 * OWN.host.trace.time)}, {})
+    own = replace(OWN, host=replace(OWN.host, trace=swings))
+    assert write_case(tmp_path / "made", CASE, source, own)
+    assert not write_case(tmp_path / "none", replace(CASE, effect="unbalance"), source, own)  # it has one
+    truth = json.loads((tmp_path / "made" / "truth.json").read_text(encoding="utf-8"))
+    assert (truth["effects"], truth["group"], truth["own"]) == (["cogging_torque"], "injected", ["unbalance"])
+    assert truth["rms_beyond_base"] == pytest.approx(2.0 * own.left, rel=0.1)
+    known = bench.load_rig(tmp_path / "made" / "rig.toml")
+    made, wave = bench.read(tmp_path / "made" / "run1.csv.gz", known.trace), truth["quantities"]["cogging_torque"]
+    added = (made["current"] - swings["current"]) * own.host.axis.torque_constant
+    expected = wave["amplitude"] * np.sin(wave["harmonic"] * swings["position"] + wave["phase"])
+    assert added == pytest.approx(expected, abs=1e-4)
+
+
+@needs_shared
+def test_the_real_recordings_are_there():
+    assert [source.name for source in real() if not source.path.exists() or not source.rig.exists()] == []
