@@ -13,7 +13,7 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.effects.catalogue import catalogue
-from bench.errors import BenchError, InputError
+from bench.errors import BenchError, InputError, UndeterminedError
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
 from bench.names import nearest
@@ -70,8 +70,16 @@ def own(trace: Trace, rig: Rig) -> Own:
 
 
 def axis_of(found: Diagnosis, trace: Trace, rig: Rig) -> Axis:
-    """The axis as a diagnosis found it; half of its inertia is the load's where the rig does not tell the rotor's."""
-    values = (found.parameters[rig.axis_kind.parameter(term)].value for term in (INERTIA, VISCOUS, COULOMB))
+    """The axis as a diagnosis found it; half of its inertia is the load's where the rig does not tell the rotor's.
+
+    Raises:
+        UndeterminedError: the diagnosis leaves the inertia open.
+    """
+    kind = rig.axis_kind
+    if kind.inertia in found.refused:
+        record = "one whose own diagnosis determines it, to put effects into"
+        raise UndeterminedError(kind.in_words(INERTIA), found.refused[kind.inertia], record)
+    values = (found.parameters[kind.parameter(term)].value for term in (INERTIA, VISCOUS, COULOMB))
     inertia, viscous, coulomb = values
     constant, rotor = rig.motor.torque_per_ampere, rig.motor.inertia
     per_ampere = 1.0 if constant is None else constant.constant
@@ -84,7 +92,7 @@ def axis_of(found: Diagnosis, trace: Trace, rig: Rig) -> Axis:
         torque_constant=per_ampere,
         peak_current=rig.motor.peak_current or float(np.abs(rig.effort(trace)[0]).max()) / per_ampere,
         velocity_gain=100.0 * inertia,  # a drive of 16 Hz, which bears lags of some milliseconds
-        linear=not rig.axis_kind.turns,
+        linear=not kind.turns,
     )
     return replace(axis, top_speed=float(np.abs(stand_in(Host(trace, rig, axis)).velocity).max()))
 
