@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from bench.effects.catalogue import catalogue
-from bench.errors import InputError
+from bench.errors import InputError, UndeterminedError
 from bench.parameter import Parameter
 from bench.validation import into
 from bench.validation.independent.effects import CoggingTorque
-from bench.validation.into import NONE, Injection, Injections, Own, Trial, inject, judged, own, tried
+from bench.validation.into import NONE, Injection, Injections, Own, Trial, axis_of, inject, judged, own, tried
 from tests.validation.test_injection import AXIS, RIG, SWING, host_of
 
 OWN = Own(host_of(SWING, np.zeros(SWING.size)), ("unbalance",), "explained", frozenset({"unbalance"}), 0.01, "N*m")
@@ -81,6 +81,12 @@ def test_the_least_that_is_named_is_closed_in_on(monkeypatch, least):
 def test_an_effect_that_is_never_named_has_no_least():
     cases = (replace(CASE, fate="missed"), replace(CASE, strength=5.0, fate="flagged"))
     assert Injections(OWN, cases, True, (), {}).least == {"cogging_torque": None}
+
+
+def test_a_recording_that_leaves_inertia_open_takes_no_effects():
+    left_open = SimpleNamespace(refused={"moment_of_inertia": "its interval holds zero"}, parameters={})
+    with pytest.raises(UndeterminedError, match="moment of inertia cannot be determined: its interval holds zero"):
+        axis_of(left_open, OWN.host.trace, RIG)
 
 
 @pytest.fixture(scope="module")
