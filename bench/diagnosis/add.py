@@ -144,13 +144,15 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         refused = refusals(recordings, extension.whole.fitted)
         modelled = last_determined(recordings, extension, suspects.policy) if refused else extension.whole
         gaps = holding(extension, modelled, recordings)
-        against = rejection(recordings, suspects, held_out, extension, gaps) or unlimited(extension, closed_loop)
+        stages = without_models(extension.stages, modelled, refused)
+        shown = [(stage, each) for stage in stages for each in recorded]
+        against = rejection(recordings, suspects, held_out, extension, gaps, shown)
+        against = against or unlimited(extension, closed_loop)
         if against is None:
             break
         rejected.append(Rejected(extension.names[against[0]], against[1]))
         extension = extension.less(against[0])
-    stages = without_models(extension.stages, modelled, refused)
-    gaps.simulate((stage, each) for stage in stages for each in recorded)
+    gaps.simulate(shown)
     kept = refined(recordings, stages[-1], suspects, held_out, gaps)
     if refused:
         told = {name: found for name, found in kept.parameters.items() if name not in refused}
@@ -220,22 +222,41 @@ def holding(extension: Extension, modelled: Stage | None, recordings: Recordings
 
 
 def rejection(
-    recordings: Recordings, suspects: Suspects, held_out: HeldOut, extension: Extension, gaps: VelocityGaps
+    recordings: Recordings,
+    suspects: Suspects,
+    held_out: HeldOut,
+    extension: Extension,
+    gaps: VelocityGaps,
+    shown: Sequence[tuple[Stage, Recorded]],
 ) -> tuple[int, str] | None:
-    """Index of the last effect that held-out motion contradicts, with the reason; None if it contradicts none."""
+    """Index of the last effect that held-out motion contradicts, with the reason; None if it contradicts none.
+
+    The torque gaps come first, as they cost no simulation. Where they contradict none, what is shown in the end is
+    simulated beside the judged model: side by side that costs hardly more.
+    """
     judged, judge = replace(extension, recording=held_out.fitted, rows=held_out.rows), held_out.recorded
-    without = [judged.less(index) for index in range(len(judged.names))]
-    gaps.simulate((each.whole, judge) for each in (judged, *without) if without)
     floor = NULL * white_noise(measured_velocity(recordings.trace))
-    for index, less in reversed(list(enumerate(without))):
+    asked: list[tuple[int, Extension]] = []
+    by_torque: tuple[int, str] | None = None
+    for index in reversed(range(len(judged.names))):
         if judged.a(Occasional, index) and (not judge.events or held_out.rows != RECORDING):
             continue
         if not held_out.determines(judged.whole.fitted, extension.whole.fitted, index):
             continue
+        less = judged.less(index)
         balances = (Balance.of(each.whole.fitted).repeating(judge.events) for each in (less, judged))
         before, after = (balance.gap(held_out.judge) for balance in balances)
         if after > before:
-            return index, _grows(f"torque gap of the {judge.name}", before, after, judged.rig.effort_unit)
+            by_torque = index, _grows(f"torque gap of the {judge.name}", before, after, judged.rig.effort_unit)
+            break
+        asked.append((index, less))
+    if not asked:
+        return by_torque
+    gaps.simulate([(judged.whole, judge), *(() if by_torque else shown)])
+    if not gaps.of(judged.whole, judge) > floor:  # less than which never counts as worse
+        return by_torque
+    gaps.simulate((less.whole, judge) for _, less in asked)
+    for index, less in asked:
         if not gaps.in_phase(judged.whole, judge) and (judged.a(Placed, index) or not gaps.in_phase(less.whole, judge)):
             continue
         before, after = (gaps.of(each.whole, judge) for each in (less, judged))
@@ -244,7 +265,7 @@ def rejection(
         if worse and not _comes_closer(recordings, suspects, judged.whole, held_out, gaps, allowed):
             unit = judged.rig.axis_kind.speed_unit
             return index, _grows(f"velocity gap of the {judge.name}", before, after, unit)
-    return None
+    return by_torque
 
 
 def _comes_closer(
