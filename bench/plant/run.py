@@ -157,6 +157,7 @@ class _SideBySide:
         self._position = batch.bind("qpos")[:, joint.qposadr[0]]
         self._velocity = batch.bind("qvel")[:, joint.dofadr[0]]
         self._velocity[:] = [loop.velocity for loop in loops]
+        self._lone = len(loops) == 1
         self._position[:] = np.array([loop.position for loop in loops]) + self._step / 2.0 * self._velocity
         at = batch.model.actuator_ctrladr[actuator]
         inputs = batch.bind("ctrl")[:, at : at + batch.model.actuator_ctrlnum[actuator]]
@@ -170,7 +171,10 @@ class _SideBySide:
 
     def state(self) -> tuple[Number, Number]:
         """True position and velocity as they are now - rad (m), rad/s (m/s) - (axes,), or numbers of a lone axis."""
-        self._here, self._now = per_axis(self._position), per_axis(self._velocity)
+        if self._lone:
+            self._here, self._now = self._position[0], self._velocity[0]
+        else:
+            self._here, self._now = self._position.copy(), self._velocity.copy()
         return self._here - self._step / 2.0 * self._now, self._now
 
     def advance(self, time: float, setpoint: Number, motor: Number) -> tuple[Number, Number]:

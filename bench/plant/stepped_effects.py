@@ -60,6 +60,7 @@ class SteppedEffects:
         self._acting = on_axes(models, TorqueLag)
         self._delivered = on_axes(models, TorqueLoss)
         self._acted = on_axes(models, MisreadEffort)
+        self._drives = self._flowing or self._acting or self._delivered or self._acted
         self._friction = _FrictionLevels(joints, models)
         self._inertia = on_axes(models, VaryingInertia, ticked=True)
         self._resisting = on_axes(models, ResistingTorque, ticked=True)
@@ -81,14 +82,14 @@ class SteppedEffects:
             began: the recording, as `Moment` has it - s - one for all axes, or (axes,).
         """
         middle = 1.5 * velocity - 0.5 * self._before
-        self._before = velocity
-        reported, torque = self._driven(time + 0.5 * self._step, middle, demand)
-        at = Moment(time + 0.5 * self._step, position, middle, torque, began)
+        self._before, time = velocity, time + 0.5 * self._step
+        reported, torque = self._driven(time, middle, demand) if self._drives else (demand, demand)
+        at = Moment(time, position, middle, torque, began)
         if self._factors:
             for some in self._factors:
                 factor = some.effect.torque_factor(some.values, some.axis, some.moment(at))
                 torque = some.with_these(torque, some.of(torque) * factor)
-            at = Moment(at.time, position, middle, torque, began)
+            at = Moment(time, position, middle, torque, began)
         applied = self._none - self._friction.offset(at)
         for some in self._resisting:
             resisting = some.effect.resisting_torque(some.values, some.axis, some.moment(at))
@@ -132,11 +133,19 @@ class _FrictionLevels:
         self._loads = on_axes(models, LoadTorque) if on_axes(models, FollowsLoad) else []
         self._joints = joints
         self._changes = self._excesses or self._factors or self._differences
+        self._varies = self._excesses or self._factors or joints.bristled
+        self._levels: tuple[Number, Number] | None = None
 
     def offset(self, at: Moment) -> Number:
         """Set the level; returns half the difference of the two directions' levels - N*m (N) - (axes,)."""
         if not self._changes:
             return 0.0
+        if self._levels is None or self._varies:
+            self._levels = self._mean_and_offset(at)
+        self._joints.set_friction(self._levels[0])
+        return self._levels[1]
+
+    def _mean_and_offset(self, at: Moment) -> tuple[Number, Number]:
         level = self._coulomb
         if self._loads:
             load = self._none  # that the transmission carries
@@ -154,14 +163,11 @@ class _FrictionLevels:
             factor = some.effect.friction_factor(some.values, some.axis, some.moment(at))
             level, half = (some.with_these(each, some.of(each) * factor) for each in (level, half))
         if not self._differences:
-            self._joints.set_friction(np.maximum(level, 0.0))
-            return 0.0
+            return np.maximum(level, 0.0), 0.0
         forward, backward = np.maximum(level + half, 0.0), np.maximum(level - half, 0.0)
         if self._joints.bristled:  # which bend to the level of their direction, and hold no torque beside
-            self._joints.set_friction(np.where(at.velocity > 0.0, forward, backward))
-            return 0.0
-        self._joints.set_friction(0.5 * (forward + backward))
-        return 0.5 * (forward - backward)
+            return np.where(at.velocity > 0.0, forward, backward), 0.0
+        return 0.5 * (forward + backward), 0.5 * (forward - backward)
 
 
 @dataclass
