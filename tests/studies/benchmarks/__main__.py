@@ -57,6 +57,12 @@ def reading() -> list[Table]:
     return measured()
 
 
+def diagnosing() -> list[Table]:
+    from tests.studies.benchmarks.diagnosing import measured
+
+    return measured()
+
+
 def growing() -> list[Table]:
     from tests.studies.benchmarks.growth import measured
 
@@ -69,6 +75,7 @@ BENCHMARKS: dict[str, tuple[str, Callable[[], list[Table]]]] = {
     "lstsq": ("Least squares beside NumPy's", lstsq),
     "stepping": ("Simulation beside bare stepping", stepping),
     "reading": ("Reading beside pyarrow", reading),
+    "diagnosing": ("CPU time of a diagnosis", diagnosing),
     "growth": ("Growth with samples, axes and effects", growing),
 }
 

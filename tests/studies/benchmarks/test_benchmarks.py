@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import bench
+from bench.assets import asset
+from bench.trace.write import write
 from tests.hostile import ROOT
 from tests.studies.benchmarks import __main__ as command
-from tests.studies.benchmarks import beside_lstsq, beside_pyarrow, beside_stepping, growth
+from tests.studies.benchmarks import beside_lstsq, beside_pyarrow, beside_stepping, diagnosing, growth
 from tests.studies.benchmarks.table import Table
 from tests.studies.benchmarks.table import growth as exponents
 from tests.studies.benchmarks.timing import Timed, in_turn
@@ -29,6 +32,15 @@ def test_each_measures_every_way(measured, rows):
         lines = table.markdown.splitlines()
         assert len({line.count("|") for line in lines[2:]}) == 1
         assert all(line.startswith("| ") for line in lines[2:])
+
+
+def test_a_diagnosis_is_timed(tmp_path):
+    rig = bench.load_rig(asset("data", "rigs", "sh30701p.toml"))
+    write(bench.simulate(rig, "speed_staircase").trace.between(0.0, 3.0), tmp_path / "run.csv")
+    files = tmp_path / "run.csv", "", asset("data", "rigs", "sh30701p.toml")
+    (table,) = diagnosing.measured({"one": [files], "two": [files, files]})
+    assert [row[:2] for row in table.rows] == [("one", "1"), ("two", "2")]
+    assert all(float(row[2].removesuffix(" s")) > 0.0 for row in table.rows)
 
 
 @pytest.mark.slow
