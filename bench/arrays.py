@@ -90,7 +90,7 @@ def recursive_filter(
 
     driven = np.convolve(values, numerator)[: values.size]
     driven[0] += held
-    bands = np.asfortranarray(np.repeat(np.asarray(denominator, dtype=np.float64)[:, None], values.size, axis=1))
+    bands = np.tile(np.asarray(denominator, dtype=np.float64), (values.size, 1)).T  # in Fortran's order, as BLAS has it
     (solve,) = get_blas_funcs(("tbsv",), dtype=np.float64)
     return solve(len(denominator) - 1, bands, driven, lower=1, diag=1)
 

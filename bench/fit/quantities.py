@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -108,7 +109,8 @@ def uncertain(fitted: Fit) -> Uncertain:
     for index, term in enumerate(fitted.terms):
         own = [place + slot for slot, (owner, _) in enumerate(slots) if owner == index]
         if own and isinstance(term.effect, Contact):
-            covariance[np.ix_(own, own)] += term.effect.spread(fitted, term.shape)
+            spread, made_of = term.effect.spread, (term.effect.spread, fitted.hypothesis)
+            covariance[np.ix_(own, own)] += fitted.rows.memory.get(made_of, partial(spread, fitted, term.shape))
     for moved in (*_misplaced(fitted), *_louder(fitted, slots)):
         covariance[: moved.size, : moved.size] += np.outer(moved, moved)
     shapes = np.array([fitted.terms[index].shape[k] for index, k in slots])
