@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from bench.diagnosis.add import add
-from bench.diagnosis.doubts import DOUBTS, Doubt
 from bench.diagnosis.name import name
 from bench.diagnosis.policy import POLICY, Policy
 from bench.diagnosis.recordings import Recordings, fit_bare
@@ -26,7 +25,6 @@ def diagnose(
     excluded: frozenset[str] = frozenset(),
     progress: Progress = lambda share: None,
     policy: Policy = POLICY,
-    doubts: Sequence[Doubt] = DOUBTS,
 ) -> Diagnosis:
     """Find what is missing, name it, add it, and show the gap shrink.
 
@@ -37,7 +35,6 @@ def diagnose(
         excluded: effects that are not tried.
         progress: called with the share done.
         policy: numbers that decide on names.
-        doubts: raised of the names that a search finds, in this order.
 
     Raises:
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
@@ -48,7 +45,7 @@ def diagnose(
     recordings = Recordings.of([each.trace for each in gated], rig, unseen)
     bare = fit_bare(recordings.rows)
     located = where(bare, rig.axis_kind, recordings.unit, recordings.current)
-    suspects = name(recordings, bare, excluded, policy, doubts)
+    suspects = name(recordings, bare, excluded, policy)
     progress(0.6)
     added = add(recordings, suspects)
     progress(0.9)

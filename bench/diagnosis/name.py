@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 
 from bench.arrays import NORMAL95
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
-from bench.diagnosis.doubts import DOUBTS, Doubt, Evidence, doubted
 from bench.diagnosis.policy import Policy
+from bench.diagnosis.probability import Probabilities, probabilities
 from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import Searched, search
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect
@@ -56,6 +57,7 @@ class Suspects:
 
     Attributes:
         searched: steps of the search; the last one's fit has the effects of the torque balance.
+        probabilities: of these and of others.
         detected: what the torque balance does not hold.
         withheld: whether something was found whose name was not to be tried.
         policy: that decided.
@@ -63,6 +65,7 @@ class Suspects:
     """
 
     searched: Searched
+    probabilities: Probabilities
     detected: Mapping[Effect, Detected]
     withheld: bool
     policy: Policy
@@ -74,15 +77,15 @@ class Suspects:
         return tuple(Present.of(effect.name, found.values) for effect, found in self.detected.items())
 
 
-def name(
-    recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Policy, doubts: Sequence[Doubt] = DOUBTS
-) -> Suspects:
-    """What a search adds to the bare fit and doubts leave of it, and what the signals show directly."""
+def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Policy) -> Suspects:
+    """The likeliest names of those that a search finds and their neighbours, and what the signals show directly."""
     effects = [effect for name, effect in catalogue().items() if name not in excluded]
     searched = search(bare, effects, policy)
-    searched = doubted(searched, Evidence(bare, recordings.holdout_rows, excluded, policy), doubts)
+    hypotheses = scored([*neighbourhood(searched, excluded, policy)], recordings.holdout_rows, policy)
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
-    return Suspects(searched, kept, len(kept) < len(recordings.detected), policy, excluded)
+    likely = probabilities(hypotheses, frozenset(effect.name for effect in kept), policy)
+    ending = searched.ending(likely.chosen.fitted)
+    return Suspects(ending, likely, kept, len(kept) < len(recordings.detected), policy, excluded)
 
 
 def named(

@@ -56,18 +56,11 @@ class Policy:
         replaces: of what is above noise, on the rows that are determined: what an effect takes that is tried in the
             place of others.
         determined: share of rows whose torque the recording determines beside such an effect, at least.
-        holdout_apart: how much further above its noise the holdout may stand than the recording, without an event.
-        overlap: of the shorter one: how long an event of the holdout is the recording's, too.
-        contested: of what is above noise: what a rival from outside the catalogue explains beyond a name.
-        keeps: share of its worth that a name keeps beside a rival that takes nothing of it.
-        wrong_form: of what is above noise: what relatives of a wave explain only if it is of the wrong form.
-        relatives_leave: residual over noise floor that they leave then at most. Eccentricity under another name left
-            0.8 to 1.1, gravity of a pendulum on a gear 2.1.
-        one_for_several: residual over noise floor that one explanation leaves at most in the place of several names.
-        believable: of what was above noise without names: what may be left beside them.
-        believable_contact: the same beside a contact, whose impacts leave bursts.
         holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave. Of
             the blind set's cases that are explained 2.5 at most, nine in ten 1.6.
+        left, over, each, number, event, outside, none: weights of a probability (`bench.diagnosis.probability`): of
+            what is left, over what the bare axis leaves and over noise, of an effect more, of a number fitted more, of
+            an event beside a remainder, of an effect from outside the catalogue, and of what was not tried.
         most: effects at most; a family of harmonics is one of them.
         members: of a family at most: more waves or events draw anything.
     """
@@ -83,16 +76,14 @@ class Policy:
     exchanges: int = 2
     replaces: float = 0.5
     determined: float = 0.5
-    holdout_apart: float = 1.25
-    overlap: float = 0.5
-    contested: float = 0.25
-    keeps: float = 0.5
-    wrong_form: float = 0.5
-    relatives_leave: float = 1.25
-    one_for_several: float = NOISE_ALONE
-    believable: float = 0.2
-    believable_contact: float = 0.35
     holdout_gap: float = 3.0
+    left: float = 2.97
+    over: float = 1.87
+    each: float = 0.91
+    number: float = 0.61
+    event: float = 1.18
+    outside: float = 1.54
+    none: float = -2.96
     most: int = 12
     members: int = 12
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from bench.diagnosis.policy import Policy, worth
@@ -61,6 +61,13 @@ class Searched:
     def last(self) -> Fit:
         """With all effects."""
         return self.steps[-1].fitted
+
+    def ending(self, fitted: Fit) -> Searched:
+        """The same with another fit in the place of the last one; without steps where that has no effect."""
+        if [term.key for term in fitted.terms] == [term.key for term in self.last.terms]:
+            return self
+        last = Step(fitted, self.steps[-1].rivals)
+        return replace(self, steps=(*self.steps[:-1], last) if fitted.terms else self.steps[:1])
 
 
 def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:

@@ -14,6 +14,7 @@ from bench.comparison.spread import Between
 from bench.diagnosis.add import Added, Rejected
 from bench.diagnosis.name import NamedEffect, Suspects
 from bench.diagnosis.next_experiment import NextExperiment, propose
+from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, apart
 from bench.diagnosis.search import Searched, Step
@@ -79,6 +80,7 @@ class Considered:
     Attributes:
         effect: of the catalogue.
         taken: whether it is in the model.
+        probability: that the axis has it.
         alone: share of the squared gap that it explains alone; None if it was not tried.
         beside: share of the squared residual that it explains in addition to the others; None if it was not tried.
         reason: for or against it.
@@ -86,6 +88,7 @@ class Considered:
 
     effect: Effect
     taken: bool
+    probability: float
     alone: float | None
     beside: float | None
     reason: str
@@ -98,6 +101,7 @@ class Diagnosis:
     Attributes:
         verdict, effects, parameters: as the contract has them.
         because: what speaks against its being all; empty unless something remains.
+        probabilities: of sets of names, and that none of the catalogue's is right.
         where: shares of the gap before any effect; unexplained_share, unexplained_where: of what is left.
         torque, velocity: gaps before and after.
         bandwidth: of the cascade that held the models to the recordings - rad/s.
@@ -121,6 +125,7 @@ class Diagnosis:
     verdict: str
     because: list[str]
     effects: list[NamedEffect]
+    probabilities: Probabilities
     where: list[Where]
     unexplained_share: float
     unexplained_where: list[Where]
@@ -154,11 +159,13 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
     shown, several = courses(recordings, added), apart(recordings, whole, kept.parameters)
     steps, current = shrinking(added, shown), recordings.current
     torque, velocity = torque_gap(steps, whole, unit), velocity_gap(recordings, steps)
+    likely = suspects.probabilities.without(frozenset(one.name for one in added.rejected))
     comes_to, because = verdict(Shown(recordings, suspects, added, torque, velocity))
     return Diagnosis(
         verdict=comes_to,
         because=because,
         effects=kept.effects,
+        probabilities=likely,
         where=located,
         unexplained_share=whole.excess / max(bare.squares, 1e-300),
         unexplained_where=where(whole, kind, unit, current)[:3] if because else [],
@@ -180,7 +187,7 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
         balance=Balance.of(whole).repeating(added.repeats),
         courses=shown,
         profiles=profiles(bare, whole, located, kind, unit, current),
-        considered=considered(recordings, suspects, added),
+        considered=considered(recordings, suspects, added, likely),
         warnings=[
             *suspicions(recordings.trace, rig, kept.parameters),
             *left_open(recordings.rows, kind),
@@ -240,7 +247,9 @@ def velocity_gap(recordings: Recordings, steps: list[Shrunk]) -> Gap:
     return Gap(recordings.rig.axis_kind.speed_unit, floor, pairs[0], pairs[1] if len(pairs) > 1 else None)
 
 
-def considered(recordings: Recordings, suspects: Suspects, added: Added) -> tuple[Considered, ...]:
+def considered(
+    recordings: Recordings, suspects: Suspects, added: Added, probabilities: Probabilities
+) -> tuple[Considered, ...]:
     """All effects: those accepted in the order of addition, then the others by the share they explain."""
     rounds = rounds_of(suspects.searched)
     named = {one.effect: one for one in added.refined.effects}
@@ -249,7 +258,8 @@ def considered(recordings: Recordings, suspects: Suspects, added: Added) -> tupl
         shares = [share for tried in rounds if (share := _share(tried, effect)) is not None]
         reason = _for(named[effect]) if effect in named else _against(effect, recordings, suspects, added, rounds)
         last = _share(rounds[-1], effect) if len(rounds) > 1 and effect not in named else None
-        found[effect] = Considered(effect, effect in named, shares[0] if shares else None, last, reason)
+        likely = probabilities.names.get(effect.name, 0.0)
+        found[effect] = Considered(effect, effect in named, likely, shares[0] if shares else None, last, reason)
     taken = [found.pop(effect) for effect in named]
     return (*taken, *sorted(found.values(), key=lambda one: -(one.alone or 0.0)))
 
@@ -279,7 +289,7 @@ def _against(effect: Effect, recordings: Recordings, suspects: Suspects, added: 
     reasons = {
         "was not to be tried": effect.name in suspects.excluded,
         rejected.get(effect.name, ""): effect.name in rejected,
-        "was taken up and let go: the others explain it too, or a doubt spoke against it": any(
+        "was taken up and let go: the others explain it too, or another set of names is likelier": any(
             effect is term.effect for tried in rounds for term in tried.fitted.terms
         ),
         "such a recording cannot show it": not effect.sought(recordings.rows.scope),

@@ -3,7 +3,7 @@
 So what none of the effects is does not get the name of the nearest one.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -14,8 +14,21 @@ from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
+#: What the torque of a wave may hang on, with the derivative that makes it of the signal.
+FACTORS: Mapping[str, tuple[Callable[[Signals], Array], int]] = {
+    "nothing": (lambda s: np.ones_like(s.position), 0),
+    "speed squared": (lambda s: s.velocity**2, 0),
+    "direction": (lambda s: s.sign, 0),
+    "torque": (lambda s: s.torque, 0),
+    "acceleration": (lambda s: s.velocity, 1),
+}
 
-class Vibration(Columns):
+
+class Outside(Columns):
+    """Of no catalogue."""
+
+
+class Vibration(Outside):
     """A torque periodic in time, M = A*sin(2*pi*f*t + phi)."""
 
     name = "outside_vibration"
@@ -29,7 +42,7 @@ class Vibration(Columns):
         return [[(np.sin(angle), 0)], [(np.cos(angle), 0)]]
 
 
-class Notch(Columns):
+class Notch(Outside):
     """A bump of torque or friction at one angle of the revolution, of Gaussian shape."""
 
     name = "outside_notch"
@@ -51,7 +64,7 @@ class Notch(Columns):
         return [[(bump, 0)], [(bump * signals.sign, 0)]]
 
 
-class SlowMemory(Columns):
+class SlowMemory(Outside):
     """Friction that grows with how fast the axis has run: level A*m, T*dm/dt = |omega| - m."""
 
     name = "outside_slow_memory"
@@ -65,7 +78,7 @@ class SlowMemory(Columns):
         return [[(signals.sign * _lowpass(np.abs(signals.velocity), keep), 0)]]
 
 
-class FrictionalMemory(Columns):
+class FrictionalMemory(Outside):
     """Friction that follows a change of speed late: A*exp(-m/omega_s)*sgn(omega), T*dm/dt = |omega| - m.
 
     Source: D. P. Hess, A. Soom, Journal of Tribology 112(1), 1990, 147-152.
@@ -85,8 +98,31 @@ class FrictionalMemory(Columns):
         return [[(signals.sign * np.exp(-_lowpass(np.abs(signals.velocity), keep) / shape[1]), 0)]]
 
 
+class OtherWave(Outside):
+    """A wave of position of one number, times what a torque may hang on: one of FACTORS, or all of them.
+
+    Where a wave sits right and is not what it is called, or is called by several names, this takes its place.
+    """
+
+    name = "outside_wave"
+    summary = "a wave of position of another form"
+    quantities = (Quantity("harmonic", "n", "dimensionless", lower=0.0, linear_unit="rad/m"),)
+    shapes = (Shape(quantities[0], (1.0,), whole=True),)
+
+    def __init__(self, factors: Sequence[str]) -> None:
+        self._factors = [FACTORS[name] for name in factors]
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """Sine and cosine times each factor."""
+        angle = shape[0] * signals.position
+        waves = np.sin(angle), np.cos(angle)
+        return [[(factor(signals) * wave, order)] for factor, order in self._factors for wave in waves]
+
+
 def _lowpass(values: Array, keep: float) -> Array:
     return recursive_filter([1.0 - keep], [1.0, -keep], values)
 
 
 RIVALS: tuple[Effect, ...] = (Vibration(), Notch(), SlowMemory(), FrictionalMemory())
+#: Waves of another form: of any first, then of one each.
+WAVES = (OtherWave(tuple(FACTORS)), *(OtherWave((name,)) for name in FACTORS))

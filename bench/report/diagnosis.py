@@ -16,6 +16,7 @@ from bench.axis_kind import INERTIA, KINDS, AxisKind
 from bench.diagnosis.add import NULL
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.name import NamedEffect
+from bench.diagnosis.probability import CALIBRATED_ON, Probabilities
 from bench.diagnosis.same_axis import SameAxis
 from bench.diagnosis.show import Course, Shrunk
 from bench.diagnosis.verdict import Gap
@@ -26,7 +27,7 @@ from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report import document as doc
 from bench.report.identification import recordings_json
-from bench.report.numbers import coordinate_word, effort_word, interval, number, sentence, share, unit_text
+from bench.report.numbers import chance, coordinate_word, effort_word, interval, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
 from bench.report.publish import write_document
@@ -39,6 +40,10 @@ PERIOD = 1e-3
 DRAWN = ("position", "velocity", "current", "time")
 #: Additions drawn over time at most, the last ones: more would be no page any more.
 STEPS = 6
+#: Probability with which a set of names holds the truth.
+SURE = 0.9
+#: Alternatives that are told in a sentence at most, and the least probability of one.
+TOLD, WORTH_TELLING = 3, 1e-3
 #: Empty space beside the outermost gaps - factor on a logarithmic axis.
 BESIDE = 1.5
 
@@ -48,6 +53,7 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
     kinds = ("measurement" if isinstance(each.effect, Sensing) else "physics" for each in found.effects)
     effects = [
         {"name": each.name, "kind": kind, **picked(each, "parameters", "ambiguous_with", "evidence")}
+        | _likely_json(found.probabilities, each.name)
         for each, kind in zip(found.effects, kinds, strict=True)
     ]
     velocity = {  # models held to the recording by a cascade, fed with the recorded effort
@@ -60,6 +66,12 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
         "schema": SCHEMA,
         **picked(found, "verdict", "because"),
         "effects": effects,
+        "probability": {
+            "none_of_the_catalogue": found.probabilities.none,
+            "nothing": found.probabilities.nothing,
+            "set90": [[None] if one is None else sorted(one) for one in found.probabilities.holding(SURE)],
+            "calibrated_on": CALIBRATED_ON,
+        },
         "where": found.where,
         "unexplained": {"share": found.unexplained_share, "where": found.unexplained_where},
         "parameters": found.parameters,
@@ -76,6 +88,15 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
         **picked(found, "checks", "warnings"),
     }
     return serialised(content)
+
+
+def _likely_json(probabilities: Probabilities, name: str) -> dict[str, Any]:
+    """How likely a name is, and what stands in its place otherwise."""
+    others = probabilities.instead_of(name).items()
+    return {
+        "probability": probabilities.names[name],
+        "alternatives": [{"name": other, "probability": share} for other, share in others],
+    }
 
 
 @as_json.register
@@ -259,7 +280,7 @@ def _answers(found: Diagnosis) -> dict[str, str]:
 
 def _sure(found: Diagnosis) -> str:
     """What bears the verdict out, and what speaks against it."""
-    gap, lines, effort = found.torque, [], effort_word(found.torque.unit)
+    gap, lines, effort = found.torque, [_likely(found)], effort_word(found.torque.unit)
     if found.because:
         lines.append(f"Not wholly: {'; '.join(map(words, found.because))}.")
     if gap.holdout is not None:
@@ -277,9 +298,26 @@ def _sure(found: Diagnosis) -> str:
         for effect in found.effects
         if effect.ambiguous_with
     ]
-    if not lines:
+    if len(lines) == 1:
         lines.append(f"What is left of the {effort} is {number(_chi(gap), digits=3)} times what noise alone leaves.")
     return " ".join(lines)
+
+
+def _likely(found: Diagnosis) -> str:
+    """How likely each name is and what it may be instead: `Cogging torque 99 % (or load torque event 0.6 %).`"""
+    likely, told = found.probabilities, []
+    for name in dict.fromkeys(effect.name for effect in found.effects):
+        others = {other: share for other, share in likely.instead_of(name).items() if other is not None}
+        told.append(f"{_chances({name: likely.names[name]})}{f' (or {_chances(others)})' if _chances(others) else ''}")
+    beside = {} if found.effects else likely.names | {"nothing": likely.nothing}
+    told.append(_chances({**beside, "none of the catalogue": likely.none}))
+    return f"{sentence(', '.join(filter(None, told)))}."
+
+
+def _chances(shares: Mapping[str, float]) -> str:
+    """The likeliest few of several names, with their probabilities."""
+    ranked = sorted(shares.items(), key=lambda one: -one[1])
+    return ", ".join(f"{words(name)} {chance(share)}" for name, share in ranked[:TOLD] if share > WORTH_TELLING)
 
 
 def _chi(gap: Gap) -> float:
@@ -429,11 +467,18 @@ def _suspects(found: Diagnosis) -> doc.Section:
         return "–" if value is None else share(value)
 
     rows = (
-        (words(one.effect.name), "yes" if one.taken else "no", of_gap(one.alone), of_gap(one.beside), one.reason)
+        (
+            words(one.effect.name),
+            "yes" if one.taken else "no",
+            chance(one.probability),
+            of_gap(one.alone),
+            of_gap(one.beside),
+            one.reason,
+        )
         for one in found.considered
     )
     caption = "Every effect of the catalogue: the share it would explain, and why it was taken or was not"
-    headings = ("effect", "taken", "of the gap, alone>", "of what is left, beside the others>", "why~")
+    headings = ("effect", "taken", "probability>", "of the gap, alone>", "of what is left, beside the others>", "why~")
     marked = (k for k, one in enumerate(found.considered) if one.taken)
     return doc.section("suspects", "Suspects", doc.table(caption, headings, rows, marked), detail=True)
 

@@ -65,6 +65,13 @@ def share(value: float) -> str:
     return f"{100.0 * value:.0f}{SPACE}%" if not 0.0 < value < 0.1 else f"{100.0 * value:.2g}{SPACE}%"
 
 
+def chance(value: float) -> str:
+    """A probability in per cent, which is never quite 0 or 1."""
+    if not LEAST_SHARE < value < 1.0 - LEAST_SHARE:
+        return f"< {100.0 * LEAST_SHARE:g}{SPACE}%" if value < 0.5 else f"> {100.0 - 100.0 * LEAST_SHARE:g}{SPACE}%"
+    return f"{100.0 * value:.2g}{SPACE}%" if value < 0.99 else f"{100.0 * value:.1f}{SPACE}%"
+
+
 def sentence(text: str) -> str:
     """A text with a capital at its beginning."""
     return text[:1].upper() + text[1:]

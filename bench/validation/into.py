@@ -175,13 +175,16 @@ def judged(case: Injection, own: Own, effect: Effect, found: Diagnosis) -> Injec
     fate = known or (WRONG if named.false else FLAGGED if remains else MISSED)
     new = (*[case.effect] * is_named, *named.false)
     scored = tuple(of_effects([effect], own.host.axis, found))
-    told = {"names": new, "verdict": found.verdict, "probabilities": believed(found, new)}
+    told = {"names": new, "verdict": found.verdict, "probabilities": believed(found, case.effect, own.names)}
     return replace(case, fate=fate, scored=scored, **told)
 
 
-def believed(found: Diagnosis, new: Sequence[str]) -> dict[str, float]:
-    """Probabilities of new names, and of none: a diagnosis is sure of its names, and of a remainder without one."""
-    return dict.fromkeys(new, 1.0) if new else {NONE: float(found.verdict == UNEXPLAINED)}
+def believed(found: Diagnosis, effect: str, own: Sequence[str]) -> dict[str, float]:
+    """Probabilities of an effect, or what is not told from it, of names that are not the recording's own, of none."""
+    likely = found.probabilities.names
+    twin = next((one.name for one in found.effects if effect in (one.name, *one.ambiguous_with)), effect)
+    others = {name: share for name, share in likely.items() if name not in (effect, twin, *own)}
+    return {effect: likely.get(twin, 0.0), **others, NONE: found.probabilities.none}
 
 
 @dataclass(frozen=True)

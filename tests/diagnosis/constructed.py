@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.diagnosis.doubts import DOUBTS, Doubt, Evidence, doubted
 from bench.diagnosis.policy import Policy
+from bench.diagnosis.probability import Probabilities, probabilities
 from bench.diagnosis.recordings import fit_bare
+from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import Fit
@@ -104,17 +105,21 @@ def offset(torque: float) -> Torque:
     return lambda motion: np.full_like(motion.time, torque)
 
 
-def names(
-    policy: Policy,
-    trace: Trace,
-    effects: Sequence[str],
-    holdout: Trace | None = None,
-    doubts: Sequence[Doubt] = DOUBTS,
-) -> tuple[str, ...]:
-    """Names that a policy and doubts leave, of effects that it may try."""
+def likely(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace | None = None) -> Probabilities:
+    """How likely names are, of effects that a policy may try."""
     without_effect = bare(trace)
-    found = search(without_effect, [catalogue()[name] for name in effects], policy)
+    searched = search(without_effect, [catalogue()[name] for name in effects], policy)
     width = without_effect.rows.conditioning.filter.width
-    other = None if holdout is None else Rows.of(holdout, RIG, width=width)
-    evidence = Evidence(without_effect, other, frozenset(catalogue()) - set(effects), policy)
-    return doubted(found, evidence, doubts).last.hypothesis.names
+    other = None if holdout is None else Rows.of(replace(holdout, origin="holdout"), RIG, width=width)
+    tried = neighbourhood(searched, frozenset(catalogue()) - set(effects), policy)
+    return probabilities(scored([*tried], other, policy), frozenset(), policy)
+
+
+def names(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace | None = None) -> tuple[str, ...]:
+    """The likeliest names."""
+    return likely(policy, trace, effects, holdout).chosen.fitted.hypothesis.names
+
+
+def sought(policy: Policy, trace: Trace, effects: Sequence[str]) -> tuple[str, ...]:
+    """Names that a search takes up, however likely they are."""
+    return search(bare(trace), [catalogue()[name] for name in effects], policy).last.hypothesis.names

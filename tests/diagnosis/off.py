@@ -1,11 +1,10 @@
-"""Every rule and doubt switched off: what takes up lets all pass, what takes away takes nothing."""
+"""Every rule switched off: what takes up lets all pass, what takes away takes nothing."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-from bench.diagnosis.doubts import DOUBTS, Doubt
 from bench.diagnosis.policy import Policy, worth
 
 #: Questions of the policy, and what they answer when they are off.
@@ -23,8 +22,3 @@ RULES: dict[str, Callable] = {
 def without(rule: str, **numbers: Any) -> Policy:
     """The policy with a rule off, and other numbers."""
     return type("Off", (Policy,), {rule: RULES[rule]})(**numbers)
-
-
-def undoubted(doubt: Doubt) -> tuple[Doubt, ...]:
-    """All doubts but one."""
-    return tuple(each for each in DOUBTS if each is not doubt)

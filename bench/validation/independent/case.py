@@ -149,7 +149,9 @@ def hidden(
     sensors = random_sensors(axis, rng, noise)
     drawn = tuple(KINDS[effect].draw(axis, strength, rng, duration) for effect in effects)
     outside = any(effect in OUTSIDE for effect in effects)
-    return Hidden(name, axis, drawn, sensors, "outside" if outside else GROUPS[len(effects)], strength, duration)
+    return Hidden(
+        name, axis, drawn, sensors, "outside" if outside else GROUPS.get(len(effects), "crowd"), strength, duration
+    )
 
 
 def any_effects(

@@ -81,6 +81,7 @@ def main(
     pairs: Count = 60,
     nulls: Count = 100,
     outside: Count = 32,
+    crowds: Annotated[int, typer.Option(min=0, help="Of three to six effects.")] = 0,
     seed: int = 1,
     duration: Annotated[float, typer.Option(help="Of the first recording, about - s.")] = 8.0,
     jobs: Annotated[int, typer.Option(min=1)] = 2,
@@ -90,7 +91,7 @@ def main(
     verbose: Annotated[bool, typer.Option(help="Print each case's truth and diagnosis.")] = False,
 ) -> None:
     """Hide effects in recordings of an independent integrator and see what the diagnosis makes of them."""
-    counts = {"single": singles, "pair": pairs, "null": nulls, "outside": outside}
+    counts = {"single": singles, "pair": pairs, "null": nulls, "outside": outside, "crowd": crowds}
     drawn = [
         case
         for case in draw(seed, counts, duration)

@@ -17,7 +17,9 @@ STRENGTHS = {"weak": (0.15, 0.3), "middle": (0.3, 0.5), "strong": (0.5, 0.8)}
 #: Severity of each effect of a pair, and of what is outside the catalogue.
 TOGETHER = (0.3, 0.8)
 #: Groups, in the order of their numbers.
-GROUPS = ("single", "pair", "null", "outside")
+GROUPS = ("single", "pair", "null", "outside", "crowd")
+#: Effects of a crowd.
+CROWD = (3, 6)
 #: Cases of a group at most, so that no two share a number.
 MOST = 100_000
 #: Share of axes that are linear.
@@ -72,6 +74,8 @@ def _effects(
         return (list(CATALOGUE)[place % len(CATALOGUE)],), strength
     if group == "pair":
         return any_effects(2, rng, linear=linear), TOGETHER
+    if group == "crowd":
+        return any_effects(int(rng.integers(CROWD[0], CROWD[1] + 1)), rng, linear=linear), TOGETHER
     if group == "outside":
         return (list(OUTSIDE)[place % len(OUTSIDE)],), TOGETHER
     return (), TOGETHER

@@ -24,6 +24,9 @@ class Outcome:
         holdout: torque gap of the second recording, before and after, and the noise floor - N*m (N).
         inertia: kg*m**2 (kg).
         steps: effect added, and gap over noise floor then.
+        likely: probability of every name that was considered.
+        none: that none of the catalogue is it.
+        sets: of names that hold the truth with 90 %; None: none of the catalogue.
         refused: why there is no diagnosis, empty if there is one.
     """
 
@@ -33,6 +36,9 @@ class Outcome:
     holdout: Interval | None = None
     inertia: float = float("nan")
     steps: tuple[tuple[str, float], ...] = ()
+    likely: dict[str, float] = field(default_factory=dict)
+    none: float = float("nan")
+    sets: tuple[frozenset[str] | None, ...] = ()
     seconds: float = 0.0
     refused: str = ""
 
@@ -61,5 +67,8 @@ def outcome(folder: Path, excluded: frozenset[str] = frozenset()) -> Outcome:
         (*torque.holdout, torque.noise_floor) if torque.holdout else None,
         inertia.value,
         tuple((step.effect, step.torque[0] / torque.noise_floor) for step in found.steps),
+        found.probabilities.names,
+        found.probabilities.none,
+        tuple(found.probabilities.holding(0.9)),
         seconds,
     )

@@ -41,6 +41,7 @@ def markdown(scores: Sequence[Score], title: str, command: str) -> str:
 def headline(scores: Sequence[Score]) -> str:
     """What the whole set comes to."""
     lines = abstention(scores) if any(score.without_truth for score in scores) else naming(scores)
+    lines += sureness(scores, any(score.without_truth for score in scores))
     lines += [
         ("refused", ratio(scores, lambda s: bool(s.outcome.refused))),
         ("seconds a case, median and most", seconds(scores)),
@@ -60,13 +61,18 @@ def abstention(scores: Sequence[Score]) -> list[tuple[str, str]]:
 
 def naming(scores: Sequence[Score]) -> list[tuple[str, str]]:
     """Right by group, and medians over cases with something of the catalogue hidden."""
-    groups = {g: [s for s in scores if s.group == g] for g in ("single", "pair", "null", "outside")}
+    groups = {g: [s for s in scores if s.group == g] for g in ("single", "pair", "null", "outside", "crowd", "triple")}
+    crowds = [*groups["crowd"], *groups["triple"]]
+    hidden = sum(len(s.truth["effects"]) for s in crowds)
+    found = hidden - sum(len(same(s.truth["effects"]) - same(list(s.outcome.named))) for s in crowds)
     known = [*groups["single"], *groups["pair"]]
     judged = [s for s in known if s.intervals]
     quantities = [ok for s in known for ok in s.intervals]
     return [
         ("single effects named exactly", ratio(groups["single"])),
         ("pairs named exactly", ratio(groups["pair"])),
+        ("effects of crowds named", f"{found}/{hidden}" if crowds else "-"),
+        ("crowds with a wrong name", ratio(crowds, misnamed)),
         ("nulls with a name", ratio(groups["null"], lambda s: bool(s.outcome.named))),
         ("nulls with a remainder", ratio(groups["null"], lambda s: s.outcome.verdict == "unexplained_remainder")),
         ("outside the catalogue, left unnamed with a remainder", ratio(groups["outside"])),
@@ -77,6 +83,56 @@ def naming(scores: Sequence[Score]) -> list[tuple[str, str]]:
         ("quantities within their 95 % interval", f"{sum(quantities)}/{len(quantities)}"),
         ("cases with every quantity within", ratio(judged, lambda s: all(s.intervals))),
     ]
+
+
+def sureness(scores: Sequence[Score], withheld: bool) -> list[tuple[str, str]]:
+    """How likely the truth was held to be, and whether that is as often so."""
+    known = [score for score in scores if score.outcome.likely or not score.outcome.refused]
+    lacking = [s for s in known if s.group == "outside" or (withheld and s.hidden)]
+    hidden = [s for s in known if s.truth["effects"] and s not in lacking]
+    true = [
+        share for s in hidden for name, share in s.outcome.likely.items() if twins(name) in same(s.truth["effects"])
+    ]
+    missed = sum(len(same(s.truth["effects"]) - same(list(s.outcome.likely))) for s in hidden)
+    pairs = [
+        (share, s not in lacking and twins(name) in same(s.truth["effects"]))
+        for s in known
+        for name, share in s.outcome.likely.items()
+    ]
+    return [
+        ("mean probability of a true name", mean([*true, *[0.0] * missed])),
+        ("expected calibration error of names", f"{calibration_error(pairs):.3f} of {len(pairs)}"),
+        ("sets of 90 % that hold the truth", ratio(known, lambda s: holds(s, s in lacking))),
+        ("none of the catalogue above .5 where it is so", ratio(lacking, lambda s: s.outcome.none > 0.5)),
+        ("a name above .5 in a null", ratio([s for s in known if s.group == "null"], lambda s: likeliest(s) > 0.5)),
+    ]
+
+
+def mean(values: Sequence[float]) -> str:
+    """Mean."""
+    return f"{sum(values) / len(values):.3f} of {len(values)}" if values else "-"
+
+
+def likeliest(score: Score) -> float:
+    """Probability of the likeliest name."""
+    return max(score.outcome.likely.values(), default=0.0)
+
+
+def holds(score: Score, lacking: bool) -> bool:
+    """Whether the sets of a case hold its truth."""
+    if lacking:
+        return None in score.outcome.sets
+    truth = same(score.truth["effects"])
+    return any(names is not None and same(list(names)) == truth for names in score.outcome.sets)
+
+
+def calibration_error(pairs: Sequence[tuple[float, bool]], bins: int = 10) -> float:
+    """Expected calibration error: how far probabilities in bins are from how often they are right, by their number."""
+    error = 0.0
+    for k in range(bins):
+        own = [(share, right) for share, right in pairs if min(int(bins * share), bins - 1) == k]
+        error += abs(sum(share - right for share, right in own))
+    return error / max(len(pairs), 1)
 
 
 def seconds(scores: Sequence[Score]) -> str:

@@ -5,14 +5,14 @@ import pytest
 from bench.diagnosis.policy import Policy
 from bench.effects import effect
 from tests.studies.blind.thresholds import AS_IS, Named, Tally, key, markdown, sample
-from tests.studies.blind.variants import FACTORS, switched_off, thresholds
+from tests.studies.blind.variants import switched_off, thresholds
 
 TRUTHS = [{"group": "single", "effects": ["unbalance"]}, {"group": "null", "effects": []}]
 
 
 def test_every_threshold_says_what_it_decides():
     found = thresholds()
-    assert {"chance", "keeps", "relatives_leave", "most"} <= {each.name for each in found}
+    assert {"chance", "number", "none", "most"} <= {each.name for each in found}
     assert all(each.decides for each in found)
 
 
@@ -41,13 +41,14 @@ def test_right_and_wrong_names_are_counted():
 
 
 def test_a_threshold_that_changes_nothing_is_marked():
-    keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in FACTORS), *switched_off()]
+    keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in each.factors), *switched_off()]
     same = [dict.fromkeys(keys, Named(("unbalance",))), dict.fromkeys(keys, Named())]
     same[0]["Policy.chance half"] = Named(("unbalance", "backlash"))
     rows = markdown(TRUTHS, same, "command").splitlines()
     idle = [row for row in rows if "changes nothing here" in row]
     assert len(idle) == len(thresholds()) - 1
-    assert next(row for row in rows if row.startswith("| Policy.chance")).split("|")[4:6] == [
-        " 0 0 1 0, 1 ",
+    assert next(row for row in rows if row.startswith("| Policy.chance")).split("|")[4:7] == [
         " 1 0 1 0, 0 ",
+        "  ",
+        " 0 0 1 0, 1 ",
     ]

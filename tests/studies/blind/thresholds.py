@@ -1,7 +1,7 @@
-"""Every threshold halved and doubled over a part of the blind set: `python -m tests.studies.blind.thresholds --help`.
+"""Every number off, halved and doubled over a part of the blind set: `python -m tests.studies.blind.thresholds --help`.
 
-A case's recordings are laid out once and named under every policy. Names are those of the search and its doubts; the
-judgement of held-out motion that follows has no threshold of its own and is left out for its time.
+A case's recordings are laid out once and named under every policy. Names are the likeliest of a search and its
+neighbours; the judgement of held-out motion that follows has no threshold of its own and is left out for its time.
 """
 
 from __future__ import annotations
@@ -16,10 +16,11 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-from bench.diagnosis.doubts import DOUBTS, Doubt, Evidence, doubted
 from bench.diagnosis.policy import POLICY, Policy
+from bench.diagnosis.probability import probabilities
 from bench.diagnosis.recordings import Recordings, fit_bare
-from bench.diagnosis.search import Searched, search
+from bench.diagnosis.score import Contender, neighbourhood, scored
+from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.errors import BenchError
 from bench.fit.fit import Fit
@@ -27,7 +28,7 @@ from bench.rig.rig import load_rig
 from bench.trace.read import read
 from bench.validation.independent.effects import CATALOGUE
 from tests.studies.blind.__main__ import workers
-from tests.studies.blind.draw import GROUPS, Drawn, draw
+from tests.studies.blind.draw import Drawn, draw
 from tests.studies.blind.record import home, recorded, truth_of
 from tests.studies.blind.score import same
 from tests.studies.blind.variants import FACTORS, Threshold, switched_off, thresholds
@@ -49,21 +50,21 @@ def variants_of(folder: Path) -> dict[str, Named]:
     """A case under the policy as it is, with each threshold halved and doubled, and with each rule off."""
     rig = load_rig(folder / "rig.toml")
     runs = [read(folder / f"{run}.csv.gz", rig.trace.columns) for run in ("run1", "run2")]
-    keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in FACTORS), *switched_off()]
+    keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in each.factors), *switched_off()]
     try:
         recordings = Recordings.of(runs[0], rig, runs[1])
     except BenchError:
         return dict.fromkeys(keys, Named(refused=True))
     bare = fit_bare(recordings.rows)
-    as_is = search(bare, [*catalogue().values()], POLICY)
-    found = {AS_IS: named(recordings, bare, POLICY, DOUBTS, as_is)}
+    as_is = tried(recordings, bare, POLICY)
+    found = {AS_IS: named(recordings, as_is, POLICY)}
     for each in thresholds():
-        for label, factor in FACTORS.items():
+        for label, factor in each.factors.items():
             with each.times(factor) as policy:
-                known = as_is if each.of_doubts else None
-                found[key(each, label)] = named(recordings, bare, policy, DOUBTS, known)
-    for rule, (policy, doubts) in switched_off().items():
-        found[rule] = named(recordings, bare, policy, doubts, as_is if doubts != DOUBTS else None)
+                known = as_is if each.weighs else tried(recordings, bare, policy)
+                found[key(each, label)] = named(recordings, known, policy)
+    for rule, policy in switched_off().items():
+        found[rule] = named(recordings, tried(recordings, bare, policy), policy)
     return found
 
 
@@ -72,14 +73,17 @@ def key(threshold: Threshold, factor: str) -> str:
     return f"{threshold.owner}.{threshold.name} {factor}"
 
 
-def named(
-    recordings: Recordings, bare: Fit, policy: Policy, doubts: Sequence[Doubt], searched: Searched | None
-) -> Named:
-    """Names under a policy; `searched` where its search is known, as doubts alone differ."""
-    searched = searched or search(bare, [*catalogue().values()], policy)
-    last = doubted(searched, Evidence(bare, recordings.holdout_rows, frozenset(), policy), doubts).last
+def tried(recordings: Recordings, bare: Fit, policy: Policy) -> list[Contender]:
+    """The hypotheses that a policy comes to."""
+    searched = search(bare, [*catalogue().values()], policy)
+    return scored([*neighbourhood(searched, frozenset(), policy)], recordings.holdout_rows, policy)
+
+
+def named(recordings: Recordings, hypotheses: Sequence[Contender], policy: Policy) -> Named:
+    """The likeliest names under a policy."""
+    last = probabilities(hypotheses, frozenset(), policy).chosen.fitted
     names = (*last.hypothesis.names, *(effect.name for effect in recordings.detected))
-    return Named(names, policy.remains(last) or searched.stopped is not None)
+    return Named(names, policy.remains(last))
 
 
 @dataclass(frozen=True)
@@ -92,7 +96,7 @@ class Tally:
     @classmethod
     def of(cls, truths: Sequence[Mapping[str, Any]], found: Sequence[Named]) -> Tally:
         """Of cases under one policy."""
-        right, wrong = dict.fromkeys(GROUPS, 0), 0
+        right, wrong = dict.fromkeys(COUNTS, 0), 0
         for truth, said in zip(truths, found, strict=True):
             hidden = set() if truth["group"] == "outside" else same(truth["effects"])
             exact = not said.refused and same(said.names) == hidden
@@ -101,7 +105,7 @@ class Tally:
         return cls(right, wrong)
 
     def __str__(self) -> str:
-        return " ".join(str(self.right[group]) for group in GROUPS) + f", {self.wrong}"
+        return " ".join(str(self.right[group]) for group in COUNTS) + f", {self.wrong}"
 
 
 def sample(seed: int, duration: float, one_in: int) -> list[Drawn]:
@@ -120,24 +124,25 @@ def markdown(truths: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, N
     def tally(variant: str) -> Tally:
         return Tally.of(truths, [variants[variant] for variants in found])
 
-    cases = [sum(truth["group"] == group for truth in truths) for group in GROUPS]
+    cases = [sum(truth["group"] == group for truth in truths) for group in COUNTS]
     as_is, rows = tally(AS_IS), []
     for each in thresholds():
-        half, double = (tally(key(each, factor)) for factor in FACTORS)
-        idle = " (changes nothing here)" if half == double == as_is else ""
+        others = {factor: tally(key(each, factor)) for factor in each.factors}
+        idle = " (changes nothing here)" if all(other == as_is for other in others.values()) else ""
+        told = " | ".join(str(others.get(factor, "")) for factor in FACTORS)
         owner = each.owner.rpartition(".")[2].partition(":")[0]
-        rows.append(f"| {owner}.{each.name} | {each.value:g} | {each.decides}{idle} | {half} | {as_is} | {double} |")
+        rows.append(f"| {owner}.{each.name} | {each.value:g} | {each.decides}{idle} | {as_is} | {told} |")
     off = [f"| {rule} | {as_is} | {tally(rule)} |" for rule in switched_off()]
     lines = [
         "# Thresholds",
         "",
-        f"Each halved and doubled by itself over {len(truths)} cases of the [blind set](blind.md). `{command}`",
+        f"Each off, halved and doubled by itself over {len(truths)} cases of the [blind set](blind.md). `{command}`",
         "",
         "Counts: singles, pairs, nulls and cases outside the catalogue that are right,",
         f"of {', '.join(map(str, cases))}; then cases with a wrong name. Names before held-out motion judges them.",
         "",
-        "| threshold | value | what it decides | half | as is | double |",
-        "|---|---|---|---|---|---|",
+        "| threshold | value | what it decides | as is | off | half | double |",
+        "|---|---|---|---|---|---|---|",
         *rows,
         "",
         "Rules off, one at a time:",

@@ -1,4 +1,4 @@
-"""The policy with one number halved or doubled, or one rule or doubt off; numbers are read from the policy itself."""
+"""The policy with one number off, halved or doubled, or one rule off; numbers are read from the policy itself."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from pkgutil import resolve_name
 
-from bench.diagnosis.doubts import DOUBTS, Doubt
 from bench.diagnosis.policy import POLICY, Policy
-from tests.diagnosis.off import undoubted, without
+from tests.diagnosis.off import without
 
 #: Shares and bounds that effects state of themselves: where each stands, and what it decides.
 OF_EFFECTS = (
@@ -22,12 +21,9 @@ OF_EFFECTS = (
     ("bench.effects.load_torque_event", "RESOLVED", "filter widths that an event lasts at least"),
     ("bench.effects.load_torque_event", "LONGEST", "share of the recording that events last together at most"),
 )
-FACTORS = {"half": 0.5, "double": 2.0}
-#: Numbers of the policy that only doubts ask, so that a search finds the same.
-OF_DOUBTS = frozenset(
-    {"holdout_apart", "overlap", "contested", "keeps", "wrong_form", "relatives_leave", "one_for_several"}
-    | {"believable", "holdout_gap"}
-)
+FACTORS = {"off": 0.0, "half": 0.5, "double": 2.0}
+#: Weights of the probability, with which a search finds the same.
+WEIGHTS = frozenset({"left", "over", "each", "number", "event", "outside", "none"})
 
 
 @dataclass(frozen=True)
@@ -46,9 +42,14 @@ class Threshold:
     decides: str
 
     @property
-    def of_doubts(self) -> bool:
-        """Whether only doubts ask it, so that a search finds the same."""
-        return self.name in OF_DOUBTS
+    def weighs(self) -> bool:
+        """Whether only the probability asks it, so that a search finds the same."""
+        return self.name in WEIGHTS
+
+    @property
+    def factors(self) -> dict[str, float]:
+        """By what it is multiplied: without a weight a search ends all the same, without a bound it may not."""
+        return FACTORS if self.weighs else {name: factor for name, factor in FACTORS.items() if factor}
 
     @contextmanager
     def times(self, factor: float) -> Iterator[Policy]:
@@ -76,14 +77,13 @@ def thresholds() -> list[Threshold]:
     ]
 
 
-def switched_off() -> dict[str, tuple[Policy, tuple[Doubt, ...]]]:
-    """The policy and doubts without each of the rules and doubts without which a search ends all the same."""
-    doubts = {doubt.__name__: (POLICY, undoubted(doubt)) for doubt in DOUBTS}
-    return {"needs": (without("needs"), DOUBTS), **doubts}
+def switched_off() -> dict[str, Policy]:
+    """The policy without each of the rules without which a search ends all the same."""
+    return {"needs": without("needs")}
 
 
 def _documented(name: str) -> str:
     """What the policy's documentation says of one of its numbers, the first sentence of it."""
     text = inspect.cleandoc(Policy.__doc__ or "")
-    found = re.search(rf"^    {name}: (.*(?:\n     +.*)*)", text, re.MULTILINE)
+    found = re.search(rf"^    (?:\w+, )*{name}(?:, \w+)*: (.*(?:\n     +.*)*)", text, re.MULTILINE)
     return " ".join(found.group(1).split()).split(". ")[0].rstrip(".") if found else ""

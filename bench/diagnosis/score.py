@@ -1,0 +1,156 @@
+"""What speaks for each of the hypotheses about an axis: sets of effects with their shapes, and what no catalogue holds.
+
+A hypothesis is held by what it leaves beyond noise, on the rows whose torque every hypothesis determines,
+
+    E = max(v - f**2, 0) + BESIDE_NOISE*f**2
+
+v - mean squared residual; f - noise floor, its colour that of the hypothesis that leaves least, as each one's own would
+turn a difference below the noise into evidence. A holdout adds what a hypothesis, of the strengths that the recording
+gave, leaves of it beyond twice what the best one does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.diagnosis.policy import Policy, freedom
+from bench.diagnosis.search import Candidate, Searched, candidates, refined
+from bench.effects.catalogue import simpler_forms
+from bench.effects.effect import Coupling, Occasional
+from bench.effects.rivals import RIVALS, WAVES, Outside
+from bench.effects.waves import Wave
+from bench.fit.fit import Fit, fit
+from bench.fit.hypothesis import Term
+from bench.fit.rows import Rows
+from bench.fit.stored import Balance
+
+#: Noise power beside which what is left beyond noise is no more told apart.
+BESIDE_NOISE = 0.03
+#: Blocks that a holdout is judged in, and residual over noise floor above which no hypothesis explains one.
+BLOCKS, EXPLAINED = 32, 3.0
+#: Power over the best hypothesis' up to which a holdout says nothing, as strengths and shapes have errors: true names
+#: of the blind set left 1.8 there.
+UNSURE = 2.0
+#: Candidates beyond the last step of a search that are hypotheses, too.
+NEXT = 2
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A hypothesis, and what speaks for it.
+
+    Attributes:
+        fitted: to the recording.
+        left: logarithm of what it leaves beyond noise over what the bare axis leaves.
+        over: the same over BESIDE_NOISE of the noise.
+        numbers: fitted beyond those of the bare axis.
+        outside: whether it has an effect that no catalogue holds.
+    """
+
+    fitted: Fit
+    left: float
+    over: float
+    numbers: int
+    outside: bool
+
+    @property
+    def events(self) -> int:
+        """Effects that come once, and so draw anything that is left."""
+        return sum(isinstance(term.effect, Occasional) for term in self.fitted.terms)
+
+
+def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) -> Iterator[Fit]:
+    """The steps of a search, its result less each of its effects, the next best beside it, and its rivals.
+
+    Rivals are simpler forms of an effect, a wave of another form in the place of waves, and the best effect from
+    outside the catalogue beside the result and in the place of each of its names; those `excluded` are not tried.
+    """
+    last = searched.last
+    yield from (step.fitted for step in searched.steps)
+    less = [fit(last.rows, last.hypothesis.without(index)) for index in range(len(last.terms))]
+    if len(less) > 1:
+        yield from less
+    if searched.ended is not None:
+        yield from _promising(searched.ended.fitted, searched.ended.rivals[:NEXT], policy)
+    for index, term in enumerate(last.terms):
+        for form in simpler_forms(term.effect, last.scope):
+            if form.name not in excluded:
+                yield fit(last.rows, last.hypothesis.with_term(index, Term(form)))
+    yield from _of_other_form(last)
+    rivals = [effect for effect in RIVALS if effect.name not in excluded]
+    waveless = _without_waves(last)
+    for beside in filter(policy.remains, (last, *less, *waveless)):
+        yield from _promising(beside, candidates(beside, rivals)[:1], policy)
+
+
+def _of_other_form(last: Fit) -> Iterator[Fit]:
+    """A wave of any form in the place of the waves of one number; of each form alone in the place of several."""
+    waves = [term for term in last.terms if isinstance(term.effect, Wave)]
+    numbers = [term.effect.wave_number(term.shape) for term in waves if isinstance(term.effect, Wave)]
+    for number in sorted(set(numbers)):
+        replaced = [term for term, own in zip(waves, numbers, strict=True) if own == number]
+        kept = last.hypothesis.with_terms(term for term in last.terms if term not in replaced)
+        for rival in WAVES if len(replaced) > 1 else WAVES[:1]:
+            yield fit(last.rows, kept.plus(Term(rival, (number,))))
+
+
+def _without_waves(last: Fit) -> list[Fit]:
+    """The result less all its waves, where it has several."""
+    kept = [term for term in last.terms if not isinstance(term.effect, Wave)]
+    return [fit(last.rows, last.hypothesis.with_terms(kept))] if len(last.terms) - len(kept) > 1 else []
+
+
+def _promising(beside: Fit, found: Sequence[Candidate], policy: Policy) -> Iterator[Fit]:
+    tried = (refined(beside, each.term) for each in found if policy.promises(beside, each.gain))
+    return (after for after in tried if not policy.only_damps(beside, after))
+
+
+def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[Contender]:
+    """Hypotheses that physics allows, the first of them the bare axis, with what speaks for each."""
+    physical = [tried[0], *(each for each in tried[1:] if policy.physical(each) and _credible(each))]
+    determined = np.logical_and.reduce([each.determined for each in physical])
+    power = np.array([np.mean(each.left[determined] ** 2) for each in physical])
+    white = np.array([each.noise.white**2 for each in physical])
+    nearest = physical[int(np.argmin(power / white))]
+    floor = white * (nearest.floor / nearest.noise.white) ** 2
+    excess = np.maximum(power - floor, 0.0)
+    if holdout is not None:
+        excess += _on_holdout(physical, holdout, floor)
+    left = np.log(excess + BESIDE_NOISE * floor)
+    over = left - np.log(BESIDE_NOISE * floor)
+    numbers = [freedom(each) - freedom(tried[0]) for each in physical]
+    outside = [any(isinstance(term.effect, Outside) for term in each.terms) for each in physical]
+    columns = (left - left[0]).tolist(), over.tolist(), numbers, outside
+    return [Contender(*each) for each in zip(physical, *columns, strict=True)]
+
+
+def _on_holdout(physical: Sequence[Fit], holdout: Rows, floor: Array) -> Array:
+    """What each hypothesis leaves of a holdout beyond the best one, by the strengths of the recording (h,).
+
+    In blocks that some hypothesis explains, as it may hold an event of its own; but who claims that what happens is an
+    event has to explain those, too.
+    """
+    blocks = np.stack([_blocks(each, holdout) for each in physical], axis=1)
+    explained = (blocks < EXPLAINED**2 * floor).any(axis=1)
+    if not explained.any():
+        return np.zeros(len(physical))
+    power = blocks[explained].mean(axis=0)
+    eventful = np.array([any(isinstance(term.effect, Occasional) for term in each.terms) for each in physical])
+    least = UNSURE * np.maximum(power.min(), floor)
+    return np.maximum(np.where(eventful, blocks.mean(axis=0), power) - least, 0.0)
+
+
+def _blocks(fitted: Fit, holdout: Rows) -> Array:
+    """Mean squares left of a holdout in BLOCKS stretches, its events there or not, whichever leaves less."""
+    balance = Balance.of(fitted)
+    squares = min((balance.repeating(again).left(holdout) ** 2 for again in (False, True)), key=np.sum)
+    return np.array([part.mean() for part in np.array_split(squares, BLOCKS) if part.size])
+
+
+def _credible(fitted: Fit) -> bool:
+    """Whether no coupling hardly rings: a search may pass such a shape but not end with it."""
+    return all(term.effect.credible(term.shape) for term in fitted.terms if isinstance(term.effect, Coupling))

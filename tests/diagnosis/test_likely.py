@@ -1,0 +1,83 @@
+"""Probabilities of sets of names, by hand: sums, what is chosen, what else it may be."""
+
+import math
+
+import pytest
+
+from bench.diagnosis.policy import POLICY
+from bench.diagnosis.probability import DETECTED, NameSet, Probabilities, probabilities
+from bench.diagnosis.score import Contender
+from tests.diagnosis.hand_made import level, made, term
+
+SPRING, COGGING = term("torsion_spring"), term("cogging_torque", 6.0)
+
+
+def of(sets, none, detected=()):
+    every = [NameSet(frozenset(names), made(level(1.0)), share) for names, share in sets]
+    return Probabilities(tuple(every), none, frozenset(detected))
+
+
+THREE = of([(("a", "b"), 0.6), (("a", "c"), 0.25), ((), 0.05)], 0.1)
+
+
+def test_a_name_is_as_likely_as_the_sets_that_hold_it():
+    assert THREE.names == pytest.approx({"a": 0.85, "b": 0.6, "c": 0.25})
+    assert THREE.nothing == pytest.approx(0.05)
+    assert THREE.chosen.names == {"a", "b"}
+
+
+def test_a_set_is_chosen_only_of_names_that_are_likelier_than_not():
+    split = of([(("a", "b"), 0.4), (("a", "c"), 0.35), (("a",), 0.2), ((), 0.01)], 0.04)
+    assert split.chosen.names == {"a"}
+    assert of([(("a",), 0.4), ((), 0.1)], 0.5).chosen.names == frozenset()
+
+
+def test_what_stands_in_the_place_of_a_name():
+    assert THREE.instead_of("b") == pytest.approx({"c": 0.25, None: 0.1})
+    assert THREE.instead_of("a") == pytest.approx({None: 0.1})
+
+
+@pytest.mark.parametrize(("level", "count"), [(0.5, 1), (0.6, 1), (0.61, 2), (0.9, 3), (0.99, 4)])
+def test_the_fewest_sets_that_hold_the_truth(level, count):
+    assert len(THREE.holding(level)) == count
+    assert THREE.holding(0.99)[2] is None
+
+
+def test_what_held_out_motion_speaks_against_leaves_the_others():
+    left = THREE.without(frozenset({"b"}))
+    assert left.names == pytest.approx({"a": 0.625, "c": 0.625})
+    assert left.none == pytest.approx(0.25)
+
+
+def test_what_signals_show_is_known_from_them():
+    found = of([((), 0.96)], 0.04, ["voltage_limit"])
+    assert found.names == {"voltage_limit": DETECTED}
+    assert found.nothing == pytest.approx(0.96 * (1.0 - DETECTED))
+
+
+def contender(left, over, *terms, numbers=0, outside=False):
+    return Contender(made(level(1.0), *terms), left, over, numbers, outside)
+
+
+def test_the_logarithm_is_the_sum_of_what_speaks_for_and_against():
+    bare, spring = contender(0.0, 2.0), contender(-4.0, 1.0, SPRING, numbers=1)
+    found = probabilities([bare, spring], frozenset(), POLICY)
+    ahead = 4.0 * POLICY.left + 1.0 * POLICY.over - POLICY.each - POLICY.number
+    assert math.log(found.names["torsion_spring"] / found.nothing) == pytest.approx(ahead)
+    assert math.log(found.none / found.nothing) == pytest.approx(POLICY.none + 2.0 * POLICY.over)
+    assert found.nothing + found.none + found.names["torsion_spring"] == pytest.approx(1.0)
+
+
+def test_what_no_catalogue_holds_gets_no_name():
+    every = [contender(0.0, 5.0), contender(-5.0, 0.0, COGGING, numbers=2, outside=True)]
+    found = probabilities(every, frozenset(), POLICY)
+    assert found.names == {}
+    assert found.none > 0.99
+
+
+def test_sets_that_a_recording_cannot_tell_apart_count_as_one():
+    offset, difference = term("torque_offset"), term("direction_dependent_friction")
+    every = [contender(0.0, 3.0), *(contender(-6.0, 0.0, one, numbers=1) for one in (offset, difference))]
+    found = probabilities(every, frozenset(), POLICY)
+    assert len(found.names) == 1
+    assert found.chosen.probability > 0.99

@@ -1,0 +1,117 @@
+"""What speaks for each hypothesis about cases whose truth is known, and which of the hypotheses are right."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bench.diagnosis.policy import POLICY
+from bench.diagnosis.recordings import Recordings, fit_bare
+from bench.diagnosis.score import neighbourhood, scored
+from bench.diagnosis.search import search
+from bench.effects.catalogue import catalogue
+from bench.errors import BenchError
+from bench.rig.rig import load_rig
+from bench.trace.read import read
+from tests.studies.blind.score import same, twins
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A set of names and what `bench.diagnosis.score` says of it."""
+
+    names: tuple[str, ...]
+    left: float
+    over: float
+    effects: int
+    numbers: int
+    events: int
+    outside: bool
+
+
+@dataclass(frozen=True)
+class Known:
+    """A case with its hypotheses.
+
+    Attributes:
+        name, group: of the case.
+        truth: what is hidden and has to be found in the torque balance; None: it is not in the catalogue.
+        own: names that the recording had before anything was put into it, right or wrong.
+        hypotheses: the first one is the bare axis.
+    """
+
+    name: str
+    group: str
+    truth: tuple[str, ...] | None
+    own: tuple[str, ...]
+    hypotheses: tuple[Hypothesis, ...]
+
+    def right(self, one: Hypothesis) -> bool:
+        """Whether a hypothesis has the names that are true, and no other."""
+        if self.truth is None or one.outside:
+            return False
+        found, hidden = same(one.names), same(self.truth)
+        return hidden <= found and found - hidden <= same(self.own)
+
+    def true(self, name: str) -> bool:
+        """Whether a name is."""
+        return twins(name) in same((*(self.truth or ()), *self.own))
+
+    @property
+    def reachable(self) -> bool:
+        """Whether the right answer is among those that are weighed."""
+        return self.truth is None or any(map(self.right, self.hypotheses))
+
+
+def known(folder: Path, withheld: bool) -> Known | None:
+    """A case's hypotheses, by its first recording; None if it is refused.
+
+    Args:
+        folder: with run1, rig.toml and truth.json.
+        withheld: whether what is hidden is taken out of the catalogue.
+    """
+    told = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
+    excluded = frozenset().union(*(twins(name) for name in told["effects"])) if withheld else frozenset()
+    rig = load_rig(folder / "rig.toml")
+    try:
+        recordings = Recordings.of(read(folder / "run1.csv.gz", rig.trace), rig, None)
+    except BenchError:
+        return None
+    effects = [effect for name, effect in catalogue().items() if name not in excluded]
+    searched = search(fit_bare(recordings.rows), effects, POLICY)
+    hypotheses = [
+        Hypothesis(
+            one.fitted.hypothesis.names,
+            one.left,
+            one.over,
+            len(one.fitted.terms),
+            one.numbers,
+            one.events,
+            one.outside,
+        )
+        for one in scored([*neighbourhood(searched, excluded, POLICY)], None, POLICY)
+    ]
+    detected = {effect.name for effect in recordings.detected}
+    truth = tuple(name for name in told["effects"] if name not in detected and name != "voltage_limit")
+    lacking = withheld or told["group"] == "outside"
+    group = f"{told['group']}, truth withheld" if withheld else told["group"]
+    return Known(folder.name, group, None if lacking else truth, tuple(told.get("own", ())), tuple(hypotheses))
+
+
+def kept(path: Path) -> list[Known]:
+    """Cases of a file."""
+
+    def case(told: dict[str, Any]) -> Known:
+        every = tuple(Hypothesis(**each | {"names": tuple(each["names"])}) for each in told.pop("hypotheses"))
+        truth, own = told.pop("truth"), tuple(told.pop("own"))
+        return Known(**told, truth=None if truth is None else tuple(truth), own=own, hypotheses=every)
+
+    return [case(told) for told in json.loads(path.read_text(encoding="utf-8"))]
+
+
+def folders(sets: Sequence[Path]) -> list[Path]:
+    """Cases of sets, in order."""
+    return [path.parent for home in sets for path in sorted(home.glob("*/truth.json"))]
