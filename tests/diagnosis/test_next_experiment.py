@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.next_experiment import motions
+from bench.diagnosis.next_experiment import LONG_ENOUGH, motions
 from bench.diagnosis.recordings import Recordings
 from bench.plant.drive import References
 from bench.rig.rig import load_rig
@@ -89,6 +89,8 @@ def test_motion_in_one_direction_is_followed_by_reversals_that_tell(rig, recordi
     assert first.next_experiment.tells_apart == ("coulomb_friction", "torque_offset")
     assert first.next_experiment.speed <= 1.01 * np.abs(recordings[hidden]["velocity"]).max()
     assert float(proposed.time[-1]) == pytest.approx(first.next_experiment.duration)
+    together = first.next_experiment.repetitions * first.next_experiment.duration
+    assert LONG_ENOUGH <= together < LONG_ENOUGH + first.next_experiment.duration
     second = diagnose(along_it, rig)
     names = {"torque_offset" if e.name == "direction_dependent_friction" else e.name for e in second.effects}
     assert names == {effect.name for effect in HIDDEN[hidden]}
