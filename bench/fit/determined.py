@@ -27,6 +27,7 @@ RECORD = {
     OFFSET: "a motion in both directions, several seconds each",
 }
 
+LOAD = "load_moment_of_inertia"
 TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
 LINKS = "nothing; the MJCF's links, the gear_ratio or the torque are another robot's"
 SMALLER = "nothing; the rig's rotor_inertia (gear_inertia, gear_ratio) or torque constant is another one's"
@@ -101,12 +102,13 @@ def _not_excited(equations: NormalEquations, kind: AxisKind) -> dict[str, Undete
 def refused_masses(
     parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]
 ) -> dict[str, UndeterminedError]:
-    """Why the inertia, or the load's alone, is none, by name, with what else is suspicious.
+    """Why the inertia, or the load's, is none, by name, with what else is suspicious.
 
-    The interval of the inertia contains zero, or one of them is surely negative. Without an inertia there is no load's.
+    The interval of the inertia contains zero, or one of them is surely negative. Without an inertia there is no load's;
+    and one that is less than the rotor's alone contradicts what the rig says, whichever of them is wrong.
     """
     refused: dict[str, UndeterminedError] = {}
-    for name in (kind.inertia, "load_moment_of_inertia", ARMATURE):
+    for name in (kind.inertia, LOAD, ARMATURE):
         found = parameters.get(name)
         if found is None:
             continue
@@ -121,6 +123,8 @@ def refused_masses(
         elif name == kind.inertia and low <= 0.0:
             reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {found.unit}, holds zero", *suspicions])
             refused[name] = UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
+    if LOAD in refused and kind.inertia not in refused:
+        refused[kind.inertia] = UndeterminedError(kind.in_words(INERTIA), "it is less than the rotor's alone", SMALLER)
     return refused
 
 
