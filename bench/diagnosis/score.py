@@ -25,6 +25,7 @@ from bench.effects.rivals import RIVALS, WAVES, Outside
 from bench.effects.waves import Wave
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Term
+from bench.fit.layout import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 
@@ -145,10 +146,15 @@ def _on_holdout(physical: Sequence[Fit], holdout: Rows, floor: Array) -> Array:
 
 
 def _blocks(fitted: Fit, holdout: Rows) -> Array:
-    """Mean squares left of a holdout in BLOCKS stretches, its events there or not, whichever leaves less."""
-    balance = Balance.of(fitted)
-    squares = min((balance.repeating(again).left(holdout) ** 2 for again in (False, True)), key=np.sum)
-    return np.array([part.mean() for part in np.array_split(squares, BLOCKS) if part.size])
+    """Mean squares left of a holdout in BLOCKS stretches, each event there or not as it leaves less (b,)."""
+    balance = Balance.of(fitted).repeating(True)
+    left, layout = balance.left(holdout), lay_out(holdout, balance.hypothesis)
+    for index, term in enumerate(fitted.terms):
+        if isinstance(term.effect, Occasional):
+            own = layout.owners == index
+            without = left + layout.columns[:, own] @ balance.theta[own]
+            left = min(left, without, key=lambda residual: float(residual @ residual))
+    return np.array([np.mean(part**2) for part in np.array_split(left, BLOCKS) if part.size])
 
 
 def _credible(fitted: Fit) -> bool:
