@@ -121,7 +121,7 @@ def _log(one: Contender, policy: Policy) -> float:
     return (
         -policy.left * max(one.left, LEAST)
         - (policy.over + policy.event * one.events) * over
-        - policy.each * len(one.fitted.terms)
+        - policy.each * len(set(one.fitted.hypothesis.names))  # all harmonics of a wave are one effect
         - policy.number * one.numbers
         - policy.outside * one.outside
     )

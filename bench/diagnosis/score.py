@@ -81,22 +81,25 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
         for form in simpler_forms(term.effect, last.scope):
             if form.name not in excluded:
                 yield fit(last.rows, last.hypothesis.with_term(index, Term(form)))
-    yield from _of_other_form(last)
+    yield from _of_other_form(last, policy)
     rivals = [effect for effect in RIVALS if effect.name not in excluded]
     waveless = _without_waves(last)
     for beside in filter(policy.remains, (last, *less, *waveless)):
         yield from _promising(beside, candidates(beside, rivals)[:1], policy)
 
 
-def _of_other_form(last: Fit) -> Iterator[Fit]:
-    """A wave of any form in the place of the waves of one number; of each form alone in the place of several."""
+def _of_other_form(last: Fit, policy: Policy) -> Iterator[Fit]:
+    """A wave of any form in the place of those of one number, if they leave a remainder or are several.
+
+    Of each form alone, too, in the place of several.
+    """
     waves = [term for term in last.terms if isinstance(term.effect, Wave)]
     numbers = [term.effect.wave_number(term.shape) for term in waves if isinstance(term.effect, Wave)]
     for number in sorted(set(numbers)):
         replaced = [term for term, own in zip(waves, numbers, strict=True) if own == number]
         kept = last.hypothesis.with_terms(term for term in last.terms if term not in replaced)
-        for rival in WAVES if len(replaced) > 1 else WAVES[:1]:
-            yield fit(last.rows, kept.plus(Term(rival, (number,))))
+        rivals = WAVES if len(replaced) > 1 else WAVES[:1] if policy.remains(last) else ()
+        yield from (fit(last.rows, kept.plus(Term(rival, (number,)))) for rival in rivals)
 
 
 def _without_waves(last: Fit) -> list[Fit]:

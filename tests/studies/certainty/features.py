@@ -87,7 +87,7 @@ def known(folder: Path, withheld: bool) -> Known | None:
             one.fitted.hypothesis.names,
             one.left,
             one.over,
-            len(one.fitted.terms),
+            len(set(one.fitted.hypothesis.names)),
             one.numbers,
             one.events,
             one.outside,
