@@ -59,13 +59,13 @@ def outcome(folder: Path, excluded: frozenset[str] = frozenset()) -> Outcome:
         return Outcome(seconds=time.perf_counter() - start, refused=" ".join(str(refusal).split()))
     seconds = time.perf_counter() - start
     torque = found.torque
-    inertia = next(found.parameters[key] for key in ("moment_of_inertia", "moving_mass") if key in found.parameters)
+    inertia = [found.parameters[key] for key in ("moment_of_inertia", "moving_mass") if key in found.parameters]
     return Outcome(
         found.verdict,
         {effect.name: {key: (p.value, *p.ci95) for key, p in effect.parameters.items()} for effect in found.effects},
         tuple(gap / torque.noise_floor for gap in torque.identify) if torque.identify else (float("nan"),) * 2,
         (*torque.holdout, torque.noise_floor) if torque.holdout else None,
-        inertia.value,
+        inertia[0].value if inertia else float("nan"),
         tuple((step.effect, step.torque[0] / torque.noise_floor) for step in found.steps),
         found.probabilities.names,
         found.probabilities.none,

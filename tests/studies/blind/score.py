@@ -31,7 +31,7 @@ class Score:
 
     Attributes:
         right: names are exactly those hidden; none, and a remainder, if the physics is outside or taken away.
-        inertia_error: relative, nan if refused.
+        inertia_error: relative, nan if it or all is refused.
         closed: share of the holdout torque gap above the noise floor that is closed, None if nothing stands above.
         without_truth: whether the hidden effects were taken out of the catalogue.
         quantities: by effect and quantity, what is reported beside the truth.
