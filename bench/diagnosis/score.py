@@ -157,7 +157,7 @@ def _blocks(fitted: Fit, holdout: Rows) -> Array:
             own = layout.owners == index
             without = left + layout.columns[:, own] @ balance.theta[own]
             left = min(left, without, key=lambda residual: float(residual @ residual))
-    return np.array([np.mean(part**2) for part in np.array_split(left, BLOCKS) if part.size])
+    return np.array([float(np.mean(part**2)) for part in np.array_split(left, BLOCKS) if part.size])
 
 
 def _credible(fitted: Fit) -> bool:
