@@ -10,6 +10,8 @@ peak_effort = "3.5 N*m"
 effects = [{ name = "cogging_torque", amplitude = "0.05 N*m", harmonic = 6.0 }]
 [parameters]
 moment_of_inertia = "0.0022 kg*m**2"
+
+`effects.toml` holds the same of every joint of a robot: `schema = "bench.effects/1"`, and a table `[joints.NAME]` each.
 """
 
 from __future__ import annotations
@@ -34,7 +36,7 @@ from bench.rig.load import Load
 from bench.rig.rig import Rig
 from bench.structured import read_toml
 
-SCHEMA = "bench.model/1"
+SCHEMA, OF_JOINTS = "bench.model/1", "bench.effects/1"
 #: Step that the exported MuJoCo model runs at - s.
 TIMESTEP = 250e-6
 #: Units of what a mounting holds.
@@ -106,6 +108,17 @@ def model_xml(stored: StoredModel) -> str:
 
 def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) -> str:
     """The whole model as TOML, every value with its unit; `further` are tables of the same file, by name."""
+    return tables_toml(stored.model.parameters.kind, {**_content(stored), **(further or {})})
+
+
+def joints_toml(models: Mapping[str, StoredModel]) -> str:
+    """The models of a robot's joints, by name, as one TOML."""
+    kinds = {name: stored.model.parameters.kind.name for name, stored in models.items()}
+    tables = {name: {"kind": kinds[name], **_content(stored)} for name, stored in models.items()}
+    return tomli_w.dumps({"schema": OF_JOINTS, "joints": tables})
+
+
+def _content(stored: StoredModel) -> dict[str, Any]:
     model, kind, mounted = stored.model, stored.model.parameters.kind, stored.mounting.stated
     content: dict[str, Any] = {"name": stored.name, **_texts({"misalignment": (stored.misalignment, "s")})}
     if math.isfinite(model.peak_effort):
@@ -118,7 +131,7 @@ def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) ->
         content["effects"] = [{"name": one.name, **_texts(effect_values(one, kind))} for one in model.effects]
     if mounted:
         content["mounting"] = _texts({key: (value, MOUNTED[key]) for key, value in mounted.items()})
-    return tables_toml(kind, {**content, **(further or {})})
+    return content
 
 
 def tables_toml(kind: AxisKind, tables: Mapping[str, Any]) -> str:
@@ -134,6 +147,21 @@ def load_model(path: str | Path) -> StoredModel:
     table = read_table(path)
     if table.get("schema") != SCHEMA:
         raise InputError(f"{path}: schema", f"found {table.get('schema')!r}", f"allowed: '{SCHEMA}'")
+    return _model(table, str(path))
+
+
+def load_joints(path: str | Path) -> dict[str, StoredModel]:
+    """Models of a robot's joints, by name, from the `effects.toml` of `bench robot`; InputError as `load_model`."""
+    table = read_toml(path, "an effects.toml that bench robot wrote")
+    if table.get("schema") != OF_JOINTS:
+        raise InputError(f"{path}: schema", f"found {table.get('schema')!r}", f"allowed: '{OF_JOINTS}'")
+    joints = table.get("joints")
+    if not isinstance(joints, dict) or not all(isinstance(one, dict) for one in joints.values()):
+        raise InputError(f"{path}: joints", f"found {joints!r}", "allowed: a table for each joint")
+    return {name: _model(one, f"{path}: joints.{name}") for name, one in joints.items()}
+
+
+def _model(table: Mapping[str, Any], path: str) -> StoredModel:
     kind = axis_kind(table.get("kind"), f"{path}: kind")
     quantities = parameter_quantities(kind)
     units = {quantity.name: quantity.unit for quantity in quantities.values()}

@@ -16,6 +16,8 @@ from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import (
     TIMESTEP,
     StoredModel,
+    joints_toml,
+    load_joints,
     load_model,
     model_toml,
     model_xml,
@@ -53,6 +55,31 @@ def test_linear_axis_without_winding_comes_back(tmp_path):
     assert 'moving_mass = "95.1 kg"' in text
     assert 'amplitude = "1.0 N"' in text
     assert 'phase = "0.0 rad"' in text
+
+
+def test_the_joints_of_a_robot_come_back_by_their_names(tmp_path):
+    slide = StoredModel("slide", AxisModel(AxisParameters(95.1, 203.5, 20.4, -3.2, 0.0, kind=LINEAR)))
+    joints = {"arm/elbow joint": StoredModel("elbow", model(*EVERYTHING), 1.27e-5), "slide": slide}
+    path = tmp_path / "effects.toml"
+    write_text(path, joints_toml(joints))
+    assert load_joints(path) == joints
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("bench.effects/1", "bench.model/1", "schema: found 'bench.model/1'; allowed: 'bench.effects/1'"),
+        ("[joints.elbow.parameters]", "[joints.elbow.parameter]", "joints.elbow: parameters: missing"),
+        ("[joints.elbow]", "[joint.elbow]", "joints.elbow"),
+    ],
+)
+def test_a_bad_file_of_joints_is_refused_in_one_line(tmp_path, old, new, says):
+    path = tmp_path / "effects.toml"
+    path.write_text(joints_toml({"elbow": StoredModel("axis", model("cogging_torque"))}).replace(old, new))
+    with pytest.raises(InputError) as error:
+        load_joints(path)
+    assert says in str(error.value)
+    assert "\n" not in str(error.value)
 
 
 @given(st.text(st.characters(exclude_categories=["Cs"])))
