@@ -233,15 +233,10 @@ def subject(
         return Subject(known, lambda path: bench.read(path, known.trace), robot=False)
     if joint is None:
         raise InputError("--joint", "missing", "allowed: the joint of the MJCF that the log is of")
-    from bench.plant.robot import Robot, read_log, rig_within
+    from bench.plant.robot import Robot, joint_rig, read_log
 
     robot = Robot.of(mjcf, joint)
-    alone = {"name": joint, "kind": "rotary" if robot.turns else "linear"}
-    own = (bench.Rig.of(alone, str(mjcf)) if rig is None else bench.load_rig(rig)).on_axis(axis)
-    if own.axis_kind.turns is not robot.turns:
-        found = f"found a joint that {'turns' if robot.turns else 'slides'}"
-        raise InputError(f"--joint {joint}", found, f"allowed: a {own.kind} one, as {own.source} says")
-    within = rig_within(own, robot)
+    within = joint_rig(None if rig is None else bench.load_rig(rig).on_axis(axis), robot)
     stands = _positions(at or (), robot.units)
     return Subject(within, lambda path: read_log(path, within, robot, stands), robot=True)
 

@@ -84,7 +84,7 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     hypotheses = scored([*neighbourhood(searched, excluded, policy)], recordings.holdout_rows, policy)
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
     likely = probabilities(hypotheses, frozenset(effect.name for effect in kept), policy)
-    ending = searched.ending(likely.chosen.fitted)
+    ending = searched.ending(likely.fits[likely.chosen.names])
     return Suspects(ending, likely, kept, len(kept) < len(recordings.detected), policy, excluded)
 
 

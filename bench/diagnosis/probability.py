@@ -11,8 +11,8 @@ of the recording itself adds nothing to U and V: its weight beside them came out
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -35,10 +35,9 @@ CALIBRATED_ON = "docs/certainty.md"
 
 @dataclass(frozen=True)
 class NameSet:
-    """A set of names with its best fit and its probability."""
+    """A set of names with its probability."""
 
     names: frozenset[str]
-    fitted: Fit
     probability: float
 
 
@@ -50,11 +49,13 @@ class Probabilities:
         sets: of names of the torque balance, likeliest first; the empty one says that it lacks nothing.
         none: probability that it lacks something and none of the catalogue is it.
         detected: names that the signals show directly.
+        fits: the best of each set, as long as they are searched; what is told of them keeps none.
     """
 
     sets: tuple[NameSet, ...]
     none: float
     detected: frozenset[str] = frozenset()
+    fits: Mapping[frozenset[str], Fit] = field(default_factory=dict)
 
     @cached_property
     def names(self) -> dict[str, float]:
@@ -95,7 +96,7 @@ class Probabilities:
         """Given that some names are wrong: what held-out motion spoke against."""
         kept = [each for each in self.sets if not each.names & names]
         whole = self.none + sum(each.probability for each in kept)
-        sets = (NameSet(each.names, each.fitted, each.probability / whole) for each in kept)
+        sets = (NameSet(each.names, each.probability / whole) for each in kept)
         return Probabilities(tuple(sets), self.none / whole, self.detected - names)
 
 
@@ -105,14 +106,15 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
     weights = np.exp(np.array([*logs, policy.none]) - max(*logs, policy.none))
     shares = (weights / weights.sum()).tolist()
     called: dict[str, str] = {}
-    sets: dict[frozenset[str], NameSet] = {}
+    shared: dict[frozenset[str], float] = {}
+    fits: dict[frozenset[str], Fit] = {}
     for each, share in sorted(zip(scored, shares, strict=False), key=lambda one: -one[1]):
         if not each.outside:
             names = frozenset(_called(term.effect, each.fitted.scope, called) for term in each.fitted.terms)
-            best = sets.get(names, NameSet(names, each.fitted, 0.0))
-            sets[names] = NameSet(names, best.fitted, best.probability + share)
-    ranked = sorted(sets.values(), key=lambda one: -one.probability)
-    return Probabilities(tuple(ranked), 1.0 - sum(each.probability for each in ranked), detected)
+            fits.setdefault(names, each.fitted)
+            shared[names] = shared.get(names, 0.0) + share
+    ranked = sorted((NameSet(*each) for each in shared.items()), key=lambda one: -one.probability)
+    return Probabilities(tuple(ranked), 1.0 - sum(each.probability for each in ranked), detected, fits)
 
 
 def _log(one: Contender, policy: Policy) -> float:

@@ -118,6 +118,10 @@ class Effect(ABC):
     shapes: ClassVar[tuple[Shape, ...]] = ()
     needed: ClassVar[float] = 0.25
 
+    def __reduce__(self) -> str:
+        """Pickled by its name in its module: there is one object of each effect."""
+        return "EFFECT"
+
     def null(self, axis: Axis) -> Values:
         """Values of some quantities at which the effect is exactly absent - SI."""
         return {quantity.name: quantity.null for quantity in self.quantities if quantity.null is not None}

@@ -12,7 +12,7 @@ correctly.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +20,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 from mujoco.batch import Batch
+from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.errors import InputError
@@ -48,41 +49,73 @@ DISABLED = (
 )
 
 
+def joint_names(path: Path) -> list[str]:
+    """Names of the hinges and slides of an MJCF file, in its order; InputError as `Robot.of`."""
+    model = _loaded(path)
+    simple = [int(kind) for kind in SIMPLE]
+    return [model.joint(k).name for k in range(model.njnt) if model.joint(k).name and model.jnt_type[k] in simple]
+
+
+def _loaded(path: Path) -> mujoco.MjModel:
+    read_bytes(path, "an MJCF file")
+    try:
+        return mujoco.MjModel.from_xml_path(str(path))
+    except ValueError as error:
+        raise InputError(path, f"MuJoCo refuses it: {' '.join(str(error).split())}", "allowed: MJCF") from error
+
+
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """A robot around one of its joints: a model without armature, damping and friction of it, and its file."""
+    """A robot around one of its joints.
+
+    Attributes:
+        model: without armature, damping and friction of the joint.
+        joint: its name.
+        source: file of the model.
+        joints: numbers of the joints that move with it, itself among them, in the model's order: what hangs on the
+            world apart from them is not felt.
+    """
 
     model: mujoco.MjModel
     joint: str
     source: str
+    joints: tuple[int, ...]
 
     @classmethod
     def of(cls, path: Path, joint: str) -> Robot:
-        """From an MJCF file; InputError if there is no such file or joint, or a joint of more than one coordinate."""
-        read_bytes(path, "an MJCF file")
-        try:
-            model = mujoco.MjModel.from_xml_path(str(path))
-        except ValueError as error:
-            raise InputError(path, f"MuJoCo refuses it: {' '.join(str(error).split())}", "allowed: MJCF") from error
+        """From an MJCF file.
+
+        InputError if there is no such file or joint; if a joint of its tree has more than one coordinate; if a loop, a
+        tendon or an equality of the MJCF puts a torque on it that no log tells.
+        """
+        model = _loaded(path)
         names = [model.joint(k).name for k in range(model.njnt)]
         if joint not in names:
             found = f"found no joint '{joint}'{nearest(joint, names)}"
             raise InputError(path, found, f"allowed: {', '.join(filter(None, names)) or 'a joint with a name'}")
-        for k, name in enumerate(names):
+        trees = model.dof_treeid[model.jnt_dofadr]
+        joints = tuple(int(k) for k in np.flatnonzero(trees == trees[model.joint(joint).id]))
+        for k in joints:
             if model.jnt_type[k] not in [int(kind) for kind in SIMPLE]:
-                raise InputError(f"{path}: joint '{name}'", "found a free or ball joint", "allowed: hinges and slides")
+                found = "found a free or ball joint, whose motion no log of joints tells"
+                raise InputError(
+                    f"{path}: joint '{names[k]}'", found, "allowed: hinges and slides on a base that stands"
+                )
+        for reason in _bound(model, model.joint(joint).id):
+            found = f"found {reason}, whose torque no log tells"
+            raise InputError(f"{path}: joint '{joint}'", found, "allowed: a joint that moves by its motor alone")
         dof = model.joint(joint).dofadr[0]
         for field in (model.dof_armature, model.dof_damping, model.dof_dampingpoly, model.dof_frictionloss):
             field[dof] = 0.0
         for flag in DISABLED:
             model.opt.disableflags |= int(flag)
-        return cls(model, joint, str(path))
+        return cls(model, joint, str(path), joints)
 
     @property
     def units(self) -> dict[str, str]:
         """Names of the other joints with the units of their positions."""
         turning = int(mujoco.mjtJoint.mjJNT_HINGE)
-        joints = {self.model.joint(k).name: kind for k, kind in enumerate(self.model.jnt_type)}
+        joints = {self.model.joint(k).name: self.model.jnt_type[k] for k in self.joints}
         return {name: "rad" if kind == turning else "m" for name, kind in joints.items() if name != self.joint}
 
     @property
@@ -100,19 +133,41 @@ class Robot:
     def rest(self, position: Array, velocity: Array) -> tuple[Array, Array]:
         """What the links ask of the joint beside its own inertia: r - N*m (N) - and p - N*m*s (N*s) -, (n,) each.
 
-        Of positions and velocities of all joints in the MJCF's order - rad (m), rad/s (m/s) - (n, joints).
+        Of positions and velocities of `joints` - rad (m), rad/s (m/s) - (n, joints).
         """
         dof = int(self.model.joint(self.joint).dofadr[0])
         torque, momentum = np.empty(len(position)), np.empty(len(position))
         for start in range(0, len(position), TOGETHER):
             part = slice(start, start + TOGETHER)
-            q, w = position[part], velocity[part]
-            ahead, behind = (self._momentum(q + side * ASIDE * w, w) for side in (1.0, -1.0))
+            q, w = self._posed(position[part], velocity[part])
+            step = ASIDE * velocity[part]
+            ahead, behind = (
+                self._momentum(self._posed(position[part] + side * step, step)[0], w) for side in (1.0, -1.0)
+            )
             turning = (ahead - behind) / (2.0 * ASIDE)
             bias, passive = self._evaluated(q, w, "qfrc_bias", "qfrc_passive")
             torque[part] = bias[:, dof] - passive[:, dof] - turning
             momentum[part] = self._momentum(q, w) - self.inertia * w[:, dof]
         return torque, momentum
+
+    def follows(self, name: str, motion: Mapping[str, tuple[Array, Array]]) -> tuple[Array, Array] | None:
+        """Position and speed (n,) of a joint that an equality of the MJCF has follow another; None if none does."""
+        model, here = self.model, self.model.joint(name).id
+        for k in np.flatnonzero(model.eq_active0 & (model.eq_type == int(mujoco.mjtEq.mjEQ_JOINT))):
+            leader = int(model.eq_obj2id[k])
+            if model.eq_obj1id[k] == here and leader >= 0 and model.joint(leader).name in motion:
+                position, velocity = motion[model.joint(leader).name]
+                start, beyond = model.qpos0[model.jnt_qposadr[[here, leader]]]
+                course = np.polynomial.Polynomial(model.eq_data[k, :5])
+                return start + course(position - beyond), course.deriv()(position - beyond) * velocity
+        return None
+
+    def _posed(self, position: Array, velocity: Array) -> tuple[Array, Array]:
+        """Coordinates and their speeds, (n, nq) and (n, nv), with the joints so and all else as the MJCF has it."""
+        model, joints = self.model, list(self.joints)
+        q, w = np.tile(model.qpos0, (len(position), 1)), np.zeros((len(position), model.nv))
+        q[:, model.jnt_qposadr[joints]], w[:, model.jnt_dofadr[joints]] = position, velocity
+        return q, w
 
     def _momentum(self, position: Array, velocity: Array) -> Array:
         """Of the joint, (n,): its row of the mass matrix times the velocities; the matrix comes as its lower half."""
@@ -134,6 +189,60 @@ class Robot:
         return [np.array(values) for values in bound]
 
 
+def _bound(model: mujoco.MjModel, joint: int) -> Iterator[str]:
+    """What of a model, if anything, puts a torque on a joint beside its motor, its links and its spring."""
+    tied = model.eq_active0.astype(bool)
+    ends = np.column_stack([model.eq_obj1id, model.eq_obj2id])
+    of = {name: tied & (model.eq_type == int(getattr(mujoco.mjtEq, f"mjEQ_{name}"))) for name in ("JOINT", "TENDON")}
+    if (ends[of["JOINT"]] == joint).any():
+        yield "an equality that couples it with another joint"
+    moved = _moved_tendons(model, joint)
+    driven = model.actuator_trnid[model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_TENDON), 0]
+    for k in moved:
+        if k in driven or model.tendon_frictionloss[k] > 0.0 or k in ends[of["TENDON"]]:
+            yield f"the tendon '{model.tendon(k).name}' on it"
+    carried = _carried(model, int(model.jnt_bodyid[joint]))
+    for k in np.flatnonzero(
+        tied & np.isin(model.eq_type, [int(mujoco.mjtEq.mjEQ_CONNECT), int(mujoco.mjtEq.mjEQ_WELD)])
+    ):
+        sites = model.eq_objtype[k] == int(mujoco.mjtObj.mjOBJ_SITE)
+        bodies = model.site_bodyid[ends[k]] if sites else ends[k]
+        if carried[bodies[0]] != carried[bodies[1]]:
+            yield "a loop that an equality closes over it"
+
+
+def _carried(model: mujoco.MjModel, body: int) -> NDArray[np.bool_]:
+    """Bodies that a body carries, itself among them (nbody,)."""
+    found = np.zeros(model.nbody, dtype=bool)
+    for k in range(model.nbody):
+        found[k] = k == body or (k > 0 and found[model.body_parentid[k]])
+    return found
+
+
+def _moved_tendons(model: mujoco.MjModel, joint: int) -> Sequence[int]:
+    """Tendons whose length changes with a joint, at a pose in which nothing is straight."""
+    data, lengths = mujoco.MjData(model), []
+    for aside in (0.1, 0.1 + 1e-3):
+        data.qpos[model.jnt_qposadr] = model.qpos0[model.jnt_qposadr] + 0.1
+        data.qpos[model.jnt_qposadr[joint]] = model.qpos0[model.jnt_qposadr[joint]] + aside
+        mujoco.mj_fwdPosition(model, data)
+        lengths.append(data.ten_length.copy())
+    return np.flatnonzero(np.abs(lengths[1] - lengths[0]) > 1e-9).tolist()
+
+
+def joint_rig(rig: Rig | None, robot: Robot) -> Rig:
+    """The rig of a joint, or one that tells nothing but its kind, with what the robot's model knows of the links.
+
+    InputError where the rig is of another kind.
+    """
+    alone = {"name": robot.joint, "kind": "rotary" if robot.turns else "linear"}
+    own = Rig.of(alone, robot.source) if rig is None else rig
+    if own.axis_kind.turns is not robot.turns:
+        found = f"found a joint that {'turns' if robot.turns else 'slides'}"
+        raise InputError(f"--joint {robot.joint}", found, f"allowed: a {own.kind} one, as {own.source} says")
+    return rig_within(own, robot)
+
+
 def rig_within(rig: Rig, robot: Robot) -> Rig:
     """The rig of a joint whose links the robot's model knows."""
     load = (rig.load or Load()).model_copy(update={"link_inertia": robot.inertia})
@@ -150,18 +259,23 @@ def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) ->
     recording = read_recording(path)
     own = rig.on_axis(robot.joint) if _holds(recording, robot.joint) and rig.trace.axis is None else rig
     trace, ratio = assemble(recording, own.trace), (rig.load or Load()).gear_ratio
-    position, velocity = np.empty((2, len(trace), robot.model.nv))
-    for k in range(robot.model.nv):
-        name = robot.model.joint(k).name
+    motion, names = {}, [robot.model.joint(k).name for k in robot.joints]
+    for name in names:
         if name == robot.joint:
-            position[:, k], velocity[:, k] = (values / ratio for values in _motion(trace, trace))
+            position, velocity = _motion(trace, trace)
+            motion[name] = position / ratio, velocity / ratio
         elif _holds(recording, name):
-            position[:, k], velocity[:, k] = _motion(assemble(recording, GivenOptions(axis=name)), trace)
+            motion[name] = _motion(assemble(recording, GivenOptions(axis=name)), trace)
         elif name in stated:
-            position[:, k], velocity[:, k] = stated[name], 0.0
-        else:
+            motion[name] = np.full(len(trace), stated[name]), np.zeros(len(trace))
+    for name in names:
+        followed = None if name in motion else robot.follows(name, motion)
+        if followed is not None:
+            motion[name] = followed
+        elif name not in motion:
             allowed = f"allowed: a column '{name}.position [rad]', or --at {name}=0"
             raise InputError(f"{path}: joint '{name}'", "is neither in the log nor stated", allowed)
+    position, velocity = (np.column_stack([motion[name][k] for name in names]) for k in (0, 1))
     torque, momentum = robot.rest(position, velocity)
     return with_known(trace, torque / ratio, momentum / ratio, rig.effort_unit)
 

@@ -117,7 +117,8 @@ def likely(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace 
 
 def names(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace | None = None) -> tuple[str, ...]:
     """The likeliest names."""
-    return likely(policy, trace, effects, holdout).chosen.fitted.hypothesis.names
+    found = likely(policy, trace, effects, holdout)
+    return found.fits[found.chosen.names].hypothesis.names
 
 
 def sought(policy: Policy, trace: Trace, effects: Sequence[str]) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ SPRING, COGGING = term("torsion_spring"), term("cogging_torque", 6.0)
 
 
 def of(sets, none, detected=()):
-    every = [NameSet(frozenset(names), made(level(1.0)), share) for names, share in sets]
+    every = [NameSet(frozenset(names), share) for names, share in sets]
     return Probabilities(tuple(every), none, frozenset(detected))
 
 

@@ -115,6 +115,42 @@ def test_a_joint_that_stands_may_be_stated(arm, tmp_path):
         read_log(path, beside, robot, {})
 
 
+FINGERS = """<body name="left"><joint name="left" type="slide" axis="1 0 0"/><geom size=".02" mass=".1"/></body>
+<body name="right"><joint name="right" type="slide" axis="-1 0 0"/><geom size=".02" mass=".1"/></body></body></body>
+</worldbody>
+<equality><joint joint1="right" joint2="left" polycoef="0 1 0 0 0"/></equality>"""
+
+
+def test_a_finger_that_follows_another_needs_no_column(tmp_path):
+    """Its own log tells nothing of its motor, which is refused by name; the arm feels both where they are."""
+    path, columns = tmp_path / "gripper.xml", log(noise=0.0)
+    path.write_text(MJCF.replace("</body></body></worldbody>", FINGERS))
+    columns["left.position [m]"] = 0.03 * np.sin(columns["time [s]"])
+    robot, logged = Robot.of(path, "elbow"), write_log(tmp_path / "log.csv", columns)
+    followed = read_log(logged, rig_within(ELBOW, robot), robot, {})
+    columns["right.position [m]"] = columns["left.position [m]"]
+    told = read_log(write_log(tmp_path / "both.csv", columns), rig_within(ELBOW, robot), robot, {})
+    np.testing.assert_allclose(less_known(followed, followed["torque"]), less_known(told, told["torque"]), atol=1e-6)
+    for finger in ("left", "right"):
+        with pytest.raises(InputError, match=f"joint '{finger}': found an equality that couples it"):
+            Robot.of(path, finger)
+
+
+def test_what_floats_beside_the_arm_is_not_felt(tmp_path, arm):
+    """A cube on the table has six coordinates of its own, and is none of the arm's."""
+    beside = tmp_path / "table.xml"
+    cube = '<worldbody><body><freejoint name="cube"/><geom size=".03" mass=".2"/></body>'
+    beside.write_text(MJCF.replace("<worldbody>", cube))
+    q, w = np.array([[0.3, -0.4], [0.1, 0.9]]), np.array([[1.0, 2.0], [-0.5, 0.3]])
+    for alone, among in zip(*(Robot.of(path, "elbow").rest(q, w) for path in (arm, beside)), strict=True):
+        np.testing.assert_allclose(among, alone, rtol=1e-9)
+
+
+LOOP = '<equality><connect body1="forearm" body2="world" anchor="0 0 -.1"/></equality><actuator>'
+TENDON = '<tendon><fixed name="cable"><joint joint="elbow" coef="1"/></fixed></tendon><actuator>'
+PULLED = '<motor name="elbow motor" tendon="cable"/>'
+
+
 SWIMS = MJCF.replace('<joint name="shoulder" axis="0 1 0"/>', '<freejoint name="shoulder"/>')
 WEIGHTLESS = '<mujoco><worldbody><body><joint name="elbow"/></body></worldbody></mujoco>'
 
@@ -125,6 +161,12 @@ WEIGHTLESS = '<mujoco><worldbody><body><joint name="elbow"/></body></worldbody><
         (MJCF, "elbov", "found no joint 'elbov', did you mean 'elbow'"),
         (SWIMS, "elbow", "free or ball"),
         (WEIGHTLESS, "elbow", "MuJoCo refuses it"),
+        (MJCF.replace("<actuator>", LOOP), "elbow", "a loop that an equality closes over it"),
+        (
+            MJCF.replace("<actuator>", TENDON).replace('<motor name="elbow motor" joint="elbow"/>', PULLED),
+            "elbow",
+            "the tendon 'cable' on it",
+        ),
     ],
 )
 def test_a_robot_that_cannot_be_had_is_reported_in_one_line(tmp_path, text, joint, says):
