@@ -108,6 +108,7 @@ def robot_with(
     for folder in ("meshdir", "texturedir"):
         where = path.resolve().parent / (getattr(spec, folder) or "")
         setattr(spec, folder, os.path.relpath(where, out.resolve().parent))
+    spec.modelfiledir = str(out.resolve().parent)  # writing compiles once more
     return commented(spec, carried.lines), carried
 
 

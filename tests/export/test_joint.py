@@ -229,8 +229,8 @@ def test_a_robot_in_a_file_keeps_its_meshes(tmp_path):
         '<mujoco><compiler meshdir="meshes"/><asset><mesh name="cube" file="cube.obj"/></asset><worldbody><body>'
         '<joint name="elbow"/><geom type="mesh" mesh="cube"/></body></worldbody></mujoco>'
     )
-    out = tmp_path / "elsewhere" / "out.xml"
-    out.parent.mkdir()
+    out = tmp_path / "elsewhere" / "deeper" / "out.xml"
+    out.parent.mkdir(parents=True)
     text, _ = robot_with(robot, "elbow", stored(), out, None)
     out.write_text(text)
     assert mujoco.MjModel.from_xml_path(str(out)).dof_frictionloss[0] == pytest.approx(0.08)
