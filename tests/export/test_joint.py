@@ -236,6 +236,14 @@ def test_a_robot_in_a_file_keeps_its_meshes(tmp_path):
     assert mujoco.MjModel.from_xml_path(str(out)).dof_frictionloss[0] == pytest.approx(0.08)
 
 
+@pytest.mark.parametrize("text", [model_xml, lambda model: joint_alone(model, "axis")[0]], ids=["model.xml", "snippet"])
+def test_no_actuator_is_of_a_kind_that_only_mujoco_has(text):
+    """mujoco_warp 4.0.0 refuses the gain of a PID."""
+    model = mujoco.MjModel.from_xml_string(text(stored(COGGING, OFFSET)))
+    assert model.nu >= 1
+    assert mujoco.mjtGain.mjGAIN_PID not in model.actuator_gaintype
+
+
 @pytest.mark.parametrize(
     ("content", "says"), [("<mujoco>", "does not read"), ("", "does not read"), (None, "no such file")]
 )
