@@ -10,6 +10,8 @@ from pathlib import Path
 #: Control characters (a terminal obeys them), those that turn the direction of text, and halves of surrogates (no
 #: encoding has them; Python reads file names that are not UTF-8 so). Line ends and tabs are not among them.
 _OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+#: Persons after whom something is called.
+_PERSONS = re.compile(r"\b(coulomb|stribeck)\b")
 _NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?([eE][+-]?\d+)?")
 
 
@@ -19,8 +21,8 @@ def plain(text: str) -> str:
 
 
 def words(name: str) -> str:
-    """A name of the bench in words, e.g. `moment of inertia` for `moment_of_inertia`."""
-    return name.replace("_", " ")
+    """A name of the bench in words, e.g. `Coulomb friction torque` for `coulomb_friction_torque`."""
+    return _PERSONS.sub(lambda match: match[0].capitalize(), name.replace("_", " "))
 
 
 def cell(text: str) -> str:

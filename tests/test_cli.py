@@ -208,7 +208,7 @@ def test_a_rig_with_an_unknown_key_names_it_and_its_neighbour(bench, trace, tmp_
         (lambda t: 50.0 + 0.0 * t, ["moment of inertia", "record instead"], None),
         (
             lambda t: 100.0 + 50.0 * np.sin(9.0 * t),
-            ["coulomb friction torque", "offset", "both directions"],
+            ["Coulomb friction torque", "offset", "both directions"],
             {"moment_of_inertia", "viscous_friction_coefficient"},
         ),
     ],

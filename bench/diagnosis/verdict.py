@@ -82,7 +82,7 @@ def remains(shown: Shown) -> str:
     """The torque residual is clearly above noise: by what multiple of the floor."""
     if not shown.suspects.policy.remains(shown.whole):
         return ""
-    return f"the torque gap is {shown.whole.chi:.3g} times what noise leaves"
+    return f"what is left is {shown.whole.chi:.3g} times the noise"
 
 
 def refused(shown: Shown) -> str:

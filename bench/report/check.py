@@ -190,7 +190,7 @@ def check_document(checked: Checked, title: str) -> doc.Document:
     return doc.Document(
         title=f"{short(title)}: check",
         subject=short(title, LONG),
-        verdict=f"Changed: {line[:1].lower()}{line[1:]}." if checked.result == CHANGED else f"{line}.",
+        verdict=f"Changed: {line}." if checked.result == CHANGED else f"{line}.",
         tone=TONES[checked.result],
         answers=_answers(checked),
         sections=tuple(sections),

@@ -10,9 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from bench.axis_kind import INERTIA, KINDS, AxisKind
+from bench.axis_kind import ARMATURE, KINDS, AxisKind
 from bench.diagnosis.add import NULL
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.name import NamedEffect
@@ -20,16 +18,17 @@ from bench.diagnosis.probability import CALIBRATED_ON, Probabilities
 from bench.diagnosis.same_axis import SameAxis
 from bench.diagnosis.show import Course, Shrunk
 from bench.diagnosis.verdict import Gap
-from bench.diagnosis.where import Profile, Where
+from bench.diagnosis.where import Where
 from bench.effects.acting import Sensing
 from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report import document as doc
+from bench.report.gap import at_a_glance, gap_chart, rms_gaps, states, where_picture
 from bench.report.identification import recordings_json
-from bench.report.numbers import chance, coordinate_word, effort_word, interval, number, sentence, share, unit_text
+from bench.report.numbers import brief, chance, coordinate_word, effort_word, listed, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
+from bench.report.parts import checks_section, origin, parameters_table, recordings_table
 from bench.report.publish import write_document
 from bench.report.serial import as_json, known, picked, serialised
 
@@ -44,8 +43,6 @@ STEPS = 6
 SURE = 0.9
 #: Alternatives that are told in a sentence at most, and the least probability of one.
 TOLD, WORTH_TELLING = 3, 1e-3
-#: Empty space beside the outermost gaps - factor on a logarithmic axis.
-BESIDE = 1.5
 
 
 def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None) -> str:
@@ -182,7 +179,9 @@ def diagnosis(
 ) -> doc.Document:
     """The document of a diagnosis of what `title` names, with files to take along: the model, and all numbers."""
     tables = [parameters_table("The axis", found.parameters)]
-    tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in found.effects]
+    tables += [
+        parameters_table(f"{sentence(words(one.name))}: {one.effect.summary}", one.parameters) for one in found.effects
+    ]
     tables += recordings_table(found.recordings, found.between, found.parameters)
     sections = (
         _motion(found),
@@ -194,15 +193,21 @@ def diagnosis(
         checks_section(found.checks, found.warnings),
         doc.section("model", "The model", doc.Downloads(files=tuple(files))),
     )
+    glance, verdict = at_a_glance(found), verdict_sentence(found)
     return doc.Document(
         title=title,
         subject=f"Diagnosis of {title}",
-        verdict=verdict_sentence(found),
+        verdict=verdict,
         tone="open" if found.verdict == "unexplained_remainder" else "sure",
         answers=_answers(found),
+        glance=glance,
         sections=sections,
         origin=origin(provenance),
-        pictures=(_where_picture(found, title), _gaps_picture(found, title)),
+        pictures=(
+            doc.Picture(name="diagnosis", title=verdict, rows=(glance,)),
+            where_picture(found, title),
+            doc.Picture(name="gaps", title=title, rows=(rms_gaps(found),)),
+        ),
         warnings=(*found.warnings, *warnings_of(found.checks)),
     )
 
@@ -228,33 +233,32 @@ def _files(found: Diagnosis, provenance: Mapping[str, Any] | None) -> list[doc.F
 
 
 def verdict_sentence(found: Diagnosis) -> str:
-    """What was missing and how much of the gap it accounts for, in a sentence."""
+    """What was missing and whether that is all, in a sentence."""
     gap, unit = found.torque, unit_text(found.torque.unit)
-    effort = effort_word(found.torque.unit)
     before, after = gap.identify or (math.nan, math.nan)
-    noise = f"the noise floor is {number(gap.noise_floor, digits=3)} {unit}"
+    effort = effort_word(gap.unit)
     if not found.effects:
+        left = f"{number(after, digits=3)} {unit} of the {effort}"
+        noise = f"the noise floor is {number(gap.noise_floor, digits=3)} {unit}"
         if found.verdict == "nothing_missing":
-            left = f"inertia and friction leave {number(after, digits=3)} {unit} of the {effort}"
-            return f"Nothing is missing: {left}, {noise}."
-        return (
-            f"Something is missing that no effect of the catalogue explains: {number(after, digits=3)} {unit} "
-            f"of the {effort} are left, {noise}."
-        )
+            return f"Nothing is missing: inertia and friction leave {left}, {noise}."
+        return f"Something is missing that no effect of the catalogue explains: {left} are left, {noise}."
     several = len(found.effects) > 1
-    named = "; ".join(_named(effect) for effect in found.effects)
+    names = listed(dict.fromkeys(words(effect.name) for effect in found.effects))
     sensors = len(_sensors(found)) == len(found.effects)
     what = f"{'were' if several else 'was'} {'wrong in the measurement' if sensors else 'missing'}"
-    gone = f"with {'them' if several else 'it'} {share(1.0 - after / before)} of the {effort} gap is gone"
+    gone = (
+        f"with {'them' if several else 'it'} {share(1.0 - after / before)} of the {effort_word(gap.unit)} gap is gone"
+    )
     if found.verdict == "explained":
-        return f"{sentence(named)} {what}; {gone}, and what is left is noise."
-    return f"{sentence(named)} {what}; {gone}, but {number(_chi(gap), digits=2)} times the noise is left."
+        return f"{sentence(names)} {what}; {gone}, and what is left is noise."
+    return f"{sentence(names)} {what}; {gone}, but {words(found.because[0])}."
 
 
 def _named(effect: NamedEffect) -> str:
     """An effect with its quantities; a phase says nothing to a reader."""
     angles = {quantity.name for quantity in effect.effect.quantities if quantity.angle}
-    values = [f"{words(name)} {interval(found)}" for name, found in effect.parameters.items() if name not in angles]
+    values = [f"{words(name)} {brief(found)}" for name, found in effect.parameters.items() if name not in angles]
     return f"{words(effect.name)} ({', '.join(values)})" if values else words(effect.name)
 
 
@@ -265,15 +269,14 @@ def _sensors(found: Diagnosis) -> list[str]:
 
 def _answers(found: Diagnosis) -> dict[str, str]:
     kind = _kind(found)
-    names = "; ".join(f"{_named(effect)}: {effect.effect.summary}" for effect in found.effects)
-    inertia = found.parameters.get(kind.inertia)
+    inertia = next((name for name in (ARMATURE, kind.inertia) if name in found.parameters), None)
     return {
-        f"{sentence(kind.in_words(INERTIA))}?": "Not determined beside what is missing: " + found.refused[kind.inertia]
-        if inertia is None
-        else f"{interval(inertia)} (95 %)",
-        "What was missing?": names or "No effect of the catalogue.",
+        "What was missing?": sentence("; ".join(map(_named, found.effects))) or "No effect of the catalogue.",
         "How sure?": _sure(found),
-        "Does it move like the axis now?": _moves(found.velocity, bool(found.effects)),
+        "Does it move like the axis now?": _moves(found),
+        f"{sentence(words(inertia or kind.inertia))}?": f"{brief(found.parameters[inertia])} (95 %)"
+        if inertia
+        else f"Not determined beside what is missing: {found.refused[kind.inertia]}",
         "What next?": _following(found) or "Nothing is left open that another motion would tell.",
     }
 
@@ -281,8 +284,8 @@ def _answers(found: Diagnosis) -> dict[str, str]:
 def _sure(found: Diagnosis) -> str:
     """What bears the verdict out, and what speaks against it."""
     gap, lines, effort = found.torque, [_likely(found)], effort_word(found.torque.unit)
-    if found.because:
-        lines.append(f"Not wholly: {'; '.join(map(words, found.because))}.")
+    if found.because[1:]:
+        lines.append(f"Against it, too: {'; '.join(map(words, found.because[1:]))}.")
     if gap.holdout is not None:
         before, after = gap.holdout
         lines.append(
@@ -324,17 +327,19 @@ def _chi(gap: Gap) -> float:
     return math.nan if gap.identify is None else gap.identify[1] / gap.noise_floor
 
 
-def _moves(gap: Gap, added: bool) -> str:
-    """Whether the simulation moves as the axis does."""
+def _moves(found: Diagnosis) -> str:
+    """Whether the simulation moves as the axis does: wholly only where nothing speaks against the model."""
+    gap = found.velocity
     pair = gap.holdout or gap.identify
     if pair is None:
         return "Not known: MuJoCo cannot have the model, or it diverged."
-    like = "Yes" if pair[1] <= NULL * gap.noise_floor else "Not wholly"
-    before = f", {number(pair[0], digits=3)} before" if added else ""
+    times = pair[1] / gap.noise_floor
+    like = "Not wholly" if times > NULL else "Nearly" if found.because else "Yes"
+    before = f" ({number(pair[0], digits=3)} before)" if found.effects else ""
     where = "on the recording that was not fitted" if gap.holdout else "on the recording"
     return (
-        f"{like}: simulated speed is off by {number(pair[1], gap.unit, 3)} RMS {where}{before}; "
-        f"the sensor's noise is {number(gap.noise_floor, digits=3)}."
+        f"{like}: simulated speed is off by {number(pair[1], gap.unit, 3)} RMS {where}{before}, "
+        f"{number(times, digits=2)} times the sensor's noise; up to {NULL:g} times is as good as a model gets."
     )
 
 
@@ -360,28 +365,23 @@ def _following(found: Diagnosis) -> str:
 def _motion(found: Diagnosis) -> doc.Section:
     """Speed and torque over time for each recording, and the gaps after each addition."""
     names = [course.name for course in found.courses]
-    gaps = (effort_word(found.torque.unit), found.torque), ("speed", found.velocity)
-    headings = [f"{what} gap, {name} / {unit_text(gap.unit)}>" for what, gap in gaps for name in names]
+    both = (effort_word(found.torque.unit), found.torque), ("speed", found.velocity)
+    headings = [f"{what} gap, {name} / {unit_text(gap.unit)}>" for what, gap in both for name in names]
     rows = [
         (label, *(number(gap, digits=3) for gap in (*step.torque, *step.velocity)))
-        for label, step in zip(_labels(found), found.steps, strict=True)
+        for label, step in zip(states(found), found.steps, strict=True)
     ]
-    rows.append(("noise floor", *(number(gap.noise_floor, digits=3) for _, gap in gaps for _ in names)))
+    rows.append(("noise floor", *(number(gap.noise_floor, digits=3) for _, gap in both for _ in names)))
     steps = doc.table("RMS gaps before and after each addition", ("model", *headings), rows)
     graphs = (_over_time(found, course) for course in found.courses)
     loop = "The models run in MuJoCo on the recorded torque, held softly to the recorded motion at "
     held = doc.Paragraph(text=f"{loop}{number(found.bandwidth, 'rad/s', 3)}.")
-    return doc.section("motion", "Measured and simulated", steps, *graphs, held)
-
-
-def _labels(found: Diagnosis) -> list[str]:
-    """The bare axis, then each addition."""
-    return ["inertia and friction", *(f"+ {words(step.effect)}" for step in found.steps[1:])]
+    return doc.section("motion", "Measured and simulated", steps, *rms_gaps(found), *graphs, held)
 
 
 def _over_time(found: Diagnosis, course: Course) -> doc.TimeGraph:
     shown = [0, *range(max(1, len(found.steps) - STEPS), len(found.steps))]
-    labels, effort = _labels(found), effort_word(found.torque.unit)
+    labels, effort = states(found), effort_word(found.torque.unit)
     first, last = found.steps[0], found.steps[-1]
     place = [one.name for one in found.courses].index(course.name)
     speed_left, torque_left = ([left[k] for k in shown] for left in (course.velocity_left, course.torque_left))
@@ -393,7 +393,8 @@ def _over_time(found: Diagnosis, course: Course) -> doc.TimeGraph:
         f"Speed and {effort} of {Path(course.origin).name} as measured and as the model has them. RMS of what is left "
         f"with inertia and friction alone, then with all that was found: speed "
         f"{number(first.velocity[place], digits=3)}, {number(last.velocity[place], found.velocity.unit, 3)}; {effort} "
-        f"{number(first.torque[place], digits=3)}, {number(last.torque[place], found.torque.unit, 3)}."
+        f"{number(first.torque[place], digits=3)}, {number(last.torque[place], found.torque.unit, 3)}. "
+        f"{sentence(effort)} has holes about standstill, where the direction of friction is not known."
     )
     title = {"recording": "The recording.", "holdout": "The holdout, which was not fitted."}[course.name]
     part = course.time.size / sum(one.time.size for one in found.courses)
@@ -408,37 +409,8 @@ def _where(found: Diagnosis) -> doc.Section:
         rows.append((coordinate_word(one.coordinate, one.unit), share(one.share), between, unit_text(one.unit)))
     headings = ("coordinate", "share of the gap>", "most of it between>", "unit")
     shares = doc.table("Share of the gap's variance that each coordinate accounts for", headings, rows)
-    blocks = (_gap_chart(found, DRAWN), shares)
+    blocks = (gap_chart(found, DRAWN), shares)
     return doc.section("where", "Where the gap sits", *blocks, detail=True)
-
-
-def _gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
-    profiles, most = {profile.coordinate: profile for profile in found.profiles}, found.profiles[0]
-    return doc.Chart(
-        title="The gap, and what was found in it.",
-        alternative=f"Mean of measured less modelled {effort_word(found.torque.unit)} in bins of each coordinate. "
-        f"Most of it hangs on {most.coordinate}, {share(most.share)} of its variance.",
-        y_label="gap",
-        y_unit=unit_text(found.torque.unit),
-        panels=tuple(_over(profiles[name], found) for name in coordinates if name in profiles),
-    )
-
-
-def _over(profile: Profile, found: Diagnosis) -> doc.Panel:
-    """Before and after, what the found effects make of it, and the noise of a row."""
-    order = np.argsort(profile.centres)
-    x, before, after = profile.centres[order], profile.before[order], profile.after[order]
-    drawn = [noise_band(x.tolist(), found.torque.noise_floor), doc.series("gap before", "dots", "ink", x, before)]
-    if found.effects:
-        names = " and ".join(words(effect.name) for effect in found.effects)
-        drawn.append(doc.series(f"what {names} makes of it", "line", "model", x, before - after))
-        drawn.append(doc.series("left after", "rings", "left", x, after))
-    return doc.Panel(
-        x_label=coordinate_word(profile.coordinate, profile.unit),
-        x_unit=unit_text(profile.unit),
-        note=f"{share(profile.share)} of the gap",
-        series=tuple(drawn),
-    )
 
 
 def _beside(found: Diagnosis) -> list[doc.Section]:
@@ -498,49 +470,3 @@ def _next(found: Diagnosis) -> doc.Section:
     if found.unexplained_where:
         blocks.append(doc.Points(items=tuple(left)))
     return doc.section("next", "What to record next", *blocks, detail=True)
-
-
-def _where_picture(found: Diagnosis, title: str) -> doc.Picture:
-    """The gap over all coordinates on one scale, and its spectrum on a scale of its own."""
-    spectrum = next(account for account in found.where if account.coordinate == "frequency")
-    panel = doc.Panel(
-        x_label="frequency",
-        x_unit="Hz",
-        y_label=f"gap before / ({unit_text(found.torque.unit)}/√Hz)",
-        note=f"{share(spectrum.share)} of the gap in one band",
-        series=(doc.series("", "line", "ink", spectrum.centres[1:], spectrum.means[1:]),),
-    )
-    over = _gap_chart(found, [profile.coordinate for profile in found.profiles])
-    below = doc.Chart(title="", alternative="Spectrum of the gap before.", panels=(panel,))
-    return doc.Picture(name="where", title=title, rows=((over,), (below,)))
-
-
-def _gaps_picture(found: Diagnosis, title: str) -> doc.Picture:
-    """RMS gaps of the bare axis and after each addition, on both recordings, against the noise floor."""
-    torque = _shrinking(found, effort_word(found.torque.unit), [step.torque for step in found.steps], found.torque)
-    speed = _shrinking(found, "speed", [step.velocity for step in found.steps], found.velocity)
-    return doc.Picture(name="gaps", title=title, rows=(tuple(filter(None, (torque, speed))),))
-
-
-def _shrinking(found: Diagnosis, what: str, steps: Sequence[tuple[float, ...]], gap: Gap) -> doc.Intervals | None:
-    """Gaps of all steps; None where none is known."""
-    spans = [
-        doc.Span(name=f"{label}, {course.name}", colour=colour, value=value, low=value, high=value)
-        for label, values in zip(_labels(found), steps, strict=True)
-        for course, colour, value in zip(found.courses, ("ink", "model"), values, strict=False)
-        if math.isfinite(value) and value > 0.0
-    ]
-    if not spans or not gap.noise_floor > 0.0:
-        return None
-    ends = [gap.noise_floor, *(span.value for span in spans)]
-    limits = min(ends) / BESIDE, max(ends) * BESIDE
-    return doc.Intervals(
-        title=f"{sentence(what)} gap",
-        alternative="RMS gaps before and after each addition; the band is noise.",
-        label=f"RMS {what} gap",
-        unit=unit_text(gap.unit),
-        right=(limits[0], gap.noise_floor),
-        limits=limits,
-        spans=tuple(spans),
-        log=True,
-    )

@@ -361,6 +361,7 @@ class Document(Part):
         subject: what it is about: rig and recordings.
         verdict, tone: the headline, a sentence.
         answers: what a reader wants to know first, by question.
+        glance: what shows it best, drawn below the answers beside each other.
         origin: version and digests, so that anybody can tell what it rests on.
         pictures: figures for paper, which are no part of the page.
         warnings: what a user should know before relying on it, for standard error; the page has them in a section.
@@ -372,6 +373,7 @@ class Document(Part):
     verdict: str
     tone: Tone
     answers: Answers
+    glance: tuple[Chart, ...] = ()
     sections: tuple[Section, ...]
     origin: tuple[str, ...] = ()
     pictures: tuple[Picture, ...] = Field(default=(), exclude=True)

@@ -141,7 +141,10 @@ class Ruler:
         """Places of round values with their labels."""
         if self.log:
             powers = range(math.ceil(math.log10(self.low)), math.floor(math.log10(self.high)) + 1)
-            found = [(10.0**power, f"{10.0**power:g}") for power in powers[:: 1 + len(powers) // most]]
+            digits = (1.0,) if len(powers) > 1 else (1.0, 2.0, 5.0)
+            every = [digit * 10.0**power for power in range(powers.start - 1, powers.stop) for digit in digits]
+            every = [value for value in every if self.low <= value <= self.high]
+            found = [(value, f"{value:g}") for value in every[:: 1 + len(every) // (most + 1)]]
         else:
             found = ticks(self.low, self.high, most)
         return [(self(value), label) for value, label in found]
@@ -174,10 +177,10 @@ class PlacedPanel:
     marks: Sequence[Drawn]
 
 
-def drawn(chart: Chart) -> list[PlacedPanel]:
-    """All panels: on one scale, or one above the other on a scale each."""
+def drawn(chart: Chart, small: bool = False) -> list[PlacedPanel]:
+    """All panels: on one scale, or one above the other on a scale each; `small`: even one alone is as wide as many."""
     groups = [[panel] for panel in chart.panels] if chart.stacked else [chart.panels]
-    width = ALONE if chart.stacked or len(chart.panels) == 1 else WIDTH
+    width = ALONE if not small and (chart.stacked or len(chart.panels) == 1) else WIDTH
     placed = []
     for panels in groups:
         every = (series for panel in panels for series in panel.series)

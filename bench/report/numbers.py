@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 
 from bench.parameter import Parameter
 
@@ -26,11 +27,11 @@ def unit_text(unit: str) -> str:
     return raised.replace("*", "·").replace("ohm", "Ω")
 
 
-def number(value: float, unit: str = "", digits: int = 4) -> str:
-    """A value with its unit."""
+def number(value: float, unit: str = "", digits: int = 4, zeros: bool = False) -> str:
+    """A value with its unit; `zeros`: whether it keeps those at its end, which then are digits that are known."""
     if not math.isfinite(value):
         return "not known"
-    text = f"{value:.{digits}g}"
+    text = f"{value:#.{digits}g}".replace(".e", "e").rstrip(".") if zeros else f"{value:.{digits}g}"
     if "e" in text:
         mantissa, power = text.split("e")
         text = f"{mantissa}·10{str(int(power)).translate(_RAISED)}"
@@ -51,6 +52,15 @@ def interval(found: Parameter, unit: bool = True) -> str:
     if power:
         text = f"({text})·10{str(power).translate(_RAISED)}"
     return f"{text}{SPACE}{shown}".strip()
+
+
+def brief(found: Parameter) -> str:
+    """A parameter to three digits, with half of its interval of 95 % in per cent where that says more."""
+    size, half = abs(found.value), found.half_width
+    if not 0.0 < half < size < math.inf:
+        return interval(found)
+    relative = number(100.0 * half / size, digits=2)
+    return f"{number(found.value, found.unit, 3, zeros=True)}{SPACE}±{SPACE}{relative}{SPACE}%"
 
 
 def _minus(text: str) -> str:
@@ -75,6 +85,12 @@ def chance(value: float) -> str:
 def sentence(text: str) -> str:
     """A text with a capital at its beginning."""
     return text[:1].upper() + text[1:]
+
+
+def listed(texts: Iterable[str]) -> str:
+    """Texts in a row: `a, b and c`."""
+    *first, last = texts
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def effort_word(unit: str) -> str:

@@ -70,7 +70,7 @@ def test_an_axis_that_has_changed(axis):
     status, printed, _ = axis(*BASE, "now.csv", "--json", "c.json", "--junit", "j.xml")
     found = json.loads(Path("c.json").read_text(encoding="utf-8"))
     assert status == 3
-    assert "Changed: coulomb friction torque rose from 0.0" in printed
+    assert "Changed: Coulomb friction torque rose from 0.0" in printed
     assert (found["schema"], found["result"], found["false_alarm_rate"]) == ("bench.check/1", "changed", 0.01)
     (friction,) = (one for one in found["quantities"] if one["name"] == "coulomb_friction_torque")
     assert friction["result"] == "changed"
@@ -205,7 +205,7 @@ def test_models_are_held_against_each_other(bench):
     Path("c.toml").write_text(heavier, encoding="utf-8")
     status, printed, _ = bench("check", "--simulated", "c.toml", "--baseline", "a/model.toml")
     assert status == 3
-    assert "Changed: viscous friction coefficient rose" in printed
+    assert "Changed: Viscous friction coefficient rose" in printed
 
 
 def test_a_simulator_that_moves_otherwise_is_a_change(bench):

@@ -125,4 +125,4 @@ def test_the_json_says_what_it_came_from(tmp_path, monkeypatch, capsys):
         "holdout": {"file": "run2.csv", "sha256": digest("run2.csv")},
     }
     assert json.loads((tmp_path / "out" / "diagnosis.json").read_text())["provenance"] == found["provenance"]
-    assert "the holdout differs: coulomb friction torque" in capsys.readouterr().out
+    assert "the holdout differs: Coulomb friction torque" in capsys.readouterr().out

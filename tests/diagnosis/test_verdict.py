@@ -169,7 +169,7 @@ def test_a_search_that_was_cut_or_kept_from_a_name_explains_nothing(stopped, wit
     assert unfinished(shown(stopped=stopped, withheld=withheld)) == said
 
 
-@pytest.mark.parametrize(("chi", "said"), [(1.11, ""), (1.13, "the torque gap is 1.13 times what noise leaves")])
+@pytest.mark.parametrize(("chi", "said"), [(1.11, ""), (1.13, "what is left is 1.13 times the noise")])
 def test_twelve_hundredths_above_the_floor_remain(chi, said):
     assert remains(shown(chi=chi)) == said
 

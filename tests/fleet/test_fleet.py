@@ -184,7 +184,7 @@ def test_the_command_prints_and_writes_what_it_found(made, found):
     assert summary["attention"][1]["reason"] == "no result within 12 s"
     page = (out / "fleet.html").read_text(encoding="utf-8")
     assert "1 of 3 axes changed" in page
-    assert "press 1: coulomb friction torque" in page
+    assert "press 1: Coulomb friction torque" in page
 
 
 def test_effects_are_named_where_that_is_asked_for(tmp_path):

@@ -1,7 +1,9 @@
 """Pages in a browser, opened from a file without a network: they zoom, tell, are heard, and run nothing of a name."""
 
 import json
+import re
 
+import numpy as np
 import pytest
 
 from tests.report.conftest import RIG_NAME, TRACE_NAME
@@ -145,7 +147,7 @@ def test_every_picture_has_words_and_headings_are_in_order(opened, found):
     assert page.get_by_role("application").count() == 2
     for graph in page.get_by_role("application").all():
         assert "RMS" in graph.get_attribute("aria-label")
-    for panel in page.locator(".panels svg").all():
+    for panel in page.locator("section .panels svg").all():
         assert "% of the gap" in panel.get_attribute("aria-label").replace("\N{NO-BREAK SPACE}", " ")
     levels = page.eval_on_selector_all("h1, h2, h3", "all => all.map(one => Number(one.tagName[1]))")
     assert levels[0] == 1
@@ -180,12 +182,48 @@ def test_numbers_on_the_page_are_those_of_the_json(opened, found):
     told = json.loads((found / "diagnosis.json").read_text(encoding="utf-8"))
     page = opened(found / "report.html")
     heading = page.get_by_role("heading", level=1).inner_text().replace("\N{NO-BREAK SPACE}", " ")
-    amplitude = told["effects"][0]["parameters"]["amplitude"]["value"]
-    assert f"{amplitude:.5f} ±" in heading
+    assert heading.startswith("Unbalance was missing; with it ")
     before, after = told["gap"]["torque"]["identify"]["before"], told["gap"]["torque"]["identify"]["after"]
     assert f"{100 * (1 - after / before):.0f} % of the torque gap is gone" in heading
     text = page.locator("dl").inner_text().replace("\N{NO-BREAK SPACE}", " ")
     for asked in ("Moment of inertia?", "What was missing?", "How sure?", "Does it move like the axis now?"):
         assert asked in text
-    assert f"{1e3 * told['parameters']['moment_of_inertia']['value']:.5f}" in text
+    amplitude = told["effects"][0]["parameters"]["amplitude"]["value"]
+    assert f"amplitude {amplitude:#.3g} N·m ±" in text
+    assert f"{told['parameters']['moment_of_inertia']['value']:#.3g} kg·m²" in text
     assert f"{told['gap']['velocity']['holdout']['after']:.3g}" in text
+
+
+def test_what_was_missing_how_sure_and_the_picture_are_on_the_first_screen(opened, found):
+    page = opened(found / "report.html", 1280)
+    for place in ("h1", "dl", ".glance figure:nth-child(1) svg", ".glance figure:nth-child(2) svg"):
+        box = page.locator(f"{place} >> visible=true").last.bounding_box()
+        assert box["y"] + box["height"] <= 900.0
+
+
+def test_labels_of_an_axis_are_as_far_apart_as_they_say(opened, found):
+    """Steps of 2.5*10**n want a digit more than their size has."""
+    page = opened(found / "report.html")
+    page.evaluate("""() => {
+        const write = CanvasRenderingContext2D.prototype.fillText, seen = [];
+        CanvasRenderingContext2D.prototype.fillText = function (text, ...at) {
+            if (!seen.includes(this.canvas)) seen.push(this.canvas);
+            window.written.push([seen.indexOf(this.canvas) + this.textAlign, text]);
+            return write.call(this, text, ...at);
+        };
+    }""")
+    graph, steps = page.locator(".graph").first, set()
+    for _ in range(9):
+        page.evaluate("window.written = []")
+        graph.press("+")
+        settled(page)
+        axes = {}
+        for axis, text in page.evaluate("window.written"):
+            if re.fullmatch(r"[−\d.]+(e[−+]?\d+)?", text):
+                axes.setdefault(axis, []).append(float(text.replace("−", "-")))
+        for values in axes.values():
+            apart = np.diff(values)
+            if apart.size > 1:
+                np.testing.assert_allclose(apart, apart[0], rtol=1e-6)
+                steps.add(f"{abs(apart[0]):.1e}"[:3])
+    assert "2.5" in steps

@@ -29,11 +29,11 @@ def blocks(page, kind):
         (state(), "The same: ", "sure"),
         (
             state({"coulomb_friction_torque": 1.1}),
-            "Changed: coulomb friction torque rose from 0.06 ",
+            "Changed: Coulomb friction torque rose from 0.06 ",
             "refused",
         ),
         (state({"coulomb_friction_torque": 1.035}), "Undecided: ", "open"),
-        (state(effects=[COGGING], verdict="explained"), "Changed: cogging torque (harmonic 6) appeared", "refused"),
+        (state(effects=[COGGING], verdict="explained"), "Changed: Cogging torque (harmonic 6) appeared", "refused"),
     ],
 )
 def test_the_verdict_comes_first(now, verdict, tone):

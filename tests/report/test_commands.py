@@ -79,7 +79,7 @@ def test_friction_writes_a_page_where_asked(bench, tmp_path):
     assert "wrote friction.html" in out
     text = told(tmp_path / "friction.html")
     assert "Stribeck friction (static friction 0.07" in text
-    (speed,) = re.findall(r"stribeck velocity ([\d.]+) rad/s\)", text)[:1]
+    (speed,) = re.findall(r"Stribeck velocity ([\d.]+) rad/s\)", text)[:1]
     assert float(speed) == pytest.approx(STRIBECK, rel=0.1)
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from bench.parameter import Parameter
 from bench.report.html import ticks
-from bench.report.numbers import interval, number, share, unit_text
+from bench.report.numbers import brief, interval, listed, number, share, unit_text
 
 
 def told(text):
@@ -27,6 +27,25 @@ def told(text):
 def test_a_value_has_as_many_digits_as_its_interval(value, half, unit, text):
     parameter = Parameter(value, unit, half / 1.96, (value - half, value + half))
     assert told(interval(parameter)) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "half", "unit", "text"),
+    [
+        (0.04996, 0.00021, "N*m", "0.0500 N·m ± 0.42 %"),
+        (2.25003e-3, 1.3e-7, "kg*m**2", "0.00225 kg·m² ± 0.0058 %"),
+        (123456.0, 789.0, "N", "1.23·10⁵ N ± 0.64 %"),
+        (199.4, 2.0, "N", "199 N ± 1 %"),
+        (-0.7, 1.8, "N", "−0.7 ± 1.8 N"),
+        (6.0, 0.0, "dimensionless", "6"),
+    ],
+)
+def test_a_value_in_brief_has_three_digits(value, half, unit, text):
+    assert told(brief(Parameter(value, unit, half / 1.96, (value - half, value + half)))) == text
+
+
+def test_names_in_a_row():
+    assert [listed("abc"[:n]) for n in (1, 2, 3)] == ["a", "a and b", "a, b and c"]
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 "use strict";
 (() => {
-  const NOTHING = -32768, HEIGHT = { first: 170, other: 130 }, LEAST = 8, DENSE = 8;
+  const NOTHING = -32768, HEIGHT = { first: 170, other: 130, paper: 90 }, LEAST = 8, DENSE = 8;
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   const numbers = (text) => {
     const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -10,7 +10,8 @@
   const shown = (value, unit) => (value == null ? "–" : Number(value.toPrecision(4)) + (unit ? " " + unit : ""));
 
   const labels = (u, splits, axis, space, step) => { // with as many digits as tell them apart
-    const digits = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
+    let digits = 0;
+    while (digits < 15 && Math.abs(Math.round(step * 10 ** digits) / (step * 10 ** digits) - 1) > 1e-6) digits++;
     const text = (value) => (digits > 4 ? value.toExponential(Math.max(0, Math.floor(Math.log10(Math.abs(value)) + digits))) : value.toFixed(digits));
     return splits.map((value) => (Math.abs(value) < step / 2 ? "0" : text(value).replace(/-/g, "−")));
   };
@@ -116,6 +117,7 @@
     }
 
     build() {
+      this.paper = window.matchMedia("print").matches;
       this.place.replaceChildren();
       const key = uPlot.sync(Math.random().toString(36));
       this.plots = this.data.panels.map((panel, k) => this.plot(panel, k, key));
@@ -133,12 +135,12 @@
       const tell = (u) => this.tell(u, readout, panel, curves, colours);
       const plot = new uPlot({
         width: this.place.clientWidth || 600,
-        height: (k === 0 ? HEIGHT.first : HEIGHT.other) + (last ? 38 : 0),
+        height: (this.paper ? HEIGHT.paper : k === 0 ? HEIGHT.first : HEIGHT.other) + (last ? 38 : 0),
         legend: { show: false },
         padding: [6, 20, 0, 0],
         scales: { x: { time: false } },
         axes: [
-          { ...axis, size: last ? 42 : 4, label: last ? "time / s" : undefined, labelSize: 18, labelFont: axis.font, values: last ? undefined : (u, splits) => splits.map(() => "") },
+          { ...axis, size: last ? 42 : 4, label: last ? "time / s" : undefined, labelSize: 18, labelFont: axis.font, values: last ? labels : (u, splits) => splits.map(() => "") },
           { ...axis, size: 64, space: 24, values: labels },
         ],
         series: [{}, ...curves.map((c, i) => ({ label: c.name, stroke: colours[i], width: c.role === "measured" ? 3 : 1.3,

@@ -1,0 +1,176 @@
+"""Drawings of the gap between measured and modelled: over a stretch of time, over coordinates, and its RMS."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array, rms
+from bench.diagnosis.diagnosis import Diagnosis
+from bench.diagnosis.show import Course
+from bench.diagnosis.verdict import Gap
+from bench.diagnosis.where import Profile
+from bench.names import words
+from bench.report import document as doc
+from bench.report.numbers import coordinate_word, effort_word, listed, sentence, share, unit_text
+from bench.report.parts import noise_band
+
+#: Empty space beside the outermost gaps - factor on a logarithmic axis.
+BESIDE = 1.5
+#: A recording is cut so often for a stretch that shows the gap; a longer one is as good with this share of the best.
+CUTS, NEARLY = (2, 4, 8, 16, 32), 0.7
+#: Of a stretch: samples at least, and points that are drawn at most.
+LEAST, POINTS = 60, 400
+
+
+def at_a_glance(found: Diagnosis) -> tuple[doc.Chart, ...]:
+    """The axis and what models make of it over a stretch that shows the gap, and the gap with what was found in it."""
+    over, most = gap_chart(found, [found.profiles[0].coordinate]), found.profiles[0]
+    panels = tuple(panel.model_copy(update={"note": ""}) for panel in over.panels)
+    title = f"{share(most.share)} of the gap hangs on {panels[0].x_label}."
+    over = over.model_copy(update={"title": title, "alternative": "", "panels": panels})
+    return tuple(filter(None, (_stretch_chart(found), over)))
+
+
+def _stretch_chart(found: Diagnosis) -> doc.Chart | None:
+    """Measured, before and after over the stretch that shows the gap best; None of a recording too short for one."""
+    course = found.courses[0]
+    signals = [
+        (effort_word(found.torque.unit), found.torque.unit, course.rows, course.torque, course.torque_left),
+        ("speed", found.velocity.unit, np.arange(course.time.size), course.velocity, course.velocity_left),
+    ]
+    best: tuple[float, doc.Chart] | None = None
+    for what, unit, rows, measured, left in signals:
+        if left[0] is None or left[-1] is None:
+            continue
+        curves = np.stack([measured, measured - left[0], measured - left[-1]])
+        score, part = _telling(curves, _whole(rows, curves))
+        if part is not None and (best is None or score > best[0]):
+            best = score, _curves_chart(what, unit, course, rows[part], curves[:, part])
+    return best[1] if best else None
+
+
+def _whole(rows: NDArray[np.int64], curves: Array) -> list[slice]:
+    """Stretches without a hole of samples (m,) and of curves (3, m) at them."""
+    step = np.diff(rows)
+    unknown = np.isnan(curves.sum(axis=0))
+    broken = (step > step.min(initial=rows.size)) | unknown[1:] | unknown[:-1]
+    ends = [0, *(np.flatnonzero(broken) + 1).tolist(), rows.size]
+    return [slice(start, stop) for start, stop in pairwise(ends)]
+
+
+def _telling(curves: Array, whole: Sequence[slice]) -> tuple[float, slice | None]:
+    """The longest stretch in which what was found is nearly as large beside the motion as anywhere, and how large."""
+    ranked: list[tuple[float, slice]] = []
+    for cut in CUTS:
+        size = max(LEAST, curves.shape[1] // cut)
+        for part in whole:
+            for start in range(part.start, part.stop - size + 1, max(1, size // 4)):
+                here = slice(start, start + size)
+                measured, before, after = curves[:, here]
+                difference = before - after if (before != after).any() else measured - before
+                ranked.append((rms(difference) / max(float(np.ptp(curves[:, here])), 1e-300), here))
+    best = max((score for score, _ in ranked), default=0.0)
+    return next(((score, part) for score, part in ranked if score >= NEARLY * best), (0.0, None))
+
+
+def _curves_chart(what: str, unit: str, course: Course, samples: NDArray[np.int64], curves: Array) -> doc.Chart:
+    few = slice(None, None, -(-samples.size // POINTS))
+    time, (measured, before, after) = course.time[samples][few], curves[:, few]
+    drawn = [doc.series("measured", "wide", "ink", time, measured)]
+    drawn.append(doc.series("inertia and friction alone", "dashes", "blue", time, before))
+    if (before != after).any():
+        drawn.append(doc.series("with what was found", "line", "model", time, after))
+    return doc.Chart(
+        title=f"{sentence(what)} over a stretch that shows it.",
+        alternative="",
+        y_label=what,
+        y_unit=unit_text(unit),
+        panels=(doc.Panel(x_label="time", x_unit="s", series=tuple(drawn)),),
+    )
+
+
+def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
+    """The gap in bins of these coordinates, with what was found drawn in."""
+    profiles, most = {profile.coordinate: profile for profile in found.profiles}, found.profiles[0]
+    return doc.Chart(
+        title="The gap, and what was found in it.",
+        alternative=f"Mean of measured less modelled {effort_word(found.torque.unit)} in bins of each coordinate. "
+        f"Most of it hangs on {most.coordinate}, {share(most.share)} of its variance.",
+        y_label="gap",
+        y_unit=unit_text(found.torque.unit),
+        panels=tuple(_over(profiles[name], found) for name in coordinates if name in profiles),
+    )
+
+
+def _over(profile: Profile, found: Diagnosis) -> doc.Panel:
+    """Before and after, what the found effects make of it, and the noise of a row."""
+    order = np.argsort(profile.centres)
+    x, before, after = profile.centres[order], profile.before[order], profile.after[order]
+    drawn = [noise_band(x.tolist(), found.torque.noise_floor), doc.series("gap before", "dots", "ink", x, before)]
+    if found.effects:
+        names = dict.fromkeys(words(effect.name) for effect in found.effects)
+        made = f"what {listed(names)} {'make' if len(names) > 1 else 'makes'} of it"
+        drawn.append(doc.series(made, "line", "model", x, before - after))
+        drawn.append(doc.series("left after", "rings", "left", x, after))
+    return doc.Panel(
+        x_label=coordinate_word(profile.coordinate, profile.unit),
+        x_unit=unit_text(profile.unit),
+        note=f"{share(profile.share)} of the gap",
+        series=tuple(drawn),
+    )
+
+
+def where_picture(found: Diagnosis, title: str) -> doc.Picture:
+    """The gap over all coordinates on one scale, and its spectrum on a scale of its own."""
+    spectrum = next(account for account in found.where if account.coordinate == "frequency")
+    panel = doc.Panel(
+        x_label="frequency",
+        x_unit="Hz",
+        y_label=f"gap before / ({unit_text(found.torque.unit)}/√Hz)",
+        note=f"{share(spectrum.share)} of the gap in one band",
+        series=(doc.series("", "line", "ink", spectrum.centres[1:], spectrum.means[1:]),),
+    )
+    over = gap_chart(found, [profile.coordinate for profile in found.profiles])
+    below = doc.Chart(title="", alternative="Spectrum of the gap before.", panels=(panel,))
+    return doc.Picture(name="where", title=title, rows=((over,), (below,)))
+
+
+def rms_gaps(found: Diagnosis) -> tuple[doc.Intervals, ...]:
+    """RMS gaps of the bare axis and after each addition, on both recordings, against the noise floor."""
+    torque = _shrinking(found, effort_word(found.torque.unit), [step.torque for step in found.steps], found.torque)
+    speed = _shrinking(found, "speed", [step.velocity for step in found.steps], found.velocity)
+    return tuple(filter(None, (torque, speed)))
+
+
+def _shrinking(found: Diagnosis, what: str, steps: Sequence[tuple[float, ...]], gap: Gap) -> doc.Intervals | None:
+    """Gaps of all steps; None where none is known."""
+    spans = [
+        doc.Span(name=f"{label}, {course.name}", colour=colour, value=value, low=value, high=value)
+        for label, values in zip(states(found), steps, strict=True)
+        for course, colour, value in zip(found.courses, ("ink", "model"), values, strict=False)
+        if math.isfinite(value) and value > 0.0
+    ]
+    if not spans or not gap.noise_floor > 0.0:
+        return None
+    ends = [gap.noise_floor, *(span.value for span in spans)]
+    limits = min(ends) / BESIDE, max(ends) * BESIDE
+    return doc.Intervals(
+        title=f"{sentence(what)} gap.",
+        alternative="RMS gaps before and after each addition; the band is noise.",
+        label=f"RMS {what} gap",
+        unit=unit_text(gap.unit),
+        right=(limits[0], gap.noise_floor),
+        limits=limits,
+        spans=tuple(spans),
+        log=True,
+    )
+
+
+def states(found: Diagnosis) -> list[str]:
+    """The bare axis, then each addition."""
+    return ["inertia and friction", *(f"+ {words(step.effect)}" for step in found.steps[1:])]
