@@ -10,34 +10,51 @@ import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from dataclasses import dataclass, field
 from io import BufferedReader
 from pathlib import Path
 
 from bench.bounds import require_size
 from bench.errors import InputError
 
-#: Device and inode of each file that the running command reads.
-_INPUTS: ContextVar[frozenset[tuple[int, int]]] = ContextVar("inputs", default=frozenset())
+#: Bytes that are taken at a time.
+_PIECE = 1 << 20
+#: Device and inode of a file.
+Identity = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class _Touched:
+    """Files of the running command: all that it has read or will read, and those that it made itself."""
+
+    read: set[Identity] = field(default_factory=set)
+    made: set[Identity] = field(default_factory=set)
+
+
+_TOUCHED: ContextVar[_Touched | None] = ContextVar("touched", default=None)
 #: The same for each folder that it has locked for writing.
-_HELD: ContextVar[frozenset[tuple[int, int]]] = ContextVar("held", default=frozenset())
+_HELD: ContextVar[frozenset[Identity]] = ContextVar("held", default=frozenset())
 #: Names of files that are being written.
 _UNDER_WAY = re.compile(r"\.bench-[0-9a-f]{12}-.*", re.DOTALL)
 
 
-def read_bytes(path: str | Path, kind: str) -> bytes:
+def read_bytes(path: str | Path, kind: str, replaced: bool = False) -> bytes:
     """Content of a regular file; `kind` is what it should be, for messages, e.g. `a trace`.
 
     Raises:
         InputError: not there, not a regular file, not readable, or beyond the bound on size.
     """
-    with _opened(Path(path), kind) as file:
-        require_size(path, os.fstat(file.fileno()).st_size)
-        return file.read()
+    with opened(Path(path), kind, replaced) as file:
+        require_size(path, size := os.fstat(file.fileno()).st_size)
+        return file.read(size)  # and not to its end, which some of the kernel's own files wait for; they have no size
 
 
 @contextmanager
-def _opened(path: Path, kind: str) -> Iterator[BufferedReader]:
-    """A regular file, open for reading; raises as `read_bytes`."""
+def opened(path: Path, kind: str, replaced: bool = False) -> Iterator[BufferedReader]:
+    """A regular file, open for reading; an input of the running command from then on, unless it is to be `replaced`.
+
+    Whatever the bench reads that is no part of it is opened here. Raises as `read_bytes`.
+    """
     give = f"give the path of {kind}"
     try:
         state = path.stat()
@@ -46,6 +63,9 @@ def _opened(path: Path, kind: str) -> Iterator[BufferedReader]:
         if not stat.S_ISREG(state.st_mode):  # a pipe may never end, a device has no end
             raise InputError(path, "found a pipe or a device", f"{give}, a regular file")
         with path.open("rb") as file:
+            touched, own = _TOUCHED.get(), _identity(os.fstat(file.fileno()))
+            if touched is not None and not replaced and own not in touched.made:
+                touched.read.add(own)
             yield file
     except FileNotFoundError as error:
         raise InputError(path, "no such file", give) from error
@@ -53,9 +73,9 @@ def _opened(path: Path, kind: str) -> Iterator[BufferedReader]:
         raise InputError(path, f"cannot be read ({reason(error)})", give) from error
 
 
-def read_text(path: str | Path, kind: str) -> str:
-    """Content of a regular file that is UTF-8 text, its line ends as they are; raises as `read_bytes`."""
-    content = read_bytes(path, kind)
+def read_text(path: str | Path, kind: str, replaced: bool = False) -> str:
+    """Content of a regular file that is UTF-8 text, its line ends as they are; arguments and errors of `read_bytes`."""
+    content = read_bytes(path, kind, replaced)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -66,8 +86,13 @@ def read_text(path: str | Path, kind: str) -> str:
 
 def sha256(path: Path) -> str:
     """SHA-256 of a regular file in hexadecimal digits; raises as `read_bytes`, but for its size."""
-    with _opened(path, "a file") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+    digest = hashlib.sha256()
+    with opened(path, "a file") as file:
+        left = os.fstat(file.fileno()).st_size
+        while left > 0 and (piece := file.read(min(left, _PIECE))):
+            digest.update(piece)
+            left -= len(piece)
+    return digest.hexdigest()
 
 
 def reason(error: Exception) -> str:
@@ -77,20 +102,26 @@ def reason(error: Exception) -> str:
 
 @contextmanager
 def keeping(inputs: Iterable[Path]) -> Iterator[None]:
-    """Within the block no output replaces one of these files, by any path or link."""
-    token = _INPUTS.set(frozenset(filter(None, map(_identity, inputs))))
+    """Until the outermost such block ends no output replaces one of these files, nor any read within, by any link."""
+    outer = _TOUCHED.get()
+    touched = outer or _Touched()
+    touched.read.update(_identity(state) for path in inputs if (state := _state(path)))
+    token = _TOUCHED.set(touched)
     try:
         yield
     finally:
-        _INPUTS.reset(token)
+        _TOUCHED.reset(token)
 
 
-def _identity(path: Path) -> tuple[int, int] | None:
-    """Device and inode of a file; None if there is none, which reading it will report."""
+def _state(path: Path) -> os.stat_result | None:
+    """Of a file; None if there is none, which reading it will report."""
     try:
-        state = path.stat()
+        return path.stat()
     except (OSError, ValueError):
         return None
+
+
+def _identity(state: os.stat_result) -> Identity:
     return state.st_dev, state.st_ino
 
 
@@ -108,7 +139,7 @@ def require_writable(path: str | Path) -> Path:
         raise InputError(path, f"cannot be written ({reason(error)})", "name a file that can be written") from error
     if state is None:
         return target
-    if (state.st_dev, state.st_ino) in _INPUTS.get():
+    if (touched := _TOUCHED.get()) is not None and _identity(state) in touched.read - touched.made:
         raise InputError(path, "is an input of this command, which an output may not replace", "name another file")
     if stat.S_ISDIR(state.st_mode):
         raise InputError(path, "found a folder", "name a file")
@@ -138,6 +169,8 @@ def whole(path: str | Path) -> Iterator[Path]:
             yield temporary
             _flush(temporary)
             temporary.replace(target)
+            if (touched := _TOUCHED.get()) is not None:
+                touched.made.add(_identity(target.stat()))
             _flush(target.parent)
         finally:
             os.close(handle)
@@ -204,8 +237,7 @@ def held(folder: Path) -> Iterator[None]:
     except (OSError, ValueError) as error:
         found = f"cannot be written to ({reason(error)})"
         raise InputError(folder, found, "name a folder that can be written to") from error
-    state = os.fstat(handle)
-    identity, before = (state.st_dev, state.st_ino), _HELD.get()
+    identity, before = _identity(os.fstat(handle)), _HELD.get()
     token = _HELD.set(before | {identity})
     try:
         if identity not in before:

@@ -1,5 +1,7 @@
 """Outputs are whole, never an input, and go where they were sent; inputs are read whatever is wrong with them."""
 
+import ast
+import json
 import os
 import signal
 import stat
@@ -12,9 +14,16 @@ import pytest
 from bench.assets import asset
 from bench.cli import app
 from bench.cli.common import REPLACED, WRITTEN
+from bench.course.grade import SEALED, seal
+from bench.course.submission import find_submissions, read_submission
 from bench.errors import InputError
-from bench.files import held, keeping, read_bytes, whole, write_text
-from tests.hostile import RIG, assert_one_line, columns, csv_of, run
+from bench.files import held, keeping, read_bytes, sha256, whole, write_text
+from bench.plant.robot import Robot
+from tests.command import bench
+from tests.hostile import RIG, ROOT, assert_one_line, columns, csv_of, run
+
+#: SHA-256 of nothing (FIPS 180-4).
+NOTHING = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"
 
 
 @pytest.fixture
@@ -60,6 +69,82 @@ def test_a_file_beside_an_output_is_no_input_either(folder):
     before = rig.read_bytes()
     assert_one_line(run("simulate", rig.name, "--out", "x.csv", cwd=folder), "x.csv.truth.json", "an input")
     assert rig.read_bytes() == before
+
+
+ARM = '<mujoco><worldbody><body><joint name="el" type="hinge"/><geom size="0.1" mass="1"/></body></worldbody></mujoco>'
+
+
+def test_what_another_file_leads_to_is_an_input_too(folder, monkeypatch):
+    """An MJCF's include, a fleet's row, a class' form: nobody gave them, and each was overwritten."""
+    monkeypatch.chdir(folder)
+    (folder / "arm.xml").write_text(ARM)
+    (folder / "robot.xml").write_text("<mujoco><include file='&#97;rm.xml'/></mujoco>")
+    (folder / "so").mkdir()
+    (folder / "so" / "summary.json").write_text(csv_of(*columns(400)))
+    (folder / "fleet.csv").write_text(f"file,rig\nfile://{folder}/so/summary.json,rig.toml\n")
+    (folder / "forms").mkdir()
+    form = "quantity,value,unit\nstudent,07,\n"
+    (folder / "forms" / "grades.csv").write_text(form)
+    content = {"schema": SEALED, "students": {"07": {"expected": {}, "truth": {}, "mistakes": {}}}}
+    (folder / "class.json").write_text(json.dumps({**content, "seal": seal(content)}))
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    with keeping([]):
+        robot = Robot.of(Path("robot.xml"), "el")
+        with pytest.raises(InputError, match=r"arm\.xml: is an input of this command"):
+            write_text("arm.xml", robot.joint)
+    for line, place in {
+        "fleet fleet.csv --out so --workers 1": "summary.json",
+        "fleet fleet.csv --out other --workers 1 --json so/summary.json": "summary.json",
+        "lab --grade forms --truth class.json --out forms": "grades.csv",
+    }.items():
+        status, _, message = bench(*line.split())
+        assert status == 2 and place in message and "is an input of this command" in message
+    assert {path: path.read_bytes() for path in before} == before
+
+
+def test_the_table_of_grades_of_an_earlier_run_is_no_form_and_what_cannot_be_read_is_told(folder):
+    (folder / "grades.csv").write_text("student,task,quantity,given\n07,1,J,2\n")
+    (folder / "x.csv").mkdir()
+    (folder / "y.csv").symlink_to("y.csv")
+    os.mkfifo(folder / "z.json")
+    (folder / "run.csv").unlink()
+    (folder / "hard.csv").unlink()
+    (folder / "link.csv").unlink()
+    assert [path.name for path in find_submissions(folder)] == ["x.csv", "y.csv", "z.json"]
+    for path in find_submissions(folder):
+        with pytest.raises(InputError, match=r"found a folder|levels of symbolic links|a pipe or a device"):
+            read_submission(path)
+
+
+@pytest.mark.parametrize("script", ["page/report.json", "page/model.toml"])
+def test_a_script_replaces_nothing_else(tmp_path, monkeypatch, script):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "page").mkdir()
+    (tmp_path / script).write_text("mine")
+    status, _, message = bench("report", "page", "--script", script)
+    assert (status, (tmp_path / script).read_text()) == (2, "mine") and "allowed: .js" in message
+
+
+#: Calls that open a file, and the modules that may: they open what is shipped with the bench, what they write, bytes
+#: that were read, or what `bench.files` has read before.
+OPENING = {"open", "read_text", "read_bytes", "from_xml_path", "from_file", "ParquetFile", "read_schema", "ZipFile"}
+SHIPPED = {"course/axis.py", "course/notebooks.py", "course/report.py", "course/catapult.py", "plant/axis_model.py"}
+SHIPPED |= {"report/html.py", "rig/motor.py"}
+WRITES = {"cli/__init__.py", "cli/check.py", "jobs/process.py", "trace/write.py", "validation/independent/case.py"}
+WRITES |= {"view/video.py"}
+BYTES = {"trace/readers/arrow.py", "trace/readers/measurement.py", "trace/readers/named_arrays.py"}
+READ_BEFORE = {"course/flights.py", "plant/mjcf_file.py", "plant/robot.py", "export/mjcf.py", "trace/stream.py"}
+COPIED = {"fleet/evaluate.py"}  # from a storage
+
+
+def test_what_is_read_is_opened_in_one_place():
+    """Anything else could be overwritten, or could be a pipe that never ends."""
+    found = set()
+    for path in (ROOT / "bench").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in OPENING:
+                found.add(path.relative_to(ROOT / "bench").as_posix())
+    assert found == {"files.py"} | SHIPPED | WRITES | BYTES | READ_BEFORE | COPIED
 
 
 def test_every_path_of_every_command_is_known_as_read_or_written():
@@ -191,8 +276,9 @@ def test_places_that_cannot_be_read(tmp_path):
             read_bytes(f"{tmp_path}/{place}", "a trace")
     with pytest.raises(InputError, match="a pipe or a device"):
         read_bytes("/dev/zero", "a trace")
-    with pytest.raises(InputError, match=r"cannot be read .*Input/output error"):
-        read_bytes("/proc/self/mem", "a trace")
+    for without_a_size in ("/proc/self/mem", "/proc/kmsg"):  # one cannot be read, the other never ends
+        if os.access(without_a_size, os.R_OK):
+            assert read_bytes(without_a_size, "a trace") == b"" and sha256(Path(without_a_size)) == NOTHING
 
 
 WRITER = """

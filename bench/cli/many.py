@@ -12,7 +12,7 @@ import bench
 from bench.cli import common
 from bench.cli.common import STDOUT, JsonOption
 from bench.errors import InputError, UndeterminedError
-from bench.files import keeping, sha256, write_text
+from bench.files import sha256, write_text
 from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
@@ -140,6 +140,9 @@ def fleet(
     memory: Annotated[float, typer.Option("--memory", help="Of one recording, in GB.", min=0.25)] = 4.0,
     workers: Annotated[int | None, typer.Option("--workers", help="Processes (preset: one a core).", min=1)] = None,
     scheduler: Annotated[str | None, typer.Option("--scheduler", help="Dask's, e.g. tcp://host:8786.")] = None,
+    storage: Annotated[
+        list[str] | None, typer.Option("--storage", help="fsspec's name of one that the manifest may name. Repeatable.")
+    ] = None,
     json: JsonOption = None,
 ) -> None:
     """Evaluate many recordings of many axes: one row each, which axes changed since when, and which need a person."""
@@ -155,12 +158,13 @@ def fleet(
     page = out / "fleet.html"
 
     def write_document(found: Fleet) -> None:
-        with keeping(found.manifest.inputs):
-            write_text(out / SUMMARY, fleet_json(found, basis) + "\n")
-            write_html(page, fleet_document(found, SUMMARY, basis))
+        write_text(out / SUMMARY, fleet_json(found, basis) + "\n")
+        write_html(page, fleet_document(found, SUMMARY, basis))
 
     with progress(f"evaluating {manifest.name}") as done:
-        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, write_document)
+        found = run_fleet(
+            manifest, out, diagnose, retry, limits, workers, scheduler, done, write_document, storage or ()
+        )
     if json is not None:
         common.write_json(json, fleet_json(found, basis))
     common.tell(fleet_document(found, SUMMARY, basis), (out / TABLE, out / SUMMARY, page), json)

@@ -11,7 +11,7 @@ import bench
 from bench.cli import common
 from bench.cli.common import ReportOption, RigOption
 from bench.errors import InputError
-from bench.files import held, write_text
+from bench.files import held, read_text, write_text
 from bench.names import nearest, readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
@@ -111,9 +111,7 @@ def rigs(
             name, f"no shipped rig and no file{nearest(name, list(shipped))}", f"allowed: {', '.join(shipped)}"
         )
     if out is not None:
-        if out.exists() and out.resolve() == path.resolve():
-            raise InputError(out, "found the rig itself", "allowed: another file")
-        write_text(out, path.read_text(encoding="utf-8"))
+        write_text(out, read_text(path, "a rig file"))
         common.list_files([out])
     rig = bench.load_rig(path)
     typer.echo(f"{rig.name}, {rig.kind}")

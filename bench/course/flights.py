@@ -17,7 +17,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.bounds import read_bounded
 from bench.errors import InputError
-from bench.files import read_bytes
+from bench.files import opened, read_bytes
 from bench.trace.readers.named_arrays import load_mat
 from bench.units import convert, dimensionality
 from bench.units.conversion import spelled_for_pint
@@ -135,7 +135,7 @@ def _files(path: Path) -> Iterator[tuple[str, bytes]]:
                 yield str(file), read_bytes(file, "a table of points")
     elif path.suffix.lower() == ".zip":
         try:
-            with zipfile.ZipFile(path) as archive:
+            with opened(path, "a zip of tables") as file, zipfile.ZipFile(file) as archive:
                 for name in sorted(archive.namelist()):
                     hidden = name.startswith("__MACOSX") or Path(name).name.startswith(".")
                     if Path(name).suffix.lower() in ENDINGS and not hidden:

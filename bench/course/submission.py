@@ -8,12 +8,15 @@ from pathlib import Path
 
 from bench.course.flights import text_of
 from bench.errors import InputError
+from bench.files import read_bytes
 from bench.names import nearest
 from bench.structured import parse_json
 from bench.units.conversion import spelled_for_pint
 
 #: Name of the form, and endings of filled ones.
 FORM, ENDINGS = "answers.csv", (".csv", ".json")
+#: How a form begins; the table of grades that an earlier run wrote begins with student,task.
+_FORM = re.compile(r'\W*"?(quantity|student(?!\W*task)|schema)', re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 #: Powers and products as people write them.
 _SIGNS = str.maketrans({"²": "**2", "³": "**3", "·": "*", "^": "**", "Ω": "ohm"})
@@ -99,7 +102,12 @@ def find_submissions(folder: Path) -> list[Path]:
 
 
 def _is_form(path: Path) -> bool:
-    return bool(re.match(r'\W*"?(quantity|student|schema)', text_of(path.read_bytes())[:200], re.IGNORECASE))
+    """Whether it looks like one; what cannot be read is told as a form that cannot."""
+    try:
+        content = read_bytes(path, "a filled form", replaced=True)
+    except InputError:
+        return True
+    return bool(_FORM.match(text_of(content)[:200]))
 
 
 def read_submission(path: Path) -> Submission:
@@ -108,7 +116,7 @@ def read_submission(path: Path) -> Submission:
     Raises:
         InputError: a row that cannot be read, a quantity that is not asked for or given twice, or no student.
     """
-    text = text_of(path.read_bytes())
+    text = text_of(read_bytes(path, "a filled form"))
     entries = _of_json(text, path) if path.suffix.lower() == ".json" else _of_csv(text, path)
     names = {question.name.lower(): question.name for question in QUESTIONS}
     student, answers = "", {}

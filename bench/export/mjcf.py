@@ -25,10 +25,11 @@ import numpy as np
 
 from bench.effects.mjcf import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.errors import InputError
-from bench.files import read_bytes, reason
 from bench.names import nearest, plain
 from bench.plant.axis_model import NO_MASS, STICKING_IMPEDANCE, AxisModel, disk_inertia
+from bench.plant.mjcf_file import require_compiles
 from bench.plant.model_file import StoredModel
+from bench.plant.run import silenced
 
 #: The body of a file that holds the joint alone.
 BODY = "load"
@@ -136,13 +137,10 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
 
 
 def read_mjcf(path: Path) -> mujoco.MjSpec:
-    """Editable model of an MJCF file; InputError if there is no such file, or MuJoCo does not read it."""
-    read_bytes(path, "an MJCF file")
-    try:
+    """Editable model of an MJCF file; InputError if there is no such file, or MuJoCo makes no model of it."""
+    require_compiles(path)
+    with silenced():
         return mujoco.MjSpec.from_file(str(path))
-    except (ValueError, OSError) as error:
-        message = " ".join(reason(error).split())
-        raise InputError(path, f"MuJoCo does not read it: {message}", "allowed: MJCF") from error
 
 
 def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature | None = None) -> Carried:

@@ -12,6 +12,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -26,6 +27,9 @@ from bench.fit.identify import identify
 from bench.fleet.manifest import Manifest
 from bench.gate.check import Check
 from bench.gate.gate import UnanswerableError
+from bench.jobs.each import each
+from bench.jobs.process import Failure, Limits
+from bench.names import short
 from bench.parameter import Parameter
 from bench.rig.rig import Rig, load_rig
 from bench.structured import json_text, parse_json
@@ -35,6 +39,8 @@ from bench.trace.stream import cut
 from bench.trace.trace import Trace, assemble
 
 SCHEMA = "bench.fleet.recording/1"
+#: Storages that a manifest may name: those that only send files. fsspec knows others that start programs or unpack.
+STORAGES = ("https", "http", "s3", "gs", "gcs", "az", "abfs", "sftp", "ssh")
 #: What a recording is called in what is said of it: the same whatever its path is, and wherever it was copied to.
 CALLED = "recording"
 #: Bytes copied from a storage at a time.
@@ -142,11 +148,14 @@ def _known(value: Any) -> Any:  # noqa: ANN401 - whatever JSON has
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def marked(url: str) -> str:
+def marked(url: str, storages: Sequence[str] = STORAGES) -> str:
     """What the storage calls this version of a file, without reading it: changes whenever the file does.
 
-    InputError where there is no such file, or a storage that cannot be reached or is not known.
+    InputError where there is no such file, or a storage that is not one of these, or cannot be reached.
     """
+    if other := [name for link in url.split("::") if (name := link.partition("://")[0]) not in storages]:
+        allowed = f"allowed: {', '.join(storages)}, or a path; --storage allows another that fsspec knows"
+        raise InputError(url, f"found the storage '{short(other[0])}'", allowed)
     with _errors_as_input(url):
         storage, path = url_to_fs(url)
         return str(storage.ukey(path))
@@ -194,45 +203,73 @@ class PlannedRecording:
     basis: Plain
 
 
-def plan(manifest: Manifest, diagnose: bool, progress: Callable[[float], None]) -> list[PlannedRecording]:
-    """Every recording of the manifest, in its order; InputError where an effect of another package is none."""
+def plan(
+    manifest: Manifest,
+    diagnose: bool,
+    storages: Sequence[str],
+    limits: Limits | None,
+    workers: int | None,
+    progress: Callable[[float], None],
+) -> list[PlannedRecording]:
+    """Every recording of the manifest, in its order; InputError where an effect of another package is none.
+
+    Rigs are read and recordings told apart in worker processes, within the limits of one recording.
+    """
     options: Plain = {"diagnose": diagnose, "bounds": [str(value) for value in asdict(bounds()).values()]}
     if diagnose:
         from bench.effects.catalogue import catalogue
 
         options["effects"] = sorted(catalogue())
-    rigs: dict[str, tuple[Rig, str] | InputError] = {}
-    planned = []
-    columns = (manifest.located("file"), manifest.located("rig"), manifest.text("axis"))
-    for number, (place, rig, axis) in enumerate(zip(*columns, strict=True)):
-        if rig not in rigs:
-            rigs[rig] = _rig(Path(rig))
-        planned.append(_planned(place, axis, rigs[rig], options))
-        progress(number / len(manifest))
-    return planned
+
+    places, rigs, axes = manifest.located("file"), manifest.located("rig"), manifest.text("axis")
+    asked = [*((_rig, rig) for rig in dict.fromkeys(rigs)), *((_marked, place) for place in dict.fromkeys(places))]
+    known = dict[tuple[object, str], Any]()
+    for number, result in each(partial(_asked, (*STORAGES, *storages), bounds()), asked, limits, workers):
+        known[asked[number]] = asdict(result) if isinstance(result, Failure) else result
+        progress(len(known) / len(asked))
+    rows = zip(places, axes, rigs, strict=True)
+    return [_planned(place, known[_marked, place], axis, known[_rig, rig], options) for place, axis, rig in rows]
 
 
-def _rig(path: Path) -> tuple[Rig, str] | InputError:
+def _asked(storages: Sequence[str], limits: Bounds, asked: tuple[Callable[[str, Sequence[str]], Any], str]) -> Any:  # noqa: ANN401
+    """What `_rig` or `_marked` tells of a file."""
+    with within(limits):
+        return asked[0](asked[1], storages)
+
+
+def _rig(named: str, _: Sequence[str]) -> tuple[Rig, str] | Plain:
     """A rig with the hash of its file, under a name that is the same wherever it lies; or what is wrong with it."""
     try:
-        return load_rig(path).model_copy(update={"source": "rig"}), sha256(path)
+        return load_rig(named).model_copy(update={"source": "rig"}), sha256(Path(named))
     except InputError as error:
-        return InputError(error.where.replace(str(path), "rig"), error.found, error.allowed)
+        return refused(str(InputError(error.where.replace(named, "rig"), error.found, error.allowed)))
 
 
-def _planned(place: str, axis: str, rig: tuple[Rig, str] | InputError, options: Plain) -> PlannedRecording:
+def _marked(place: str, storages: Sequence[str]) -> str | Plain:
+    """What tells a recording's file from any other content, or why it cannot be read."""
+    try:
+        return marked(place, storages) if "://" in place else sha256(Path(place))
+    except InputError as error:
+        return refused(str(error).replace(place, CALLED))
+
+
+def _planned(
+    place: str, mark: str | Plain, axis: str, rig: tuple[Rig, str] | Plain, options: Plain
+) -> PlannedRecording:
     """A recording with all that its result depends on: beside trace, axis and rig the version and the options."""
     basis: Plain = {"version": __version__, "rig_sha256": None, "options": options}
-    if isinstance(rig, InputError):
-        return PlannedRecording("", None, refused(str(rig)), basis)
+    if isinstance(rig, dict):
+        return PlannedRecording("", None, rig, basis)
     basis["rig_sha256"] = rig[1]
-    try:
-        mark = marked(place) if "://" in place else sha256(Path(place))
-    except InputError as error:
-        return PlannedRecording("", None, refused(str(error).replace(place, CALLED)), basis)
+    if isinstance(mark, dict):
+        return PlannedRecording("", None, mark, basis)
     parts = {"trace": mark, "axis": axis, **basis}
-    key = hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
-    return PlannedRecording(key, Job(place, axis, rig[0], options["diagnose"], bounds()), None, basis)
+    return PlannedRecording(_digest(parts), Job(place, axis, rig[0], options["diagnose"], bounds()), None, basis)
+
+
+def _digest(content: Mapping[str, Any]) -> str:
+    """SHA-256 of plain data in hexadecimal digits."""
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -246,16 +283,18 @@ class Store:
         return self.folder / key[:2] / f"{key}.json"
 
     def get(self, key: str) -> Plain | None:
-        """A result; None if there is none, or it is damaged."""
+        """A result; None if there is none, or it is not as it was put."""
         path = self.path(key)
         if not path.exists():
             return None
         try:
-            found = parse_json(read_text(path, "a result"), path)
+            found = parse_json(read_text(path, "a result", replaced=True), path)
         except InputError:
             return None
-        return found if isinstance(found, dict) and found.get("schema") == SCHEMA else None
+        sound = isinstance(found, dict) and found.pop("sha256", None) == _digest(found)
+        return found if sound and found.get("schema") == SCHEMA else None
 
     def put(self, key: str, result: Mapping[str, Any]) -> None:
         """Keep a result; InputError where the folder cannot be written to."""
-        write_text(self.path(key), json_text({"schema": SCHEMA, **result}) + "\n")
+        content = {"schema": SCHEMA, **result}
+        write_text(self.path(key), json_text({**content, "sha256": _digest(content)}) + "\n")

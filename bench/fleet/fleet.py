@@ -21,6 +21,8 @@ from bench.jobs.process import Failure, Limits
 
 #: Statuses that another try may change.
 UNLUCKY = ("failed", "timed_out")
+#: Of a recording whose result was in the store before, and no longer is.
+LOST = {"status": "failed", "reason": "its result was removed from the folder, or changed, while the fleet ran"}
 TABLE = "fleet.parquet"
 #: Share of the progress until it is known what is missing.
 PLANNING = 0.05
@@ -49,6 +51,7 @@ def fleet(
     scheduler: str | None = None,
     progress: Callable[[float], None] = lambda share: None,
     finish: Callable[[Fleet], None] = lambda found: None,
+    storages: Sequence[str] = (),
 ) -> Fleet:
     """Evaluate what has no result yet, and write the table of all.
 
@@ -60,6 +63,7 @@ def fleet(
         limits, workers, scheduler: as `bench.jobs.each.each` has them.
         progress: called with the share done.
         finish: called with what was found while no other run writes to the folder.
+        storages: that the manifest may name beside `bench.fleet.evaluate.STORAGES`, by fsspec's names.
 
     Raises:
         InputError: a bad manifest, a folder that cannot be written to, or no scheduler at the address.
@@ -68,14 +72,14 @@ def fleet(
     tabulate(replace(manifest, table=manifest.table.slice(0, 0)), [], [])  # names that clash are told before any work
     with keeping(manifest.inputs), held(out):
         require_writable(out / TABLE)
-        planned = plan(manifest, diagnose, lambda share: progress(PLANNING * share))
+        planned = plan(manifest, diagnose, storages, limits, workers, lambda share: progress(PLANNING * share))
         store = Store(out / "results")
         missing = _missing(store, planned, retry)
         keys = list(missing)
         for count, (place, result) in enumerate(each(evaluate, missing.values(), limits, workers, scheduler), 1):
             store.put(keys[place], asdict(result) if isinstance(result, Failure) else result)
             progress(PLANNING + (1.0 - PLANNING) * count / len(keys))
-        results = [one.refusal or store.get(one.key) or {} for one in planned]
+        results = [one.refusal or store.get(one.key) or dict(LOST) for one in planned]
         write_table(out / TABLE, tabulate(manifest, planned, results))
         found = Fleet(manifest, summarise(manifest, planned, results), len(keys))
         finish(found)

@@ -36,8 +36,8 @@ class Manifest:
 
     def located(self, column: str) -> list[str]:
         """Paths and URLs of `file` or `rig` (n,): a relative path begins at the manifest's folder."""
-        folder = self.path.parent
-        return [named if "://" in named else str(folder / named) for named in self.text(column)]
+        folder, named = self.path.parent, (one.removeprefix("file://") for one in self.text(column))
+        return [one if "://" in one else str(folder / one) for one in named]
 
     @property
     def inputs(self) -> list[Path]:

@@ -64,12 +64,14 @@ class Failure:
 class WorkerProcess(Generic[Item, Result]):
     """The process, started with the first piece of work and again after it had to be stopped.
 
-    The work is a picklable function of one item, and neither prints nor writes.
+    The work is a picklable function of one item, and neither prints nor writes. `took` is the time of the last piece
+    without that of a start - s.
     """
 
     def __init__(self, work: Callable[[Item], Result], limits: Limits) -> None:
         self._work, self._limits = work, limits
         self._running: tuple[subprocess.Popen[bytes], Connection] | None = None
+        self.took = 0.0
 
     def __enter__(self) -> WorkerProcess[Item, Result]:
         return self
@@ -108,12 +110,14 @@ class WorkerProcess(Generic[Item, Result]):
 
     def _waited(self, process: subprocess.Popen[bytes], calls: Connection) -> Failure | None:
         """The limit that it exceeded; None once there is an answer, or the process has died."""
-        end = time.monotonic() + self._limits.deadline
-        while not calls.poll(min(LOOK, max(0.0, end - time.monotonic()))):
-            if time.monotonic() >= end:
+        began, self.took = time.monotonic(), 0.0
+        while not calls.poll(min(LOOK, max(0.0, self._limits.deadline - self.took))):
+            self.took = time.monotonic() - began
+            if self.took >= self._limits.deadline:
                 return Failure("timed_out", f"no result within {self._limits.deadline:g} s")
             if _memory(process.pid) > self._limits.memory:
                 return Failure("failed", f"its worker was killed (it took more than {shown(self._limits.memory)})")
+        self.took = time.monotonic() - began
         return None
 
 

@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.errors import InputError
-from bench.files import read_bytes
 from bench.names import nearest
+from bench.plant.mjcf_file import require_compiles
+from bench.plant.run import silenced
 from bench.rig.load import Load
 from bench.rig.rig import Rig
 from bench.trace.channel import Recording
@@ -57,11 +58,9 @@ def joint_names(path: Path) -> list[str]:
 
 
 def _loaded(path: Path) -> mujoco.MjModel:
-    read_bytes(path, "an MJCF file")
-    try:
+    require_compiles(path)
+    with silenced():
         return mujoco.MjModel.from_xml_path(str(path))
-    except ValueError as error:
-        raise InputError(path, f"MuJoCo refuses it: {' '.join(str(error).split())}", "allowed: MJCF") from error
 
 
 @dataclass(frozen=True, eq=False)

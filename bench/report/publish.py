@@ -55,9 +55,13 @@ def write_html(path: Path, document: Document) -> None:
     Raises:
         InputError: another ending than .html, or a place that cannot be written to.
     """
-    if path.suffix.lower() not in (".html", ".htm"):
-        raise InputError(path, f"found the ending '{path.suffix}'", "allowed: .html")
+    _require_ending(path, ".html", ".htm")
     write_text(path, html(document))
+
+
+def _require_ending(path: Path, *endings: str) -> None:
+    if path.suffix.lower() not in endings:
+        raise InputError(path, f"found the ending '{path.suffix}'", f"allowed: {endings[0]}")
 
 
 def rebuild(folders: list[Path], script: Path | None = None) -> list[Path]:
@@ -68,8 +72,10 @@ def rebuild(folders: list[Path], script: Path | None = None) -> list[Path]:
         script: file to write that all of them share; each holds its own without.
 
     Raises:
-        InputError: a folder without a page's data, or data of something else.
+        InputError: a folder without a page's data, or data of something else; a script that is not named .js.
     """
+    if script is not None:
+        _require_ending(script, ".js", ".mjs")
     documents = {folder: read_document(folder / DATA) for folder in folders}
     written = []
     if script is not None:

@@ -14,6 +14,7 @@ from bench.allocation import keep_freed_memory
 from bench.arrays import Array
 from bench.bounds import require_ratio
 from bench.errors import InputError
+from bench.files import opened
 from bench.names import readable
 from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions, choose, reading_options
@@ -51,12 +52,10 @@ def stream(
 def _is_parquet(path: Path) -> bool:
     """Whether a file is Parquet without timestamps, which count from the first one, unknown to later chunks."""
     try:
-        if not path.is_file() or readable(path) != str(path):  # a pipe waits for its writer; Arrow opens UTF-8 names
-            return False
-        with path.open("rb") as file:
-            parquet = file.read(len(MAGIC)) == MAGIC
+        with opened(path, "a trace") as file:
+            parquet = readable(path) == str(path) and file.read(len(MAGIC)) == MAGIC  # Arrow opens UTF-8 names
         return parquet and not any(is_moment(field.type) for field in pq.read_schema(str(path)))
-    except (*DAMAGE, ValueError):
+    except (*DAMAGE, InputError, ValueError):
         return False  # `read` says what is wrong with it
 
 

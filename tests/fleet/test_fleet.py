@@ -23,6 +23,7 @@ from tests.fit.motions import NAMES, Truth, recording
 from tests.fleet.made import DAMAGES, fleet_of
 from tests.fleet.storage import Deadly, Never, offer
 
+STORAGES = ("never", "deadly")
 LIMITS = Limits(deadline=12.0)  # far beyond what a busy machine takes for the others
 
 
@@ -65,7 +66,11 @@ def cluster(broken_storage):
 def found(made):
     """What one process makes of it."""
     out = made.parent / "out"
-    return fleet(made, out, limits=LIMITS, workers=1), out, pq.read_table(out / "fleet.parquet").to_pylist()
+    return (
+        fleet(made, out, storages=STORAGES, limits=LIMITS, workers=1),
+        out,
+        pq.read_table(out / "fleet.parquet").to_pylist(),
+    )
 
 
 def test_every_recording_has_a_row_in_the_manifests_order(made, found):
@@ -117,20 +122,20 @@ def test_only_what_is_missing_is_done_and_the_table_is_the_same_to_the_byte(made
     first, out, _ = found
     assert first.evaluated == 16 + 5 + 2 + 1  # all but what cannot be begun: missing, pipe, no rig
     table = (out / "fleet.parquet").read_bytes()
-    again = fleet(made, out, limits=LIMITS, workers=1)
+    again = fleet(made, out, storages=STORAGES, limits=LIMITS, workers=1)
     assert again.evaluated == 0
     assert (out / "fleet.parquet").read_bytes() == table
     results = sorted((out / "results").rglob("*.json"))
     results[0].unlink()
     results[1].write_text("{")
     (out / "fleet.parquet").unlink()
-    assert fleet(made, out, limits=LIMITS, workers=1).evaluated == 2
+    assert fleet(made, out, storages=STORAGES, limits=LIMITS, workers=1).evaluated == 2
     assert (out / "fleet.parquet").read_bytes() == table
 
 
 def test_on_dask_the_table_is_the_same_to_the_byte(made, found, cluster):
     out = made.parent / "on_dask"
-    assert fleet(made, out, limits=LIMITS, scheduler=cluster.scheduler_address).evaluated == 24
+    assert fleet(made, out, storages=STORAGES, limits=LIMITS, scheduler=cluster.scheduler_address).evaluated == 24
     assert (out / "fleet.parquet").read_bytes() == (found[1] / "fleet.parquet").read_bytes()
 
 
@@ -172,7 +177,9 @@ def test_who_needs_a_person_is_reported_gravest_first(found):
 
 def test_the_command_prints_and_writes_what_it_found(made, found):
     out = made.parent / "out"
-    status, printed, _ = bench("fleet", made, "--out", out, "--workers", 1)
+    status, printed, _ = bench(
+        "fleet", made, "--out", out, "--workers", 1, *(word for one in STORAGES for word in ("--storage", one))
+    )
     assert status == 0
     for told in ("27 recordings of 3 axes", "17 done, 8 refused, 1 failed, 1 timed out", "0 evaluated now"):
         assert told in printed

@@ -115,7 +115,7 @@ def _run(folder: Path, manifest: Path, out: str, deadline: float) -> subprocess.
     """The command, in a group of processes of its own."""
     path = os.pathsep.join([str(ROOT), str(folder / "site")])
     command = [sys.executable, "-m", "bench", "fleet", str(manifest), "--out", str(folder / out)]
-    command += ["--deadline", f"{deadline:g}", "--workers", "2"]
+    command += ["--deadline", f"{deadline:g}", "--workers", "2", "--storage", "never", "--storage", "deadly"]
     environment = {**os.environ, "PYTHONPATH": path}
     return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True)
 

@@ -1,0 +1,93 @@
+"""An MJCF that a person gives: every file that it names is known as read, and it is first compiled where that can be
+stopped.
+
+MuJoCo opens by itself what an MJCF includes and shows, waits for a pipe among it, and ends its process where a replica
+or a height field takes more memory than there is.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from functools import lru_cache
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from bench.errors import InputError
+from bench.files import read_bytes, read_text
+from bench.jobs.process import Failure, Limits, WorkerProcess
+from bench.plant.run import silenced
+
+#: Within which a robot compiles; one of a hundred meshes takes seconds.
+LIMITS = Limits(deadline=60.0)
+_FILE, _FOLDER = (re.compile(rf"""\b{name}\s*=\s*(?:"([^"]*)"|'([^']*)')""") for name in (r"file\w*", r"\w+dir"))
+#: An attribute of numbers that are none: to MuJoCo a mass of nan is one that was not given.
+_NAN = re.compile(r"""\b(\w+)\s*=\s*["']([\s\d.eE+-]*\bnan\b[^"'<]*)["']""", re.IGNORECASE)
+#: Fields of a compiled model that are finite in any that means something.
+FINITE = ("qpos0", "body_mass", "body_inertia", "dof_armature", "dof_damping", "dof_frictionloss", "jnt_stiffness")
+
+
+def require_compiles(path: Path) -> None:
+    """Register an MJCF and the files that it names as read.
+
+    Raises:
+        InputError: one of them is not a regular file, or MuJoCo does not make a model of it within LIMITS.
+    """
+    _read_all(path)
+    fault = _outcome(str(path), path.stat().st_mtime_ns)
+    if isinstance(fault, Failure):
+        raise InputError(path, f"MuJoCo makes no model of it: {fault.reason}", "allowed: MJCF that it compiles")
+    if fault:
+        raise InputError(path, f"MuJoCo refuses it: {fault}", "allowed: MJCF")
+
+
+@lru_cache(maxsize=1)
+def _outcome(path: str, _changed: int) -> str | Failure:
+    """What the process says, once of a robot of many joints."""
+    with WorkerProcess(_fault, LIMITS) as process:
+        return process.do(path)
+
+
+def _fault(path: str) -> str:
+    """Why an MJCF is none; empty if it is one."""
+    with silenced():
+        try:
+            model = mujoco.MjSpec.from_file(path).compile()
+            mujoco.mj_forward(model, mujoco.MjData(model))
+        except (ValueError, OSError, RuntimeError, mujoco.FatalError, UnicodeError) as error:
+            return " ".join(str(error).split())
+    wrong = [field for field in FINITE if not np.isfinite(getattr(model, field)).all()]
+    return f"{wrong[0]} is not finite" if wrong else ""
+
+
+def _read_all(path: Path) -> None:
+    """Read an MJCF and, where they are, the files that it and those name; each folder that is named may be theirs."""
+    folders, waiting, seen = [path.parent], [path], set[Path]()
+    while waiting:
+        file = waiting.pop()
+        text = _text(file)
+        named = {Path(html.unescape(double or single)) for double, single in _FILE.findall(text)}
+        folders += [file.parent, *(path.parent / html.unescape(one or two) for one, two in _FOLDER.findall(text))]
+        found = {folder / name for folder in dict.fromkeys(folders) for name in named}
+        seen.add(file)
+        waiting += [one for one in found - seen if _is_there(one)]
+        seen |= found
+
+
+def _text(path: Path) -> str:
+    """Of an MJCF; empty of a mesh or a picture, which names nothing."""
+    if not read_bytes(path, "an MJCF file").lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
+        return ""
+    text = read_text(path, "an MJCF file")
+    if wrong := _NAN.search(text):
+        raise InputError(f"{path}: {wrong[1]}", f"found {wrong[2]}", "allowed: numbers")
+    return text
+
+
+def _is_there(path: Path) -> bool:
+    try:
+        return path.exists() and not path.is_dir()
+    except (OSError, ValueError):
+        return False
