@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from bench.export.effects import Effects
     from bench.fit.estimate import Estimate
     from bench.fit.identify import identify
+    from bench.joints.robot import IdentifiedRobot, robot
     from bench.plant.simulate import simulate
     from bench.rig.rig import Rig, load_rig
     from bench.trace.read import read
@@ -27,6 +28,7 @@ __all__ = [
     "Diagnosis",
     "Effects",
     "Estimate",
+    "IdentifiedRobot",
     "InputError",
     "Rig",
     "Trace",
@@ -38,6 +40,7 @@ __all__ = [
     "load_rig",
     "read",
     "replay",
+    "robot",
     "simulate",
 ]
 __version__ = "0.1.0"
@@ -48,6 +51,7 @@ _MODULES = {
     "Diagnosis": "bench.diagnosis.show",
     "Effects": "bench.export.effects",
     "Estimate": "bench.fit.estimate",
+    "IdentifiedRobot": "bench.joints.robot",
     "Rig": "bench.rig.rig",
     "Trace": "bench.trace.trace",
     "check": "bench.baseline.check",
@@ -56,6 +60,7 @@ _MODULES = {
     "load_rig": "bench.rig.rig",
     "read": "bench.trace.read",
     "replay": "bench.diagnosis.replay",
+    "robot": "bench.joints.robot",
     "simulate": "bench.plant.simulate",
 }
 

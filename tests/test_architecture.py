@@ -28,7 +28,7 @@ LAYERS = (
     {"fit"},
     {"friction_map"},
     {"diagnosis"},
-    {"baseline", "validation", "fleet", "export", "view"},
+    {"baseline", "validation", "fleet", "export", "view", "joints"},
     {"report"},
     {"course"},  # a guest: nothing but its commands imports it
     {"demo"},

@@ -14,6 +14,7 @@ import pytest
 import bench
 from bench.assets import asset
 from bench.trace.write import write
+from tests.export.two_links import HIDDEN, MJCF, log, write_log
 from tests.fit.motions import Truth, recording
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -110,10 +111,13 @@ def test_the_examples_of_the_manual_run_and_find_the_truth(tmp_path, monkeypatch
     shutil.copy(asset("data", "rigs", "sh30701p.toml"), "lab.toml")
     for number in (1, 2):
         write(with_cogging(number), f"run{number}.csv.gz")
+    Path("robot.xml").write_text(MJCF)
+    write_log("log.csv", log())
     names = {}
     for block in EXAMPLES:
         exec(compile(block, "docs/api.md", "exec"), names)
     assert names["inertia"].value == pytest.approx(Truth().inertia, rel=0.01)
+    assert names["elbow"].parameters["armature"].value == pytest.approx(HIDDEN.armature, rel=0.01)
     assert names["mine"].units["velocity"] == "rad/s"
     assert [effect.name for effect in names["found"].effects] == ["cogging_torque"]
     assert names["found"].effects[0].parameters["amplitude"].value == pytest.approx(COGGING, rel=0.05)

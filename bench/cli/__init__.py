@@ -31,6 +31,7 @@ from bench.cli.lab import lab
 from bench.cli.many import fleet, validate
 from bench.cli.model import compensate, export, replay, view
 from bench.cli.recording import friction, inspect, limits
+from bench.cli.robot import robot
 from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate
 from bench.errors import BenchError, InputError
 from bench.names import plain, short
@@ -57,6 +58,7 @@ COMMANDS = (
     inspect,
     identify,
     diagnose,
+    robot,
     replay,
     view,
     friction,

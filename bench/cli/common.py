@@ -237,11 +237,11 @@ def subject(
 
     robot = Robot.of(mjcf, joint)
     within = joint_rig(None if rig is None else bench.load_rig(rig).on_axis(axis), robot)
-    stands = _positions(at or (), robot.units)
+    stands = positions(at or (), robot.units)
     return Subject(within, lambda path: read_log(path, within, robot, stands), robot=True)
 
 
-def _positions(texts: Sequence[str], units: dict[str, str]) -> dict[str, float]:
+def positions(texts: Sequence[str], units: dict[str, str]) -> dict[str, float]:
     """Positions - rad (m) - of joints from `NAME=0.3 rad`; a number without unit is SI."""
     from bench.effects.present import parse_value
 

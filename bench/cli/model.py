@@ -141,7 +141,7 @@ def export(
 def _text(
     stored: StoredModel, out: Path, mjcf: Path | None, joint: str | None, armature: str | None
 ) -> tuple[str, Carried]:
-    from bench.export.mjcf import ArmatureShare, joint_alone, robot_with
+    from bench.export.mjcf import ArmatureShare, armature_of, joint_alone, robot_with
 
     if mjcf is None:
         return joint_alone(stored, joint or ALONE)
@@ -150,7 +150,8 @@ def _text(
     shares = {share.value: share for share in ArmatureShare}
     if armature is not None and armature not in shares:
         raise InputError("--armature", f"found '{armature}'", f"allowed: {', '.join(shares)}")
-    return robot_with(mjcf, joint, stored, out, shares.get(armature or ""))
+    text, carried = robot_with(mjcf, {joint: (stored, armature_of(stored, shares.get(armature or "")))}, out)
+    return text, carried[0]
 
 
 def compensate(

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -89,28 +90,28 @@ class Carried:
 
 
 def robot_with(
-    path: Path, joint: str, stored: StoredModel, out: Path, share: ArmatureShare | None
-) -> tuple[str, Carried]:
-    """Text of a robot's MJCF with a model at a joint, and what went onto it.
+    path: Path, models: Mapping[str, tuple[StoredModel, Armature | None]], out: Path
+) -> tuple[str, list[Carried]]:
+    """Text of a robot's MJCF with models at its joints, and what went onto each.
 
     Args:
         path: of the robot's MJCF.
-        joint: of it.
-        stored: the model.
+        models: of joints by their names, each with its armature; None: that of the MJCF stays.
         out: where the text will stand, from where its meshes and textures are found.
-        share: of the model's inertia that becomes the joint's armature; None: what the model tells.
 
     Raises:
-        InputError: the MJCF cannot be read, or cannot have the model at this joint.
+        InputError: the MJCF cannot be read, or cannot have a model at its joint.
     """
-    spec = read_mjcf(path)
-    carried = onto(spec, joint, stored, armature_of(stored, share))
+    spec, carried = read_mjcf(path), []
+    for name, (stored, armature) in models.items():
+        kept = Armature(float(joint_of(spec, name, stored.model).armature), "the MJCF's own")
+        carried.append(onto(spec, name, stored, armature or kept))
     compiled(spec)
     for folder in ("meshdir", "texturedir"):
         where = path.resolve().parent / (getattr(spec, folder) or "")
         setattr(spec, folder, os.path.relpath(where, out.resolve().parent))
     spec.modelfiledir = str(out.resolve().parent)  # writing compiles once more
-    return commented(spec, carried.lines), carried
+    return commented(spec, tuple(line for each in carried for line in each.lines)), carried
 
 
 def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:

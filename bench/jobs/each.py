@@ -1,20 +1,24 @@
-"""Do the same work on many items: in one worker process if that is faster, else on Dask."""
+"""Do the same work on many items: in worker processes beside this one, or on the workers of a Dask cluster."""
 
 from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from queue import Empty, SimpleQueue
 from statistics import median
-from typing import TypeVar
+from threading import Thread
+from typing import Generic, TypeVar
 
-from bench.jobs.process import Failure, Limits, WorkerProcess
+from bench.jobs.process import LOOK, Failure, Limits, WorkerProcess
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-#: Time that Dask takes to load, start and stop - s (7 s measured on two busy cores).
-DASK_STARTS = 7.0
+#: Time that a process takes to start and to load the bench - s (1 to 2 s measured).
+STARTS = 1.5
+#: Pieces by which it is judged how long one takes.
+RECENT = 20
 
 
 def each(
@@ -33,29 +37,80 @@ def each(
         work: a picklable function of one item.
         items: picklable.
         limits: of one item.
-        workers: processes on this machine; None: one a core.
+        workers: most processes on this machine; None: one a core. There are as many as pay.
         scheduler: address of a Dask cluster that does the work instead.
 
     Raises:
         InputError: no Dask scheduler answers at the address.
     """
     limits = limits or Limits()
-    waiting = deque(enumerate(items))
-    workers = workers or os.cpu_count() or 1
-    if scheduler is None:
-        seconds: list[float] = []
-        with WorkerProcess(work, limits) as process:
-            while waiting and not _worth_dask(seconds, len(waiting), workers):
-                place, item = waiting.popleft()
-                outcome = process.do(item)
-                seconds.append(process.took)  # without its start, which Dask's workers need too
-                yield place, outcome
-    if waiting:
+    numbered = deque(enumerate(items))
+    if scheduler is not None and numbered:
         from bench.jobs.on_dask import on_dask  # Dask: a second
 
-        yield from on_dask(work, waiting, limits, workers, scheduler)
+        yield from on_dask(work, numbered, limits, scheduler)
+    else:
+        side_by_side = _SideBySide(work, limits, numbered)
+        try:
+            yield from side_by_side.outcomes(workers or os.cpu_count() or 1)
+        finally:
+            side_by_side.end()
 
 
-def _worth_dask(seconds: list[float], left: int, workers: int) -> bool:
-    """Whether several workers save more time than Dask takes to start, judged by the items so far."""
-    return bool(seconds) and left * median(seconds) * (1.0 - 1.0 / workers) > DASK_STARTS
+class _SideBySide(Generic[Item, Result]):
+    """Threads, each with a worker process, that take from what is waiting."""
+
+    def __init__(self, work: Callable[[Item], Result], limits: Limits, waiting: deque[tuple[int, Item]]) -> None:
+        self._work, self._limits, self._waiting = work, limits, waiting
+        self._done: SimpleQueue[tuple[int, Result | Failure, float] | Exception] = SimpleQueue()
+        self._threads: list[Thread] = []
+        self._processes: list[WorkerProcess[Item, Result]] = []
+
+    def outcomes(self, most: int) -> Iterator[tuple[int, Result | Failure]]:
+        """As `each` has them; a process more is started where what waits takes longer than its start."""
+        seconds: deque[float] = deque(maxlen=RECENT)
+        left = len(self._waiting)
+        while left:
+            while self._waiting and len(self._threads) < most and self._worth_one_more(seconds):
+                self._start()
+            try:
+                outcome = self._done.get(timeout=STARTS)
+            except Empty:  # a piece takes longer than a start
+                seconds.append(STARTS)
+                continue
+            if isinstance(outcome, Exception):
+                raise outcome
+            place, result, took = outcome
+            seconds.append(took)
+            left -= 1
+            yield place, result
+
+    def _worth_one_more(self, seconds: Sequence[float]) -> bool:
+        """Whether one worker more saves more time than it takes to start, judged by the last pieces."""
+        workers = len(self._threads)
+        return not workers or (bool(seconds) and len(self._waiting) * median(seconds) / workers > STARTS)
+
+    def _start(self) -> None:
+        self._processes.append(WorkerProcess(self._work, self._limits))
+        self._threads.append(Thread(target=self._serve, args=(self._processes[-1],), daemon=True))
+        self._threads[-1].start()
+
+    def _serve(self, process: WorkerProcess[Item, Result]) -> None:
+        with process:
+            while self._waiting:
+                try:
+                    place, item = self._waiting.popleft()
+                except IndexError:  # another was faster
+                    return
+                try:
+                    self._done.put((place, process.do(item), process.took))
+                except Exception as error:  # of the item, which cannot be sent
+                    self._done.put(error)
+
+    def end(self) -> None:
+        """Stop what is still done, and end all processes."""
+        self._waiting.clear()
+        for process, thread in zip(self._processes, self._threads, strict=True):
+            while thread.is_alive():  # it may be about to start its process
+                process.stop()
+                thread.join(LOOK)

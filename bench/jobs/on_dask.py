@@ -1,4 +1,4 @@
-"""Pieces of work on Dask: workers of this machine, or an existing cluster.
+"""Pieces of work on a Dask cluster.
 
 Dask has the queue, the balance between workers, and the retries where a worker or its machine is lost; each thread of a
 worker has one process beside it (`process.py`), so that no piece of work can hold up or end the worker itself.
@@ -6,7 +6,6 @@ worker has one process beside it (`process.py`), so that no piece of work can ho
 
 from __future__ import annotations
 
-import logging
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -14,8 +13,7 @@ from functools import partial
 from typing import Any, TypeVar, cast
 from uuid import uuid4
 
-from dask.config import set as configured
-from distributed import Client, Future, KilledWorker, LocalCluster, Worker, WorkerPlugin, as_completed, get_worker
+from distributed import Client, Future, KilledWorker, Worker, WorkerPlugin, as_completed, get_worker
 
 from bench import __version__
 from bench.errors import InputError
@@ -26,10 +24,6 @@ Result = TypeVar("Result")
 
 #: Seconds within which a scheduler has to answer.
 ANSWERS = 15
-#: A scheduler's setting: a thread has no task that waits behind the one it does, and would be suspected with it.
-ONE_EACH = {"distributed.scheduler.worker-saturation": 1.0}
-#: Run by each worker of ours as it starts: an interrupt of the terminal is the command's, which ends them.
-_DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 #: Items sent to the scheduler at a time.
 BATCH = 1000
 
@@ -38,15 +32,14 @@ def on_dask(
     work: Callable[[Item], Result],
     numbered: Sequence[tuple[int, Item]],
     limits: Limits,
-    workers: int,
-    scheduler: str | None,
+    scheduler: str,
 ) -> Iterator[tuple[int, Result | Failure]]:
     """Results by the items' numbers, in the order in which they come; other arguments as of `bench.jobs.each.each`.
 
     InputError where there is no such cluster, or its workers have no servobench of this version.
     """
     with ExitStack() as stack:
-        client = stack.enter_context(_client(workers, limits, scheduler))
+        client = stack.enter_context(_client(scheduler))
         name = f"bench-{uuid4().hex}"
         stack.enter_context(_equipped(client, WorkerProcesses(name, work, limits), scheduler))
         keys = [(name, number) for number, _ in numbered]  # one group, which the scheduler hands out as workers ask
@@ -56,20 +49,7 @@ def on_dask(
 
 
 @contextmanager
-def _client(workers: int, limits: Limits, scheduler: str | None) -> Iterator[Client]:
-    if scheduler is None:
-        with configured(ONE_EACH):
-            local = LocalCluster(
-                workers,
-                threads_per_worker=1,
-                memory_limit=int(limits.memory),
-                dashboard_address="127.0.0.1:0",
-                silence_logs=logging.CRITICAL,
-                preload=[_DEAF],
-            )
-        with local as cluster, Client(cluster) as client:
-            yield client
-        return
+def _client(scheduler: str) -> Iterator[Client]:
     try:
         client = Client(scheduler, timeout=ANSWERS)
     except (OSError, ValueError, TypeError) as error:
@@ -82,7 +62,7 @@ def _client(workers: int, limits: Limits, scheduler: str | None) -> Iterator[Cli
 
 
 @contextmanager
-def _equipped(client: Client, plugin: WorkerProcesses, scheduler: str | None) -> Iterator[None]:
+def _equipped(client: Client, plugin: WorkerProcesses, scheduler: str) -> Iterator[None]:
     """Within the block each worker, also one that comes later, has the plugin."""
     try:
         client.register_plugin(plugin)

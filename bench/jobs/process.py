@@ -99,6 +99,11 @@ class WorkerProcess(Generic[Item, Result]):
         self.close()
         return failure
 
+    def stop(self) -> None:
+        """End the process from another thread: what it does is a failure."""
+        if self._running is not None:
+            self._running[0].kill()
+
     def close(self) -> None:
         """End the process; the next piece of work starts another."""
         if self._running is not None:

@@ -50,11 +50,12 @@ DISABLED = (
 )
 
 
-def joint_names(path: Path) -> list[str]:
-    """Names of the hinges and slides of an MJCF file, in its order; InputError as `Robot.of`."""
+def joint_units(path: Path) -> dict[str, str]:
+    """Names of the hinges and slides of an MJCF file with the units of their positions; InputError as `Robot.of`."""
     model = _loaded(path)
-    simple = [int(kind) for kind in SIMPLE]
-    return [model.joint(k).name for k in range(model.njnt) if model.joint(k).name and model.jnt_type[k] in simple]
+    units = {int(mujoco.mjtJoint.mjJNT_HINGE): "rad", int(mujoco.mjtJoint.mjJNT_SLIDE): "m"}
+    named = {model.joint(k).name: units.get(int(model.jnt_type[k])) for k in range(model.njnt)}
+    return {name: unit for name, unit in named.items() if name and unit is not None}
 
 
 def _loaded(path: Path) -> mujoco.MjModel:
@@ -256,6 +257,13 @@ def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) ->
     log's position and the joint's. InputError where the log cannot be read, or a joint is neither in it nor stated.
     """
     recording = read_recording(path)
+    if (
+        any(_holds(recording, name) for name in robot.units)
+        and not _holds(recording, robot.joint)
+        and not rig.trace.columns
+    ):
+        allowed = f"allowed: a column '{robot.joint}.position [rad]' and so on, or [trace.columns] in a rig"
+        raise InputError(f"{path}: joint '{robot.joint}'", "has no column of its own", allowed)
     own = rig.on_axis(robot.joint) if _holds(recording, robot.joint) and rig.trace.axis is None else rig
     trace, ratio = assemble(recording, own.trace), (rig.load or Load()).gear_ratio
     motion, names = {}, [robot.model.joint(k).name for k in robot.joints]

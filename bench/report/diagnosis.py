@@ -47,6 +47,11 @@ TOLD, WORTH_TELLING = 3, 1e-3
 
 def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None) -> str:
     """The diagnosis as the contract's JSON; `provenance` of the files it came from, null where it came from none."""
+    return serialised(diagnosis_content(found, provenance))
+
+
+def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """What that JSON holds."""
     kinds = ("measurement" if isinstance(each.effect, Sensing) else "physics" for each in found.effects)
     effects = [
         {"name": each.name, "kind": kind, **picked(each, "parameters", "ambiguous_with", "evidence")}
@@ -59,7 +64,7 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
         "closed_loop": _before_after(found.closed_loop),
         "refined": _before_after(found.refined),
     }
-    content = {
+    return {
         "schema": SCHEMA,
         **picked(found, "verdict", "because"),
         "effects": effects,
@@ -84,7 +89,6 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
         "model": {"mjcf": "model.xml" if found.model is not None else None, "toml": "model.toml"},
         **picked(found, "checks", "warnings"),
     }
-    return serialised(content)
 
 
 def _likely_json(probabilities: Probabilities, name: str) -> dict[str, Any]:
@@ -277,13 +281,13 @@ def _answers(found: Diagnosis) -> dict[str, str]:
         f"{sentence(words(inertia or kind.inertia))}?": f"{brief(found.parameters[inertia])} (95 %)"
         if inertia
         else f"Not determined beside what is missing: {found.refused[kind.inertia]}",
-        "What next?": _following(found) or "Nothing is left open that another motion would tell.",
+        "What next?": following(found) or "Nothing is left open that another motion would tell.",
     }
 
 
 def _sure(found: Diagnosis) -> str:
     """What bears the verdict out, and what speaks against it."""
-    gap, lines, effort = found.torque, [_likely(found)], effort_word(found.torque.unit)
+    gap, lines, effort = found.torque, [likely_names(found)], effort_word(found.torque.unit)
     if found.because[1:]:
         lines.append(f"Against it, too: {'; '.join(map(words, found.because[1:]))}.")
     if gap.holdout is not None:
@@ -306,7 +310,7 @@ def _sure(found: Diagnosis) -> str:
     return " ".join(lines)
 
 
-def _likely(found: Diagnosis) -> str:
+def likely_names(found: Diagnosis) -> str:
     """How likely each name is and what it may be instead: `Cogging torque 99 % (or load torque event 0.6 %).`"""
     likely, told = found.probabilities, []
     for name in dict.fromkeys(effect.name for effect in found.effects):
@@ -343,7 +347,7 @@ def _moves(found: Diagnosis) -> str:
     )
 
 
-def _following(found: Diagnosis) -> str:
+def following(found: Diagnosis) -> str:
     """What to record or look at next; empty where nothing is open."""
     experiment = found.next_experiment
     if experiment is not None:
@@ -457,7 +461,7 @@ def _suspects(found: Diagnosis) -> doc.Section:
 
 def _next(found: Diagnosis) -> doc.Section:
     """What to record next, and what is unexplained."""
-    text = _following(found) or "Nothing is left open that another motion of this rig would tell."
+    text = following(found) or "Nothing is left open that another motion of this rig would tell."
     blocks: list[doc.Paragraph | doc.Points] = [doc.Paragraph(text=text)]
     if found.because:
         blocks.append(doc.Paragraph(text="What speaks against this being all:"))

@@ -231,7 +231,7 @@ def test_a_robot_in_a_file_keeps_its_meshes(tmp_path):
     )
     out = tmp_path / "elsewhere" / "deeper" / "out.xml"
     out.parent.mkdir(parents=True)
-    text, _ = robot_with(robot, "elbow", stored(), out, None)
+    text, _ = robot_with(robot, {"elbow": (stored(), armature_of(stored()))}, out)
     out.write_text(text)
     assert mujoco.MjModel.from_xml_path(str(out)).dof_frictionloss[0] == pytest.approx(0.08)
 

@@ -3,7 +3,8 @@ import logging
 import dask
 import pytest
 
-from bench.jobs.on_dask import ONE_EACH
+#: A scheduler's setting: a thread has no task that waits behind the one it does, and would be suspected with it.
+ONE_EACH = {"distributed.scheduler.worker-saturation": 1.0}
 
 
 @pytest.fixture(scope="module")

@@ -67,7 +67,12 @@ def process(number):
     return os.getpid()
 
 
+def slowly(number):
+    time.sleep(number)
+    return os.getpid()
+
+
 ACTS = {
     act.__name__: act
-    for act in (square, refuse, hang, sleep, crash, killed, parricide, leave, fill, unpicklable, wait, process)
+    for act in (square, refuse, hang, sleep, crash, killed, parricide, leave, fill, unpicklable, wait, process, slowly)
 }

@@ -58,29 +58,35 @@ def test_a_worker_that_is_lost_is_dasks_matter_and_ends_no_run(cluster):
     assert found == {1 + number: number**2 for number in range(20)}
 
 
-def test_a_long_job_goes_to_dask_and_a_short_one_does_not(monkeypatch):
-    asked = []
-
-    def on_dask(work, rest, *how):
-        asked.append((list(rest), *how))
-        return iter(())
-
-    monkeypatch.setattr("bench.jobs.on_dask.on_dask", on_dask)
-    assert len(list(each(work, [("wait", 1)] * 5, LIMITS, workers=2))) == 5
-    assert not asked
-    done = list(each(work, [("wait", 20)] * 100, LIMITS, workers=2))
-    assert done == [(0, 20)]
-    (rest, limits, workers, scheduler) = asked[0]
-    assert [place for place, _ in rest] == list(range(1, 100))
-    assert (limits, workers, scheduler) == (LIMITS, 2, None)
+def test_short_jobs_have_one_process(monkeypatch):
+    monkeypatch.setattr("bench.jobs.each.STARTS", 60.0)
+    short = dict(each(work, [("process", 0)] * 5, LIMITS, workers=2))
+    assert len(set(short.values())) == 1
 
 
-def test_workers_of_this_machine_are_started_and_ended(monkeypatch):
-    monkeypatch.setattr("bench.jobs.each.DASK_STARTS", 0.0)
+def test_long_jobs_have_several_processes(monkeypatch):
+    monkeypatch.setattr("bench.jobs.each.STARTS", 0.05)
+    long = dict(each(work, [("slowly", 2.0)] * 4, LIMITS, workers=2))
+    assert len(set(long.values())) == 2
+
+
+def test_processes_are_ended_with_the_run(monkeypatch):
+    monkeypatch.setattr("bench.jobs.each.STARTS", 1e-9)
     found = dict(each(work, [("process", 0)] * 40, LIMITS, workers=2))
     assert sorted(found) == list(range(40))
-    assert len(set(found.values())) > 1
-    for process in found.values():
+    ended(found.values())
+
+
+def test_a_run_that_is_left_ends_what_is_still_done():
+    running = each(work, [("process", 0), *[("hang", 0)] * 3], Limits(deadline=600.0), workers=1)
+    place, process = next(running)
+    running.close()
+    assert place == 0
+    ended([process])
+
+
+def ended(processes):
+    for process in processes:
         with pytest.raises(ProcessLookupError):
             os.kill(process, 0)
 

@@ -1,0 +1,61 @@
+"""`bench robot`: every joint of a robot from its logs, and its MJCF with them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import bench
+from bench.cli import common
+from bench.cli.common import AtOption, JsonOption
+from bench.errors import InputError, UndeterminedError
+
+
+def robot(
+    logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Logs of the robot, of any known format.")],
+    mjcf: Annotated[Path, typer.Option("--mjcf", help="MJCF of the robot.")],
+    out: Annotated[Path, typer.Option("--out", help="Folder for MJCF, models, page and JSON.")],
+    holdout: Annotated[Path | None, typer.Option("--holdout", help="Another log of it, not fitted.")] = None,
+    rig: Annotated[Path | None, typer.Option("--rig", help="Rig file (TOML): what is known of the drives.")] = None,
+    joint: Annotated[list[str] | None, typer.Option("--joint", help="Only this joint. Repeatable.")] = None,
+    at: AtOption = None,
+    without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
+    json: JsonOption = None,
+) -> None:
+    """Identify every joint of a robot from its logs, find what each is missing, and write its MJCF with all of it."""
+    from bench.effects.present import named
+    from bench.files import held
+    from bench.plant.robot import joint_units
+    from bench.report.parts import provenance
+    from bench.report.robot import robot as document_of
+    from bench.report.robot import robot_json, title_of, write_robot
+    from bench.report.terminal import progress
+
+    excluded = frozenset(named(name, "--without").name for name in without or [])
+    stated = common.positions(at or (), joint_units(mjcf))
+    known = None if rig is None else bench.load_rig(rig)
+    with progress(f"identifying the joints of {mjcf.name}") as done:
+        found = bench.robot(logs, mjcf, holdout, known, joint or (), stated, excluded, done)
+    options = {"joint": joint or [], "at": at or [], "without": sorted(excluded)}
+    basis = provenance(rig, logs, options, holdout, mjcf)
+    title, files = title_of(mjcf, logs), []
+    if found.answered:
+        with held(out):
+            files = write_robot(out, found, title, basis)
+    if json is not None:
+        common.write_json(json, robot_json(found, basis))
+    common.tell(document_of(found, title, basis), files, json)
+    _require_answers(found)
+
+
+def _require_answers(found: bench.IdentifiedRobot) -> None:
+    """Raise why no joint could be answered, where none could: the first reason."""
+    if found.answered:
+        return
+    first = next(iter(found.joints.values()))
+    if first.failed:
+        raise InputError("none of the joints could be answered", f"{first.name}: {first.failed}", "see the table")
+    reason = f"{first.name}: {next(iter(first.refused.values()))}"
+    raise UndeterminedError("any joint", reason, first.record)

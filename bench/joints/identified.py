@@ -1,0 +1,174 @@
+"""One joint of a robot, as far as logs tell it: what is refused leaves the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from bench.axis_kind import ARMATURE, COULOMB, INERTIA, VISCOUS
+from bench.diagnosis.diagnosis import diagnose
+from bench.diagnosis.show import Diagnosis
+from bench.errors import BenchError, InputError, UndeterminedError
+from bench.fit.determined import refused_masses
+from bench.fit.estimate import Estimate, RefusedEstimateError
+from bench.fit.identify import identify
+from bench.fit.rows import Rows
+from bench.gate.check import Check
+from bench.gate.gate import passed, warnings_of
+from bench.parameter import Parameter
+from bench.plant.axis_model import AxisModel, AxisParameters
+from bench.plant.model_file import Mounting, StoredModel
+from bench.plant.robot import Robot, joint_rig, read_log
+from bench.rig.rig import Rig
+from bench.trace.trace import Trace
+
+#: Key of a refusal that concerns no parameter: whether anything is missing.
+EFFECTS = "effects"
+
+
+@dataclass(frozen=True)
+class JointLogs:
+    """What is asked of one joint: logs that are fitted, one that is not, and what is known beside them.
+
+    Attributes:
+        joint: its name in the MJCF.
+        mjcf, logs, holdout: files.
+        rig: of the joints; None where nothing is known of them.
+        stated: positions of joints that stand and that the logs do not hold - rad (m).
+        excluded: effects that are not tried.
+    """
+
+    joint: str
+    mjcf: Path
+    logs: tuple[Path, ...]
+    holdout: Path | None = None
+    rig: Rig | None = None
+    stated: Mapping[str, float] = field(default_factory=dict)
+    excluded: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class IdentifiedJoint:
+    """What logs tell of a joint.
+
+    Attributes:
+        name: in the MJCF.
+        rig: with what the MJCF knows of its links; None where the MJCF or the logs do not tell the joint.
+        diagnosis: with effects; None where the logs do not decide on them.
+        estimate: inertia and friction alone, where there is no diagnosis; None where they tell nothing.
+        refused: why a parameter, or whether anything is missing, is not told, by its name.
+        record: the motion that would tell it; empty where nothing is refused.
+        left_out: why a log was not used, by its file.
+        failed: what is wrong with the input, if that is why nothing is told.
+    """
+
+    name: str
+    rig: Rig | None = None
+    diagnosis: Diagnosis | None = None
+    estimate: Estimate | None = None
+    refused: Mapping[str, str] = field(default_factory=dict)
+    record: str = ""
+    left_out: Mapping[str, str] = field(default_factory=dict)
+    failed: str = ""
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """Those that are told, by name."""
+        found = self.diagnosis or self.estimate
+        told = {} if found is None else found.parameters
+        return {name: parameter for name, parameter in told.items() if name not in self.refused}
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """Of the logs, before anything was fitted."""
+        found = self.diagnosis or self.estimate
+        return () if found is None else found.checks
+
+    @property
+    def warnings(self) -> list[str]:
+        """What a user should know before relying on it."""
+        found = self.diagnosis or self.estimate
+        told = () if found is None else (*found.warnings, *warnings_of(found.checks))
+        return [*told, *(f"{log} is not used: {why}" for log, why in self.left_out.items())]
+
+    @property
+    def model(self) -> StoredModel | None:
+        """Of the joint for MuJoCo; without armature where that is not told; None without friction."""
+        if self.diagnosis is not None and self.diagnosis.model is not None:
+            return self.diagnosis.model
+        kind = None if self.rig is None else self.rig.axis_kind
+        if (
+            self.rig is None
+            or kind is None
+            or not {kind.parameter(VISCOUS), kind.parameter(COULOMB)} <= {*self.parameters}
+        ):
+            return None
+        mounting = Mounting.of(self.rig)
+        links = mounting.link_inertia / mounting.gear_ratio**2
+        inertia = self.parameters[kind.inertia].value if kind.inertia in self.parameters else links
+        viscous, coulomb = (max(self.parameters[kind.parameter(term)].value, 0.0) for term in (VISCOUS, COULOMB))
+        if inertia <= 0.0:
+            return None
+        return StoredModel(
+            self.name, AxisModel(AxisParameters(inertia, viscous, coulomb, kind=kind)), mounting=mounting
+        )
+
+
+def identified(asked: JointLogs) -> IdentifiedJoint:
+    """The joint by its logs; what is wrong with them, or what they do not tell, is in it."""
+    try:
+        robot = Robot.of(asked.mjcf, asked.joint)
+        rig = joint_rig(asked.rig, robot)
+        traces, left_out = _moving(asked, asked.logs, rig, robot)
+    except UndeterminedError as error:
+        return IdentifiedJoint(asked.joint, refused={EFFECTS: error.reason}, record=error.record)
+    except BenchError as error:
+        return IdentifiedJoint(asked.joint, failed=str(error))
+    unseen: list[Trace] = []
+    if asked.holdout is not None:
+        try:
+            unseen, _ = _moving(asked, [asked.holdout], rig, robot)
+        except BenchError as error:
+            left_out[asked.holdout.name] = str(error)
+    try:
+        found = diagnose(traces, rig, unseen[0] if unseen else None, asked.excluded)
+    except UndeterminedError as refusal:
+        return _without_effects(asked.joint, traces, rig, refusal, left_out)
+    except BenchError as error:
+        return IdentifiedJoint(asked.joint, rig, failed=str(error), left_out=left_out)
+    return IdentifiedJoint(asked.joint, rig, found, refused=found.refused, left_out=left_out)
+
+
+def _moving(asked: JointLogs, logs: Sequence[Path], rig: Rig, robot: Robot) -> tuple[list[Trace], dict[str, str]]:
+    """Recordings of the joint in which it moves, and why the others are none; raises as the first if none is one."""
+    traces, refused = [], list[tuple[Path, BenchError]]()
+    for log in logs:
+        try:
+            trace = passed(read_log(log, rig, robot, asked.stated), rig).trace
+            Rows.of(trace, rig)
+            traces.append(trace)
+        except (InputError, UndeterminedError) as error:
+            refused.append((log, error))
+    if not traces:
+        raise refused[0][1]
+    return traces, {log.name: str(error) for log, error in refused}
+
+
+def _without_effects(
+    joint: str, traces: Sequence[Trace], rig: Rig, refusal: UndeterminedError, left_out: Mapping[str, str]
+) -> IdentifiedJoint:
+    """Inertia and friction alone, as far as they are determined, of logs that do not decide on effects."""
+    kind, refused, estimate = rig.axis_kind, {EFFECTS: refusal.reason}, None
+    try:
+        estimate = identify(traces, rig)
+    except RefusedEstimateError as error:
+        estimate, refusal = error.estimate, error
+    except UndeterminedError as error:
+        refusal = error
+    known = {} if estimate is None else estimate.parameters
+    refused |= {name: error.reason for name, error in refused_masses(known, kind, ()).items()}
+    for name in (*map(kind.parameter, (INERTIA, VISCOUS, COULOMB)), ARMATURE):
+        if name not in known:
+            refused[name] = refusal.reason
+    return IdentifiedJoint(joint, rig, None, estimate, refused, refusal.record, left_out)

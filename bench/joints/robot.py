@@ -1,0 +1,101 @@
+"""A robot by its logs: every joint beside the rest, joints side by side on processes, and the MJCF with all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from bench.axis_kind import ARMATURE
+from bench.errors import InputError
+from bench.export.mjcf import Armature, Carried, robot_with
+from bench.jobs.each import each
+from bench.jobs.process import Failure, Limits
+from bench.joints.identified import IdentifiedJoint, JointLogs, identified
+from bench.names import nearest
+from bench.plant.model_file import StoredModel
+from bench.plant.robot import joint_units
+from bench.rig.rig import Rig
+
+#: Of one joint: ten times what the longest log tried took (600 s at 500 Hz).
+LIMITS = Limits(deadline=1800.0, memory=8.0 * 1024**3)
+
+
+@dataclass(frozen=True)
+class IdentifiedRobot:
+    """What logs tell of a robot.
+
+    Attributes:
+        mjcf: its file.
+        joints: each by its name, in the order of the MJCF.
+    """
+
+    mjcf: Path
+    joints: Mapping[str, IdentifiedJoint]
+
+    @property
+    def answered(self) -> tuple[str, ...]:
+        """Names of the joints of which anything is told."""
+        return tuple(name for name, joint in self.joints.items() if joint.parameters)
+
+    @property
+    def models(self) -> dict[str, StoredModel]:
+        """Of the joints that have one, by name."""
+        models = {name: joint.model for name, joint in self.joints.items()}
+        return {name: model for name, model in models.items() if model is not None}
+
+    def with_joints(self, out: Path) -> tuple[str, list[Carried]]:
+        """Text of the MJCF with the models of the joints, to stand in a file, and what went onto each.
+
+        InputError where MuJoCo cannot have it.
+        """
+        told = {name: self.joints[name].parameters.get(ARMATURE) for name in self.models}
+        armature = {
+            name: None if one is None else Armature(max(one.value, 0.0), "all that moved but the links")
+            for name, one in told.items()
+        }
+        return robot_with(self.mjcf, {name: (model, armature[name]) for name, model in self.models.items()}, out)
+
+
+def robot(
+    logs: str | Path | Sequence[str | Path],
+    mjcf: str | Path,
+    holdout: str | Path | None = None,
+    rig: Rig | None = None,
+    joints: Sequence[str] = (),
+    stated: Mapping[str, float] | None = None,
+    excluded: frozenset[str] = frozenset(),
+    progress: Callable[[float], None] = lambda share: None,
+) -> IdentifiedRobot:
+    """Identify and diagnose every joint of a robot, each beside the rest of it; one that fails leaves the others.
+
+    Args:
+        logs: one log of all joints, or several that each move a few.
+        mjcf: of the robot.
+        holdout: another log, not used to fit.
+        rig: what is known of the joints' drives; not needed where the logs hold torque.
+        joints: names of those to identify; all hinges and slides of the MJCF where none is given.
+        stated: positions of joints that stand and that the logs do not hold - rad (m).
+        excluded: effects that are not tried.
+        progress: called with the share done.
+
+    Raises:
+        InputError: no log, an MJCF that cannot be read, or a joint that it does not have.
+    """
+    paths = [Path(log) for log in ([logs] if isinstance(logs, str | Path) else logs)]
+    if not paths:
+        raise InputError("logs", "found none", "allowed: at least one")
+    names = list(joint_units(Path(mjcf)))
+    for name in joints:
+        if name not in names:
+            unknown = f"found no hinge or slide of that name{nearest(name, names)}"
+            raise InputError(f"--joint {name}", unknown, f"allowed: {', '.join(names) or 'an MJCF with a named joint'}")
+    asked = [name for name in names if not joints or name in joints]
+    unseen = None if holdout is None else Path(holdout)
+    work = [JointLogs(name, Path(mjcf), tuple(paths), unseen, rig, stated or {}, excluded) for name in asked]
+    found: dict[str, IdentifiedJoint] = {}
+    for count, (place, one) in enumerate(each(identified, work, LIMITS), 1):
+        name = asked[place]
+        found[name] = IdentifiedJoint(name, failed=one.reason) if isinstance(one, Failure) else one
+        progress(count / len(work))
+    return IdentifiedRobot(Path(mjcf), {name: found[name] for name in asked})

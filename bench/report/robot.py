@@ -1,0 +1,175 @@
+"""A robot by its logs: a row for each joint, and below what each diagnosis says.
+
+As the contract's JSON (`bench.robot/1`) and as a document, which has the MJCF with all joints to take along.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from bench.axis_kind import ARMATURE, COULOMB, VISCOUS
+from bench.export.mjcf import Carried
+from bench.joints.identified import EFFECTS, IdentifiedJoint
+from bench.joints.robot import IdentifiedRobot
+from bench.names import in_a_row, readable, words
+from bench.plant.model_file import joints_toml
+from bench.report import document as doc
+from bench.report.diagnosis import diagnosis, diagnosis_content, following, likely_names
+from bench.report.numbers import interval, sentence
+from bench.report.parts import origin, parameters_table
+from bench.report.publish import write_document
+from bench.report.serial import serialised
+
+SCHEMA = "bench.robot/1"
+MJCF, EFFECTS_FILE, JSON = "robot_id.xml", "effects.toml", "robot.json"
+#: Sections of a diagnosis that a robot's page has of each joint.
+SHOWN = ("motion", "where", "parameters", "beside", "checks")
+
+
+def robot_json(found: IdentifiedRobot, provenance: Mapping[str, Any] | None = None) -> str:
+    """The robot as the contract's JSON."""
+    content = {
+        "schema": SCHEMA,
+        "joints": {name: _joint_json(joint) for name, joint in found.joints.items()},
+        "payload": None,
+        "links": [],
+        "model": {"mjcf": MJCF, "effects": EFFECTS_FILE},
+        "provenance": provenance,
+    }
+    return serialised(content)
+
+
+def _joint_json(joint: IdentifiedJoint) -> dict[str, Any]:
+    """As `diagnose` has it; without a diagnosis what is told all the same."""
+    told: dict[str, Any] = {"verdict": None, "effects": []}
+    if joint.diagnosis is not None:
+        told = {key: value for key, value in diagnosis_content(joint.diagnosis).items() if key not in DROPPED}
+    elif joint.estimate is not None:
+        told |= {"explained": joint.estimate.explained}
+    beside = {"record": joint.record or None, "failed": joint.failed or None, "left_out": joint.left_out}
+    own = {"parameters": joint.parameters, "refused": joint.refused, "checks": joint.checks, "warnings": joint.warnings}
+    return {**told, **own, **beside}
+
+
+#: What of a diagnosis' JSON belongs to the whole robot.
+DROPPED = ("schema", "provenance", "model")
+
+
+def write_robot(out: Path, found: IdentifiedRobot, title: str, provenance: Mapping[str, Any] | None) -> list[Path]:
+    """Write page, MJCF, models and JSON of a robot into a folder; the paths written."""
+    text, carried = found.with_joints(out / MJCF)
+    return write_document(out, robot(found, title, provenance, _files(found, text, provenance), carried))
+
+
+def robot(
+    found: IdentifiedRobot,
+    title: str,
+    provenance: Mapping[str, Any] | None = None,
+    files: Sequence[doc.File] = (),
+    carried: Sequence[Carried] = (),
+) -> doc.Document:
+    """The document of a robot that `title` names, with files to take along and what went onto each joint."""
+    took = [line for each in carried for line in each.lines]
+    model = (doc.Points(items=tuple(took)), doc.Downloads(files=tuple(files))) if files else ()
+    warnings = tuple(f"{name}: {warning}" for name, joint in found.joints.items() for warning in joint.warnings)
+    return doc.Document(
+        title=title,
+        subject=f"Joints of {title}",
+        verdict=_verdict(found),
+        tone="refused" if not found.answered else "sure" if _settled(found) == len(found.joints) else "open",
+        answers={},
+        sections=(
+            doc.section("joints", "Joints", *_tables(found)),
+            *(_of_joint(k, joint, found) for k, joint in enumerate(found.joints.values())),
+            *((doc.section("model", "The model", *model, detail=True),) if model else ()),
+        ),
+        origin=origin(provenance),
+        warnings=warnings,
+    )
+
+
+def _files(found: IdentifiedRobot, text: str, provenance: Mapping[str, Any] | None) -> list[doc.File]:
+    effects = "models of all joints, for bench.Effects"
+    return [
+        doc.File(name=MJCF, about="the MJCF with the joints as found", media="application/xml", content=text),
+        doc.File(name=EFFECTS_FILE, about=effects, media="application/toml", content=joints_toml(found.models)),
+        doc.File(
+            name=JSON,
+            about="all of it as numbers",
+            media="application/json",
+            content=robot_json(found, provenance) + "\n",
+        ),
+    ]
+
+
+def _settled(found: IdentifiedRobot) -> int:
+    """How many joints leave nothing open."""
+    verdicts = [joint.diagnosis.verdict for joint in found.joints.values() if joint.diagnosis is not None]
+    return sum(verdict != "unexplained_remainder" for verdict in verdicts)
+
+
+def _verdict(found: IdentifiedRobot) -> str:
+    whole, told, settled = len(found.joints), len(found.answered), _settled(found)
+    if not told:
+        return f"None of {whole} joints could be answered."
+    rest = "what is left of them is noise" if settled == told else f"{settled} of them down to noise"
+    return f"{told} of {whole} joints are identified, {rest}."
+
+
+def _tables(found: IdentifiedRobot) -> list[doc.Table]:
+    """A row for each joint; and what is open, where anything is."""
+    rows = [(name, *_row(joint)) for name, joint in found.joints.items()]
+    headings = ("joint", "armature>", "viscous>", "Coulomb>", "what was missing~", "how sure~")
+    tables = [
+        doc.table(
+            "Values ± half of their intervals of 95 %, in SI, on the motor's side but the armature", headings, rows
+        )
+    ]
+    lacking = [(name, why, motion) for name, joint in found.joints.items() for why, motion in _open(joint)]
+    if lacking:
+        tables.append(doc.table("What the logs cannot tell", ("joint", "what~", "the motion that would~"), lacking))
+    return tables
+
+
+def _row(joint: IdentifiedJoint) -> tuple[str, ...]:
+    kind = None if joint.rig is None else joint.rig.axis_kind
+    names = (ARMATURE, "", "") if kind is None else (ARMATURE, kind.parameter(VISCOUS), kind.parameter(COULOMB))
+    values = [interval(joint.parameters[name]) if name in joint.parameters else "–" for name in names]
+    if joint.diagnosis is None:
+        return (*values, "not told", "–")
+    effects = "; ".join(words(effect.name) for effect in joint.diagnosis.effects)
+    left = f" {'; '.join(map(words, joint.diagnosis.because))}" if joint.diagnosis.because else ""
+    return (*values, effects or "nothing", f"{likely_names(joint.diagnosis)}{sentence(left)}")
+
+
+def _open(joint: IdentifiedJoint) -> list[tuple[str, str]]:
+    """What is not told of a joint, and what to record instead."""
+    if joint.failed:
+        return [(joint.failed, "")]
+    called = {EFFECTS: "whether anything is missing"}
+    reasons: dict[str, list[str]] = {}
+    for name, reason in joint.refused.items():
+        reasons.setdefault(reason, []).append(called.get(name, words(name)))
+    found = [(f"{', '.join(names)}: {reason}", joint.record) for reason, names in reasons.items()]
+    following_motion = "" if joint.diagnosis is None else following(joint.diagnosis)
+    return [*found, *([("more", following_motion)] if following_motion else [])]
+
+
+def _of_joint(k: int, joint: IdentifiedJoint, found: IdentifiedRobot) -> doc.Section:
+    """What is told of a joint."""
+    key, heading = f"joint-{k + 1}", joint.name
+    if joint.diagnosis is None:
+        told = [parameters_table("Inertia and friction", joint.parameters)] if joint.parameters else []
+        why = doc.Points(items=tuple(what for what, _ in _open(joint)))
+        return doc.section(key, heading, why, *told, detail=True)
+    own = diagnosis(joint.diagnosis, f"{joint.name} of {readable(found.mjcf.name)}")
+    blocks = [block for section in own.sections if section.key in SHOWN for block in section.blocks]
+    answers = doc.Points(items=tuple(f"{question} {answer}" for question, answer in own.answers.items()))
+    return doc.section(key, heading, doc.Paragraph(text=own.verdict), answers, *blocks, detail=True)
+
+
+def title_of(mjcf: Path, logs: Sequence[Path]) -> str:
+    """The robot's file and its logs."""
+    return f"{readable(mjcf.name)}: {in_a_row(logs)}"
