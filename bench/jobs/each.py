@@ -50,14 +50,14 @@ def each(
 
         yield from on_dask(work, numbered, limits, scheduler)
     else:
-        side_by_side = _SideBySide(work, limits, numbered)
+        pool = _Workers(work, limits, numbered)
         try:
-            yield from side_by_side.outcomes(workers or os.cpu_count() or 1)
+            yield from pool.outcomes(workers or os.cpu_count() or 1)
         finally:
-            side_by_side.end()
+            pool.end()
 
 
-class _SideBySide(Generic[Item, Result]):
+class _Workers(Generic[Item, Result]):
     """Threads, each with a worker process, that take from what is waiting."""
 
     def __init__(self, work: Callable[[Item], Result], limits: Limits, waiting: deque[tuple[int, Item]]) -> None:
