@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from statistics import NormalDist
 from types import ModuleType
+from typing import Any
 
 import array_api_compat
 import numpy as np
@@ -12,6 +13,8 @@ from numpy.typing import NDArray
 
 #: Numbers of any shape; a docstring says which.
 Array = NDArray[np.float64]
+#: Those of any library of the array API standard, which have no static type in common.
+Anys = Any
 #: Half width of a normal distribution's 95 % interval in standard deviations.
 NORMAL95 = NormalDist().inv_cdf(0.975)
 
@@ -29,6 +32,20 @@ def namespace(value: object) -> ModuleType:
     if type(value) in NUMPYS:
         return np
     return array_api_compat.array_namespace(value)
+
+
+def made_like(array: Anys) -> Callable[[Anys], Anys]:
+    """What makes numbers and arrays of NumPy's those of an array's library, on its device, of its precision."""
+    xp = namespace(array)
+    if xp is np:
+        return lambda values: values
+    device = array_api_compat.device(array)
+
+    def made(values: Anys) -> Anys:
+        host = np.asarray(values)
+        return xp.asarray(host, dtype=array.dtype if host.dtype.kind == "f" else None, device=device)
+
+    return made
 
 
 def rms(values: Array) -> float:

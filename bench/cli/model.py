@@ -112,6 +112,12 @@ def export(
     out: Annotated[Path, typer.Option("--out", help="File to write.")],
     mjcf: Annotated[Path | None, typer.Option("--mjcf", help="MJCF of the robot that has the joint.")] = None,
     joint: Annotated[str | None, typer.Option("--joint", help="Joint that the model goes onto.")] = None,
+    to: Annotated[
+        str, typer.Option("--to", help="Simulator it is for: mjcf, or without --mjcf mjlab, bam, isaaclab, newton.")
+    ] = "mjcf",
+    actuator: Annotated[
+        str | None, typer.Option("--actuator", help="With --to bam: BAM's name of the actuator.")
+    ] = None,
     snippet: Annotated[bool, typer.Option("--snippet", help="A default class and a body on this joint alone.")] = False,
     ranges: Annotated[
         Path | None, typer.Option("--ranges", help="JSON of identify or diagnose: ranges for domain randomisation.")
@@ -120,11 +126,21 @@ def export(
         str | None, typer.Option("--armature", help="Inertia that becomes the joint's armature: motor, or all.")
     ] = None,
 ) -> None:
-    """Put a diagnosed model into a robot's MJCF; or write its joint as an MJCF of its own, or ranges of its values."""
-    from bench.plant.model_file import load_model
+    """Put a diagnosed model into a robot's MJCF, or write it as another simulator takes it, or ranges of its values."""
+    from bench.plant.model_file import load_model, load_models
 
-    if [snippet, mjcf is not None, ranges is not None].count(True) != 1:
-        raise InputError("bench export", "found none or several of --mjcf, --snippet, --ranges", "allowed: one of them")
+    if [snippet, mjcf is not None, ranges is not None, to != "mjcf"].count(True) != 1:
+        found = "found none or several of --mjcf, --snippet, --ranges, --to"
+        raise InputError("bench export", found, "allowed: one of them")
+    if to != "mjcf":
+        from bench.export.simulators import simulator_file
+
+        text, lines = simulator_file(to, load_models(model, joint), actuator)
+        write_text(out, text)
+        for line in lines:
+            common.say(line)
+        common.list_files([out])
+        return
     stored = load_model(model)
     if ranges is not None:
         from bench.export.ranges import ranges_json

@@ -5,8 +5,10 @@ Methods take values and states as numbers, or as arrays of k axes (k,).
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -101,12 +103,38 @@ class FrictionLevel(Friction, Columns):
         return np.sum(parts, axis=0)
 
 
+@dataclass(frozen=True)
+class FrictionLaw:
+    """Dry friction in the words that other simulators have, which is added to Coulomb friction.
+
+        K = rise*exp(-(|omega|/velocity)**exponent) + |motor*M_motor - external*M_external|
+
+    Source: M. Duclusaud et al., Extended Friction Models for the Physics Simulation of Servo Actuators, 2024 (M2, M5).
+
+    Attributes:
+        rise: towards standstill - N*m (N).
+        velocity: at which it has fallen to 1/e - rad/s (m/s).
+        exponent: dimensionless.
+        motor, external: shares of the motor's torque, and of what acts on the joint from outside - dimensionless.
+    """
+
+    rise: float = 0.0
+    velocity: float = math.inf
+    exponent: float = 2.0
+    motor: float = 0.0
+    external: float = 0.0
+
+
 class RaisesFriction(FrictionLevel):
     """Dry friction in addition to Coulomb friction."""
 
     @abstractmethod
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """Additional dry friction - N*m (N)."""
+
+    def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw | None:
+        """The same in the words of other simulators; None where they have none."""
+        return None
 
 
 class FollowsLoad(RaisesFriction):

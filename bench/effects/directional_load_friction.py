@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.acting import FollowsLoad, LoadTorque
+from bench.effects.acting import FollowsLoad, FrictionLaw, LoadTorque
 from bench.effects.effect import LOSSIEST, CopiesTorque, Fitted, Replacing
 from bench.effects.shape import Shape, grid_of
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
@@ -60,6 +60,11 @@ class DirectionalLoadFriction(CopiesTorque, Replacing, FollowsLoad):
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """By the equation above."""
         return values["motor_coefficient"] * abs(at.effort + values["load_ratio"] * at.load)
+
+    def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw:
+        """Of both torques; what the load resists is minus what acts from outside."""
+        motor = values["motor_coefficient"]
+        return FrictionLaw(motor=motor, external=motor * values["load_ratio"])
 
 
 EFFECT = DirectionalLoadFriction()

@@ -6,11 +6,11 @@ mu - load friction coefficient, not negative; M_motor - motor torque - N*m (N).
 Source: M. Linderoth, A. Stolt, A. Robertsson, R. Johansson, IROS 2013 (load-dependent friction of a gear).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.acting import RaisesFriction
+from bench.effects.acting import FrictionLaw, RaisesFriction
 from bench.effects.effect import LOSSIEST, CopiesTorque
 from bench.effects.signals import Axis, Moment, Number, Signals, Values
 from bench.trace.filter import Column
@@ -31,6 +31,10 @@ class LoadDependentFriction(CopiesTorque, RaisesFriction):
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """In proportion to the motor's torque."""
         return values["load_friction_coefficient"] * abs(at.effort)
+
+    def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw:
+        """Of the motor's torque."""
+        return FrictionLaw(motor=values["load_friction_coefficient"])
 
 
 EFFECT = LoadDependentFriction()

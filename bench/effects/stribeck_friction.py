@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.arrays import namespace
-from bench.effects.acting import RaisesFriction
+from bench.effects.acting import FrictionLaw, RaisesFriction
 from bench.effects.effect import OfSpeed
 from bench.effects.shape import SPEED, Shape, Shapes
 from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
@@ -58,6 +58,10 @@ class StribeckFriction(OfSpeed, RaisesFriction):
         """The rise towards standstill."""
         fallen = -((at.velocity / values["stribeck_velocity"]) ** 2)
         return (values["static_friction"] - axis.coulomb) * namespace(fallen).exp(fallen)
+
+    def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw:
+        """Its rise."""
+        return FrictionLaw(values["static_friction"] - float(axis.coulomb), values["stribeck_velocity"])
 
 
 EFFECT = StribeckFriction()

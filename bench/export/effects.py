@@ -1,34 +1,40 @@
-"""What MuJoCo does not make by itself, in a simulation of one's own.
+"""What MuJoCo does not make by itself, in a simulation of one's own: on MuJoCo, its batches, mujoco_warp and MJX.
 
-    effects = bench.Effects("found/model.toml", joint="elbow")
+    effects = bench.Effects("robot_id/effects.toml")  # all joints of a robot, or a model.toml and joint="elbow"
     while data.time < 10.0:
         data.ctrl[0] = ...
-        effects.step(model, data)                    # in the place of mujoco.mj_step(model, data)
+        effects.step(model, data)                     # in the place of mujoco.mj_step(model, data)
 
-The joint is one that `bench export` has put the model onto, which carries what is native. Before each step effects set
-the joint's dry friction (`dof_frictionloss`), its added inertia (`dof_armature`) and a torque (`qfrc_applied`), from
-position, velocity, time and the torque of its actuators, as they do in the bench's own plant
+The joints are those that `bench export` has put the models onto, which carry what is native. Before each step effects
+set the joints' dry friction (`dof_frictionloss`), their added inertia (`dof_armature`) and a torque (`qfrc_applied`),
+from position, velocity, time and the torque of their actuators, as they do in the bench's own plant
 (`bench.plant.stepped_effects`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
 from mujoco.batch import Batch
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import made_like, namespace
+from bench.effects.acting import CarriesFriction
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.effects.signals import Number
 from bench.errors import InputError
-from bench.plant.model_file import StoredModel, load_model
-from bench.plant.stepped_effects import Joints, SimulationJoint, SteppedEffects, per_axis
+from bench.export.at_joints import Actuators, AtJoints
+from bench.plant.model_file import StoredModel, load_models
+from bench.plant.stepped_effects import Joints, Remembered
 
+#: A model or its data of another engine, whose types are known where it is installed.
+Foreign = Any
 #: Integrators whose step is one evaluation; a Runge-Kutta step has four, between which effects would have to act.
 ONE_STAGE = (
     mujoco.mjtIntegrator.mjINT_EULER,
@@ -38,19 +44,21 @@ ONE_STAGE = (
 
 
 class Effects:
-    """Non-native effects of a model at a joint of another simulation.
+    """Non-native effects at joints of another simulation, all joints of which are one object's.
 
     Args:
-        model: path of a `model.toml`, or what `bench.plant.model_file.load_model` gives.
-        joint: of the simulation.
+        model: path of a `model.toml`, or of the `effects.toml` of `bench robot`; or what `load_model` of
+            `bench.plant.model_file` gives, or several of them by joint.
+        joint: of the simulation that a lone model is for, or of an `effects.toml` the only one.
 
     Raises:
-        InputError: the model cannot be read.
+        InputError: the file cannot be read, or has no model of this joint.
     """
 
-    def __init__(self, model: str | Path | StoredModel, joint: str = AXIS) -> None:
-        self.stored = model if isinstance(model, StoredModel) else load_model(model)
-        self.joint = joint
+    def __init__(self, model: str | Path | StoredModel | Mapping[str, StoredModel], joint: str | None = None) -> None:
+        if isinstance(model, StoredModel):
+            model = {joint or AXIS: model}
+        self.models = dict(model) if isinstance(model, Mapping) else load_models(model, joint)
         self._running: _Running | None = None
 
     def step(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
@@ -58,172 +66,285 @@ class Effects:
 
         InputError where the model has no such joint, or a Runge-Kutta integrator.
         """
-        running = self._run(model, data)
-        if self.stored.model.stepped:
-            if running.needs_forces:
-                mujoco.mj_forward(model, data)
-            running.prepare(data.time)
-        mujoco.mj_step(model, data)
+        self._run(model, data).step()
 
     def install(self) -> None:
         """Have MuJoCo call the effects in each step of every simulation in this process, as its control callback.
 
         Torque and friction act in the step in which they are called, inertia in the next one. `mujoco.set_mjcb_control
-        (None)` ends it. For one simulation only: MuJoCo calls it for all of them.
+        (None)` ends it. For one simulation only: MuJoCo calls it for all of them. InputError where it calls something
+        else already.
         """
+        if mujoco.get_mjcb_control() not in (None, self.control):
+            allowed = (
+                "allowed: one bench.Effects with the models of all joints, or `effects.control` called in your own"
+            )
+            raise InputError("MuJoCo's control callback", "found another one", allowed)
         mujoco.set_mjcb_control(self.control)
 
     def control(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """The callback that `install` installs, for a callback of one's own to call: `data.ctrl` is set already."""
         running = self._run(model, data)
-        if running.time == data.time:
+        if running.last == data.time:
             return  # mj_forward calls it too
-        if running.needs_forces:
-            mujoco.mj_fwdActuation(model, data)
-        running.prepare(data.time)
-        dof = model.joint(self.joint).dofadr[0]
-        rows = (data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)) & (data.efc_id == dof)
-        data.efc_frictionloss[rows] = model.dof_frictionloss[dof]  # constraints are made before the callback,
+        running.prepare(lambda: mujoco.mj_fwdActuation(model, data))
+        dofs = [model.joint(name).dofadr[0] for name in running.joints]
+        rows = (data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)) & np.isin(data.efc_id, dofs)
+        levels = model.dof_frictionloss[data.efc_id[rows]]
+        data.efc_frictionloss[rows] = levels  # constraints are made before the callback,
         if data.nisland:  # and parted into islands
-            data.iefc_frictionloss[data.map_efc2iefc[rows]] = model.dof_frictionloss[dof]
+            data.iefc_frictionloss[data.map_efc2iefc[rows]] = levels
 
     def _run(self, model: mujoco.MjModel, data: mujoco.MjData) -> _Running:
-        """The effects on a simulation; restarted if it is another one, or its time decreases."""
+        """The effects on a simulation; others if it is another one."""
         running = self._running
-        if running is None or running.data is not data or running.model is not model or data.time < running.time:
+        if running is None or running.data is not data or running.model is not model:
             if running is not None:
-                running.joint.set_added_inertia(0.0)  # the inertia that the model had
-            self._running = running = _Running(model, data, self.stored, self.joint)
+                running.place.restore_inertia()
+            self._running = running = _Running(self.models, model, data)
         return running
 
-    def on(self, batch: Batch, models: Sequence[StoredModel] | None = None) -> Copies:
-        """The effects on many copies at once: a `mujoco.batch.Batch` of a model that has the joint.
+    def on(self, batch: Batch, models: Sequence[StoredModel | Mapping[str, StoredModel]] | None = None) -> Worlds:
+        """The effects on many copies at once: a `mujoco.batch.Batch` of a model that has the joints.
 
-        With models, one for each copy, theirs.
+        With models, one for each copy, theirs; of several joints by name. InputError as `step`, or not one for each.
         """
-        return Copies(batch, [self.stored] * batch.nsim if models is None else models, self.joint)
-
-
-class Copies:
-    """Effects on all simulations of a batch; `step` instead of `batch.step()`.
-
-    InputError: not a model for each, gears that differ, no such joint, or a Runge-Kutta integrator.
-    """
-
-    def __init__(self, batch: Batch, models: Sequence[StoredModel], joint: str) -> None:
-        if len(models) != batch.nsim:
+        if models is not None and len(models) != batch.nsim:
             raise InputError("models", f"found {len(models)}", f"allowed: one for each of the {batch.nsim} copies")
-        bristles = _bristles(batch.model, joint)
-        ratios = {stored.mounting.gear_ratio for stored in models}
-        if len(ratios) > 1:
-            raise InputError("models", f"found gear ratios of {sorted(ratios)}", "allowed: copies of one joint")
-        self._batch, self._time = batch, batch.bind("time")
-        joints = Joints.of(batch, joint, ratios.pop(), bristles)
-        self._effects = _AtJoint(joints, batch.model, joint, models, batch.bind)
+        own = None
+        if models is not None:
+            own = [one if isinstance(one, Mapping) else dict.fromkeys(self.models, one) for one in models]
+        simulations = Simulations(batch.model, batch.nsim, batch.bind, batch.expand, batch.forward, batch.step)
+        return Worlds(self.models, simulations, own)
 
-    def step(self) -> None:
-        """Advance all copies by one step with the effects."""
-        if self._effects.needs_forces:
-            self._batch.forward()
-        self._effects.prepare(np.asarray(self._time).reshape(-1))
-        self._batch.step()
+    def on_warp(self, model: mujoco.MjModel, warp_model: Foreign, warp_data: Foreign) -> Worlds:
+        """The effects on all worlds of mujoco_warp: `model`, and what its `put_model` and `put_data` made of it.
+
+        Fields of the model that effects change become those of each world. On a GPU this needs torch.
+        """
+        mujoco_warp, warp = import_module("mujoco_warp"), import_module("warp")
+        view = warp.to_torch if warp_data.qpos.device.is_cuda else lambda array: array.numpy()
+        count = int(warp_data.nworld)
+
+        def field(name: str) -> Number:
+            one = getattr(warp_model, name)
+            if one.shape[0] < count:
+                values = np.repeat(one.numpy()[:1], count, axis=0)
+                setattr(warp_model, name, warp.array(values, dtype=one.dtype, device=one.device))
+            return view(getattr(warp_model, name))
+
+        simulations = Simulations(
+            model,
+            count,
+            lambda name: view(getattr(warp_data, name)),
+            field,
+            lambda: mujoco_warp.forward(warp_model, warp_data),
+            lambda: mujoco_warp.step(warp_model, warp_data),
+        )
+        return Worlds(self.models, simulations)
+
+    def on_mjx(self, model: mujoco.MjModel, mjx_model: Foreign) -> Mjx:
+        """The effects in MJX: `model`, and what `mjx.put_model` made of it."""
+        return Mjx(self.models, model, mjx_model)
+
+    def on_arrays(self, like: Number, step: float) -> AtJoints:
+        """The effects as a function of arrays (..., joints) of a library, as torch's, in the order of `models`.
+
+        Args:
+            like: an array of it, whose device and precision they take.
+            step: of the integration - s.
+        """
+        models = list(self.models.values())
+        return AtJoints(models, step, bristled(models), made_like(like))
 
 
-class _AtJoint:
-    """The effects at a joint of simulations side by side, of which `state` gives a field to be read, (copies, ...)."""
+class Simulations:
+    """Simulations of one model side by side, whose state and parameters may be read and written in place.
+
+    Args:
+        model: of all of them.
+        count: how many.
+        state: gives a field of their data (count, ...), live.
+        field: gives a field of the model that each has for itself (count, ...), live.
+        forward: computes forces.
+        advance: goes on by a step.
+    """
 
     def __init__(
         self,
-        joints: Joints,
         model: mujoco.MjModel,
-        joint: str,
-        models: Sequence[StoredModel],
-        state: Callable[[str], Array],
+        count: int,
+        state: Callable[[str], Number],
+        field: Callable[[str], Number],
+        forward: Callable[[], object],
+        advance: Callable[[], object],
     ) -> None:
-        here, self._ratio, self._joints = model.joint(joint), models[0].mounting.gear_ratio, joints
-        self.time: Number = -np.inf
-        self._position, self._velocity = state("qpos")[:, here.qposadr[0]], state("qvel")[:, here.dofadr[0]]
-        self._actuators = Actuators.of(model, joint, self._ratio)
-        self._control, self._force = state("ctrl"), state("actuator_force")
-        self.needs_forces = self._actuators.needs_forces
-        axes = [stored.model for stored in models]
-        self._effects = SteppedEffects(joints, axes, self._ratio * per_axis(self._velocity))
-
-    def prepare(self, time: Number) -> None:
-        """Set the effects for the step that comes, at a time - s."""
-        self.time = time
-        position, velocity = (self._ratio * per_axis(each) for each in (self._position, self._velocity))
-        demand = per_axis(self._actuators.torque(self._control, self._force))
-        _, torque = self._effects.act(time, position, velocity, demand)
-        self._joints.add_torque(torque - demand)
+        self.model, self.count, self.forward, self.advance = model, count, forward, advance
+        self.state, self.field = state, cache(field)
 
 
-class _Running(_AtJoint):
-    """The effects on one simulation, with what they remember of it."""
+class Worlds:
+    """Effects on simulations side by side; `step` instead of their own step.
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, stored: StoredModel, joint: str) -> None:
-        self.model, self.data = model, data
-        self.joint = SimulationJoint(model, data, joint, stored.mounting.gear_ratio, _bristles(model, joint))
-        super().__init__(self.joint, model, joint, [stored], lambda name: getattr(data, name)[None])
-
-
-@dataclass(frozen=True)
-class Actuators:
-    """Actuators that drive a joint.
-
-    Attributes:
-        controls: places of their inputs in `ctrl` (k,).
-        actuators: their numbers (k,).
-        gears: motor torque per force of each (k,).
-        gains: force per input (k,); nan where MuJoCo makes the force of more than that, and has to be asked.
-        limits: lowest and highest input, and force, of each (k, 4).
+    Args:
+        models: of joints by name.
+        simulations: that have these joints.
+        own: the models of each simulation, where they differ.
     """
 
-    controls: NDArray[np.intp]
-    actuators: NDArray[np.intp]
-    gears: Array
-    gains: Array
-    limits: Array
+    def __init__(
+        self,
+        models: Mapping[str, StoredModel],
+        simulations: Simulations,
+        own: Sequence[Mapping[str, StoredModel]] | None = None,
+    ) -> None:
+        model, each = simulations.model, own or [models]
+        require(model, models)
+        self.joints = [name for name in models if any(one[name].model.stepped for one in each)]
+        self._simulations, self._own = simulations, own is not None
+        self.last: Number = -np.inf
+        if not self.joints:
+            return
+        self.place = _Place(simulations, self.joints)
+        made = made_like(self.place.applied)
+        self._actuators = Actuators.of(model, self.joints, made)
+        axes = [one[name] for one in each for name in self.joints]
+        self._effects = AtJoints(axes, float(model.opt.timestep), np.tile(self.place.bristled, len(each)), made)
+        here = [model.joint(name) for name in self.joints]
+        self._at = {"qpos": [int(j.qposadr[0]) for j in here], "qvel": [int(j.dofadr[0]) for j in here]}
+        self._memory: Remembered | None = None
 
-    @classmethod
-    def of(cls, model: mujoco.MjModel, joint: str, ratio: float) -> Actuators:
-        """All actuators with an input on a joint."""
-        at_joint = model.actuator_trnid[:, 0] == model.joint(joint).id
-        at_joint &= model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT
-        chosen = np.flatnonzero(at_joint & (model.actuator_ctrlnum > 0))
-        fixed = model.actuator_gaintype[chosen] == mujoco.mjtGain.mjGAIN_FIXED
-        plain = fixed & (model.actuator_biastype[chosen] == mujoco.mjtBias.mjBIAS_NONE)
-        plain &= model.actuator_dyntype[chosen] == mujoco.mjtDyn.mjDYN_NONE
-        limits = np.full((chosen.size, 4), np.inf) * [-1.0, 1.0, -1.0, 1.0]
-        for row, k in enumerate(chosen):
-            if plain[row] and model.actuator_ctrllimited[model.actuator_ctrladr[k]]:
-                limits[row, :2] = model.actuator_ctrlrange[model.actuator_ctrladr[k]]
-            if model.actuator_forcelimited[k]:
-                limits[row, 2:] = model.actuator_forcerange[k]
-        gains = np.where(plain, model.actuator_gainprm[chosen, 0], np.nan)
-        return cls(model.actuator_ctrladr[chosen], chosen, model.actuator_gear[chosen, 0] / ratio, gains, limits)
+    def step(self) -> None:
+        """Advance all simulations by one step with the effects."""
+        self.prepare()
+        self._simulations.advance()
 
-    @property
-    def needs_forces(self) -> bool:
-        """Whether MuJoCo has to compute forces first, as those of a servo or a winding."""
-        return bool(np.isnan(self.gains).any())
+    def prepare(self, forward: Callable[[], object] | None = None) -> None:
+        """Set the effects for the step that comes, for a loop that makes it by itself; `forward` computes forces."""
+        if not self.joints:
+            return
+        state = self._simulations.state
+        if self._actuators.needs_forces:
+            (forward or self._simulations.forward)()
+        time = state("time").reshape(-1, 1)
+        again, self.last = time < self.last, time + 0.0
+        position, velocity = (self._axes(state(name)[:, at]) for name, at in self._at.items())
+        if self._memory is None:
+            self._memory = self._effects.start(velocity)
+        elif self._simulations.count > 1 or again:
+            self._memory = self._effects.again(self._memory, self._axes(again), velocity)
+            self.place.again(again)
+        torque = self._axes(self._actuators.torque(state("ctrl"), state("actuator_force")))
+        acts = self._effects.act(self._memory, self._axes(time), position, velocity, torque)
+        self._memory = acts.memory
+        self.place.take(acts)
 
-    def torque(self, control: Array, force: Array) -> Array:
-        """Torque of the motor - N*m (N) - (copies,), of inputs (copies, nu) and forces (copies, na)."""
-        low, high, weakest, strongest = self.limits.T
-        made = np.clip(np.clip(control[:, self.controls], low, high) * self.gains, weakest, strongest)
-        return np.where(np.isnan(self.gains), force[:, self.actuators], made) @ self.gears
+    def _axes(self, values: Number) -> Number:
+        """Values (simulations, joints) as the effects have them: by joint, or of each on its own; of a lone one, it."""
+        if self._own:
+            whole = namespace(values).broadcast_to(values, (self._simulations.count, len(self.joints)))
+            return whole.reshape(-1) if whole.size > 1 else whole[0, 0]
+        return values[0, 0] if self._simulations.count * len(self.joints) == 1 else values
 
 
-def _bristles(model: mujoco.MjModel, joint: str) -> str:
-    """Actuator whose bristles are the joint's friction, as `bench export` or the bench's own model names it.
+class _Place(Joints):
+    """Joints of simulations, beside whatever else is applied to them."""
+
+    def __init__(self, simulations: Simulations, joints: Sequence[str]) -> None:
+        model, self.applied = simulations.model, simulations.state("qfrc_applied")
+        names = [f"{joint} {BRISTLES}" for joint in joints]
+        exported = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, name) >= 0 for name in names]
+        bristles = [name if there else BRISTLES for name, there in zip(names, exported, strict=True)]
+        super().__init__(model, simulations.field, self.applied, joints, bristles)
+        self._given: Number = 0.0
+
+    def apply(self, torque: Number) -> None:
+        """In the place of what was applied before; what others apply stays."""
+        self._applied[:, self._columns] += torque - self._given
+        self._given = torque
+
+    def again(self, where: Number) -> None:
+        """Nothing was applied yet where simulations were reset: bool - (simulations, 1)."""
+        self._given = namespace(where).where(where, 0.0 * self._given, self._given)
+
+
+class _Running(Worlds):
+    """The effects on one simulation of MuJoCo."""
+
+    def __init__(self, models: Mapping[str, StoredModel], model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        self.model, self.data = model, data
+        super().__init__(
+            models,
+            Simulations(
+                model,
+                1,
+                lambda name: np.array([data.time]) if name == "time" else getattr(data, name)[None],
+                lambda name: getattr(model, name)[None],
+                lambda: mujoco.mj_forward(model, data),
+                lambda: mujoco.mj_step(model, data),
+            ),
+        )
+
+
+class Mjx:
+    """Effects in MJX, which is functional: what they remember goes in and out of each step.
+
+        mjx_effects = effects.on_mjx(model, mx)
+        memory = mjx_effects.start(dx)
+        dx, memory = jax.jit(mjx_effects.step)(mx, dx, memory)  # under jax.vmap with many worlds
 
     InputError where the model has no such joint, or a Runge-Kutta integrator.
     """
+
+    def __init__(self, models: Mapping[str, StoredModel], model: mujoco.MjModel, mjx_model: Foreign) -> None:
+        require(model, models)
+        made = made_like(mjx_model.dof_armature)
+        axes = {name: stored for name, stored in models.items() if stored.model.stepped}
+        self._actuators = Actuators.of(model, list(axes), made)
+        self._q = np.array([model.joint(name).qposadr[0] for name in axes], dtype=np.intp)
+        self._w = np.array([model.joint(name).dofadr[0] for name in axes], dtype=np.intp)
+        carried = bristled(axes.values())
+        if carried.any():
+            found = "found bristles, whose level MJX does not let change"
+            raise InputError(f"joint '{list(axes)[int(carried.argmax())]}'", found, "allowed: on_warp, or without them")
+        self._effects = AtJoints(list(axes.values()), float(model.opt.timestep), carried, made)
+
+    def start(self, mjx_data: Foreign) -> Remembered:
+        """What is remembered before a first step."""
+        return self._effects.start(mjx_data.qvel[self._w])
+
+    def step(self, mjx_model: Foreign, mjx_data: Foreign, memory: Remembered) -> tuple[Foreign, Remembered]:
+        """One step with the effects, instead of `mjx.step(mjx_model, mjx_data)`; and what is remembered of it."""
+        from mujoco import mjx
+
+        if self._actuators.needs_forces:
+            mjx_data = mjx.forward(mjx_model, mjx_data)
+        torque = self._actuators.torque(mjx_data.ctrl, mjx_data.actuator_force)
+        position, velocity = mjx_data.qpos[self._q], mjx_data.qvel[self._w]
+        acts = self._effects.act(memory, mjx_data.time, position, velocity, torque)
+        changed = {}
+        if acts.inertia is not None:
+            changed["dof_armature"] = mjx_model.dof_armature.at[self._w].add(acts.inertia)
+        if acts.friction is not None:
+            changed["dof_frictionloss"] = mjx_model.dof_frictionloss.at[self._w].set(acts.friction)
+        own = mjx_data.qfrc_applied
+        stepped = mjx.step(
+            mjx_model.replace(**changed), mjx_data.replace(qfrc_applied=own.at[self._w].add(acts.torque))
+        )
+        return stepped.replace(qfrc_applied=own), acts.memory
+
+
+def bristled(models: Iterable[StoredModel]) -> NDArray[np.bool_]:
+    """Of which joints' models native bristles carry the friction (joints,)."""
+    return np.array([any(isinstance(p.effect, CarriesFriction) for p in m.model.native) for m in models], dtype=bool)
+
+
+def require(model: mujoco.MjModel, joints: Iterable[str]) -> None:
+    """InputError where a model has not all of these joints, or a Runge-Kutta integrator."""
     names = [model.joint(k).name for k in range(model.njnt)]
-    if joint not in names:
-        raise InputError(f"joint '{joint}'", "found none of that name", f"allowed: {', '.join(filter(None, names))}")
+    for joint in joints:
+        if joint not in names:
+            allowed = f"allowed: {', '.join(filter(None, names))}"
+            raise InputError(f"joint '{joint}'", "found none of that name", allowed)
     if model.opt.integrator not in ONE_STAGE:
         raise InputError("option integrator", "found RK4", "allowed: Euler, implicit, implicitfast")
-    exported = f"{joint} {BRISTLES}"
-    return exported if mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, exported) >= 0 else BRISTLES

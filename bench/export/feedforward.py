@@ -196,8 +196,9 @@ def resisting_torque(model: AxisModel, position: Array, velocity: Array) -> Arra
     dof = joint.dofadr[0]
     batch.bind("qpos")[:, joint.qposadr[0]], batch.bind("qvel")[:, dof] = position, velocity
     applied, passive, made = (batch.bind(f"qfrc_{part}")[:, dof] for part in ("applied", "passive", "actuator"))
-    effects = SteppedEffects(Joints.of(batch), [model] * position.size, velocity)
-    effects.act(np.full(position.size, np.inf), position, velocity, np.zeros(position.size))
+    effects = SteppedEffects([model], TIMESTEP)
+    none = np.zeros_like(velocity)
+    Joints.of(batch).take(effects.act(effects.start(velocity), np.inf, position, velocity, none))
     batch.forward()
     return batch.expand("dof_frictionloss")[:, dof] * np.sign(velocity) - applied - passive - made
 

@@ -26,7 +26,7 @@ import mujoco
 import tomli_w
 
 from bench.axis_kind import AxisKind, axis_kind
-from bench.effects.mjcf import LOAD, MOTOR
+from bench.effects.mjcf import AXIS, LOAD, MOTOR
 from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.effects.signals import Winding
 from bench.errors import InputError
@@ -159,6 +159,19 @@ def load_joints(path: str | Path) -> dict[str, StoredModel]:
     if not isinstance(joints, dict) or not all(isinstance(one, dict) for one in joints.values()):
         raise InputError(f"{path}: joints", f"found {joints!r}", "allowed: a table for each joint")
     return {name: _model(one, f"{path}: joints.{name}") for name, one in joints.items()}
+
+
+def load_models(path: str | Path, joint: str | None = None) -> dict[str, StoredModel]:
+    """Models by joint: that of a `model.toml` as a joint's, `axis` by default; all of an `effects.toml`, or one's.
+
+    InputError as `load_model`, or where there is no model of the joint.
+    """
+    if read_table(path).get("schema") != OF_JOINTS:
+        return {joint or AXIS: load_model(path)}
+    models = load_joints(path)
+    if joint is not None and joint not in models:
+        raise InputError(f"{path}: joints", f"found no '{joint}'", f"allowed: {', '.join(models)}")
+    return models if joint is None else {joint: models[joint]}
 
 
 def _model(table: Mapping[str, Any], path: str) -> StoredModel:

@@ -167,7 +167,9 @@ class _SideBySide:
         self._effects = None
         if not all(loop.axis.all_native for loop in loops):
             axes = [loop.axis for loop in loops]
-            self._effects = SteppedEffects(Joints.of(batch), axes, per_axis(self._velocity))
+            self._joints = Joints.of(batch)
+            self._effects = SteppedEffects(axes, self._step, bool(self._joints.bristled.any()))
+            self._memory = self._effects.start(per_axis(self._velocity))
 
     def state(self) -> tuple[Number, Number]:
         """True position and velocity as they are now - rad (m), rad/s (m/s) - (axes,), or numbers of a lone axis."""
@@ -200,10 +202,11 @@ class _SideBySide:
     def _step_on(self, time: float, motor: Number) -> tuple[Number, Number]:
         """One step from the state that was read: effort that flows, and acts - N*m (N) - (axes,)."""
         assert self._effects is not None
-        flowing, acts = self._effects.act(self._since + time, self._here, self._now, motor, self._began)
-        self._effort[:] = acts
+        acts = self._effects.act(self._memory, self._since + time, self._here, self._now, motor, self._began)
+        self._memory, self._effort[:] = acts.memory, acts.motor
+        self._joints.take(acts)
         self._batch.step()
-        return flowing, acts
+        return acts.reported, acts.motor
 
     @property
     def diverged(self) -> NDArray[np.bool_]:

@@ -1,7 +1,5 @@
 """Effects in a loop of one's own move a joint as the bench's own plant does, one simulation or many at once."""
 
-from dataclasses import replace
-
 import mujoco
 import numpy as np
 import pytest
@@ -63,7 +61,8 @@ def test_it_agrees_on_a_joint_behind_a_gear(tmp_path):
       <inertial pos="0 0 0" mass="1" diaginertia="{load} {load} {load}"/></body></body></worldbody></mujoco>"""
     spec = mujoco.MjSpec.from_string(xml.replace("</body></body>", "</body>"))
     effects = bench.Effects(toml, joint="elbow")
-    onto(spec, "elbow", effects.stored, armature_of(effects.stored, ArmatureShare.MOTOR))
+    read = effects.models["elbow"]
+    onto(spec, "elbow", read, armature_of(read, ArmatureShare.MOTOR))
     velocity = driven(spec.compile(), effects, "elbow", "elbow motor", ratio)
     # damping acts at the end of a step here, in its middle in the plant
     assert np.abs(velocity - expected).max() < 1e-3 * np.abs(expected).max()
@@ -178,7 +177,8 @@ def test_a_motors_torque_is_its_input_within_its_limits(control, torque):
 
 def test_what_cannot_be_stepped_is_reported():
     simulation = mujoco.MjModel.from_xml_string(ARM)
-    effects = bench.Effects(stored(), "ellbow")
+    stribeck = stored(("stribeck_friction", VALUES["stribeck_friction"]))
+    effects = bench.Effects(stribeck, "ellbow")
     with pytest.raises(InputError, match="found none of that name; allowed: shoulder, elbow, slide"):
         effects.step(simulation, mujoco.MjData(simulation))
     simulation.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
@@ -187,6 +187,3 @@ def test_what_cannot_be_stepped_is_reported():
     simulation.opt.integrator = 0
     with pytest.raises(InputError, match="one for each of the 3 copies"):
         bench.Effects(stored(), "elbow").on(Batch(simulation, 3), [stored()])
-    geared = [stored(), replace(stored(), mounting=Mounting(2.0))]
-    with pytest.raises(InputError, match="copies of one joint"):
-        bench.Effects(stored(), "elbow").on(Batch(simulation, 2), geared)

@@ -1,0 +1,229 @@
+"""Files for other simulators: values on the joint's side of the gear, what they lack told; and loaded by each of them.
+
+The slow tests run where the Python of an environment with the simulator is named: `MJLAB_PYTHON`, `NEWTON_PYTHON`
+(`pip install "newton[sim]"`), `BAM_PYTHON` (`pip install better-actuator-models`, from Python 3.12 on).
+"""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+
+import mujoco
+import numpy as np
+import pytest
+
+from bench.export.mjcf import ArmatureShare, armature_of, onto
+from bench.export.simulators import simulator_file
+from bench.files import write_text
+from bench.plant.model_file import joints_toml
+from tests.diagnosis.command import started
+from tests.effects.axes import WINDING
+from tests.export.arms import PARAMETERS, stored
+from tests.export.two_links import MJCF
+
+COGGING = ("cogging_torque", {"amplitude": 0.4, "harmonic": 6.0, "phase": 0.3})
+SECOND = ("cogging_torque", {"amplitude": 0.2, "harmonic": 12.0, "phase": 0.0})
+BRISTLES = ("presliding_friction", {"bristle_stiffness": 20.0})
+STRIBECK = ("stribeck_friction", {"static_friction": 0.12, "stribeck_velocity": 2.0})
+LOADED = ("load_dependent_friction", {"load_friction_coefficient": 0.12})
+DIRECTED = ("directional_load_friction", {"motor_coefficient": 0.1, "load_ratio": 2.0})
+SPRING = ("torsion_spring", {"stiffness": 0.5})
+RATIO = 12.0
+
+
+def of(*effects, **parts):
+    made = stored(*effects, gear_ratio=RATIO)
+    return replace(made, model=replace(made.model, **parts))
+
+
+class Told(SimpleNamespace):
+    """A configuration of another simulator, as what it was given."""
+
+
+def loaded(text, monkeypatch):
+    """What a module for another simulator defines, whose classes keep what they are given."""
+    for name in ("mjlab", "mjlab.actuator", "isaaclab", "isaaclab.actuators", "newton"):
+        monkeypatch.setitem(sys.modules, name, ModuleType(name))
+    for kind in ("BuiltinDcMotorActuatorCfg", "DcMotorPhysicalParams"):
+        setattr(sys.modules["mjlab.actuator"], kind, Told)
+    sys.modules["mjlab.actuator"].DcMotorInputMode = SimpleNamespace(VOLTAGE=0)
+    sys.modules["isaaclab.actuators"].ImplicitActuatorCfg = sys.modules["newton"].ModelBuilder = Told
+    names = {}
+    exec(compile(text, "exported", "exec"), names)
+    return names
+
+
+def test_mjlab_gets_torque_cogging_and_bristles(monkeypatch):
+    text, lines = simulator_file("mjlab", {"elbow": of(COGGING, SECOND, BRISTLES, LOADED, peak_effort=3.0)}, None)
+    (motor,) = loaded(text, monkeypatch)["ACTUATORS"]
+    assert motor.target_names_expr == ("elbow",)
+    assert (motor.gear, motor.effort_limit, motor.frictionloss) == (RATIO, 3.0, 0.0)
+    assert motor.armature == pytest.approx(1e-4 * RATIO**2)
+    assert motor.viscous_damping == pytest.approx(1.1e-3 * RATIO**2)
+    assert motor.cogging == pytest.approx((-0.4, 6.0, 0.3))
+    assert motor.lugre[0] == 20.0
+    assert motor.lugre[2:4] == pytest.approx((0.08, 0.08))
+    assert motor.motor_params.kt == motor.motor_params.resistance
+    assert "elbow: carried: cogging_torque, presliding_friction" in lines
+    assert "elbow: not carried: cogging_torque (MuJoCo has it: --to mjcf)" in lines
+    assert "elbow: not carried: load_dependent_friction (bench.Effects steps it)" in lines
+
+
+@pytest.mark.parametrize(
+    ("effects", "variant"),
+    [((), "m1"), ((STRIBECK,), "m2"), ((LOADED,), "m5"), ((STRIBECK, DIRECTED), "m5"), ((STRIBECK, COGGING), "m2")],
+)
+def test_bams_friction_is_that_of_the_effects(effects, variant):
+    """BAM's published law, on the joint's side, beside what the effects say on the motor's."""
+    model = of(*effects, winding=WINDING)
+    text, lines = simulator_file("bam", {"elbow": model}, "xl330")
+    told = json.loads(text)
+    assert (told["model"], told["actuator"]) == (variant, "xl330")
+    assert told["kt"] == pytest.approx(WINDING.torque_constant * RATIO)
+    for motor, outside, speed in STATES:
+        assert bams(told, motor, outside, speed) == pytest.approx(level(effects, motor, outside, speed), rel=1e-9)
+    assert any("cogging_torque" in line for line in lines) == (COGGING in effects)
+
+
+STATES = [(0.0, 0.0, 0.01), (3.0, -1.0, 0.1), (-3.0, 1.5, 0.4), (1.0, 2.0, -0.2)]
+
+
+def bams(told, motor, outside, speed):
+    """Dry friction - N*m."""
+    rise = told.get("friction_stribeck", 0.0) * np.exp(
+        -(abs(speed / told.get("dtheta_stribeck", 1.0)) ** told.get("alpha", 1.0))
+    )
+    loaded = abs(told.get("load_friction_external", 0.0) * outside - told.get("load_friction_motor", 0.0) * motor)
+    return told["friction_base"] + rise + loaded
+
+
+def level(effects, motor, outside, speed):
+    """The effects' dry friction - N*m - by their equations, of torques and speed of the motor."""
+    motor, load, speed, found = motor / RATIO, -outside / RATIO, speed * RATIO, PARAMETERS.coulomb_friction
+    for name, values in effects:
+        if name == "stribeck_friction":
+            found += (values["static_friction"] - 0.08) * np.exp(-((speed / values["stribeck_velocity"]) ** 2))
+        if name == "load_dependent_friction":
+            found += values["load_friction_coefficient"] * abs(motor)
+        if name == "directional_load_friction":
+            found += values["motor_coefficient"] * abs(motor + values["load_ratio"] * load)
+    return found * RATIO
+
+
+def test_isaac_lab_gets_static_and_dynamic_friction(monkeypatch):
+    text, lines = simulator_file("isaaclab", {"elbow": of(STRIBECK, LOADED), "my wrist": of()}, None)
+    actuators = loaded(text, monkeypatch)["ACTUATORS"]
+    elbow, wrist = actuators["elbow"], actuators["my wrist"]
+    assert (elbow.friction, elbow.dynamic_friction) == pytest.approx((0.12 * RATIO, 0.08 * RATIO))
+    assert wrist.friction == wrist.dynamic_friction == pytest.approx(0.08 * RATIO)
+    assert wrist.viscous_friction == pytest.approx(1.1e-3 * RATIO**2)
+    assert wrist.joint_names_expr == [r"my\ wrist"]
+    assert "elbow: carried: stribeck_friction" in lines
+    assert "elbow: not carried: load_dependent_friction (bench.Effects steps it)" in lines
+
+
+def test_newton_gets_a_spring(monkeypatch):
+    text, lines = simulator_file("newton", {"elbow": of(SPRING, COGGING)}, None)
+    builder = Told(joint_label=["world/arm/shoulder", "world/arm/elbow"], joint_qd_start=[0, 1])
+    for name in ("armature", "friction", "damping", "stiffness"):
+        setattr(builder, f"joint_{name}", [7.0, 7.0])
+    loaded(text, monkeypatch)["onto"](builder)
+    assert builder.joint_stiffness == pytest.approx([7.0, 0.5 * RATIO**2])
+    assert builder.joint_armature == pytest.approx([7.0, 1e-4 * RATIO**2])
+    assert "elbow: not carried: cogging_torque (MuJoCo has it: --to mjcf)" in lines
+
+
+def test_nothing_of_a_name_becomes_code(monkeypatch):
+    name = 'elbow"\n)]; raise SystemExit #'
+    for target in ("mjlab", "isaaclab", "newton"):
+        text, _ = simulator_file(target, {name: of()}, None)
+        loaded(text, monkeypatch)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ("--to gazebo", "--to: found 'gazebo'; allowed: mjcf, mjlab, bam, isaaclab, newton"),
+        ("--to bam --joint elbow", "--actuator: missing"),
+        ("--to bam --actuator xl330", "found several joints; allowed: one joint that turns, by --joint"),
+        ("--to newton --actuator xl330", "allowed: with --to bam"),
+        ("--to newton --joint wrist", "found no 'wrist'; allowed: shoulder, elbow"),
+        ("--to newton --snippet", "found none or several"),
+    ],
+)
+def test_what_no_simulator_takes_is_one_line(tmp_path, arguments, says, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    write_text(tmp_path / "effects.toml", joints_toml({"shoulder": of(), "elbow": of(STRIBECK)}))
+    run = started(tmp_path)
+    assert run("export", "effects.toml", *arguments.split(), "--out", "x.py") == 2
+    assert says in capfd.readouterr().err
+    assert not (tmp_path / "x.py").exists()
+
+
+def test_the_command_writes_the_file_of_all_joints(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    write_text(tmp_path / "effects.toml", joints_toml({"shoulder": of(), "elbow": of(STRIBECK)}))
+    assert started(tmp_path)("export", "effects.toml", "--to", "newton", "--out", "joints.py") == 0
+    names = loaded((tmp_path / "joints.py").read_text(), monkeypatch)
+    assert set(names["JOINTS"]) == {"shoulder", "elbow"}
+    assert "elbow: not carried: stribeck_friction" in capfd.readouterr().out
+
+
+MODELS = {"shoulder": of(), "elbow": of(COGGING)}
+
+
+def pushed(models):
+    """Torques of the joints - (400, 2) - and velocities of the arm on MuJoCo's CPU, in the bench's own export."""
+    spec = mujoco.MjSpec.from_string(MJCF)
+    for name, model in models.items():
+        onto(spec, name, model, armature_of(model, ArmatureShare.MOTOR))
+    simulation = spec.compile()
+    data, time = mujoco.MjData(simulation), 5e-4 * np.arange(400)
+    torques, found = np.stack([30.0 * np.sin(40.0 * time), 12.0 * np.sin(23.0 * time)], axis=1), []
+    for torque in torques:
+        data.ctrl[:2] = torque
+        mujoco.mj_step(simulation, data)
+        found.append(data.qvel.copy())
+    return torques, np.array(found)
+
+
+def elsewhere(engine, tmp_path, *arguments):
+    """What a program of `engines` prints in the environment of an engine."""
+    python = os.environ.get(f"{engine.upper()}_PYTHON")
+    if python is None:
+        pytest.skip(f"{engine.upper()}_PYTHON names no environment with {engine}")
+    program = Path(__file__).parent / "engines" / f"in_{engine}.py"
+    done = subprocess.run(
+        [python, str(program), *map(str, arguments)], capture_output=True, text=True, cwd=tmp_path, check=False
+    )
+    assert done.returncode == 0, done.stderr[-3000:]
+    return np.array(json.loads(done.stdout.splitlines()[-1]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("engine", ["mjlab", "newton"])
+def test_a_simulator_moves_the_arm_as_mujoco_does(engine, tmp_path):
+    models = MODELS if engine == "mjlab" else {"shoulder": of(), "elbow": of(SPRING)}
+    torques, expected = pushed(models)
+    robot, joints, inputs = tmp_path / "robot.xml", tmp_path / "joints.py", tmp_path / "torques.json"
+    robot.write_text(MJCF.replace(MJCF[MJCF.index("<actuator>") : MJCF.index("</mujoco>")], ""))
+    joints.write_text(simulator_file(engine, models, None)[0])
+    inputs.write_text(json.dumps((torques / (RATIO if engine == "mjlab" else 1.0)).tolist()))
+    found = elsewhere(engine, tmp_path, robot, joints, inputs)
+    off = np.abs(found - expected).max() / np.abs(expected).max()
+    print(f"\n{engine}: {100 * off:.3f} % of the largest speed")
+    assert off < 0.01
+
+
+@pytest.mark.slow
+def test_bam_reads_its_parameters(tmp_path):
+    effects = (STRIBECK, DIRECTED)
+    (tmp_path / "m5.json").write_text(simulator_file("bam", {"elbow": of(*effects)}, "xl330")[0])
+    (tmp_path / "states.json").write_text(json.dumps(STATES))
+    found = elsewhere("bam", tmp_path, tmp_path / "m5.json", tmp_path / "states.json")
+    expected = [[level(effects, *state), PARAMETERS.viscous_friction_coefficient * RATIO**2] for state in STATES]
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
