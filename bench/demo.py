@@ -1,47 +1,77 @@
-"""The whole chain on the embedded rig: simulate it, identify it, and set truth beside estimate."""
+"""The whole chain on the embedded rig: hide an effect in it, find it, add it, and set truth beside what was found."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
 
-from bench.assets import asset
+from bench.diagnosis.diagnosis import diagnose
+from bench.effects.present import Present
 from bench.files import held
 from bench.fit.identify import identify
-from bench.plant.simulate import simulate, write_truth
-from bench.report.document import Document
+from bench.names import words
+from bench.plant.axis_model import effect_values
+from bench.plant.profile_names import DEFAULT
+from bench.plant.simulate import Truth, simulate, write_truth
+from bench.report.diagnosis import diagnosis, write_diagnosis
+from bench.report.document import Document, section
 from bench.report.identification import identification, moved
+from bench.report.numbers import number
+from bench.report.parts import parameters_table
 from bench.report.publish import write_document
 from bench.rig.rig import load_rig
 from bench.trace.read import read
 from bench.trace.write import write
+from bench.validation.own import own_axis
+from bench.validation.plan import Hiding, Plan
+
+#: Of the shipped rigs.
+RIG = "sh30701p"
 
 
-def demo(out: Path, progress: Callable[[float], None]) -> tuple[Document, list[Path]]:
-    """Run the chain into a folder; the identification reads the trace file, like anybody's.
+def demo(out: Path, seed: int, progress: Callable[[float], None]) -> tuple[Document, list[Path]]:
+    """Run the chain into a folder; identification and diagnosis read the trace file, like anybody's.
+
+    Args:
+        out: folder, made if it is not there.
+        seed: draws which effect is hidden, how strong it is, and the sensors' noise.
+        progress: called with the share done.
 
     Returns:
-        The identification beside the truth, and the files that were written.
+        The diagnosis beside the truth, and the files that were written.
 
     Raises:
         InputError: the folder cannot be written to.
     """
-    rig, trace = load_rig(asset("data", "rigs", "sh30701p.toml")), out / "trace.csv.gz"
+    rig, trace = load_rig(RIG), out / "trace.csv.gz"
+    case = Plan(seed, Hiding(1, 1), population=own_axis(rig, DEFAULT, None)).case(0)
+    hidden = [Present.of(effect.name, effect.quantities(case.axis)) for effect in case.effects]
+    title = f"{rig.name}, simulated in MuJoCo with an effect hidden by seed {seed}"
     with held(out):
-        simulated = simulate(rig, progress=lambda share: progress(0.6 * share))
+        simulated = simulate(rig, DEFAULT, seed, progress=lambda share: progress(0.3 * share), effects=hidden)
         write(simulated.trace, trace)
-        truth = write_truth(trace, simulated.truth)
-        progress(0.8)
-        estimate = identify(read(trace), rig)
-        axis = simulated.truth.parameters
-        known = {
-            "moment_of_inertia": axis.inertia,
-            "viscous_friction_coefficient": axis.viscous_friction_coefficient,
-            "coulomb_friction_torque": axis.coulomb_friction,
-            "load_moment_of_inertia": axis.inertia - axis.motor_inertia,
-        }
-        title, motions = f"{rig.name}, simulated in MuJoCo", moved([trace], rig, estimate)
-        found = identification(title, rig.axis_kind, estimate, motions=motions, truth=known)
-        files = write_document(out, found)
+        files = [trace, write_truth(trace, simulated.truth)]
+        recorded = read(trace)
+        bare = identify(recorded, rig)
+        found = diagnose(recorded, rig, progress=lambda share: progress(0.3 + 0.5 * share))
+        files += write_document(out, identification(title, rig.axis_kind, bare, motions=moved([trace], rig, bare)))
+        files += write_diagnosis(out, found, title)
     progress(1.0)
-    return found, [trace, truth, *files]
+    shown, truth = diagnosis(found, title), simulated.truth
+    tables = [parameters_table("The axis", found.parameters, {k: v for k, (v, _) in truth.parameters.values.items()})]
+    for one in found.effects:
+        known = {k: v for present in truth.effects if present.effect is one.effect for k, v in present.values}
+        tables.append(parameters_table(words(one.name), one.parameters, known))
+    answers = {"What was hidden?": f"{_told(truth)}.", **shown.answers}
+    beside = section("truth", "Found beside the truth", *tables)
+    return shown.model_copy(update={"answers": answers, "sections": (beside,)}), list(dict.fromkeys(files))
+
+
+def _told(truth: Truth) -> str:
+    """Effects that are hidden, with their values."""
+    kind = truth.parameters.kind
+    told = {
+        one.name: ", ".join(f"{words(key)} {number(*value, 3)}" for key, value in effect_values(one, kind).items())
+        for one in truth.effects
+    }
+    return "; ".join(f"{words(name)} ({of})" if of else words(name) for name, of in told.items())

@@ -31,6 +31,17 @@ class Parameter:
     std_error: float
     ci95: tuple[float, float]
 
+    def __float__(self) -> float:
+        return float(self.value)
+
+    def __str__(self) -> str:
+        known = math.isfinite(self.half_width) and self.half_width > 0.0
+        between = f" ± {self.half_width:.2g}" if known else ""
+        return f"{self.value:.6g}{between} {self.unit.replace('dimensionless', '')}".rstrip()
+
+    def __format__(self, form: str) -> str:
+        return format(self.value, form) if form else str(self)
+
     @property
     def half_width(self) -> float:
         """Half width of the 95 % interval - unit."""

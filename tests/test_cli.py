@@ -12,7 +12,7 @@ from bench.assets import asset
 from bench.trace.read import read
 from bench.trace.write import write
 from tests import command
-from tests.fit.motions import recording
+from tests.fit.motions import Truth, recording
 from tests.hostile import assert_one_line, bound_by_permissions, columns, csv_of, run
 
 RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nrotor_inertia = "2 kg*cm**2"\n'
@@ -33,14 +33,22 @@ def trace(tmp_path_factory):
     return path
 
 
-def test_demo_shows_truth_beside_estimate_and_writes_what_it_names(bench, tmp_path):
+def test_demo_hides_an_effect_finds_it_and_ends_with_what_is_next(bench, tmp_path):
     status, out, _ = bench("demo", "--out", "here")
     assert status == 0
     assert "truth" in out
     assert "moment of inertia" in out
     named = [tmp_path / line.removeprefix("wrote ") for line in out.splitlines() if line.startswith("wrote ")]
-    assert {path.name for path in named} >= {"trace.csv.gz", "identification.png", "identify.json"}
+    assert {path.name for path in named} >= {"trace.csv.gz", "identification.png", "identify.json", "model.xml"}
     assert all(path.stat().st_size > 500 for path in named)
+    (hidden,) = json.loads((tmp_path / "here" / "trace.csv.gz.truth.json").read_text())["effects"]
+    (found,) = json.loads((tmp_path / "here" / "diagnosis.json").read_text())["effects"]
+    assert found["name"] == hidden["name"]
+    for name, true in hidden["parameters"].items():
+        assert found["parameters"][name]["value"] == pytest.approx(true["value"], rel=0.02), name
+    *_, page, yours = out.splitlines()
+    assert page == "the page: here/report.html"
+    assert yours.startswith("now yours: bench diagnose ")
 
 
 def test_simulate_writes_a_trace_and_its_truth(bench, tmp_path):
@@ -181,7 +189,7 @@ def test_truncated_and_foreign_files_are_refused_in_one_line(bench, tmp_path, tr
         (("identify", "nowhere.csv", "--rig", "rig.toml"), ["nowhere.csv"]),
         (("identify", ".", "--rig", "rig.toml"), ["folder"]),
         (("identify", "rig.toml", "--rig", "nowhere.toml"), ["nowhere.toml", "no such file"]),
-        (("identify", "rig.toml"), ["--rig"]),
+        (("identify", "rig.toml"), ["rig.toml: not a trace"]),
         (("simulate", "rig.toml", "--out", "x.csv"), ["rig.toml"]),
         (("simulate", "rig.toml", "--out", "x.csv", "--seed", "many"), ["--seed", "integer"]),
         (("nonsense",), ["nonsense"]),
@@ -261,3 +269,57 @@ def test_a_folder_that_cannot_be_written_to_is_named(tmp_path):
 def test_the_installed_command_answers():
     done = subprocess.run([sys.executable, "-m", "bench", "--version"], capture_output=True, text=True, check=True)
     assert done.stdout.strip()
+
+
+FOREIGN = "time,pos_estimate,vel_estimate,Iq_measured\n"
+
+
+def odrive(path, seconds=3.0):
+    """What an ODrive exports: turns and turns/s without units, Iq in A; and the columns of the truth."""
+    made = recording(np.random.default_rng(1), duration=seconds, position=True)
+    turns = made["position"] / 2.0 / np.pi, made["velocity"] / 2.0 / np.pi
+    rows = zip(made.time, *turns, made["current"], strict=True)
+    path.write_text(FOREIGN + "\n".join(f"{t:.3f},{p:.7f},{v:.7f},{i:.6f}" for t, p, v, i in rows) + "\n")
+
+
+def test_without_a_rig_one_is_drafted_said_and_kept(bench, tmp_path):
+    odrive(tmp_path / "odrive.csv")
+    status, out, err = bench("identify", "odrive.csv", "--draft", "own.toml", "--json", "drafted.json")
+    assert status == 0
+    assert "no rig was given, so one was drafted from odrive.csv: a rotary axis" in err
+    assert "velocity = vel_estimate [turn/s]" in err
+    assert "results stand in A instead of N*m" in err
+    assert "A·s²/rad" in out
+    status, _, err = bench("identify", "odrive.csv", "--rig", "own.toml", "--json", "kept.json")
+    assert (status, err) == (0, "")
+    drafted, kept = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("drafted", "kept"))
+    assert drafted["parameters"] == kept["parameters"]
+    assert drafted["provenance"]["rig_sha256"] is None
+    assert drafted["parameters"]["moment_of_inertia"]["value"] * 0.8 == pytest.approx(Truth().inertia, rel=0.01)
+
+
+def test_a_draft_that_is_not_enough_says_what_to_complete(bench, tmp_path):
+    (tmp_path / "bare.csv").write_text(BODY.replace("velocity [rad/s],current [A]", "a,b", 1))
+    status, _, err = bench("diagnose", "bare.csv")
+    assert (status, err.count("\n")) == (2, 1)
+    assert "bench inspect bare.csv --draft rig.toml" in err
+    status, _, err = bench("identify", "bare.csv", "--rig", "rig.toml", "--draft", "other.toml")
+    assert (status, err.count("\n")) == (2, 1)
+    assert "--draft" in err
+
+
+def test_a_shipped_rig_is_found_by_its_name(bench, tmp_path):
+    status, _, _ = bench("simulate", "sh30701p", "--out", "run.csv.gz", "--profile", "fast_reversals")
+    assert status == 0
+    assert bench("identify", "run.csv.gz", "--rig", "sh30701p")[0] == 0
+    status, _, err = bench("identify", "run.csv.gz", "--rig", "emp")
+    assert (status, err.count("\n")) == (2, 1)
+    assert "did you mean 'emps'?" in err
+
+
+def test_a_missing_joint_lists_the_joints(bench, tmp_path):
+    body = '<body><joint name="elbow" type="hinge"/><geom size="0.1"/></body>'
+    (tmp_path / "arm.xml").write_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>")
+    status, _, err = bench("identify", "log.csv", "--mjcf", "arm.xml")
+    assert (status, err.count("\n")) == (2, 1)
+    assert "--joint: missing; allowed: elbow" in err

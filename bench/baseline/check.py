@@ -12,19 +12,21 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
 from bench.axis_kind import COULOMB, INERTIA, ROTARY, VISCOUS, AxisKind
 from bench.baseline.observe import Observed, Under, differing, observe, unlike
-from bench.baseline.state import GAPS, TORQUE_GAP, VELOCITY_GAP, NamedHere, State
+from bench.baseline.state import GAPS, TORQUE_GAP, VELOCITY_GAP, NamedHere, State, read_baseline
 from bench.comparison.difference import CHANGED, RESULTS, SAME, UNDECIDED, Comparison, Difference, Measured, holm
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Occasional
 from bench.errors import InputError
 from bench.names import nearest
+from bench.presented import Presented
+from bench.rig.given import Given, recordings_of, rig_of
 from bench.rig.rig import CheckTable, Rig
-from bench.trace.trace import Trace
 from bench.units import parse
 
 #: Probability of a false alarm of an unchanged axis, over all comparisons together.
@@ -49,18 +51,18 @@ _MADE_OF = {INERTIA: "rms_acceleration", VISCOUS: "rms_speed"}
 
 
 def check(
-    trace: Trace | Sequence[Trace],
-    rig: Rig,
-    baseline: State,
+    trace: Given | Sequence[Given],
+    rig: Rig | str | Path,
+    baseline: State | str | Path,
     false_alarm_rate: float = FALSE_ALARM_RATE,
     progress: Callable[[float], None] = lambda share: None,
 ) -> Checked:
     """Whether an axis still is as its baseline; effects are searched for if the baseline names them.
 
     Args:
-        trace: a recording of the axis now, or a list of several.
-        rig: of the axis.
-        baseline: its earlier state (`bench.baseline.state.read_baseline`).
+        trace: a recording of the axis now, or its file, arrays or a data frame; or a list of several.
+        rig: of the axis, or its file, or a shipped rig's name.
+        baseline: its earlier state, or the file that `bench check --update` wrote.
         false_alarm_rate: probability that an axis within its margins is called changed, over all comparisons.
         progress: called with the share done.
 
@@ -68,12 +70,16 @@ def check(
         UndeterminedError: the recording does not determine what the baseline holds.
         InputError: rig and recording do not fit together, or the baseline is that of a model.
     """
+    rig = rig_of(rig)
+    baseline = baseline if isinstance(baseline, State) else read_baseline(Path(baseline))
     baseline.require_source("recordings")
-    return compare(baseline, observe(trace, rig, baseline.names, progress), Allowed.of(rig), false_alarm_rate)
+    return compare(
+        baseline, observe(recordings_of(trace, rig), rig, baseline.names, progress), Allowed.of(rig), false_alarm_rate
+    )
 
 
-@dataclass(frozen=True)
-class Checked:
+@dataclass(frozen=True, repr=False)
+class Checked(Presented):
     """What a check found.
 
     Attributes:

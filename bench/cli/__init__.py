@@ -25,7 +25,7 @@ from typer.exceptions import TyperException
 
 from bench import __version__
 from bench.cli.check import check
-from bench.cli.common import guarded
+from bench.cli.common import guarded, say
 from bench.cli.identify import diagnose, identify
 from bench.cli.lab import lab
 from bench.cli.many import fleet, validate
@@ -36,7 +36,7 @@ from bench.cli.without_recording import demo, effects, plan, report, rigs, simul
 from bench.errors import BenchError, InputError
 from bench.names import plain, short
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
+app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None)
 
 
 @app.callback(invoke_without_command=True)
@@ -74,7 +74,7 @@ COMMANDS = (
     report,
 )
 for command in COMMANDS:
-    app.command()(guarded(command))
+    app.command(short_help=command.__doc__)(guarded(command))
 
 #: Group of entry points of other packages' commands.
 GROUP = "servobench.commands"
@@ -144,5 +144,5 @@ def _failed(message: str, status: int) -> int:
     if "GITHUB_ACTIONS" in os.environ:
         line = line.replace("##[", "## [")  # by which GitHub knows an old command wherever it stands in a line
     if line:
-        typer.echo(f"bench: {short(line, LONGEST)}", err=True)
+        say(f"bench: {short(line, LONGEST)}", err=True)
     return status

@@ -15,7 +15,7 @@ import typer
 
 import bench
 from bench.cli import common
-from bench.cli.common import STDOUT, AxisOption, JsonOption, ReportOption
+from bench.cli.common import STDOUT, AxisOption, JsonOption, OptionalRigOption, ReportOption
 from bench.errors import InputError
 from bench.files import sha256, write_text
 from bench.names import in_a_row, readable
@@ -41,7 +41,7 @@ def check(
     traces: Annotated[
         list[Path] | None, typer.Argument(metavar="TRACE...", help="Recordings of the axis now, of any known format.")
     ] = None,
-    rig: Annotated[Path | None, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")] = None,
+    rig: OptionalRigOption = None,
     simulated: Annotated[
         Path | None, typer.Option("--simulated", help="model.toml to check in the place of recordings.")
     ] = None,
@@ -135,7 +135,7 @@ def _require_consistent(asked: Asked, update: bool, quick: bool, written: bool) 
     if asked.simulated is None and not asked.traces:
         raise InputError("TRACE...", "found none", "allowed: recordings with --rig RIG, or --simulated MODEL")
     if asked.simulated is None and asked.rig is None:
-        raise InputError("--rig", "missing", "give the rig file of the axis")
+        raise InputError("--rig", "missing", "give the rig file of the axis, or the name of a shipped rig")
     if quick and not (update and asked.traces):
         found = "found without --update TRACE..."
         raise InputError("--without-names", found, "allowed: when the baseline is made, which says so from then on")

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import functools
 import inspect
+import shutil
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
@@ -21,6 +23,7 @@ from bench.bounds import bounded
 from bench.errors import InputError
 from bench.files import keeping, require_writable, write_text
 from bench.names import plain
+from bench.plant.profile_names import NAMES
 
 if TYPE_CHECKING:
     from bench.report.document import Document, Picture
@@ -35,8 +38,40 @@ REPLACED = frozenset({"baseline"})
 TracesArgument = Annotated[
     list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
 ]
+
+
+def _rig_file(given: str) -> Path:
+    from bench.rig.rig import rig_file  # numpy and pydantic, which `--help` need not wait for
+
+    return rig_file(given)
+
+
+def _shipped_rigs() -> list[str]:
+    from bench.rig.rig import shipped
+
+    return [*shipped()]
+
+
+def profiles() -> list[str]:
+    """Motions, for a shell to complete."""
+    return [*NAMES]
+
+
+def effects() -> list[str]:
+    """Effects, for a shell to complete."""
+    from bench.effects.catalogue import catalogue
+
+    return [*catalogue()]
+
+
+#: How a command line names a rig file.
+_RIG: dict[str, Any] = {"parser": _rig_file, "metavar": "RIG", "autocompletion": _shipped_rigs}
 BesideRigOption = Annotated[
-    Path | None, typer.Option("--rig", help="Rig file (TOML): what is known about the axis; not needed with --mjcf.")
+    Path | None,
+    typer.Option("--rig", help="Rig file (TOML), or a shipped rig's name; without, one is drafted.", **_RIG),
+]
+DraftOption = Annotated[
+    Path | None, typer.Option("--draft", help="Without --rig: file to write the rig to that was drafted.")
 ]
 MjcfOption = Annotated[
     Path | None, typer.Option("--mjcf", help="MJCF of the robot whose other dynamics are known, gravity among them.")
@@ -46,7 +81,10 @@ AtOption = Annotated[
     list[str] | None,
     typer.Option("--at", help="NAME=ANGLE of a joint that stands and that the log does not hold. Repeatable."),
 ]
-RigOption = Annotated[Path, typer.Option("--rig", help="Rig file (TOML): what is known about the axis.")]
+RIG_HELP = "Rig file (TOML), or a shipped rig's name: what is known about the axis."
+RigOption = Annotated[Path, typer.Option("--rig", help=RIG_HELP, **_RIG)]
+OptionalRigOption = Annotated[Path | None, typer.Option("--rig", help=RIG_HELP, **_RIG)]
+RigArgument = Annotated[Path, typer.Argument(help="Rig file with [drive] and [simulation], or a shipped rig.", **_RIG)]
 AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
 
 
@@ -180,13 +218,21 @@ def tell(document: Document, files: Iterable[Path | None] = (), json: Path | Non
 def printed(part: object) -> None:
     """Print a part of a document."""
     from bench.report.terminal import console, rendered
+    from bench.report.terminal import printed as print_text
 
-    console().print(rendered(part))
+    text = rendered(part, console().width)
+    assert text is not None
+    print_text(text)
 
 
-def say(text: str) -> None:
-    """A line on standard output."""
-    typer.echo(plain(text))
+def say(text: str, err: bool = False) -> None:
+    """A line on standard output, or standard error; on a terminal as many as it takes, and no word is cut."""
+    text = plain(text)
+    if (sys.stderr if err else sys.stdout).isatty():
+        from bench.report.terminal import wrapped
+
+        text = "\n".join(wrapped(text, shutil.get_terminal_size().columns))
+    typer.echo(text, err=err)
 
 
 def list_files(files: Iterable[Path | None]) -> None:
@@ -199,7 +245,7 @@ def list_files(files: Iterable[Path | None]) -> None:
 def warn(warnings: Iterable[str]) -> None:
     """A line on standard error for each warning."""
     for warning in warnings:
-        typer.echo(plain(f"warning: {warning}"), err=True)
+        say(f"warning: {warning}", err=True)
 
 
 @dataclass(frozen=True)
@@ -217,9 +263,20 @@ class Subject:
 
 
 def subject(
-    rig: Path | None, axis: str | None, mjcf: Path | None, joint: str | None, at: Sequence[str] | None
+    rig: Path | None,
+    axis: str | None,
+    mjcf: Path | None,
+    joint: str | None,
+    at: Sequence[str] | None,
+    trace: Path | None,
+    draft: Path | None = None,
 ) -> Subject:
-    """The axis of a rig file, or the joint of an MJCF with or without one.
+    """The axis of a rig file, or of one drafted from a recording, or the joint of an MJCF with or without a rig.
+
+    Args:
+        rig, axis, mjcf, joint, at: as the options of these names have them.
+        trace: the first recording.
+        draft: where a drafted rig is written.
 
     Raises:
         InputError: neither is given, options that do not go together, or a file that cannot be read.
@@ -227,18 +284,29 @@ def subject(
     if mjcf is None:
         if joint is not None or at:
             raise InputError("--joint" if joint is not None else "--at", "found without --mjcf", "allowed: with --mjcf")
-        if rig is None:
-            raise InputError("--rig", "missing", "allowed: a rig file, or --mjcf and --joint")
-        known = bench.load_rig(rig).on_axis(axis)
+        if rig is not None and draft is not None:
+            raise InputError("--draft", "found with --rig", "allowed: without, for the rig that is drafted then")
+        known = _drafted(trace, axis, draft) if rig is None else bench.load_rig(rig).on_axis(axis)
         return Subject(known, lambda path: bench.read(path, known.trace), robot=False)
-    if joint is None:
-        raise InputError("--joint", "missing", "allowed: the joint of the MJCF that the log is of")
     from bench.plant.robot import Robot, joint_rig, read_log
 
     robot = Robot.of(mjcf, joint)
     within = joint_rig(None if rig is None else bench.load_rig(rig).on_axis(axis), robot)
     stands = positions(at or (), robot.units)
     return Subject(within, lambda path: read_log(path, within, robot, stands), robot=True)
+
+
+def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.Rig:
+    """The rig that a recording drafts, after saying what it assumes."""
+    if trace is None:
+        raise InputError("--rig", "missing", "allowed: a rig file, or --mjcf and --joint")
+    from bench.rig.draft import drafted
+
+    rig, text, assumed = drafted(trace, axis)
+    if draft is not None:
+        write_text(draft, text)
+    warn([f"{assumed}. {f'It is {draft} now' if draft is not None else '--draft rig.toml keeps it'}"])
+    return rig
 
 
 def positions(texts: Sequence[str], units: dict[str, str]) -> dict[str, float]:

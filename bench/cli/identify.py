@@ -16,6 +16,7 @@ from bench.cli.common import (
     AtOption,
     AxisOption,
     BesideRigOption,
+    DraftOption,
     Figures,
     FiguresOption,
     JointOption,
@@ -55,13 +56,14 @@ def identify(
     joint: JointOption = None,
     at: AtOption = None,
     figures: FiguresOption = Figures.PNG,
+    draft: DraftOption = None,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.fit.estimate import RefusedEstimateError
     from bench.report.identification import SCHEMA, identification, identification_json, moved
     from bench.report.parts import provenance
 
-    of = common.subject(rig, axis_name, mjcf, joint, at)
+    of = common.subject(rig, axis_name, mjcf, joint, at, traces[0], draft)
     axis = of.rig.model_copy(update={"offset": of.rig.offset or offset})
     _require_consistent(traces, estimator, refine, bool(offset or cutoff))
     options = {"estimator": estimator.value, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
@@ -138,6 +140,7 @@ def diagnose(
     joint: JointOption = None,
     at: AtOption = None,
     figures: FiguresOption = Figures.PNG,
+    draft: DraftOption = None,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
     from bench.effects.present import named
@@ -145,7 +148,7 @@ def diagnose(
     from bench.report.parts import provenance
     from bench.report.terminal import progress
 
-    of = common.subject(rig, axis_name, mjcf, joint, at)
+    of = common.subject(rig, axis_name, mjcf, joint, at, traces[0], draft)
     axis, read = of.rig, of.read
     excluded = frozenset(named(name, "--without").name for name in without or [])
     other = read(holdout) if holdout else None

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from bench.cli.common import list_files, printed
-from bench.names import plain
+from bench.cli.common import list_files, printed, say
 
 
 def lab(
@@ -61,7 +60,7 @@ def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
     files = write_grades(graded, out)
     printed(grades_table(graded))
     for error in graded.unread:
-        typer.echo(plain(f"not graded: {error}"), err=True)
+        say(f"not graded: {error}", err=True)
     list_files(files[:2])
     if graded.unread:
         raise typer.Exit(1)

@@ -10,7 +10,7 @@ import typer
 
 import bench
 from bench.cli import common
-from bench.cli.common import STDOUT, JsonOption
+from bench.cli.common import STDOUT, JsonOption, OptionalRigOption
 from bench.errors import InputError, UndeterminedError
 from bench.files import sha256, write_text
 from bench.names import readable
@@ -27,10 +27,18 @@ Effects = Annotated[
     str, typer.Option("--effects", help="Hidden in each run: a count as 0-3; or names, or all, each in turn.")
 ]
 Profile = Annotated[
-    Path, typer.Option("--profile", help=f"With --rig, its motion: a recording's file, or {', '.join(NAMES)}.")
+    Path,
+    typer.Option(
+        "--profile",
+        help=f"With --rig, its motion: a recording's file, or {', '.join(NAMES)}.",
+        autocompletion=common.profiles,
+    ),
 ]
 Into = Annotated[Path | None, typer.Option("--into", help="Instead: your recording, to put known effects into.")]
-EffectOption = Annotated[list[str] | None, typer.Option("--effect", help="With --into, instead of all. Repeatable.")]
+EffectOption = Annotated[
+    list[str] | None,
+    typer.Option("--effect", help="With --into, instead of all. Repeatable.", autocompletion=common.effects),
+]
 Strength = Annotated[
     list[float] | None,
     typer.Option("--strength", help="With --into, over what it leaves; else the least named is sought. Repeatable."),
@@ -45,7 +53,7 @@ def validate(
     diagnose: Annotated[
         bool, typer.Option("--diagnose", help="Name what is missing too, a second or two a run.")
     ] = False,
-    rig: Annotated[Path | None, typer.Option("--rig", help="Your own axis instead of any: its rig file.")] = None,
+    rig: OptionalRigOption = None,
     profile: Profile = Path(DEFAULT),
     into: Into = None,
     effect: EffectOption = None,

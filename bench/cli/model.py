@@ -38,7 +38,7 @@ def replay(
     at: AtOption = None,
 ) -> None:
     """Run a diagnosed model along a recording; write measured and simulated signals."""
-    of = common.subject(rig, axis_name, mjcf, joint, at)
+    of = common.subject(rig, axis_name, mjcf, joint, at, trace)
     replayed = bench.replay(model, of.read(trace), of.rig)
     write_text(out, replayed.csv())
     if report is not None:
@@ -59,7 +59,9 @@ def view(
         "view.html"
     ),
     rig: BesideRigOption = None,
-    profile: Annotated[str, typer.Option("--profile", help=f"Without a recording: {', '.join(NAMES)}.")] = DEFAULT,
+    profile: Annotated[
+        str, typer.Option("--profile", help=f"Without a recording: {', '.join(NAMES)}.", autocompletion=common.profiles)
+    ] = DEFAULT,
     start: Annotated[float | None, typer.Option("--from", help="Show it from this time on, in s.")] = None,
     stop: Annotated[float | None, typer.Option("--to", help="Show it up to this time, in s.")] = None,
     video: Annotated[Path | None, typer.Option("--video", help="Video to write: .mp4, rendered by MuJoCo.")] = None,
@@ -78,7 +80,7 @@ def view(
         from bench.view.video import prepare  # before anything imports MuJoCo, which takes its renderer then
 
         prepare(video)
-    of = common.subject(rig, axis_name, mjcf, joint, at)
+    of = common.subject(rig, axis_name, mjcf, joint, at, trace)
     shown, warnings = _shown(model, trace, of, profile)
     shown = shown.between(start, stop)
     if video is not None:
@@ -161,12 +163,10 @@ def _text(
 
     if mjcf is None:
         return joint_alone(stored, joint or ALONE)
-    if joint is None:
-        raise InputError("--joint", "missing", "allowed: a joint of the MJCF")
     shares = {share.value: share for share in ArmatureShare}
     if armature is not None and armature not in shares:
         raise InputError("--armature", f"found '{armature}'", f"allowed: {', '.join(shares)}")
-    text, carried = robot_with(mjcf, {joint: (stored, armature_of(stored, shares.get(armature or "")))}, out)
+    text, carried = robot_with(mjcf, {joint or "": (stored, armature_of(stored, shares.get(armature or "")))}, out)
     return text, carried[0]
 
 
@@ -174,7 +174,9 @@ def compensate(
     model: ModelArgument,
     rig: RigOption,
     out: Annotated[Path, typer.Option("--out", help="Folder for the tables.")],
-    profile: Annotated[str, typer.Option("--profile", help=f"Motion to track: {', '.join(NAMES)}.")] = DEFAULT,
+    profile: Annotated[
+        str, typer.Option("--profile", help=f"Motion to track: {', '.join(NAMES)}.", autocompletion=common.profiles)
+    ] = DEFAULT,
 ) -> None:
     """Make of a diagnosed model what its drive feeds forward; say how much better it tracks with it, by simulation."""
     import numpy as np

@@ -9,13 +9,13 @@ import typer
 
 import bench
 from bench.cli import common
-from bench.cli.common import AxisOption, JsonOption, ReportOption, RigOption
+from bench.cli.common import AxisOption, JsonOption, OptionalRigOption, ReportOption, RigOption
 from bench.files import write_text
 
 
 def inspect(
     file: Annotated[Path, typer.Argument(metavar="TRACE", help="Recording of any known format.")],
-    rig: Annotated[Path | None, typer.Option("--rig", help="Rig file whose [trace] says how to read it.")] = None,
+    rig: OptionalRigOption = None,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Picture of every signal: .png, .pdf or .svg.")] = None,
     draft: Annotated[Path | None, typer.Option("--draft", help="Rig file to write, as far as the file tells.")] = None,

@@ -9,7 +9,7 @@ import typer
 
 import bench
 from bench.cli import common
-from bench.cli.common import AtOption, JsonOption
+from bench.cli.common import AtOption, JsonOption, OptionalRigOption
 from bench.errors import InputError, UndeterminedError
 
 
@@ -18,7 +18,7 @@ def robot(
     mjcf: Annotated[Path, typer.Option("--mjcf", help="MJCF of the robot.")],
     out: Annotated[Path, typer.Option("--out", help="Folder for MJCF, models, page and JSON.")],
     holdout: Annotated[Path | None, typer.Option("--holdout", help="Another log of it, not fitted.")] = None,
-    rig: Annotated[Path | None, typer.Option("--rig", help="Rig file (TOML): what is known of the drives.")] = None,
+    rig: OptionalRigOption = None,
     joint: Annotated[list[str] | None, typer.Option("--joint", help="Only this joint. Repeatable.")] = None,
     at: AtOption = None,
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,

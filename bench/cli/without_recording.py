@@ -9,32 +9,42 @@ import typer
 
 import bench
 from bench.cli import common
-from bench.cli.common import ReportOption, RigOption
+from bench.cli.common import ReportOption, RigArgument, RigOption
 from bench.errors import InputError
 from bench.files import held, read_text, write_text
-from bench.names import nearest, readable
+from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
+
+#: Seed of the demo that is run unless another is given: one that hides what a person sees in the picture, too.
+SHOWN = 12
 
 
 def demo(
-    out: Annotated[Path, typer.Option("--out", help="Folder for trace, truth and figures.")] = Path("bench_demo"),
+    out: Annotated[Path, typer.Option("--out", help="Folder for trace, truth, model and page.")] = Path("bench_demo"),
+    seed: Annotated[int, typer.Option("--seed", help="Draws the effect that is hidden.", min=0)] = SHOWN,
 ) -> None:
-    """Simulate the embedded rig, identify it, and set truth beside estimate."""
+    """Hide an effect in a simulated axis, find it, add it to the model, and set truth beside what was found."""
     from bench.demo import demo as run_demo
     from bench.report.terminal import progress
 
     with progress("demo") as done:
-        found, files = run_demo(out, done)
+        found, files = run_demo(out, seed, done)
     common.tell(found, files)
+    common.say(f"\nthe page: {out / 'report.html'}\nnow yours: bench diagnose RECORDING --out found")
 
 
 def simulate(
-    rig: Annotated[Path, typer.Argument(help="Rig file with [drive] and [simulation].")],
+    rig: RigArgument,
     out: Annotated[Path, typer.Option("--out", help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
-    profile: Annotated[str, typer.Option("--profile", help=f"Motion: {', '.join(NAMES)}.")] = DEFAULT,
+    profile: Annotated[
+        str, typer.Option("--profile", help=f"Motion: {', '.join(NAMES)}.", autocompletion=common.profiles)
+    ] = DEFAULT,
     seed: Annotated[int, typer.Option("--seed", help="Seed of the sensors' noise.", min=0)] = 0,
     effect: Annotated[
-        list[str] | None, typer.Option("--effect", help="NAME:key=value,... to add; see bench effects. Repeatable.")
+        list[str] | None,
+        typer.Option(
+            "--effect", help="NAME:key=value,... to add; see bench effects. Repeatable.", autocompletion=common.effects
+        ),
     ] = None,
     report: ReportOption = None,
 ) -> None:
@@ -95,31 +105,25 @@ def rigs(
     out: Annotated[Path | None, typer.Option("--out", help="Copy of the rig file to write.")] = None,
 ) -> None:
     """List the rigs that are shipped, copy one, or say which commands a rig suffices for and all that is missing."""
-    from bench.assets import asset
-    from bench.rig.rig import lacking, without_constant
+    from bench.rig.rig import lacking, rig_file, shipped, without_constant
 
-    shipped = {path.stem: path for path in sorted(asset("data", "rigs").glob("*.toml"))}
     if name is None:
         if out is not None:
-            raise InputError("--out", "found without a rig", f"allowed: with one of {', '.join(shipped)}")
-        for stem, path in shipped.items():
-            typer.echo(f"{stem:12} {bench.load_rig(path).name}")
+            raise InputError("--out", "found without a rig", f"allowed: with one of {', '.join(shipped())}")
+        for stem, path in shipped().items():
+            common.say(f"{stem:12} {bench.load_rig(path).name}")
         return
-    path = shipped.get(name) or Path(name)
-    if name not in shipped and not path.exists():
-        raise InputError(
-            name, f"no shipped rig and no file{nearest(name, list(shipped))}", f"allowed: {', '.join(shipped)}"
-        )
+    path = rig_file(name)
     if out is not None:
         write_text(out, read_text(path, "a rig file"))
         common.list_files([out])
     rig = bench.load_rig(path)
-    typer.echo(f"{rig.name}, {rig.kind}")
+    common.say(f"{rig.name}, {rig.kind}")
     for command, keys in lacking(rig).items():
-        typer.echo(f"bench {command}: {'missing ' + ', '.join(keys) if keys else 'suffices'}")
+        common.say(f"bench {command}: {'missing ' + ', '.join(keys) if keys else 'suffices'}")
     remark = without_constant(rig)
     if remark is not None:
-        typer.echo(f"note: {remark}")
+        common.say(f"note: {remark}")
 
 
 def effects(
@@ -133,7 +137,7 @@ def effects(
     if name is None:
         common.printed(effects_table())
     else:
-        typer.echo(effect_page(name))
+        common.say(effect_page(name))
 
 
 def report(

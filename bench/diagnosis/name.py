@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -13,9 +14,11 @@ from bench.diagnosis.probability import Probabilities, probabilities
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import Searched, search
+from bench.effects.acting import MisreadEffort
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect
 from bench.effects.present import Present
+from bench.effects.signals import Axis
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.quantities import uncertain
@@ -39,6 +42,9 @@ class NamedEffect:
     parameters: dict[str, Parameter]
     ambiguous_with: tuple[str, ...]
     evidence: Mapping[str, float]
+
+    def __getitem__(self, name: str) -> Parameter:
+        return self.parameters[name]
 
     @property
     def name(self) -> str:
@@ -100,7 +106,6 @@ def named(
             (INERTIA, VISCOUS, COULOMB), numbers.base(recordings.base_units).items(), strict=True
         )
     }
-    parameters |= load_inertia(parameters, recordings.rig)
     effects = []
     for index, term in enumerate(fitted.terms):
         less = fit(fitted.rows, fitted.hypothesis.without(index))
@@ -115,7 +120,24 @@ def named(
             for key, value in numbers.quantities(index, partial(_unit, recordings)).items()
         }
         effects.append(NamedEffect(term.effect, found, term.effect.ambiguous(fitted.scope), evidence))
+    gain = _gain(effects, fitted)
+    parameters = {name: found.reaching(found.value / gain) for name, found in parameters.items()}
+    parameters |= load_inertia(parameters, recordings.rig)
     return [*effects, *(_read(recordings, effect, found) for effect, found in detected.items())], parameters
+
+
+def _gain(effects: Sequence[NamedEffect], fitted: Fit) -> float:
+    """Torque per reading at the end of the recording over that at its start, where effects change it.
+
+    The rig does not say at which moment its torque constant holds, so all torques may be by as much less.
+    """
+    inertia, viscous, coulomb = (fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB))
+    axis, gain = Axis(inertia, inertia, viscous, coulomb, math.inf), 1.0
+    for one in effects:
+        if isinstance(one.effect, MisreadEffort):
+            first, last = (partial(one.effect.acted, one.values, axis, time=t) for t in (0.0, fitted.scope.duration))
+            gain *= float(last(1.0) - last(0.0)) / float(first(1.0) - first(0.0))
+    return gain
 
 
 def _read(recordings: Recordings, effect: Effect, found: Detected) -> NamedEffect:

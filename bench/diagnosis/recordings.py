@@ -147,7 +147,7 @@ def _require_another(trace: Trace, holdout: Trace) -> None:
     if len(trace) == len(holdout) and all(
         name in holdout and np.array_equal(values, holdout[name]) for name, values in trace.signals.items()
     ):
-        raise InputError("--holdout", f"found the recording itself ({holdout.origin})", "allowed: another recording")
+        raise InputError("holdout", f"found the recording itself ({holdout.origin})", "allowed: another recording")
 
 
 def _require_decidable(trace: Trace, rig: Rig, rows: Rows) -> None:

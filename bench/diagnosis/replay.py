@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bench.arrays import Array, rms
+from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.model import holding_bandwidth, without_events
 from bench.errors import InputError, UndeterminedError
 from bench.fit.layout import lay_out
@@ -17,14 +18,14 @@ from bench.fit.stored import EVERY, Balance
 from bench.plant.measured_motion import measured_position, measured_velocity
 from bench.plant.model_file import load_model, read_table
 from bench.plant.tracking import SoftTracking, track
+from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
-from bench.trace.trace import Trace
 
 #: Share of a recording's torque that the model of its axis does not leave unexplained.
 LEFT = 0.2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Replay:
     """Signals at every sample of a recording, all (n,); nan where the model says nothing.
 
@@ -48,6 +49,9 @@ class Replay:
     effort_unit: str
     warnings: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"Replay({self.summary})"
+
     @property
     def summary(self) -> str:
         """Both gaps in one line; without the one that the model says nothing about."""
@@ -65,21 +69,31 @@ class Replay:
         return "\n".join([head, *rows]) + "\n"
 
 
-def replay(path: str | Path, trace: Trace, rig: Rig) -> Replay:
-    """Run the model of a `model.toml` along a recording.
+def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -> Replay:
+    """Run the model of a diagnosis, or of the `model.toml` that it wrote, along a recording.
+
+    Args:
+        model: the diagnosis, or the file's path.
+        trace: the recording, or its file, arrays by their names or a data frame.
+        rig: of the axis, or its file, or a shipped rig's name.
 
     Raises:
         InputError: no model, one without the torque balance that `bench diagnose` writes, or of another kind of axis.
         UndeterminedError: the recording is too short for the model's filter, or never moves clearly.
         SimulationError: the model diverged.
     """
-    table = read_table(path)
-    balance = load_balance(path)
+    rig = rig_of(rig)
+    trace = trace_of(trace, rig)
+    if isinstance(model, Diagnosis):
+        path, balance, stored = "diagnosis", model.balance, model.model
+        table = {} if stored is None else {"kind": stored.model.parameters.kind.name, "name": stored.name}
+    else:
+        path, table, balance = model, read_table(model), load_balance(model)
+        stored = load_model(path) if "parameters" in table else None
     kind = table.get("kind", rig.kind)
     if kind != rig.kind:
         raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
     effort, unit = rig.net_effort(trace)
-    stored = load_model(path) if "parameters" in table else None
     peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
     try:
         rows = Rows.of(trace, rig, width=balance.width, every=True, peak_effort=peak)
@@ -96,9 +110,9 @@ def replay(path: str | Path, trace: Trace, rig: Rig) -> Replay:
     measured = measured_position(trace), measured_velocity(trace)
     if stored is not None:
         happening = balance.recording in (EVERY, trace.origin)
-        model = stored.model if happening else without_events(stored.model)
-        bandwidth = holding_bandwidth(model, float(np.abs(measured[1]).max()))
-        tracked = track(SoftTracking(model, trace, effort, stored.misalignment), bandwidth)
+        moving = stored.model if happening else without_events(stored.model)
+        bandwidth = holding_bandwidth(moving, float(np.abs(measured[1]).max()))
+        tracked = track(SoftTracking(moving, trace, effort, stored.misalignment), bandwidth)
         position, velocity = tracked.position, tracked.velocity
     warnings = []
     if str(table.get("name", rig.name)) != rig.name:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,13 +23,16 @@ from bench.diagnosis.verdict import Gap, Shown, impacts, left_open, out_of_phase
 from bench.diagnosis.where import Profile, Where, profiles, where
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
+from bench.errors import InputError
 from bench.fit.estimate import Alone
 from bench.fit.fit import Fit
 from bench.fit.stored import Balance
 from bench.gate.check import Check
+from bench.names import nearest
 from bench.parameter import Parameter
 from bench.plant.measured_motion import measured_velocity
-from bench.plant.model_file import StoredModel
+from bench.plant.model_file import StoredModel, model_xml
+from bench.presented import Presented
 from bench.trace.noise import white_noise
 
 
@@ -94,9 +98,9 @@ class Considered:
     reason: str
 
 
-@dataclass(frozen=True)
-class Diagnosis:
-    """What is missing from the model of an axis, and the model with it.
+@dataclass(frozen=True, repr=False)
+class Diagnosis(Presented):
+    """What is missing from the model of an axis, and the model with it; goes through its effects, or gives one by name.
 
     Attributes:
         verdict, effects, parameters: as the contract has them.
@@ -150,6 +154,25 @@ class Diagnosis:
     between: Mapping[str, Between] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
     checks: tuple[Check, ...] = ()
+
+    def __iter__(self) -> Iterator[NamedEffect]:
+        return iter(self.effects)
+
+    def __contains__(self, name: object) -> bool:
+        return any(effect.name == name for effect in self)
+
+    def __getitem__(self, name: str) -> NamedEffect:
+        found = {effect.name: effect for effect in self}
+        if name not in found:
+            raise KeyError(f"{name}: found none{nearest(name, [*found])}; allowed: {', '.join(found) or 'none'}")
+        return found[name]
+
+    @property
+    def mjspec(self) -> mujoco.MjSpec:
+        """The model as MuJoCo has it natively, to edit, attach or compile; InputError where MuJoCo cannot have it."""
+        if self.model is None:
+            raise InputError("mjspec", "MuJoCo cannot have this model", "its torque balance is in model.toml")
+        return mujoco.MjSpec.from_string(model_xml(self.model))
 
 
 def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Suspects, added: Added) -> Diagnosis:

@@ -130,6 +130,10 @@ class Effect(ABC):
         """Values of quantities that may be left out - SI."""
         return {quantity.name: quantity.preset for quantity in self.quantities if quantity.preset is not None}
 
+    def least(self, axis: Axis) -> Values:
+        """Lower bounds of quantities beyond which it is not this effect on such an axis - SI."""
+        return {}
+
     def sought(self, scope: Scope) -> bool:
         """Whether the torque balance of such a recording can show it."""
         return True

@@ -103,7 +103,7 @@ def parse_effect(text: str, kind: AxisKind = ROTARY) -> Present:
     Raises:
         InputError: not of this form, an unknown effect or quantity, or a value that is none or out of bounds.
     """
-    where = f"--effect {text}"
+    where = f"effect {text}"
     name, _, rest = text.partition(":")
     effect = named(name.strip(), where)
     values = {}

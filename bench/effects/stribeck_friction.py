@@ -54,6 +54,10 @@ class StribeckFriction(OfSpeed, RaisesFriction):
         """Where the effect is absent."""
         return {"static_friction": axis.coulomb}
 
+    def least(self, axis: Axis) -> Mapping[str, Number]:
+        """Friction that falls towards standstill would drive the axis on."""
+        return {"static_friction": axis.coulomb}
+
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         """The rise towards standstill."""
         fallen = -((at.velocity / values["stribeck_velocity"]) ** 2)

@@ -25,6 +25,7 @@ from mujoco.batch import Batch
 from numpy.typing import NDArray
 
 from bench.arrays import made_like, namespace
+from bench.diagnosis.diagnosis import Diagnosis
 from bench.effects.acting import CarriesFriction
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.effects.signals import Number
@@ -47,7 +48,7 @@ class Effects:
     """Non-native effects at joints of another simulation, all joints of which are one object's.
 
     Args:
-        model: path of a `model.toml`, or of the `effects.toml` of `bench robot`; or what `load_model` of
+        model: a diagnosis; path of a `model.toml`, or of the `effects.toml` of `bench robot`; or what `load_model` of
             `bench.plant.model_file` gives, or several of them by joint.
         joint: of the simulation that a lone model is for, or of an `effects.toml` the only one.
 
@@ -55,7 +56,13 @@ class Effects:
         InputError: the file cannot be read, or has no model of this joint.
     """
 
-    def __init__(self, model: str | Path | StoredModel | Mapping[str, StoredModel], joint: str | None = None) -> None:
+    def __init__(
+        self, model: str | Path | StoredModel | Diagnosis | Mapping[str, StoredModel], joint: str | None = None
+    ) -> None:
+        if isinstance(model, Diagnosis):
+            if model.model is None:
+                raise InputError("model", "MuJoCo cannot have what was found", "allowed: a diagnosis with a model")
+            model = model.model
         if isinstance(model, StoredModel):
             model = {joint or AXIS: model}
         self.models = dict(model) if isinstance(model, Mapping) else load_models(model, joint)

@@ -205,8 +205,10 @@ def joint_of(spec: mujoco.MjSpec, name: str, model: AxisModel) -> mujoco.MjsJoin
     """The joint of a name, of the model's kind; InputError if there is none, or it turns where the model slides."""
     joint, names = spec.joint(name), [each.name for each in spec.joints if each.name]
     if joint is None:
-        found = f"found no joint of that name{nearest(name, names)}"
-        raise InputError(f"--joint {name}", found, f"allowed: {', '.join(names) or 'an MJCF with a named joint'}")
+        found = f"found no joint of that name{nearest(name, names)}" if name else "missing"
+        raise InputError(
+            f"--joint {name}".strip(), found, f"allowed: {', '.join(names) or 'an MJCF with a named joint'}"
+        )
     if TURNS.get(joint.type) is not model.parameters.kind.turns:
         found = f"found a joint of type {joint.type.name.removeprefix('mjJNT_').lower()}"
         allowed = f"allowed: one that moves as the model does, {model.parameters.kind.name}"

@@ -27,6 +27,14 @@ RECORD = {
     OFFSET: "a motion in both directions, several seconds each",
 }
 
+#: Why a motion does not show a term, as far as it goes without a number.
+PLAINLY = {
+    INERTIA: "it hardly accelerates",
+    VISCOUS: "its speed hardly varies",
+    COULOMB: "it hardly moves in both directions",
+    OFFSET: "it hardly moves in both directions",
+}
+
 LOAD = "load_moment_of_inertia"
 TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
 LINKS = "nothing; the MJCF's links, the gear_ratio or the torque are another robot's"
@@ -91,7 +99,7 @@ def _not_excited(equations: NormalEquations, kind: AxisKind) -> dict[str, Undete
     return {
         term: UndeterminedError(
             kind.in_words(term),
-            f"only {max(share, 0.0):.1%} of what would show it differs from the other terms and from noise",
+            f"{PLAINLY[term]}: only {max(share, 0.0):.1%} of what would show it differs from other terms and noise",
             RECORD[term],
         )
         for term, share in equations.shares_of_axis.items()

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, KeysView, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import Between
-from bench.errors import UndeterminedError
+from bench.errors import InputError, UndeterminedError
+from bench.files import read_text
 from bench.gate.check import Check
+from bench.names import nearest
 from bench.parameter import Parameter
+from bench.presented import Presented
 from bench.rig.rig import Rig
+from bench.structured import parse_json
 from bench.trace.motion import Motion
+from bench.trace.trace import Trace
 
 
 @dataclass(frozen=True)
@@ -50,9 +57,9 @@ class Alone:
     reason: str = ""
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """Result of an identification.
+@dataclass(frozen=True, repr=False)
+class Estimate(Presented):
+    """Result of an identification; by a parameter's name it gives the parameter, and it goes through their names.
 
     Attributes:
         estimator: name of the method.
@@ -66,6 +73,7 @@ class Estimate:
         checks: results of the gate.
         recordings: the estimate by each alone, where several were fitted together.
         between: their spread, by name of a quantity that at least two of them determine alone.
+        of: rig and recordings, where they are in memory, for a figure.
     """
 
     estimator: str
@@ -80,9 +88,66 @@ class Estimate:
     checks: tuple[Check, ...] = ()
     recordings: tuple[Alone, ...] = ()
     between: Mapping[str, Between] = field(default_factory=dict)
+    of: tuple[Rig, tuple[Trace, ...]] | None = field(default=None, compare=False)
 
     def __getitem__(self, name: str) -> Parameter:
+        if name not in self.parameters:
+            known = list(self.parameters)
+            raise KeyError(f"{name}: found none{nearest(name, known)}; allowed: {', '.join(known)}")
         return self.parameters[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.parameters)
+
+    def __len__(self) -> int:
+        return len(self.parameters)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.parameters
+
+    def keys(self) -> KeysView[str]:
+        """Names of the parameters."""
+        return self.parameters.keys()
+
+    @classmethod
+    def load(cls, path: str | Path) -> Estimate:
+        """The estimate of a file that `save` wrote, as `bench identify --json` does.
+
+        Raises:
+            InputError: no such file, or one that holds none.
+        """
+        table = parse_json(read_text(path, "an estimate"), path)
+        try:
+            residual, smooth = _with_nan(table["residual"]), _with_nan(table["filter"])
+            alone = (Alone(one["file"], _stored(one["parameters"]), one["reason"] or "") for one in table["recordings"])
+            spread = {
+                key: Between(one["std_dev"], (*one["predictive95"],)) for key, one in (table["between"] or {}).items()
+            }
+            return cls(
+                table["estimator"],
+                _stored(table["parameters"]),
+                Residual(**residual),
+                table["samples"]["read"],
+                table["samples"]["used"],
+                smooth["cutoff"],
+                smooth["source"],
+                tuple(table["warnings"]),
+                _with_nan(table)["explained"],
+                tuple(Check(**one) for one in table["checks"]),
+                tuple(alone),
+                spread,
+            )
+        except (KeyError, TypeError, AttributeError) as error:
+            raise InputError(path, f"holds no estimate ({error})", "allowed: what Estimate.save writes") from error
+
+
+def _with_nan(table: Mapping[str, Any]) -> dict[str, Any]:
+    """What is not known is null in JSON, and nan here."""
+    return {key: math.nan if value is None else value for key, value in table.items()}
+
+
+def _stored(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Parameter]:
+    return {name: Parameter(**{**_with_nan(one), "ci95": (*one["ci95"],)}) for name, one in table.items()}
 
 
 class RefusedEstimateError(UndeterminedError):

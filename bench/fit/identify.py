@@ -16,10 +16,12 @@ and D.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
+from pathlib import Path
+from typing import cast
 
 import numpy as np
 
@@ -35,6 +37,7 @@ from bench.fit.normal_equations import NormalEquations, join, solved
 from bench.fit.solution import NOISE_ALONE, SURE, Solution
 from bench.gate.gate import joined
 from bench.parameter import Parameter
+from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -448,7 +451,9 @@ def _between(members: Sequence[Member], kind: AxisKind) -> dict[str, Between]:
 
 
 def identify(
-    trace: Trace | Iterable[Trace] | Sequence[Trace | Iterable[Trace]], rig: Rig, cutoff: float | None = None
+    trace: Given | Iterator[Trace] | Sequence[Given | Iterator[Trace]],
+    rig: Rig | str | Path,
+    cutoff: float | None = None,
 ) -> Estimate:
     """Inertia, viscous and Coulomb friction (and offset, if the rig asks for it) of a recording, or of several.
 
@@ -457,9 +462,10 @@ def identify(
     correlated residuals, misfit, tolerances and what the recording hints at. What is not determined is refused.
 
     Args:
-        trace: the recording; an iterator over its consecutive parts, for one that does not fit into memory; or a list
-            (tuple) of several recordings of one axis, which are fitted together (`bench.fit.identify`).
-        rig: what is known about the axis.
+        trace: the recording, or its file, arrays by their names or a data frame; an iterator over its consecutive
+            parts, for one that does not fit into memory; or a list (tuple) of several of one axis, which are fitted
+            together.
+        rig: what is known about the axis, or its file, or a shipped rig's name.
         cutoff: half-power frequency of the filter instead of the one chosen from the data - Hz.
 
     Raises:
@@ -468,6 +474,9 @@ def identify(
         InputError: no recording, one that is given twice, a signal is missing, efforts in different units, rig and
             trace do not fit together, or a check of a recording fails.
     """
-    recordings = trace if isinstance(trace, Sequence) else [trace]
+    rig = rig_of(rig)
+    every = trace if isinstance(trace, list | tuple) else [cast("Given", trace)]
+    recordings = [one if isinstance(one, Iterator) else trace_of(one, rig) for one in every]
     gathered = [gather(one, rig, cutoff) for one in recordings]
-    return estimated_alone(gathered[0], rig) if len(gathered) == 1 else estimated_together(gathered, rig)
+    found = estimated_alone(gathered[0], rig) if len(gathered) == 1 else estimated_together(gathered, rig)
+    return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))

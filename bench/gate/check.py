@@ -101,9 +101,17 @@ class Balanced:
     @cached_property
     def audible(self) -> float:
         """Standard deviation of the windows' effort over that of its white noise."""
-        noises = [white_noise(part.effort) for part in self.sums if part.windows_of(self.length).size]
+        return self._over_noise(self.effort, lambda part: part.effort)
+
+    @cached_property
+    def moving(self) -> float:
+        """The same of the windows' speed."""
+        return self._over_noise(self.columns[:, 1], lambda part: np.diff(part.gone))
+
+    def _over_noise(self, means: Array, signal: Callable[[Sums], Array]) -> float:
+        noises = [white_noise(signal(part)) for part in self.sums if part.windows_of(self.length).size]
         noise = float(np.median(noises)) / np.sqrt(self.length)
-        return float(np.std(self.effort)) / noise if noise > 0.0 else np.inf
+        return float(np.std(means)) / noise if noise > 0.0 else np.inf
 
 
 def balanced(sums: Sequence[Sums], length: int) -> Balanced | None:

@@ -163,7 +163,7 @@ def plan(name: str, limits: MotionLimits) -> References:
     """The motion of a named profile, slowed down until it fits into the travel; InputError where there is none."""
     if name not in PROFILES:
         found = f"found '{name}'{nearest(name, list(PROFILES))}"
-        raise InputError("--profile", found, f"allowed: {', '.join(PROFILES)}")
+        raise InputError("profile", found, f"allowed: {', '.join(PROFILES)}")
     references = PROFILES[name](limits)
     while np.ptp(references.position) > limits.travel:
         limits = replace(limits, speed=0.9 * limits.speed)

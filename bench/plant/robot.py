@@ -82,7 +82,7 @@ class Robot:
     joints: tuple[int, ...]
 
     @classmethod
-    def of(cls, path: Path, joint: str) -> Robot:
+    def of(cls, path: Path, joint: str | None) -> Robot:
         """From an MJCF file.
 
         InputError if there is no such file or joint; if a joint of its tree has more than one coordinate; if a loop, a
@@ -90,9 +90,10 @@ class Robot:
         """
         model = _loaded(path)
         names = [model.joint(k).name for k in range(model.njnt)]
-        if joint not in names:
-            found = f"found no joint '{joint}'{nearest(joint, names)}"
-            raise InputError(path, found, f"allowed: {', '.join(filter(None, names)) or 'a joint with a name'}")
+        if joint is None or joint not in names:
+            found = "missing" if joint is None else f"found no joint '{joint}'{nearest(joint, names)}"
+            where = "--joint" if joint is None else path
+            raise InputError(where, found, f"allowed: {', '.join(filter(None, names)) or 'a joint with a name'}")
         trees = model.dof_treeid[model.jnt_dofadr]
         joints = tuple(int(k) for k in np.flatnonzero(trees == trees[model.joint(joint).id]))
         for k in joints:

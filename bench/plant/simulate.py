@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from bench.effects.present import Present
+from bench.effects.present import Present, parse_effect
 from bench.errors import InputError
 from bench.files import write_text
 from bench.plant.axis_model import AxisParameters, effect_values
@@ -18,7 +20,9 @@ from bench.plant.plant import Plant
 from bench.plant.profile_names import DEFAULT
 from bench.plant.profiles import MOST_TICKS, MotionLimits, plan
 from bench.plant.run import Progress, run
+from bench.plant.sampled import followed
 from bench.plant.sensing import Sensors, reported_states
+from bench.rig.given import rig_of
 from bench.rig.rig import Rig
 from bench.structured import json_text
 from bench.trace.trace import Trace
@@ -26,7 +30,7 @@ from bench.trace.trace import Trace
 SCHEMA = "bench.truth/1"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Simulated:
     """What the sensors recorded, what of, the true motion at the drive's ticks - (ticks, 1) - and what the drive
     followed.
@@ -37,32 +41,46 @@ class Simulated:
     states: States
     references: References
 
+    def __repr__(self) -> str:
+        hidden = ", ".join(present.name for present in self.truth.effects) or "no effect"
+        return f"Simulated({self.trace!r}, with {hidden})"
+
 
 def simulate(
-    rig: Rig,
-    profile: str = DEFAULT,
+    rig: Rig | str | Path,
+    profile: str | Trace | ArrayLike = DEFAULT,
     seed: int = 0,
     references: References | None = None,
     progress: Progress | None = None,
-    effects: Sequence[Present] = (),
+    effects: Present | str | Sequence[Present | str] = (),
 ) -> Simulated:
     """Simulate the axis of a rig.
 
     Args:
-        rig: with `[drive]` and `[simulation]`.
-        profile: name of the motion, see `bench.plant.profiles`.
+        rig: with `[drive]` and `[simulation]`, or its file, or a shipped rig's name.
+        profile: name of the motion, see `bench.plant.profiles`; or a recording whose motion is followed; or speeds
+            - rad/s (m/s) - (n,), one each sample period of `[simulation]`.
         seed: of the sensors' noise.
         references: a motion of one's own, signals of shape (ticks,); `profile` then only names it.
         progress: called with the share done.
-        effects: added to it, in any order.
+        effects: added to it, in any order; also as texts, `unbalance:amplitude=0.1`.
 
     Raises:
         InputError: the rig lacks what the simulation needs, or the profile is unknown.
         SimulationError: the simulation diverged.
     """
-    plant, sensors = Plant.from_rig(rig, effects), Sensors.from_rig(rig)
+    rig = rig_of(rig)
+    every = [effects] if isinstance(effects, Present | str) else effects
+    added = [parse_effect(one, rig.axis_kind) if isinstance(one, str) else one for one in every]
+    plant, sensors = Plant.from_rig(rig, added), Sensors.from_rig(rig)
+    _require_possible(plant)
+    period = plant.cascade.control_period
+    if references is None and not isinstance(profile, str):
+        references = followed(profile, sensors.sample_period, period)
+        profile = f"motion of {profile.origin}" if isinstance(profile, Trace) else "given speeds"
+    profile = str(profile)
     if references is None:
-        references = plan(profile, MotionLimits.from_rig(rig, plant.parameters, plant.cascade.control_period))
+        references = plan(profile, MotionLimits.from_rig(rig, plant.parameters, period))
     steps = float(references.time[-1]) / plant.timestep
     if steps > MOST_TICKS:
         allowed = f"allowed: up to {MOST_TICKS:g} for this motion"
@@ -73,6 +91,17 @@ def simulate(
     friction = "drive" if plant.emulated else "mechanics"
     truth = Truth(rig.name, plant.parameters, friction, sensors, profile, seed, plant.model.effects)
     return Simulated(trace, truth, states, references)
+
+
+def _require_possible(plant: Plant) -> None:
+    """InputError where an effect has a value that it cannot have on this axis."""
+    axis, kind = plant.model.axis, plant.parameters.kind
+    for present in plant.effects:
+        for name, least in present.effect.least(axis).items():
+            value, unit = effect_values(present, kind).get(name, (math.inf, ""))
+            if value < least:
+                allowed = f"allowed: from {least:g} {unit} on this axis"
+                raise InputError(f"effect {present.name}.{name}", f"found {value:g} {unit}", allowed)
 
 
 @dataclass(frozen=True)

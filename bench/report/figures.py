@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
+from io import BytesIO
 from pathlib import Path
 from typing import Any, ParamSpec
 
@@ -183,7 +184,8 @@ def _beside(figure: Figure | SubFigure, chart: doc.Chart) -> None:
             axes.set_ylabel(plain(_labelled(chart.y_label, chart.y_unit)), parse_math=False)
     handles, labels = every[0].get_legend_handles_labels()
     if handles:
-        legend = figure.legend(handles, labels, loc="outside upper right", ncols=LEGEND)
+        wide = figure.bbox.width > 0.8 * WIDTH * figure.dpi  # and no other chart beside it
+        legend = figure.legend(handles, labels, loc="outside upper right", ncols=LEGEND if wide else LEGEND // 2)
         _as_text(legend.get_texts())
 
 
@@ -204,6 +206,16 @@ def _stacked(figure: Figure | SubFigure, chart: doc.Chart) -> None:
         if any(one.name for one in panel.series):
             legend_above(every[-1])
     figure.align_ylabels(every)
+
+
+def onto(axes: Axes, panel: doc.Panel) -> Axes:
+    """Draw a panel into axes of somebody's own figure."""
+    with rc_context(STYLE):
+        _panel(axes, panel)
+        axes.set_ylabel(plain(panel.y_label), parse_math=False)
+        if any(one.name for one in panel.series):
+            legend_above(axes, 2)
+    return axes
 
 
 def _panel(axes: Axes, panel: doc.Panel) -> None:
@@ -288,6 +300,14 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(temporary)
 
 
+def save_into(figure: Figure) -> bytes:
+    """A figure as PNG."""
+    image = BytesIO()
+    with quiet_about_glyphs(), rc_context(STYLE):
+        figure.savefig(image, format="png")
+    return image.getvalue()
+
+
 @contextmanager
 def quiet_about_glyphs() -> Iterator[None]:
     """No warning for each character that the font lacks: a box stands for it in the figure."""
@@ -302,9 +322,9 @@ def title_figure(figure: Figure | SubFigure, title: str, **style: Any) -> None: 
     figure.suptitle(plain(title), **{"x": 0.01, "ha": "left", "weight": "bold", "parse_math": False, **style})
 
 
-def legend_above(axes: Axes) -> None:
+def legend_above(axes: Axes, across: int = LEGEND) -> None:
     """A legend over the axes, where it covers no data; its names are text."""
-    legend = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1, ncols=LEGEND)
+    legend = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1, ncols=across)
     _as_text(legend.get_texts())
 
 

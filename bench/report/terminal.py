@@ -6,13 +6,11 @@ import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
-from rich import box
-from rich.console import Console, RenderableType
-from rich.padding import Padding
+from rich.cells import cell_len
+from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table as Grid
+from rich.table import Column
 from rich.text import Text
 
 from bench.names import plain
@@ -20,23 +18,25 @@ from bench.report.document import Code, Document, Paragraph, Points, Table
 
 #: Columns of a log: a terminal says how wide it is.
 WIDTH = 110
+#: Columns between those of a table and the least that a text takes in it, where there is room and where there is less.
+LAYOUTS = ((3, WIDTH), (2, WIDTH), (2, 16), (1, 16))
+#: Columns that a sentence wants, and those between a question and its answer.
+LEAST_PROSE, APART = 30, 2
+#: Spaces at which no line ends: before a per cent sign, and beside an interval's.
+KEPT = re.compile(r"(?<=\d) (?=[%±])|(?<=±) ")
+#: Below the headings of a table, and how a headline looks by its tone.
+RULE, TONES = "─", {"sure": "bold green", "open": "bold yellow", "refused": "bold red"}
 #: Signs of a document in letters that every encoding has, and digits that are raised.
-IN_ASCII = str.maketrans({"·": "*", "−": "-", "±": "+-", "–": "-", "\N{NO-BREAK SPACE}": " ", "Ω": "ohm", "√": "sqrt "})
+IN_ASCII = str.maketrans(
+    {"·": "*", "−": "-", "±": "+-", "–": "-", "\N{NO-BREAK SPACE}": " ", "Ω": "ohm", "√": "sqrt ", "─": "-"}
+)
 RAISED, DIGITS = re.compile("[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+"), str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
-
-
-class PlainConsole(Console):
-    """Shows strings as they are, in titles and cells alike."""
-
-    def render_str(self, text: str, *args: Any, **named: Any) -> Text:  # noqa: ANN401 - as rich has it
-        """Without what a terminal would obey, in letters that it has."""
-        return super().render_str(writable(text), *args, **named)
 
 
 def console() -> Console:
     """Standard output, as wide as the terminal is, or as a log may be."""
-    found = PlainConsole(highlight=False, markup=False, emoji=False)
-    return found if found.is_terminal else PlainConsole(highlight=False, markup=False, emoji=False, width=WIDTH)
+    found = Console(highlight=False)
+    return found if found.is_terminal else Console(highlight=False, width=WIDTH)
 
 
 def writable(text: str) -> str:
@@ -49,50 +49,130 @@ def writable(text: str) -> str:
 
 
 def show(document: Document) -> None:
-    """Print what a document comes to, and the sections of it that are no detail."""
-    shown = console()
-    shown.print(Text(writable(document.subject), style="bold"))
-    shown.print(Padding(writable(document.verdict), (1, 0)))
-    answers = Grid(box=None, show_header=False, pad_edge=False)
+    """Print what a document comes to, its verdict first, and the sections of it that are no detail."""
+    width = console().width
+    say(document.verdict, TONES[document.tone])
+    say(f"{document.subject}\n")
+    beside = max(map(cell_len, document.answers), default=0) + APART
     for question, answer in document.answers.items():
-        answers.add_row(question, answer)
-    if document.answers:
-        shown.print(answers)
+        if width - beside < LEAST_PROSE:
+            say(f"{question}\n  {answer}")
+        else:
+            first, *more = wrapped(writable(answer), width - beside)
+            printed(Text("\n".join([_set(question, beside) + first, *(" " * beside + line for line in more)])))
     for section in document.sections:
-        parts = () if section.detail else tuple(filter(None, map(rendered, section.blocks)))
+        parts = () if section.detail else tuple(filter(None, (rendered(part, width) for part in section.blocks)))
         if parts:
-            shown.print(Padding(Text(section.heading, style="bold"), (1, 0, 0, 0)))
-            for part in parts:
-                shown.print(part)
+            say(f"\n{section.heading}", "bold")
+            printed(Text("\n\n").join(parts))
 
 
-def rendered(part: object) -> RenderableType | None:
-    """A part of a document for a terminal; None of what only a page can show."""
+def say(text: str, style: str = "") -> None:
+    """Print lines of text, wrapped between words."""
+    printed(Text("\n".join(wrapped(writable(text), console().width)), style))
+
+
+def printed(text: Text) -> None:
+    """Print lines that are as wide as they are to be."""
+    console().print(text, soft_wrap=True)
+
+
+def wrapped(text: str, width: int) -> list[str]:
+    """Lines of a text no wider than a terminal, indented as it is; a word that is wider alone stays whole."""
+    lines = []
+    for line in KEPT.sub("\N{NO-BREAK SPACE}", text).split("\n"):
+        indent = line[: len(line) - len(line.lstrip(" "))]
+        held = indent
+        for word in line.strip(" ").split(" "):
+            if held.strip() and cell_len(held) + 1 + cell_len(word) > width:
+                lines.append(held)
+                held = indent + "  " * line.lstrip().startswith("- ")
+            held += f" {word}" if held.strip() else word
+        lines.append(held)
+    return lines
+
+
+def rendered(part: object, width: int) -> Text | None:
+    """A part of a document for a terminal of so many columns; None of what only a page can show."""
     match part:
         case Table():
-            return _grid(part)
-        case Paragraph() | Code():
+            return _table(part, width)
+        case Paragraph():
+            return Text("\n".join(wrapped(writable(part.text), width)))
+        case Code():
             return Text(writable(part.text))
         case Points():
-            return Text(writable("\n".join(f"- {item}" for item in part.items)))
+            return Text("\n".join(line for item in part.items for line in wrapped(f"- {writable(item)}", width)))
         case _:
             return None
 
 
-def _grid(table: Table) -> Grid:
-    found = Grid(title=table.caption or None, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    for column in table.columns:
-        found.add_column(column.heading, justify="right" if column.number else "left", overflow="fold")
-    for number, row in enumerate(table.rows):
-        found.add_row(*row, style="bold" if number in table.marked else "")
-    return found
+def _table(table: Table, width: int) -> Text:
+    """A table side by side where numbers and names have room, with less space between them at need; else stacked."""
+    headings = [writable(column.heading) for column in table.columns]
+    rows = [list(map(writable, row)) for row in table.rows]
+    found = Text("\n".join([*wrapped(writable(table.caption), width), ""]) if table.caption else "")
+    for gap, least in LAYOUTS:
+        widths = _widths(table, headings, rows, width - gap * (len(headings) - 1), least)
+        if widths:
+            break
+    else:
+        return found.append_text(_stacked(table, headings, rows, width))
+
+    def line(cells: list[str]) -> list[str]:
+        held = [wrapped(cell, widest) for cell, widest in zip(cells, widths, strict=True)]
+        set_ = [
+            [_set(one, widest, column.number) for one in (*lines, *[""] * (max(map(len, held)) - len(lines)))]
+            for lines, widest, column in zip(held, widths, table.columns, strict=True)
+        ]
+        return [(" " * gap).join(parts).rstrip() for parts in zip(*set_, strict=True)]
+
+    found.append("\n".join(line(headings)), "bold").append(
+        f"\n{writable(RULE) * (sum(widths) + gap * (len(widths) - 1))}\n"
+    )
+    shown = [Text("\n".join(line(row)), "bold" * (k in table.marked)) for k, row in enumerate(rows)]
+    return found.append_text(Text("\n").join(shown))
+
+
+def _widths(table: Table, headings: list[str], rows: list[list[str]], room: int, of_text: int) -> list[int]:
+    """Width of each column, where texts, but no numbers, are wrapped between words; none where that is too much."""
+    least, wanted = [], []
+    for place, (column, heading) in enumerate(zip(table.columns, headings, strict=True)):
+        cells = max((cell_len(row[place]) for row in rows), default=0)
+        every = heading.split(" ") if column.number else [w for row in (headings, *rows) for w in row[place].split(" ")]
+        enough = cells if column.number else min(cells, LEAST_PROSE if column.prose else of_text)
+        least.append(max(enough, *map(cell_len, every)))
+        wanted.append(max(cell_len(heading), cells))
+    room -= sum(least)
+    for place in sorted(range(len(least)), key=lambda place: table.columns[place].prose):
+        more = min(max(room, 0), wanted[place] - least[place])
+        least[place] += more
+        room -= more
+    return least if room >= 0 else []
+
+
+def _stacked(table: Table, headings: list[str], rows: list[list[str]], width: int) -> Text:
+    """A block for each row: its name, and below it each cell beside its heading."""
+    found = []
+    for name, *cells in rows:
+        told = [f"  {heading}: {cell}" for heading, cell in zip(headings[1:], cells, strict=True) if cell]
+        found.append(Text("\n".join(wrapped(name, width)), "bold"))
+        found += [Text("\n".join(wrapped(line, width))) for line in told]
+    return Text("\n").join(found)
+
+
+def _set(text: str, width: int, right: bool = False) -> str:
+    """Text in so many columns of a terminal."""
+    space = " " * (width - cell_len(text))
+    return space + text if right else text + space
 
 
 @contextmanager
 def progress(what: str) -> Iterator[Callable[[float], None]]:
     """A bar on standard error for a piece of work, if that is a terminal, to be called with the share done, 0 to 1."""
     console = Console(stderr=True)
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
+    named = TextColumn("{task.description}", markup=False, table_column=Column(overflow="fold"))
+    columns = (named, BarColumn(16), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task(plain(what), total=1.0)
         yield lambda share: bar.update(task, completed=share)

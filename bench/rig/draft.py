@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from pathlib import Path
 
+from bench.errors import InputError
 from bench.rig.motor import catalogue_motor
-from bench.trace.inspect import Inspection
+from bench.rig.rig import Rig, without_constant
+from bench.trace.choose import GivenOptions
+from bench.trace.inspect import Inspection, inspect_recording
+from bench.trace.read import read_recording
+from bench.trace.trace import assemble
 
 _EFFORTS = ("torque", "force", "current", "voltage")
 
@@ -33,6 +39,30 @@ def draft(inspection: Inspection, motor: str | None = None, axis: str | None = N
         *_trace(inspection, axis),
     ]
     return "\n".join(lines).rstrip() + "\n"
+
+
+def drafted(path: Path, axis: str | None = None) -> tuple[Rig, str, str]:
+    """The rig that a recording drafts, where none is given: its text too, and what it assumes, in a line.
+
+    Args:
+        path: of the recording.
+        axis: to read where it holds several.
+
+    Raises:
+        InputError: the file leaves open what only the user knows.
+    """
+    recording = read_recording(path)
+    found = inspect_recording(recording, GivenOptions(axis=axis))
+    text = draft(found, axis=axis)
+    rig = Rig.of(tomllib.loads(text), f"rig drafted from {path.name}")
+    try:
+        assemble(recording, rig.trace)
+    except InputError as error:
+        how = f"bench inspect {path} --draft rig.toml writes a rig file to complete, for --rig"
+        raise InputError(error.where, error.found, f"{error.allowed}; {how}") from error
+    mapped = [f"{signal} = {column}" for signal, column in rig.trace.columns.items()]
+    assumed = "; ".join(filter(None, (f"a {rig.kind} axis", ", ".join(mapped), without_constant(rig))))
+    return rig, text, f"no rig was given, so one was drafted from {path.name}: {assumed}"
 
 
 def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]:

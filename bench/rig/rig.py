@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import Field, ValidationError, model_validator
 
 from bench.arrays import Array
+from bench.assets import asset
 from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
 from bench.names import nearest, short
@@ -124,11 +125,21 @@ class Rig(RigTable):
     check: CheckTable | None = None
     source: Annotated[str, Field(exclude=True)] = "rig"
 
+    def __init__(self, /, **table: Any) -> None:  # noqa: ANN401 - whatever a rig file holds
+        """Checked from the keys of a rig file, values with units; InputError where they are none."""
+        source, motor = str(table.get("source", "rig")), table.get("motor")
+        if isinstance(motor, dict) and "model" in motor:
+            table["motor"] = {**catalogue_motor(motor["model"], f"{source}: motor.model"), **motor}
+        kind = LINEAR if table.get("kind") == LINEAR.name else ROTARY
+        try:
+            self.__pydantic_validator__.validate_python(table, self_instance=self, context={"kind": kind})
+        except ValidationError as error:
+            raise _input_error(source, error) from error
+
     @classmethod
     def of(cls, table: Mapping[str, Any], source: str = "rig") -> Rig:
-        """Checked from the table of a rig file, values with units; pydantic's ValidationError where it is none."""
-        kind = LINEAR if table.get("kind") == LINEAR.name else ROTARY
-        return cls.model_validate({**table, "source": source}, context={"kind": kind})
+        """Checked from the table of a rig file, values with units; InputError where it is none."""
+        return cls(**{**table, "source": source})
 
     @model_validator(mode="after")
     def _values_fit_the_kind(self) -> Rig:
@@ -245,32 +256,45 @@ class Rig(RigTable):
         return self.axis_kind.effort_unit
 
 
+def shipped() -> dict[str, Path]:
+    """Files of the rigs that travel with the bench, by name."""
+    return {path.stem: path for path in sorted(asset("data", "rigs").glob("*.toml"))}
+
+
+def rig_file(given: str | Path) -> Path:
+    """The file of a rig: as given, or of a shipped one by its name.
+
+    Raises:
+        InputError: neither a file nor a name.
+    """
+    path, known = Path(given), shipped()
+    if path.exists() or path.suffix or path.name != str(given):
+        return path
+    if str(given) not in known:
+        found = f"no such file and no shipped rig{nearest(str(given), list(known))}"
+        raise InputError(given, found, f"allowed: a rig file, or one of {', '.join(known)}")
+    return known[str(given)]
+
+
 def load_rig(path: str | Path, defaults: Mapping[str, Any] | None = None) -> Rig:
     """Read and check a rig file.
 
     Args:
-        path: of the file.
+        path: of the file, or the name of a shipped rig.
         defaults: keys and whole tables for those that the file leaves out, as TOML gives them.
 
     Raises:
         InputError: no such file, no TOML, an unknown or missing key, a value of the wrong dimension or out of bounds.
     """
-    path = Path(path)
-    table = {**(defaults or {}), **read_toml(path, "a rig file")}
-    motor = table.get("motor")
-    if isinstance(motor, dict) and "model" in motor:
-        table["motor"] = {**catalogue_motor(motor["model"], f"{path}: motor.model"), **motor}
-    try:
-        return Rig.of(table, str(path))
-    except ValidationError as error:
-        raise _input_error(path, error) from error
+    path = rig_file(path)
+    return Rig.of({**(defaults or {}), **read_toml(path, "a rig file")}, str(path))
 
 
-def _input_error(path: Path, error: ValidationError) -> InputError:
+def _input_error(source: str, error: ValidationError) -> InputError:
     """The first complaint of pydantic as one line naming file, key, found and allowed."""
     detail = error.errors()[0]
     keys = [str(key) for key in detail["loc"]]
-    where = f"{path}: {'.'.join(keys) or 'rig'}"
+    where = f"{source}: {'.'.join(keys) or 'rig'}"
     told: dict[str, Any] = detail.get("ctx", {})
     if detail["type"] == "unit":
         return InputError(where, told["found"], told["allowed"])

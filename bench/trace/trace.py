@@ -47,7 +47,7 @@ SMALLEST = 1e-30
 SHORTEST, LONGEST = 1e-9, 1e6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Trace:
     """One recording of one axis, synthetic or measured.
 
@@ -95,6 +95,10 @@ class Trace:
             first = int(np.argmax(np.diff(self.time) <= 0)) + 1
             found = f"does not increase at sample {first} ({self.time[first - 1]:g} s, then {self.time[first]:g} s)"
             raise InputError(f"{self.origin}: time", found, "allowed: increasing times")
+
+    def __repr__(self) -> str:
+        held = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
+        return f"Trace({self.origin!r}, {len(self)} samples, every {self.sample_period:.6g} s: {held})"
 
     def __reduce__(self) -> tuple[partial[Trace], tuple[()]]:
         """Pickled as it was given: other processes take traces, and a read-only view of a dict does not travel."""

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
-from scipy.ndimage import gaussian_filter1d
 
-from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.errors import InputError
 from bench.fit.identify import identify
 from bench.plant.axis_model import AxisParameters, winding_of
 from bench.plant.drive import Cascade
 from bench.plant.profiles import MotionLimits, plan
+from bench.plant.sampled import Sampled, motion_of
 from bench.rig.rig import Rig, Simulation, require
 from bench.trace.noise import resolution, white_noise
 from bench.trace.trace import Trace
@@ -23,33 +21,8 @@ from bench.validation.independent.rig import Axis
 from bench.validation.independent.sensors import Noise, Sensors
 from bench.validation.plan import PLANTS, Case, Plant
 
-#: Width by which a measured speed is smoothed before a drive is told to follow it - s.
-SMOOTHED = 5e-3
-#: In which a motion comes from rest, or to it, where its recording does not - s.
-RAMP = 0.1
 #: Signals that tell what moved an axis.
 EFFORTS = {"current", "torque", "force"}
-
-
-class Sampled:
-    """A motion by its speed at some times, between which it has no overshoot; it starts and ends at rest.
-
-    Args:
-        time: (n,) rising - s.
-        speed: (n,) - rad/s (m/s).
-    """
-
-    def __init__(self, time: Array, speed: Array) -> None:
-        time = np.concatenate([[time[0] - RAMP], time, [time[-1] + RAMP]]) - (time[0] - RAMP)
-        self._speed = PchipInterpolator(time, np.concatenate([[0.0], speed, [0.0]]))
-        self._position, self._acceleration = self._speed.antiderivative(), self._speed.derivative()
-        self.duration = float(time[-1])
-        self.distance = float(self._position(self.duration))
-        self.top = float(np.abs(speed).max())
-
-    def at(self, time: Array) -> tuple[Array, Array, Array]:
-        """Position, speed, acceleration at times within the duration - rad, rad/s, rad/s**2."""
-        return self._position(time), self._speed(time), self._acceleration(time)
 
 
 @dataclass(frozen=True)
@@ -112,24 +85,6 @@ def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
     plain = simulation.friction == "mechanics" and not simulation.load_torque and not constant.curvature
     axis = _axis(rig, parameters, cascade, motion.top)
     return OwnAxis(rig, axis, Motion((motion,)), profile, sensors, PLANTS if plain else ("mujoco",))
-
-
-def motion_of(recording: Trace) -> Sampled:
-    """The motion that a recording's drive was told to make; where that is not recorded, the one that it made."""
-    time = recording.time
-    if "velocity_reference" in recording:
-        speed = recording["velocity_reference"]
-    elif "position_reference" in recording:
-        speed = np.gradient(recording["position_reference"], time)
-    else:
-        measured = recording["velocity"] if "velocity" in recording else np.gradient(recording["position"], time)
-        speed = gaussian_filter1d(np.interp(time, *_known(time, measured)), SMOOTHED / recording.sample_period)
-    return Sampled(*_known(time, speed))
-
-
-def _known(time: Array, values: Array) -> tuple[Array, Array]:
-    there = np.isfinite(values)
-    return time[there], values[there]
 
 
 def as_recorded(rig: Rig, recording: Trace) -> Simulation:

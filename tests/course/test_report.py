@@ -16,7 +16,7 @@ from bench.errors import InputError
 from bench.report.document import Picture
 from bench.report.figures import drawn
 from bench.report.html import html
-from bench.report.terminal import console, rendered
+from bench.report.terminal import rendered
 from tests import command
 
 #: Labels of axes that the course asks for.
@@ -189,10 +189,16 @@ def test_a_legend_covers_no_data(done):
 
 def test_the_advice_keeps_its_brackets_on_the_terminal():
     reason = InputError("a.csv", "holds no velocity", 'write [trace.columns] velocity = "column [unit]"')
-    shown = console()
-    with shown.capture() as kept:
-        shown.print(rendered(course_table([TaskResult(key="6", title="Inertia", reason=reason)])))
-    assert '[trace.columns]velocity="column[unit]"' in "".join(kept.get().split())
+    shown = rendered(course_table([TaskResult(key="6", title="Inertia", reason=reason)]), 80)
+    assert '[trace.columns]velocity="column[unit]"' in "".join(shown.plain.split())
+
+
+@pytest.mark.parametrize("width", [60, 80, 120])
+def test_no_number_of_a_task_is_cut_on_a_terminal(done, width):
+    table = course_table([*done.values()])
+    shown = rendered(table, width).plain
+    assert max(map(len, shown.splitlines())) <= width
+    assert {word for row in table.rows for cell in row for word in cell.split(" ")} <= set(re.split(r"[ \n]+", shown))
 
 
 def test_the_truth_has_a_column_where_any_number_has_one():

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import typer
 
-from bench.cli import app
+from bench.cli import COMMANDS, app
 from tests.docs.pages import PAGES, ROOT, bench_commands, commands, spoken
 from tests.docs.test_run import RUN_HERE, SLOW
 
@@ -91,3 +91,8 @@ def test_every_block_of_commands_is_run():
     for name, page in PAGES.items():
         if bench_commands(page) and name not in {*RUN_HERE, *SLOW}:
             assert f'"{Path(name).name}"' in reading, f"no test runs the commands of {name}: list it in RUN_HERE"
+
+
+def test_the_readme_has_every_command_in_one_table():
+    for command in COMMANDS:
+        assert f"| `bench {command.__name__}` | {command.__doc__.strip()} |" in PAGES["README.md"]

@@ -86,13 +86,12 @@ def test_the_pages_examples_run(folder, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ("identify log.csv", "--rig: missing; allowed: a rig file, or --mjcf and --joint"),
         ("identify log.csv --mjcf robot.xml", "--joint: missing"),
         ("identify log.csv --rig rig.toml --joint elbow", "--joint: found without --mjcf"),
         ("identify log.csv --mjcf robot.xml --joint elbow --at shoulder", "has no ="),
         ("identify log.csv --mjcf robot.xml --joint elbow --at wrist=0", "NAME one of shoulder"),
         ("export found/model.toml --out x.xml", "one of them"),
-        ("export found/model.toml --mjcf robot.xml --out x.xml", "--joint: missing"),
+        ("export found/model.toml --mjcf robot.xml --out x.xml", "--joint: missing; allowed: shoulder, elbow"),
         ("export found/model.toml --mjcf robot.xml --joint elbow --armature some --out x.xml", "allowed: motor, all"),
         ("export found/model.toml --mjcf robot.xml --joint elbow --armature motor --out x.xml", "without the motor's"),
         ("export found/model.toml --mjcf robot.xml --joint elbow --out robot.xml", "is an input of this command"),

@@ -47,6 +47,11 @@ def test_a_quantity_needs_one_per_cent_of_its_own(share, sure):
     assert left_open(friction, ROTARY) == (frozenset() if sure else {VISCOUS, COULOMB})
 
 
+def test_what_is_not_shown_has_its_plain_reason_first():
+    with pytest.raises(UndeterminedError, match=r": it hardly accelerates: only 0\.9% of what would show it"):
+        require_inertia(equations(alike(0, 1, 0.009)), ROTARY)
+
+
 @pytest.mark.parametrize(("rows", "sure"), [(100, True), (99, False)])
 def test_it_takes_twenty_rows_a_column(rows, sure):
     found = equations(np.eye(PLACES), rows=rows)

@@ -139,3 +139,8 @@ def test_refuses_a_rotor_heavier_than_the_whole(rig_of):
     heavy = rig.model_copy(update={"motor": rig.motor.model_copy(update={"rotor_inertia": 1.0})})
     with pytest.raises(InputError, match="moment_of_inertia"):
         simulate(heavy)
+
+
+def test_friction_that_falls_towards_standstill_is_no_stribeck_friction():
+    with pytest.raises(InputError, match=r"stribeck_friction\.static_friction: found 0.04 N\*m; allowed: from 0.085"):
+        simulate("sh30701p", effects="stribeck_friction:static_friction=0.04,stribeck_velocity=4")

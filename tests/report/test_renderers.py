@@ -73,17 +73,6 @@ def test_a_terminal_shows_the_headline_the_answers_and_all_but_details(capsys):
     assert "left" not in out
 
 
-@pytest.mark.parametrize("width", [30, 80])
-def test_a_narrow_terminal_cuts_no_number(monkeypatch, capsys, width):
-    monkeypatch.setattr("bench.report.terminal.WIDTH", width)
-    wide = table("wide", ("of", *(f"quantity {k}>" for k in range(6))), [("x", *["123456.789"] * 6)])
-    show(document(sections=(Section(key="s", heading="s", blocks=(wide,)),)))
-    lines = capsys.readouterr().out.splitlines()
-    assert max(map(len, lines)) <= width
-    assert "…" not in "".join(lines)
-    assert sum(line.count(digit) for line in lines for digit in "123456789") >= 6 * 9
-
-
 def test_a_terminal_that_has_ascii_alone_gets_letters(monkeypatch):
     monkeypatch.setattr("sys.stdout", TextIOWrapper(BytesIO(), encoding="ascii"))
     assert writable("(1.31 ± 0.01)·10⁻³ kg·m²") == "(1.31 +- 0.01)*10**-3 kg*m**2"
@@ -92,7 +81,7 @@ def test_a_terminal_that_has_ascii_alone_gets_letters(monkeypatch):
 
 def test_what_only_a_page_can_show_is_left_out():
     heat = HeatMap(caption="c", corner="hidden", rows=("a",), columns=("a",), counts=((1,),))
-    assert rendered(heat) is None
+    assert rendered(heat, 80) is None
     assert markdown(heat) == ""
 
 

@@ -1,0 +1,165 @@
+"""Results in a notebook: what `bench.presented.Presented` says of an estimate, a diagnosis or a check."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterator
+from functools import singledispatch
+from html import escape
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from bench.axis_kind import KINDS
+from bench.baseline.check import Checked
+from bench.diagnosis.diagnosis import Diagnosis
+from bench.errors import InputError
+from bench.files import write_text
+from bench.fit.estimate import Estimate
+from bench.names import words
+from bench.parameter import Parameter
+from bench.report.check import check_document, check_json
+from bench.report.diagnosis import diagnosis_json, verdict_sentence, write_diagnosis
+from bench.report.document import Panel, Paragraph, Picture, Table, series
+from bench.report.gap import at_a_glance
+from bench.report.identification import identification, identification_json, moved
+from bench.report.numbers import effort_word, sentence, unit_text
+from bench.report.parts import parameters_table
+from bench.report.terminal import rendered
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+#: Columns and lines of a text.
+WIDTH, LINES = 100, 25
+
+
+class Told(NamedTuple):
+    """What a result comes to, its numbers, and all of it as the contract's JSON."""
+
+    headline: str
+    tables: list[Table]
+    json: str
+
+
+@singledispatch
+def told(result: object) -> Told:
+    """Of any result that is shown."""
+    raise TypeError(f"nothing is known of {type(result).__name__}")
+
+
+@told.register
+def _(result: Estimate) -> Told:
+    kind = next((kind for kind in KINDS if kind.inertia in result), KINDS[0])
+    if kind.inertia not in result:
+        headline = f"{sentence(kind.in_words('inertia'))} is not determined."
+    else:
+        headline = identification("", kind, result).verdict
+    return Told(headline, [parameters_table("", result.parameters)], identification_json(result))
+
+
+@told.register
+def _(result: Diagnosis) -> Told:
+    tables = [parameters_table("The axis", result.parameters)]
+    tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in result.effects]
+    return Told(verdict_sentence(result), tables, diagnosis_json(result))
+
+
+@told.register
+def _(result: Checked) -> Told:
+    document = check_document(result, "")
+    blocks = [block for section in document.sections for block in section.blocks]
+    return Told(document.verdict, [block for block in blocks if isinstance(block, Table)], check_json(result))
+
+
+def text(result: object) -> str:
+    """The headline and as many tables as one screen has room for."""
+    headline, tables, _ = told(result)
+    lines = str(rendered(Paragraph(text=headline), WIDTH)).splitlines()
+    for table in tables:
+        more = ["", *str(rendered(table, WIDTH)).splitlines()]
+        lines += more if len(lines) + len(more) <= LINES else []
+    return "\n".join(lines[:LINES])
+
+
+def small_page(result: object) -> str:
+    """The headline, the picture of a diagnosis and the tables as HTML."""
+    headline, tables, _ = told(result)
+    picture = _picture(result) if isinstance(result, Diagnosis) else ""
+    return f"<div><p><strong>{escape(headline)}</strong></p>{picture}{''.join(map(_html, tables))}</div>"
+
+
+def _html(table: Table) -> str:
+    def row(tag: str, cells: tuple[str, ...]) -> str:
+        return f"<tr>{''.join(f'<{tag}>{escape(cell)}</{tag}>' for cell in cells)}</tr>"
+
+    heading = row("th", tuple(column.heading for column in table.columns))
+    caption = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
+    return f"<table>{caption}{heading}{''.join(row('td', cells) for cells in table.rows)}</table>"
+
+
+def _picture(result: Diagnosis) -> str:
+    from bench.report.figures import drawn, save_into  # matplotlib: 0.35 s
+
+    picture = Picture(name="diagnosis", title="", rows=(at_a_glance(result),))
+    data = base64.b64encode(save_into(drawn(picture))).decode()
+    return f'<img alt="Measured, before and after" style="max-width:100%" src="data:image/png;base64,{data}">'
+
+
+def plot(result: object, axes: Axes | None = None) -> Axes:
+    """An estimate: measured and modelled effort over time. A diagnosis: the gap and what was found in it."""
+    if isinstance(result, Diagnosis):
+        chart = at_a_glance(result)[-1]
+        panel = chart.panels[0].model_copy(update={"y_label": f"{chart.y_label} / {chart.y_unit}"})
+    elif isinstance(result, Estimate):
+        panel = _along(result)
+    else:
+        raise InputError("plot()", f"found {type(result).__name__}", "allowed: an estimate or a diagnosis")
+    from bench.report.figures import onto
+
+    if axes is None:
+        from matplotlib import pyplot
+
+        axes = pyplot.figure(figsize=(7.0, 3.0), layout="constrained").subplots()
+    return onto(axes, panel)
+
+
+def _along(estimate: Estimate) -> Panel:
+    """Effort of the first recording, as measured and as the estimate has it."""
+    if estimate.of is None or not estimate.of[1]:
+        raise InputError("plot()", "found no recording beside the estimate", "allowed: one of recordings in memory")
+    rig, (first, *_) = estimate.of
+    (one,) = moved([Path(first.origin)], rig, estimate, lambda _: first)
+    time, unit, effort = one.motion.time, estimate.residual.unit, one.motion.effort
+    drawn = (
+        series("measured", "wide", "ink", time, effort),
+        series("modelled", "line", "model", time, effort - one.left),
+    )
+    return Panel(x_label="time", x_unit="s", y_label=f"{effort_word(unit)} / {unit_text(unit)}", series=drawn)
+
+
+def frame(result: object) -> Any:  # noqa: ANN401 - of pandas or polars
+    """A row for each quantity."""
+    library = next((name for name in ("pandas", "polars") if find_spec(name) is not None), None)
+    if library is None:
+        raise InputError("to_frame()", "found neither pandas nor polars", "install one of them")
+    columns = ("of", "quantity", "value", "unit", "std_error", "low", "high")
+    rows = [(of, name, one.value, one.unit, one.std_error, *one.ci95) for of, name, one in _quantities(result)]
+    return import_module(library).DataFrame({name: [row[k] for row in rows] for k, name in enumerate(columns)})
+
+
+def _quantities(result: object) -> Iterator[tuple[str, str, Parameter]]:
+    """Of the axis, and of each effect that was found."""
+    if isinstance(result, Estimate | Diagnosis):
+        yield from (("axis", name, one) for name, one in result.parameters.items())
+    for effect in result.effects if isinstance(result, Diagnosis) else ():
+        yield from ((effect.name, name, one) for name, one in effect.parameters.items())
+
+
+def save(result: object, path: Path) -> None:
+    """A folder of a diagnosis, a file of anything else."""
+    if isinstance(result, Diagnosis):
+        write_diagnosis(path, result, path.name)
+    else:
+        write_text(path, told(result).json + "\n")
