@@ -30,6 +30,7 @@ from bench.report.numbers import brief, chance, coordinate_word, effort_word, li
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, origin, parameters_table, recordings_table
 from bench.report.publish import write_document
+from bench.report.remainder import remainder
 from bench.report.serial import as_json, known, picked, serialised
 
 SCHEMA = "bench.diagnose/1"
@@ -356,14 +357,7 @@ def following(found: Diagnosis) -> str:
             f"{experiment.repetitions} times: it tells {' from '.join(map(words, experiment.tells_apart))} "
             f"({number(experiment.separation, digits=2)} times the noise); {experiment.reason}."
         )
-    if found.unexplained_where:
-        most = found.unexplained_where[0]
-        return (
-            f"Look at what is left: {share(most.share)} of it hangs on {coordinate_word(most.coordinate, most.unit)}, "
-            f"most between {number(most.region[0], digits=3)} and {number(most.region[1], most.unit, 3)}; "
-            "what the catalogue holds is not it."
-        )
-    return ""
+    return " ".join(remainder(found))
 
 
 def _motion(found: Diagnosis) -> doc.Section:
