@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +18,7 @@ from bench.fit.layout import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
 from bench.plant.measured_motion import measured_position, measured_velocity
-from bench.plant.model_file import load_model, read_table
+from bench.plant.model_file import StoredModel, load_model, read_table
 from bench.plant.tracking import SoftTracking, track
 from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
@@ -84,12 +86,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     """
     rig = rig_of(rig)
     trace = trace_of(trace, rig)
-    if isinstance(model, Diagnosis):
-        path, balance, stored = "diagnosis", model.balance, model.model
-        table = {} if stored is None else {"kind": stored.model.parameters.kind.name, "name": stored.name}
-    else:
-        path, table, balance = model, read_table(model), load_balance(model)
-        stored = load_model(path) if "parameters" in table else None
+    path, table, balance, stored = _told(model)
     kind = table.get("kind", rig.kind)
     if kind != rig.kind:
         raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
@@ -122,6 +119,16 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
         warnings.append(f"the model leaves {left:.0%} of the torque unexplained: another axis, or other units?")
     moved = measured[0], position, measured[1], velocity
     return Replay(trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, unit, tuple(warnings))
+
+
+def _told(model: Diagnosis | str | Path) -> tuple[str | Path, Mapping[str, Any], Balance, StoredModel | None]:
+    """Of a model: where it is from, its kind and name, its torque balance, and what MuJoCo runs where it can."""
+    if not isinstance(model, Diagnosis):
+        table = read_table(model)
+        return model, table, load_balance(model), load_model(model) if "parameters" in table else None
+    stored = model.model
+    table = {} if stored is None else {"kind": stored.model.parameters.kind.name, "name": stored.name}
+    return "diagnosis", table, model.balance, stored
 
 
 def _rms(values: Array) -> float:

@@ -159,7 +159,7 @@ class Diagnosis(Presented):
         return iter(self.effects)
 
     def __contains__(self, name: object) -> bool:
-        return any(effect.name == name for effect in self)
+        return name in {effect.name for effect in self}
 
     def __getitem__(self, name: str) -> NamedEffect:
         found = {effect.name: effect for effect in self}
