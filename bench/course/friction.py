@@ -5,6 +5,7 @@ A*theta = b with A = [alpha_filt, omega, sgn(omega)], b = M, theta = (J, K_fric_
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,15 +13,15 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB
 from bench.course.axis import KG_CM2
-from bench.course.inertia import inertia_without_friction, load_inertia, require_positive
+from bench.course.inertia import half_width, inertia_without_friction, load_inertia, require_positive
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import BenchError, UndeterminedError
 from bench.fit.determined import RECORD
 from bench.fit.lab import LEAST_SPEED, least_squares
 from bench.fit.rows import ONE_WAY
-from bench.report.document import Chart
-from bench.trace.filter import GaussianFilter
+from bench.report.document import Chart, Series
+from bench.trace.filter import LEAST_WIDTH, GaussianFilter
 
 #: Backward differences that the filter takes the mean of; an even number, so that it is late by whole samples.
 WIDTH = 4
@@ -28,6 +29,8 @@ WIDTH = 4
 DELAY = WIDTH // 2
 #: Width of the filter by which lateness is measured, and samples drawn to each side of an edge.
 SMOOTHING, EDGE = 5.0, 25
+#: The same where half a sample is to be seen.
+CLOSE = 5
 
 
 def filtered_acceleration(run: LabRun, width: int = WIDTH, delay: int = DELAY) -> tuple[Array, slice]:
@@ -141,6 +144,21 @@ def _edge_chart(run: LabRun) -> Chart:
         "Task 8: filtered acceleration over the original one",
         panel("t_sync / s", "acceleration α / (rad/s²)", *whole),
         panel("t_sync / s, one edge", "acceleration α / (rad/s²)", *close),
+        panel("t_sync / s, a few samples of it", "acceleration α / (rad/s²)", *_half_sample(run, edge)),
+    )
+
+
+def _half_sample(run: LabRun, edge: int) -> tuple[Series, ...]:
+    """The mean set back by its own delay alone, by half a sample more, and the speed's derivative in step."""
+    mean, synchronous = filtered_acceleration(run)
+    smooth = GaussianFilter(LEAST_WIDTH * run.sample_period, run.sample_period)
+    near = slice(max(edge - CLOSE, smooth.margin), min(edge + CLOSE, run.time.size - smooth.margin))
+    slope = smooth(run.velocity, 1)[0][near.start - smooth.margin : near.stop - smooth.margin]
+    time, values = run.time[near], mean[near.start - synchronous.start : near.stop - synchronous.start]
+    return (
+        curve(time, slope, "dω/dt in step", "wide"),
+        curve(time, values, f"α_filt set back by {DELAY} samples", "large dots"),
+        curve(time + 0.5 * run.sample_period, values, f"by {DELAY - 0.5:g}: half a sample late", "large dots"),
     )
 
 
@@ -153,12 +171,14 @@ class EquationOfMotion:
         viscous: K_fric_w - N*m*s/rad.
         coulomb: K_fric_0 - N*m.
         error: E, remaining quadratic error - (N*m)**2.
+        halves: within how much J, K_fric_w and K_fric_0 are known, in their units.
     """
 
     inertia: float
     viscous: float
     coulomb: float
     error: float
+    halves: tuple[float, float, float]
 
     def torque(self, run: LabRun) -> Array:
         """J*alpha + K_fric_w*omega + K_fric_0*sgn(omega) - N*m."""
@@ -177,9 +197,11 @@ def identify_friction(run: LabRun) -> EquationOfMotion:
     if weaker < ONE_WAY:
         reason = "the axis moves one way only, so a constant torque and Coulomb friction are one number"
         raise UndeterminedError("Coulomb friction", reason, RECORD[COULOMB])
-    theta, _, error = least_squares(samples.acceleration, samples.velocity, samples.torque)
+    theta, std_error, error = least_squares(samples.acceleration, samples.velocity, samples.torque)
     require_positive(float(theta[0]))
-    return EquationOfMotion(*theta.tolist(), error=error)
+    estimates = zip(("inertia", "viscous", "coulomb"), theta.tolist(), std_error.tolist(), strict=True)
+    inertia, viscous, coulomb = (half_width(value, deviation, name, run) for name, value, deviation in estimates)
+    return EquationOfMotion(*theta.tolist(), error=error, halves=(inertia, viscous, coulomb))
 
 
 def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
@@ -190,7 +212,8 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
     residual = run.torque - estimated
     left, left_of_fitted = rms(residual), np.sqrt(found.error / fitted.time.size)
     true = run.true("moment_of_inertia", KG_CM2)
-    loads, _ = load_inertia(found.inertia, recordings, true)
+    half = found.halves
+    loads, _ = load_inertia(found.inertia, half[0], recordings, true)
     findings = (
         f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted.time.size} samples of task 8; the theta with the least "
         "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
@@ -199,9 +222,9 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
         *_beside_task_6(loads, recordings),
     )
     numbers = (
-        Number("J", found.inertia * KG_CM2, "kg·cm²", true),
-        Number("K_fric_w", found.viscous, "N·m·s/rad", run.true("viscous_friction_coefficient")),
-        Number("K_fric_0", found.coulomb, "N·m", run.true("coulomb_friction_torque")),
+        Number("J", found.inertia * KG_CM2, "kg·cm²", true, half=half[0] * KG_CM2),
+        Number("K_fric_w", found.viscous, "N·m·s/rad", run.true("viscous_friction_coefficient"), half=half[1]),
+        Number("K_fric_0", found.coulomb, "N·m", run.true("coulomb_friction_torque"), half=half[2]),
         Number("E", found.error, "(N·m)²"),
         *loads[:1],
         Number("samples of M_est", float(every.time.size), "1"),
@@ -222,5 +245,12 @@ def _beside_task_6(loads: list[Number], recordings: LabRecordings) -> tuple[str,
         before = inertia_without_friction(recordings)
     except BenchError:
         return ()
-    apart = [load.value / before["J_load"].value - 1.0 for load in loads[:1]]
-    return tuple(f"J_load is {share:+.2%} off the one of task 6." for share in apart)
+    told = []
+    for load in loads[:1]:
+        other = before["J_load"]
+        apart, half = load.value - other.value, math.hypot(load.half or 0.0, other.half or 0.0)
+        agree = "the two agree" if abs(apart) <= half else "the two contradict each other"
+        told.append(
+            f"J_load is {apart / other.value:+.2%} off the one of task 6, {apart:+.2g} ± {half:.2g} kg·cm²: {agree}."
+        )
+    return tuple(told)

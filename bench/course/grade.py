@@ -7,14 +7,15 @@ import hashlib
 import io
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
-from bench.course.answers import MISTAKES, Mistake
+from bench.course.answers import MISTAKES, SLIPS
+from bench.course.explain import NOT_KNOWN, Explanation, explanation
 from bench.course.submission import QUESTIONS, GivenAnswer, Question, Submission, find_submissions, read_submission
 from bench.errors import InputError
 from bench.files import read_text, write_text
@@ -29,12 +30,10 @@ TITLE = "Industrial Drives, Part 2: grades"
 SEALED = "bench.lab.class/1"
 #: An answer is a mistake's figure within the tolerance of a right one; E, which has none, within this share of it.
 OF_ERROR = 0.04
-#: A distance from a mistake's figure counts up to so many times what is allowed: one answer alone decides nothing.
-FARTHEST = 10.0
+#: What a student reads of each mistake.
+WHY = {mistake.name: mistake.explanation for mistake in MISTAKES} | {name: why for name, why, _ in SLIPS}
 
 Verdict = Literal["right", "wrong", "wrong unit", "not answered", "not judged"]
-#: What a way of working gives, by the names of the form.
-Figures = Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -47,7 +46,8 @@ class GradedAnswer:
         value: the same in the form's unit; NaN without one.
         expected: what the course's way gives on the student's recordings, in that unit.
         verdict: right, wrong, in a unit of another dimension, not answered, or not judged.
-        mistake: that its figure tells, or None.
+        tolerance: share by which a right answer may be off.
+        explained: how the task's answers were made, where this one is wrong; None otherwise.
     """
 
     question: Question
@@ -55,12 +55,21 @@ class GradedAnswer:
     value: float
     expected: float
     verdict: Verdict
-    mistake: Mistake | None = None
+    tolerance: float
+    explained: Explanation | None = None
+
+    @property
+    def mistake(self) -> str:
+        """What went wrong in the task; empty where nothing did, or it is not known."""
+        return "" if self.explained is None or self.explained.names == (NOT_KNOWN,) else self.explained.text
 
     @property
     def off(self) -> str:
         """Share by which it is off what is expected; empty where that cannot be told."""
-        return f"{self.value / self.expected - 1.0:+.2%}" if math.isfinite(self.value) and self.expected else ""
+        if not math.isfinite(self.value) or not self.expected:
+            return ""
+        ratio = self.value / self.expected
+        return f"{ratio - 1.0:+.2%}" if 0.0 < ratio < 2.0 else f"{ratio:.3g} times"
 
     @property
     def as_given(self) -> str:
@@ -70,24 +79,14 @@ class GradedAnswer:
     @property
     def remark(self) -> str:
         """What the student reads beside it."""
-        if self.mistake is not None:
-            return f"{self.mistake.name}: {self.mistake.explanation}"
+        if self.explained is not None and self.mistake:
+            why = " ".join(WHY[name] for name in self.explained.names if name in WHY)
+            return f"{self.mistake}: {why}" if why else self.mistake
         if self.verdict == "wrong unit" and self.given is not None:
             return f"{_measures(self.given.unit)}; give {self.question.unit}, or another unit of the same quantity."
         if self.verdict == "wrong":
             return "Off by more than other right ways would be; no mistake that is known gives this figure."
         return ""
-
-    def from_figure(self, way: Figures) -> float:
-        """Distance from a mistake's figure, 1 where it is just recognised."""
-        figure = way.get(self.question.name, math.nan)
-        if not math.isfinite(figure) or figure == 0.0:
-            return math.inf
-        return abs(self.value / figure - 1.0) / (self.question.tolerance or OF_ERROR)
-
-    def explained_by(self, ways: Sequence[Figures]) -> bool:
-        """Whether it is wrong, and a mistake's figure in one of its ways."""
-        return self.verdict == "wrong" and any(self.from_figure(way) <= 1.0 for way in ways)
 
 
 @dataclass(frozen=True)
@@ -120,7 +119,7 @@ class GradedStudent:
     @property
     def mistakes(self) -> list[str]:
         """Names of known mistakes, each once."""
-        return list(dict.fromkeys(answer.mistake.name for answer in self.answers if answer.mistake is not None))
+        return list(dict.fromkeys(answer.mistake for answer in self.answers if answer.mistake))
 
     @property
     def page(self) -> str:
@@ -138,25 +137,28 @@ class GradedClass:
 
 
 def grade_class(submissions: Path, truth: Path) -> GradedClass:
-    """Grade every submission of a folder by a sealed truth.
+    """Grade every submission of a folder by a sealed truth; a bad one, or two of one student, leave the others alone.
 
     Raises:
-        InputError: no submissions, no truth, or two submissions of one student.
+        InputError: no submissions, or no truth.
     """
     known = read_truth_of_class(truth)
-    graded: dict[str, tuple[GradedStudent, Path]] = {}
+    graded: dict[str, list[tuple[GradedStudent, Path]]] = {}
     unread: list[InputError] = []
     for path in find_submissions(submissions):
         try:
             found = grade(read_submission(path), known)
         except InputError as error:
             unread.append(error)
-            continue
-        if found.student in graded:
-            both = f"found two of student {found.student} ({graded[found.student][1]}, {path})"
-            raise InputError(submissions, both, "leave one of them")
-        graded[found.student] = found, path
-    students = tuple(graded[student][0] for student in sorted(graded))
+        else:
+            graded.setdefault(found.student, []).append((found, path))
+    for student, forms in graded.items():
+        if len(forms) > 1:
+            paths = ", ".join(str(path) for _, path in forms)
+            unread.append(
+                InputError(submissions, f"found {len(forms)} of student {student} ({paths})", "leave one of them")
+            )
+    students = tuple(graded[student][0][0] for student in sorted(graded) if len(graded[student]) == 1)
     return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(graded))))
 
 
@@ -197,21 +199,23 @@ def grade(submission: Submission, known: Mapping[str, Any]) -> GradedStudent:
     named: list[GradedAnswer] = []
     for task in dict.fromkeys(question.task for question in QUESTIONS):
         of_task = [answer for answer in graded if answer.question.task == task]
-        named += _with_mistake(of_task, of_student["mistakes"])
+        named += _explained(of_task, submission.student, known)
     return GradedStudent(submission.student, tuple(named))
 
 
 def _graded(question: Question, given: GivenAnswer | None, known: Mapping[str, Any]) -> GradedAnswer:
     expected, true = (known[name].get(question.name, math.nan) for name in ("expected", "truth"))
     value, verdict = math.nan, "not answered"
+    own = known["tolerance"].get(question.name, 0.0)
+    tolerance = OF_ERROR if question.tolerance is None else max(question.tolerance, own)
     if given is not None:
         if not _fits(given.unit, question.unit):
-            return GradedAnswer(question, given, value, expected, "wrong unit")
+            return GradedAnswer(question, given, value, expected, "wrong unit", tolerance)
         value = float(convert(np.asarray(given.value), given.unit or question.unit, question.unit))
-        share = question.tolerance or 0.0
-        right = (abs(value - one) <= share * (abs(one) or question.near_zero) for one in (expected, true))
+        right = (abs(value - one) <= tolerance * (abs(one) or question.near_zero) for one in (expected, true))
         verdict = "right" if any(right) else "wrong"
-    return GradedAnswer(question, given, value, expected, "not judged" if question.tolerance is None else verdict)
+    verdict = "not judged" if question.tolerance is None else verdict
+    return GradedAnswer(question, given, value, expected, verdict, tolerance)
 
 
 def _fits(unit: str, wanted: str) -> bool:
@@ -230,31 +234,15 @@ def _measures(unit: str) -> str:
         return f"'{unit}' is no unit"
 
 
-def _with_mistake(answers: list[GradedAnswer], figures: Mapping[str, Sequence[Figures]]) -> list[GradedAnswer]:
-    """Answers of a task, the wrong ones with the mistake whose figures they are, the nearest where several would do.
-
-    A task is made in one way: all that a mistake changes in it must be as the mistake has it, E among them.
-    """
-    valued = [answer for answer in answers if math.isfinite(answer.value)]
-    found: list[tuple[int, float, Mistake]] = []
-    for mistake in MISTAKES:
-        for way in figures.get(mistake.name, ()):
-            explained = sum(answer.explained_by([way]) for answer in valued)
-            if explained:
-                found.append((-explained, _apart(valued, way), mistake))
-    if not found:
+def _explained(answers: list[GradedAnswer], student: str, known: Mapping[str, Any]) -> list[GradedAnswer]:
+    """Answers of a task, which is done in one way, the wrong ones with what explains them all."""
+    if all(answer.verdict != "wrong" for answer in answers):
         return answers
-    # more answers explained first, then the nearer
-    best = min(found, key=lambda entry: entry[:2])[2]
-    ways = figures[best.name]
-    return [replace(answer, mistake=best) if answer.explained_by(ways) else answer for answer in answers]
-
-
-def _apart(answers: Sequence[GradedAnswer], way: Figures) -> float:
-    """How far answers are from a mistake's figures in shares of what is allowed."""
-    apart = [(answer.verdict, answer.from_figure(way)) for answer in answers]
-    counted = [min(value, FARTHEST) ** 2 for verdict, value in apart if verdict != "right" or value > 1.0]
-    return math.sqrt(sum(counted) / len(counted)) if counted else 0.0
+    given = {answer.question.name: answer.value for answer in answers if math.isfinite(answer.value)}
+    tolerances = {answer.question.name: answer.tolerance for answer in answers}
+    others = {name: one["expected"] for name, one in known.items() if name != student}
+    found = explanation(given, tolerances, known[student], others)
+    return [replace(answer, explained=found) if answer.verdict == "wrong" else answer for answer in answers]
 
 
 def write_grades(graded: GradedClass, out: Path) -> list[Path]:
@@ -308,14 +296,26 @@ def grades_csv(graded: GradedClass) -> str:
     """A row an answer."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(["student", "task", "quantity", "given", "unit", "expected", "in", "verdict", "mistake"])
+    writer.writerow(
+        ["student", "task", "quantity", "given", "unit", "expected", "in", "verdict", "mistake", "likelier"]
+    )
     for one in graded.students:
         for answer in one.answers:
             asked, given = answer.question, answer.given
             value, unit = (given.value, given.unit or asked.unit) if given is not None else ("", "")
-            mistake = answer.mistake.name if answer.mistake is not None else ""
+            likelier = answer.explained.likelier if answer.explained is not None else ""
             expected = f"{answer.expected:.6g}", asked.unit
-            row = (one.student, asked.task, asked.name, value, unit, *expected, answer.verdict, mistake)
+            row = (
+                one.student,
+                asked.task,
+                asked.name,
+                value,
+                unit,
+                *expected,
+                answer.verdict,
+                answer.mistake,
+                likelier,
+            )
             writer.writerow([cell(str(content)) for content in row])
     return buffer.getvalue()
 
@@ -324,7 +324,7 @@ def grades_table(graded: GradedClass) -> Table:
     """A row a student: answers that are right, and mistakes."""
     rows = []
     for one in graded.students:
-        unknown = ", ".join(answer.question.name for answer in one.wrong if answer.mistake is None)
+        unknown = ", ".join(answer.question.name for answer in one.wrong if not answer.mistake)
         words = [*one.mistakes, *([f"wrong, not known why: {unknown}"] if unknown else [])]
         rows.append((one.student, one.score, "; ".join(words)))
     return table("Grades", ("student", "right", "mistakes~"), rows)

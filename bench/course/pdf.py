@@ -46,10 +46,14 @@ class OnPage:
 
 def write_pdf(path: Path, document: Document) -> None:
     """Write a document's title, first section and answers on one page, and the other sections on the following ones."""
-    with PdfPages(path, metadata={"Title": document.title}) as pages:
+    # TrueType, which is searched and copied from; matplotlib's own Type 3 is not
+    with rc_context({"pdf.fonttype": 42}), PdfPages(path, metadata={"Title": document.title}) as pages:
         pages.savefig(page([OnPage(lines, height(lines)) for lines in cover(document)]))
-        for content in paginated([one for section in document.sections[1:] for one in flowing(section)]):
-            pages.savefig(page(content))
+        contents = paginated([one for section in document.sections[1:] for one in flowing(section)])
+        for number, content in enumerate(contents, 2):
+            drawn = page(content)
+            drawn.text(0.5, 0.02, f"{number}", size=8.0, ha="center")
+            pages.savefig(drawn)
 
 
 def cover(document: Document) -> Iterator[tuple[Line, ...]]:

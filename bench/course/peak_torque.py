@@ -19,11 +19,12 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
-from bench.arrays import Array
+from bench.arrays import NORMAL95, Array
 from bench.course.axis import MAINS, RPM
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import UndeterminedError
+from bench.report.document import Table, table
 from bench.report.drive import in_range
 from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig
@@ -41,8 +42,8 @@ FINER = 8
 #: The course drops samples of less torque - N*m - and starts at the first above 3.0 N*m, this share of the lab
 #: motor's peak.
 LEAST_TORQUE, FULL_SHARE = 0.2, 3.0 / 3.5
-#: Speeds of the table - rpm, and samples that belong to one: within this of it - rad/s.
-SPEEDS, HALF_BIN = (1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0), 5.0
+#: Speeds of the course's table - rpm, and samples that belong to one: within this of it - rad/s.
+SPEEDS, HALF_BIN = (0.0, 1000.0, 2000.0, 2100.0, 3000.0, 4000.0, 5000.0), 5.0
 
 
 @dataclass(frozen=True)
@@ -55,12 +56,14 @@ class Decline:
         lag: tau, by which it comes late, L/R - s.
         extrapolated: speed at which the line through the fall from 90 to 50 % meets the top - rad/s; the corner without
             inductance, later by alpha*tau with it.
+        half: the corner is known within so much - rad/s.
     """
 
     corner: float
     no_load: float
     lag: float
     extrapolated: float
+    half: float
 
 
 def extrapolated_corner(velocity: Array, current: Array) -> float:
@@ -100,7 +103,8 @@ def decline(velocity: Array, current: Array, sample_period: float) -> Decline:
     start, middle = np.array([corner, no_load, TYPICAL]), 0.5 * (corner + no_load)
     bounds = [0.0, middle, 0.0], [middle, 10.0 * no_load, 1.0]
     found = least_squares(unexplained, start, bounds=bounds, x_scale=start, xtol=1e-12, ftol=1e-12, gtol=1e-12)
-    return Decline(*found.x.tolist(), extrapolated=corner)
+    variance = found.fun @ found.fun / max(found.fun.size - 3, 1) * np.linalg.pinv(found.jac.T @ found.jac)[0, 0]
+    return Decline(*found.x.tolist(), extrapolated=corner, half=NORMAL95 * math.sqrt(variance))
 
 
 def _late(values: Array, lag: float, period: float) -> Array:
@@ -156,14 +160,18 @@ def datasheet_curve(rig: Rig) -> tuple[Array, Array]:
 
 
 def measured_at_speeds(velocity: Array, torque: Array) -> Array:
-    """M_max of a run-up (n,) at SPEEDS - N*m: median within HALF_BIN on the way up; NaN where there is no sample."""
+    """M_max of a run-up (n,) at SPEEDS - N*m: median within HALF_BIN on the way up.
+
+    NaN where there is no sample, or the drive's speed control may have taken the torque back already.
+    """
     up = slice(0, int(np.argmax(velocity)) + 1)
-    near = (np.abs(velocity[up] - speed / RPM) <= HALF_BIN for speed in SPEEDS)
+    motors = velocity[up] < STILL_RISING * velocity.max()
+    near = (motors & (np.abs(velocity[up] - speed / RPM) <= HALF_BIN) for speed in SPEEDS)
     return np.array([np.median(torque[up][samples]) if samples.any() else math.nan for samples in near])
 
 
 def over_speed(recordings: LabRecordings) -> TaskResult:
-    """Draw the measured torque over the speed beside the datasheet's curve, and tell both at seven speeds."""
+    """Draw the measured torque over the speed beside the datasheet's curve, and tell both at the drawing's speeds."""
     run, rig, sources = recordings.fastest, recordings.rig, recordings.sources
     kept = run_up(run, rig)
     speed, torque = kept.velocity * RPM, kept.torque
@@ -173,18 +181,24 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
     measured = measured_at_speeds(kept.velocity, torque)
     numbers = [
         Number("peak torque", float(torque.max()), "N·m", rig.motor.peak_torque if run.truth else None),
-        Number("measured corner", corner, "rpm", run.true("corner_speed", RPM)),
+        Number("measured corner", corner, "rpm", run.true("corner_speed", RPM), half=found.half * RPM),
         Number("datasheet's corner", corner_of_datasheet, "rpm", source=sources("motor", "peak_curves")),
     ]
-    for at, value, sheet in zip(SPEEDS, measured.tolist(), np.interp(SPEEDS, limit * RPM, allowed), strict=True):
-        name = f"M_max at {at:.0f} rpm"
-        if math.isfinite(value):
-            numbers.append(Number(name, value, "N·m"))
-        numbers.append(Number(f"{name}, datasheet", float(sheet), "N·m", source=sources("motor", "peak_torque")))
+    sheet = np.interp(SPEEDS, limit * RPM, allowed)
+    read = [
+        Number(f"M_max at {at:.0f} rpm, datasheet", value, "N·m", source=sources("motor", "peak_torque"))
+        for at, value in zip(SPEEDS, sheet.tolist(), strict=True)
+    ]
+    read += [
+        Number(f"M_max at {at:.0f} rpm", value, "N·m")
+        for at, value in zip(SPEEDS, measured.tolist(), strict=True)
+        if math.isfinite(value)
+    ]
     findings = (
         f"The torque starts to decline at {corner:.0f} rpm, {corner - corner_of_datasheet:+.0f} rpm from "
         "the datasheet's corner; task 11 says why. The corner is found by least squares on the current from its top to "
         "half of it: constant, then falling in proportion to speed with a lag, as the motor's circuit has it.",
+        *run.notes,
         *_tail_findings(kept, found),
         *_missing_findings(measured),
     )
@@ -195,7 +209,17 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
         curve(limit * RPM, allowed, f"datasheet, {MAINS:g} V", "dashes"),
         curve(np.array([corner]), np.interp([corner], speed, torque), "corner", "large dots"),
     )
-    return TaskResult(findings, tuple(numbers), (chart("Task 10: peak torque", axes),))
+    shown = (chart("Task 10: peak torque", axes),)
+    return TaskResult(findings, tuple(numbers), shown, tables=(_at_speeds(sheet, measured),), tabled=tuple(read))
+
+
+def _at_speeds(sheet: Array, measured: Array) -> Table:
+    """The course's table in two lines, and the measured torque below it."""
+    rows = [
+        (f"M_max of the datasheet at {MAINS:g} V / (N·m)", *(f"{value:.3g}" for value in sheet)),
+        ("M_max measured / (N·m)", *(f"{value:.3g}" if math.isfinite(value) else "-" for value in measured)),
+    ]
+    return table("Peak torque at the speeds of the drawing", ("n / rpm", *(f"{n:.0f}>" for n in SPEEDS)), rows)
 
 
 def _tail_findings(kept: LabRun, found: Decline) -> tuple[str, ...]:
@@ -214,7 +238,8 @@ def _tail_findings(kept: LabRun, found: Decline) -> tuple[str, ...]:
 
 def _missing_findings(measured: Array) -> tuple[str, ...]:
     missing = [f"{speed:.0f}" for speed, value in zip(SPEEDS, measured, strict=True) if not math.isfinite(value)]
-    return (f"At {', '.join(missing)} rpm there is no sample: the run-up does not get there.",) if missing else ()
+    told = f"At {', '.join(missing)} rpm the motor's torque was not measured: the drive's set speed ends the run-up."
+    return (told,) if missing else ()
 
 
 def operating_range(recordings: LabRecordings) -> TaskResult:

@@ -6,6 +6,7 @@ A class has a folder a student, and the truth of all in one sealed file elsewher
 from __future__ import annotations
 
 import json
+import secrets
 import shutil
 import tempfile
 from collections.abc import Callable, Mapping
@@ -17,11 +18,12 @@ import pyarrow as pa
 import tomli_w
 
 from bench.arrays import Array
-from bench.course.answers import MISTAKES, Worked
+from bench.course.answers import Worked, every_mistake, tolerances
 from bench.course.axis import KG_CM2, RPM, embedded, lab_rig, motor_value, without_friction
 from bench.course.catapult import record_flights
 from bench.course.grade import SEALED, seal
-from bench.course.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION, LabRecordings, read_truth
+from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
+from bench.course.recordings import LabRecordings, read_truth
 from bench.course.submission import FORM, form
 from bench.course.winding import STEP, WindingModel, WindingRun, run_winding
 from bench.errors import InputError
@@ -117,7 +119,7 @@ def record_class(folder: Path, students: int, seed: int, progress: Progress = la
     Args:
         folder: of the class, new or empty; InputError where it is not.
         students: how many; InputError below one.
-        seed: of everything drawn.
+        seed: of everything drawn, with a random salt that the truth alone keeps: who knows the seed draws other axes.
         progress: called with the share done.
 
     Returns:
@@ -127,14 +129,14 @@ def record_class(folder: Path, students: int, seed: int, progress: Progress = la
         raise InputError("--students", f"found {students}", "allowed: 1 or more")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(folder, "is there and not empty", "name a new folder for the class")
-    folders, known = [], {}
+    folders, known, salt = [], {}, secrets.randbits(128)
     for number in range(1, students + 1):
         name = f"{number:02}"
         folders.append(folder / f"student-{name}")
-        known[name] = _record_student(folders[-1], name, np.random.default_rng([seed, number]))
+        known[name] = _record_student(folders[-1], name, np.random.default_rng([seed, number, salt]))
         progress(number / students)
     truth = folder.with_name(f"{folder.name}.truth.json")
-    content = {"schema": SEALED, "seed": seed, "students": known}
+    content = {"schema": SEALED, "seed": seed, "salt": f"{salt:032x}", "students": known}
     write_text(truth, json.dumps({**content, "seal": seal(content)}, indent=1) + "\n")
     truth.chmod(0o600)
     return [*folders, truth]
@@ -157,8 +159,13 @@ def _record_student(folder: Path, name: str, random: np.random.Generator) -> dic
     write_text(folder / "rig.toml", tomli_w.dumps({**public, "name": f"axis of student {name}"}))
     write_text(folder / FORM, form(name))
     worked = Worked.of(LabRecordings.in_folder(folder))
-    mistakes = {mistake.name: [worked.answers(way) for way in mistake.ways] for mistake in MISTAKES}
-    return {"truth": _truth(rig, corner), "expected": worked.answers(), "mistakes": mistakes}
+    # seven digits: a class of forty is 3 MB then
+    mistakes = [
+        [names, {name: float(f"{value:.7g}") for name, value in figures.items() if name not in worked.unchanged}]
+        for names, figures in every_mistake(worked)
+    ]
+    found = {"truth": _truth(rig, corner), "expected": worked.answers(), "tolerance": tolerances(worked)}
+    return {**found, "mistakes": mistakes}
 
 
 def draw_rig(random: np.random.Generator) -> dict[str, Any]:

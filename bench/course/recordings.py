@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
-
-from bench.arrays import Array
 from bench.assets import asset
-from bench.course.axis import Sources, embedded, lab_rig, torque_constant
+from bench.course.axis import Sources, embedded, lab_rig
+from bench.course.causes import refusals
 from bench.course.flights import Flights, find_flights, read_flights
-from bench.errors import InputError, UndeterminedError
+from bench.course.flying import contradiction
+from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
+from bench.course.run import LabRun, in_words_of_the_course, run_of
+from bench.errors import BenchError, InputError
 from bench.files import read_text
-from bench.fit.lab import backward_difference
 from bench.names import nearest
 from bench.plant.simulate import truth_path
 from bench.rig.rig import Rig, load_rig
@@ -26,80 +25,12 @@ from bench.structured import parse_json
 from bench.trace.channel import Recording
 from bench.trace.choose import choose, reading_options
 from bench.trace.read import read_recording, readers
-from bench.trace.trace import Trace, assemble
+from bench.trace.trace import assemble
 
-WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"
 #: Signals that the tasks need.
 NEEDED = ("velocity", "current")
 #: Endings of recordings; a truth is JSON too, and none of the course's.
 ENDINGS = {ending for reader in readers() for ending in reader.endings} - {".json"}
-#: A shorter recording is no run of the course.
-LEAST = 100
-
-
-@dataclass(frozen=True)
-class LabRun:
-    """One recording, signals (n,).
-
-    Attributes:
-        time: s.
-        velocity: omega - rad/s.
-        current: Iq - A.
-        acceleration: alpha, backward difference of the speed - rad/s**2.
-        torque: kT(Iq)*Iq - N*m.
-        angle: from the start on - rad; as recorded, else the integral of the speed.
-        sample_period: s.
-        truth: values of the simulated axis by their names - SI; empty for a real one.
-    """
-
-    time: Array
-    velocity: Array
-    current: Array
-    acceleration: Array
-    torque: Array
-    angle: Array
-    sample_period: float
-    truth: Mapping[str, float] = field(default_factory=dict)
-
-    def true(self, name: str, factor: float = 1.0) -> float | None:
-        """True value of a quantity times a factor that changes its unit; None on a real axis."""
-        return self.truth[name] * factor if name in self.truth else None
-
-    def at(self, samples: NDArray[np.bool_]) -> LabRun:
-        """Some samples of it alone, told by (n,)."""
-        signals = ("time", "velocity", "current", "acceleration", "torque", "angle")
-        return replace(self, **{name: getattr(self, name)[samples] for name in signals})
-
-
-def run_of(trace: Trace, rig: Rig, truth: Mapping[str, float] | None = None) -> LabRun:
-    """Signals of a recording, its longest stretch without a hole.
-
-    Raises:
-        UndeterminedError: fewer than LEAST samples.
-        InputError: no velocity or current in it, a linear axis, or no torque constant in the rig.
-    """
-    if not trace.axis_kind.turns:
-        allowed = "allowed: a rotary one, velocity in deg/s, rad/s or rpm"
-        raise InputError(trace.origin, f"found a {trace.axis_kind.name} axis", allowed)
-    part = max(trace.segments, key=lambda segment: segment.stop - segment.start)
-    velocity, current = trace["velocity"][part], trace["current"][part]
-    if velocity.size < LEAST:
-        reason = f"{trace.origin} has {velocity.size} samples in a row, {LEAST} are the least"
-        raise UndeterminedError("motion", reason, "the whole run without holes")
-    if "position" in trace:
-        angle = trace["position"][part] - trace["position"][part.start]
-    else:
-        angle = cumulative_trapezoid(velocity, dx=trace.sample_period, initial=0.0)
-    return LabRun(
-        time=trace.time[part] - trace.time[part.start],
-        velocity=velocity,
-        current=current,
-        acceleration=backward_difference(velocity, trace.sample_period),
-        torque=torque_constant(rig).torque(current),
-        angle=angle,
-        sample_period=trace.sample_period,
-        truth=truth or {},
-    )
 
 
 @dataclass(frozen=True)
@@ -133,24 +64,31 @@ class LabRecordings:
 
     @cached_property
     def without_friction(self) -> LabRun:
-        """The fast run, friction switched off; raises as `run`."""
-        return self.run(WITHOUT_FRICTION)
+        """The fast run, friction switched off; raises as `sound`."""
+        return self.sound(WITHOUT_FRICTION)
 
     @cached_property
     def with_friction(self) -> LabRun:
-        """The same, friction switched on; raises as `run`."""
-        return self.run(WITH_FRICTION)
+        """The same, friction switched on; raises as `sound`."""
+        return self.sound(WITH_FRICTION)
 
     @cached_property
     def fastest(self) -> LabRun:
-        """The run-up with full torque; raises as `run`."""
-        return self.run(FASTEST)
+        """The run-up with full torque; raises as `sound`."""
+        return self.sound(FASTEST)
 
     @cached_property
     def flights(self) -> Flights:
-        """The catapult's experiments, with the throw's truth where that lies beside them; raises as `read_flights`."""
+        """The catapult's experiments, with the throw's truth where that lies beside them.
+
+        Raises:
+            InputError: as `read_flights`, or they are no flights of one throw.
+        """
         path = find_flights(self.folder)
-        return replace(read_flights(path), truth=read_truth(path / "truth.json"))
+        found = read_flights(path)
+        if wrong := contradiction(found.points):
+            raise InputError(path, wrong, "correct or leave out what is wrong: all points go into one path")
+        return replace(found, truth=read_truth(path / "truth.json"))
 
     @property
     def example(self) -> Rig:
@@ -158,8 +96,24 @@ class LabRecordings:
         given = self.sources.given
         return self.rig if "simulation" in given and "drive" in given else lab_rig()
 
-    def path(self, name: str) -> Path:
-        """File of a recording, whatever its ending, the case of its letters, and what else its name says.
+    @cached_property
+    def refused(self) -> Mapping[str, str]:
+        """Recordings that cannot be of the rig's axis, each with the reason; those that cannot be read are none."""
+        runs = {}
+        for name in (WITHOUT_FRICTION, WITH_FRICTION, FASTEST):
+            with suppress(BenchError):  # raised where a task needs it
+                runs[name] = self.run(name)
+        return refusals(runs, self.rig)
+
+    def sound(self, name: str) -> LabRun:
+        """A recording that nothing contradicts; InputError with what does and why, and raises as `run`."""
+        run = self.run(name)
+        if name in self.refused:
+            raise InputError(self.files(name)[0], *self.refused[name].split("; ", 1))
+        return run
+
+    def files(self, name: str) -> tuple[Path, list[Path]]:
+        """File of a recording, whatever its ending, the case of its letters, and what else its name says; and others.
 
         `MaxAcc_Gruppe7.trace` and `MaxAcc (1).trace` serve where there is no plain `MaxAcc.trace`.
 
@@ -167,10 +121,10 @@ class LabRecordings:
             InputError: none, or several.
         """
         files = sorted(path for path in self.folder.iterdir() if path.is_file() and _ending(path) in ENDINGS)
-        found = [path for path in files if path.name.split(".")[0].lower() == name.lower()]
-        found = found or [path for path in files if name.lower() in _letters(path)]
+        alike = [path for path in files if name.lower() in _letters(path)]
+        found = [path for path in files if path.name.split(".")[0].lower() == name.lower()] or alike
         if len(found) == 1:
-            return found[0]
+            return found[0], [path for path in alike if path != found[0]]
         if found:
             names = ", ".join(path.name for path in found)
             raise InputError(self.folder / f"{name}.trace", f"found several ({names})", "allowed: one of them")
@@ -179,15 +133,16 @@ class LabRecordings:
         raise InputError(self.folder / f"{name}.trace", missing, f"found: {', '.join(others) or 'no recording'}")
 
     def run(self, name: str) -> LabRun:
-        """A recording in SI units, with its truth where that lies beside it.
+        """A recording in SI units as it is, with its truth where that lies beside it.
 
         Raises:
             InputError: no such file, not a recording, or a signal missing in it.
         """
-        path = self.path(name)
-        recording = read_recording(path)
+        path, others = self.files(name)
+        recording = in_words_of_the_course(read_recording(path), self.rig.trace.columns)
         _require_signals(recording, path, self.rig.trace.columns)
-        return run_of(assemble(recording, self.rig.trace), self.rig, read_truth(truth_path(path)))
+        notes = tuple(f"{other.name} passed over, as {path.name} has the name of the course." for other in others)
+        return run_of(assemble(recording, self.rig.trace), self.rig, read_truth(truth_path(path)), notes)
 
 
 def read_truth(path: Path) -> Mapping[str, float]:

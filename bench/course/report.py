@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import itertools
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,11 +15,12 @@ from bench.assets import asset
 from bench.course.axis import KG_CM2
 from bench.course.course import TASKS, course
 from bench.course.pdf import write_pdf
-from bench.course.recordings import FASTEST, WITH_FRICTION, WITHOUT_FRICTION, LabRecordings
+from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
+from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult
 from bench.errors import BenchError, InputError
 from bench.files import held, whole, write_text
-from bench.report.document import Document, Paragraph, Section, Table, table
+from bench.report.document import AnyPart, Chart, Document, Paragraph, Section, Table, table
 from bench.report.figures import quiet_about_glyphs
 from bench.report.html import html
 from bench.report.serial import known
@@ -30,8 +32,13 @@ SCHEMA = "bench.lab/1"
 SCRIPTS = asset("data", "lab", "scripts")
 #: Scripts that others import.
 SHARED = ("course", "fast_samples")
+#: The same for MATLAB and Octave: the task that has to be done for each; all others are functions that they call.
+MATLAB = {"catapult": "1", "JLoad_no_Friction": "6", "JLoad_and_Friction": "9", "SpeedTorqueLimit": "10"}
 #: Factors to SI of what task 11 takes from task 9, by the names there.
 OF_TASK_9 = {"J": 1.0 / KG_CM2, "K_fric_w": 1.0, "K_fric_0": 1.0}
+OF_THE_WINDING = ("rotor_inertia", "cold_resistance_share", "electrical_time_constant", "thermal_time_constant")
+#: So many of a task's numbers stand on the first table.
+FIRST = 3
 #: File of who hands a report in, and rows of a sheet that is filled in by hand.
 FILE, BLANK_ROWS = "group.toml", 3
 EXAMPLE = 'group = "7", and for each member [[student]] with name = "..." and number = "..."'
@@ -145,9 +152,35 @@ def lab_document(results: Sequence[TaskResult], recordings: LabRecordings, cover
         f"{missing} not done.",
         tone="open" if missing else "sure",
         answers=answers,
-        sections=(cover.sheet, *map(task_section, results)),
+        sections=(cover.sheet, summary(results), *numbered(map(task_section, results))),
         origin=(f"servobench {__version__}",),
     )
+
+
+def summary(results: Sequence[TaskResult]) -> Section:
+    """What each task comes to, on one table: its first numbers, how well they are known, or that it was not done."""
+    rows: list[tuple[str, ...]] = []
+    for result in (result for result in results if result.key.isdigit()):
+        heads = [(result.key, result.title), *[("", "")] * (FIRST - 1)]
+        if result.reason is not None:
+            rows.append((*heads[0], "not done, see there", "", "", ""))
+        for head, n in zip(heads, result.numbers[:FIRST], strict=False):
+            rows.append((*head, n.name, f"{n.value:.5g}", "" if n.half is None else f"{n.half:.2g}", n.unit))
+    answers = table("The answers", ("task", "about", "quantity", "value>", "± (95 %)>", "unit"), rows)
+    return Section(key="answers", heading="Answers", blocks=(answers,))
+
+
+def numbered(sections: Iterable[Section]) -> Iterator[Section]:
+    """Sections with their diagrams numbered through."""
+    count = itertools.count(1)
+    for section in sections:
+        yield section.model_copy(update={"blocks": tuple(_numbered(block, count) for block in section.blocks)})
+
+
+def _numbered(block: AnyPart, count: Iterator[int]) -> AnyPart:
+    if not isinstance(block, Chart):
+        return block
+    return block.model_copy(update={"title": f"Figure {next(count)}: {block.title}"})
 
 
 def task_section(result: TaskResult) -> Section:
@@ -155,20 +188,24 @@ def task_section(result: TaskResult) -> Section:
     key = f"task-{result.key}"
     heading = f"Task {result.key}: {result.title}" if result.key.isdigit() else result.title
     if result.reason is not None:
-        return Section(key=key, heading=heading, blocks=(Paragraph(text=f"Not done: {result.reason}"),))
+        return Section(key=key, heading=heading, blocks=(Paragraph(text=f"Not done: {result.reason}"), *result.charts))
     if result.example:
         heading = f"{heading} (embedded example)"
     findings = (Paragraph(text=finding) for finding in result.findings)
-    return Section(key=key, heading=heading, blocks=(*findings, _numbers_table(result.numbers), *result.charts))
+    blocks = (*findings, *result.tables, _numbers_table(result.numbers), *result.charts)
+    return Section(key=key, heading=heading, blocks=blocks)
 
 
 def _numbers_table(numbers: Sequence[Number]) -> Table:
-    """Every number with its unit and source, and where any truth is known beside it."""
+    """Every number with its unit and source; beside it how well it is known and its truth, where any is."""
+    columns = {"quantity": [n.name for n in numbers], "value>": [f"{n.value:.5g}" for n in numbers]}
+    if any(number.half is not None for number in numbers):
+        columns["± (95 %)>"] = ["" if n.half is None else f"{n.half:.2g}" for n in numbers]
+    columns["unit"] = [n.unit for n in numbers]
     if any(number.truth is not None for number in numbers):
-        headings = ("quantity", "value>", "unit", "truth>", "error>", "from")
-        return table("Results", headings, [(*_cells(number), number.source) for number in numbers])
-    rows = [(*_cells(number)[:3], number.source) for number in numbers]
-    return table("Results", ("quantity", "value>", "unit", "from"), rows)
+        columns["truth>"], columns["error>"] = ([_cells(n)[k] for n in numbers] for k in (3, 4))
+    columns["from"] = [n.source for n in numbers]
+    return table("Results", tuple(columns), list(zip(*columns.values(), strict=True)))
 
 
 def _cells(number: Number) -> tuple[str, str, str, str, str]:
@@ -208,7 +245,7 @@ def _task(result: TaskResult) -> dict[str, object]:
         "status": "done",
         "embedded_example": result.example,
         "says": list(result.findings),
-        "numbers": [{**vars(number), "value": known(number.value)} for number in result.numbers],
+        "numbers": [{**vars(number), "value": known(number.value)} for number in (*result.numbers, *result.tabled)],
     }
 
 
@@ -238,6 +275,9 @@ def write_sources(folder: Path, recordings: LabRecordings, results: Sequence[Tas
     write_text(folder / "values.json", _values(recordings, done, periods))
     for path in (*scripts, *(SCRIPTS / f"{name}.py" for name in SHARED)):
         write_text(folder / path.name, path.read_text(encoding="utf-8"))
+    for path in sorted(SCRIPTS.glob("matlab/*.m")):
+        if MATLAB.get(path.stem, "3") in done:
+            write_text(folder / "matlab" / path.name, path.read_text(encoding="utf-8"))
     return [folder]
 
 
@@ -250,8 +290,7 @@ def _values(recordings: LabRecordings, done: dict[str, TaskResult], periods: dic
     """Values that the scripts take, in SI, each with its source."""
     motor, sources = recordings.rig.motor, recordings.sources
     found: dict[str, tuple[float | None, str]] = {
-        name: (getattr(motor, name), sources("motor", name))
-        for name in (*DATASHEET, "rotor_inertia", "cold_resistance_share", "electrical_time_constant")
+        name: (getattr(motor, name), sources("motor", name)) for name in (*DATASHEET, *OF_THE_WINDING)
     }
     for curve in motor.peak_curves[:1]:
         for name in ("corner_speed", "no_load_speed"):

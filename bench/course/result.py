@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from bench.arrays import Array
 from bench.errors import BenchError
-from bench.report.document import COLOURS, Chart, Panel, Series, Style, series
+from bench.report.document import COLOURS, Chart, Panel, Series, Style, Table, series
 
 #: Where a number comes from.
 RECORDING, COMPUTED, SIMULATED, EXAMPLE = "recording", "computed", "simulated", "embedded example"
@@ -22,6 +22,7 @@ class Number:
         unit: as the course writes it.
         truth: the simulated axis' value in the same unit, where the recording is synthetic.
         source: where it comes from, e.g. `recording`, `rig file`, `datasheet`, `assumed`; several joined by commas.
+        half: the value is known within so much, with 95 % - in `unit`; None where that is not estimated.
     """
 
     name: str
@@ -29,6 +30,7 @@ class Number:
     unit: str
     truth: float | None = None
     source: str = RECORDING
+    half: float | None = None
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,7 @@ class TaskResult:
         title: of the task.
         example: whether it is about the embedded example, whatever was recorded.
         reason: why it could not be done; None where it was.
+        tables: beside that of the numbers, and the numbers that stand in them.
     """
 
     findings: tuple[str, ...] = ()
@@ -51,9 +54,11 @@ class TaskResult:
     title: str = ""
     example: bool = False
     reason: BenchError | None = None
+    tables: tuple[Table, ...] = ()
+    tabled: tuple[Number, ...] = ()
 
     def __getitem__(self, name: str) -> Number:
-        return next(number for number in self.numbers if number.name == name)
+        return next(number for number in (*self.numbers, *self.tabled) if number.name == name)
 
 
 def curve(x: Array, y: Array, name: str = "", style: Style = "line") -> Series:

@@ -21,6 +21,10 @@ _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 #: Powers and products as people write them.
 _SIGNS = str.maketrans({"²": "**2", "³": "**3", "·": "*", "^": "**", "Ω": "ohm"})
 
+#: Units that are written without a sign between them: kgcm², kgm^2, kgcm2, Nms/rad, mNm.
+_JOINED = re.compile(r"\b(kg|g|[mkµ]?N)(c?m)(s?)(?=\b|\d)")
+_POWER = re.compile(r"(?<=[a-z])(?=[23]\b)")
+
 #: Where a row stands, and its quantity, value and unit as they were written.
 Entry = tuple[str, str, str, str]
 
@@ -33,8 +37,9 @@ class Question:
         task: number in the course.
         name: of the quantity in the form.
         unit: as pint reads it; of the form, answers in another one are converted.
-        tolerance: share by which a right answer may be off: other filters, thresholds and ways to read a corner are
-            right too. None where they make any value; it then only helps to recognise a mistake.
+        tolerance: share by which a right answer may be off at least: rounding, and other ways to read a drawing. What
+            noise and other filters make of it on a student's own recordings may be more. None where they make any
+            value; it then only helps to recognise a mistake.
         near_zero: what stands for the value in that share where it is zero.
     """
 
@@ -56,13 +61,13 @@ QUESTIONS = (
     Question("4", "kT_b", "N*m/A**2", 0.01, near_zero=0.1),
     Question("4", "kT_c", "N*m/A", 0.005),
     Question("6", "alpha_max", "rad/s**2", 0.2),
-    Question("6", "J_without_friction", "kg*cm**2", 0.02),
-    Question("6", "J_load_without_friction", "kg*cm**2", 0.02),
-    Question("9", "J", "kg*cm**2", 0.02),
-    Question("9", "K_fric_w", "N*m*s/rad", 0.1),
-    Question("9", "K_fric_0", "N*m", 0.08),
+    Question("6", "J_without_friction", "kg*cm**2", 0.005),
+    Question("6", "J_load_without_friction", "kg*cm**2", 0.005),
+    Question("9", "J", "kg*cm**2", 0.005),
+    Question("9", "K_fric_w", "N*m*s/rad", 0.02),
+    Question("9", "K_fric_0", "N*m", 0.02),
     Question("9", "E", "(N*m)**2", None),
-    Question("9", "J_load", "kg*cm**2", 0.02),
+    Question("9", "J_load", "kg*cm**2", 0.005),
     Question("10", "M_max", "N*m", 0.03),
     Question("10", "corner", "rpm", 0.05),
 )
@@ -179,4 +184,5 @@ def _unit(text: str) -> str:
     plain = text.strip().strip("[]")
     if plain in ("1", "-", "dimensionless"):
         return "dimensionless"
-    return spelled_for_pint(plain).translate(_SIGNS)
+    written = spelled_for_pint(plain).translate(_SIGNS)
+    return _JOINED.sub(lambda match: "*".join(filter(None, match.groups())), _POWER.sub("**", written))

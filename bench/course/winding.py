@@ -27,7 +27,7 @@ from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, pan
 from bench.errors import BenchError, InputError, SimulationError
 from bench.plant.axis_model import AxisParameters, build_spec
 from bench.plant.closed_loop import DIVERGED
-from bench.report.document import Chart
+from bench.report.document import Chart, Table, table
 from bench.rig.limits import COLD, HOT, Circuit, peak_curve
 from bench.rig.motor import PeakCurve, TorqueConstant
 from bench.rig.rig import Rig
@@ -106,10 +106,11 @@ class WindingRun:
 
     @property
     def corner(self) -> float:
-        """Speed from which on full voltage no longer drives peak current - rad/s."""
+        """Speed from which on full voltage no longer drives peak current, between two steps - rad/s."""
         started = int(np.argmax(self.current > 0.999 * self.current.max()))
-        at_limit = self.voltage[started:] >= self.limit * (1.0 - 1e-9)
-        return float(self.velocity[started + int(np.argmax(at_limit))])
+        at = started + int(np.argmax(self.voltage[started:] >= self.limit * (1.0 - 1e-9)))
+        (before, last), (slower, speed) = self.voltage[at - 2 : at].tolist(), self.velocity[at - 2 : at].tolist()
+        return speed + (self.limit - last) * (speed - slower) / (last - before)
 
     @property
     def line(self) -> float:
@@ -236,6 +237,7 @@ def why_the_corner_lies_higher(recordings: LabRecordings) -> TaskResult:
     assumed = recordings.sources("motor", "electrical_time_constant")
     faster = ", ".join(f"{speed * RPM:.0f} rpm at {share:.0%}" for share, speed in found.faster.items())
     sheet = peak_curve(rig.motor, MAINS, rig.source).corner_speed
+    left_out, tables, shown = _of_circuits(rig)
     findings = (
         "The corner is the speed at which the torque starts to decline, as full voltage no longer drives peak current: "
         "U = R·Imax + Ke·ω. The current is still constant there, dIq/dt = 0, so no inductance can move it.",
@@ -251,10 +253,10 @@ def why_the_corner_lies_higher(recordings: LabRecordings) -> TaskResult:
         f"The winding warms by {found.hot.warming:.1f} K (hot) and {found.cold.warming:.1f} K (cold) during "
         f"the run-up, which keeps the hot corner {(found.hot.corner - sheet) * RPM:+.0f} rpm from the datasheet's "
         f"{sheet * RPM:.0f} rpm.",
-        _voltage_finding(rig),
+        left_out,
     )
-    charts = (_torque_chart(rig, found), _dependence_chart(found))
-    return TaskResult(findings, _numbers(found, joined(SIMULATED, f"L/R: {assumed}")), charts)
+    charts = (_torque_chart(rig, found), _dependence_chart(found), *shown)
+    return TaskResult(findings, _numbers(found, joined(SIMULATED, f"L/R: {assumed}")), charts, tables=tables)
 
 
 def _numbers(found: Split, with_inductance: str) -> tuple[Number, ...]:
@@ -291,23 +293,90 @@ def _measured_findings(recordings: LabRecordings, found: Split) -> tuple[str, ..
     return (text + same if recordings.fastest.truth else text,)
 
 
-def _voltage_finding(rig: Rig) -> str:
-    """What the circuit leaves out, told by the curve at another voltage."""
+@dataclass(frozen=True)
+class CircuitTold:
+    """What one circuit says of the corner at MAINS.
+
+    Attributes:
+        name: of it.
+        shift: of the corner from hot to cold - rad/s.
+        half_way: from hot to the middle of both temperatures - rad/s.
+        at_other: corner at the datasheet's other mains voltage - rad/s.
+        into_shaft: share of the back-EMF's power that comes out at the shaft, at the corner.
+    """
+
+    name: str
+    shift: float
+    half_way: float
+    at_other: float
+    into_shaft: float
+
+
+def circuits(rig: Rig, other: PeakCurve) -> list[CircuitTold]:
+    """The course's circuit, one whose power balances, Ke = kT(Iq), and both with the voltage across that w*p*L*Iq is.
+
+    Args:
+        rig: whose motor's peak curve at MAINS each meets.
+        other: the curve at another voltage, which those with the voltage across meet, too.
+
+    Raises:
+        InputError: the rig lacks something.
+    """
+    motor, low, peak = circuit(rig), peak_curve(rig.motor, MAINS, rig.source), motor_value(rig, "peak_current")
+    saturated = float(torque_constant(rig).torque(np.asarray(peak))) / peak
+    told = []
+    for name, ke in (("Ke constant, as the course's", motor.back_emf_constant), ("Ke = kT(Iq)", saturated)):
+        drop = motor.voltage - ke * low.corner_speed
+        own = replace(motor, back_emf_constant=ke, resistance=drop / peak)
+        alone = (1.0 - motor.cold_share) * drop / ke
+        beyond = (motor.voltage * other.mains_voltage / low.mains_voltage - drop) / ke
+        told.append(CircuitTold(name, alone, 0.5 * alone, beyond, saturated / ke))
+        halfway = replace(own, cold_share=0.5 * (1.0 + own.cold_share))
+        shift, half_way = (cross_voltage(one, low, other)[0] for one in (own, halfway))
+        told.append(CircuitTold(f"{name}, with ω·p·L·Iq", shift, half_way, other.corner_speed, saturated / ke))
+    return told
+
+
+def _of_circuits(rig: Rig) -> tuple[str, tuple[Table, ...], tuple[Chart, ...]]:
+    """What the circuit leaves out, told by power and by the curve at another voltage, and how to measure it."""
     other = next((curve for curve in rig.motor.peak_curves if curve.mains_voltage != MAINS), None)
     if other is None:
-        return "The datasheet has one mains voltage only, so what the circuit leaves out does not show."
-    own = circuit(rig)
-    drop = own.resistance * motor_value(rig, "peak_current")
-    shift, time_constant = cross_voltage(own, peak_curve(rig.motor, MAINS, rig.source), other)
-    predicted = (own.voltage * other.mains_voltage / MAINS - drop) / own.back_emf_constant
-    return (
-        f"At {other.mains_voltage:g} V the same circuit has its corner at {predicted * RPM:.0f} rpm, the datasheet at "
-        f"{other.corner_speed * RPM:.0f} rpm: the course's equation leaves out the voltage ω·p·L·Iq at a right angle "
-        "to the back-EMF, which grows with speed. So part of what it counts as resistance is inductance. With both "
-        "curves of the datasheet met by U² = (R·Iq + Ke·ω)² + (ω·p·L·Iq)², the cold winding shifts the corner by "
-        f"{shift * RPM:.0f} rpm only, and L/R at {COLD:g} °C is {time_constant * 1e3:.3g} ms over the number of pole "
-        f"pairs: the assumed {own.time_constant * 1e3:g} ms are of the right size."
+        return "The datasheet has one mains voltage only, so what the circuit leaves out does not show.", (), ()
+    told = circuits(rig, other)
+    course, balanced, both = told[0], told[2], told[3]
+    shifts = f"{told[1].shift * RPM:.0f} and {both.shift * RPM:.0f} rpm"
+    text = (
+        f"These {course.shift * RPM:.0f} rpm are those of the course's circuit, and no bound. Of the power that its "
+        f"back-EMF takes at the corner {course.into_shaft:.0%} come out at the shaft, as torque saturates and Ke does "
+        f"not; with Ke = kT(Iq), which balances, it is {balanced.shift * RPM:.0f} rpm. Both put the corner at "
+        f"{other.mains_voltage:g} V far above the datasheet's {other.corner_speed * RPM:.0f} rpm: they leave out the "
+        "voltage ω·p·L·Iq at a right angle to the back-EMF, which grows with speed. Circuits that have it and meet "
+        f"both curves, U² = (R·Iq + Ke·ω)² + (ω·p·L·Iq)², say {shifts}, so the cold winding explains about that much "
+        "of what is measured, if the datasheet's curves are the motor's. To tell, record the run-up twice, cold and "
+        f"with the winding at {0.5 * (HOT + COLD):g} °C: ω·p·L does not change with temperature, so the corners lie "
+        f"{(both.shift - both.half_way) * RPM:.0f} rpm apart by the last circuit and "
+        f"{(course.shift - course.half_way) * RPM:.0f} rpm by the course's."
     )
+    rows = [(one.name, f"{one.shift * RPM:+.0f}", f"{one.at_other * RPM:.0f}", f"{one.into_shaft:.0%}") for one in told]
+    at_other = f"corner at {other.mains_voltage:g} V / rpm>"
+    head = ("circuit", "shift, hot to cold / rpm>", at_other, "EMF's power at shaft>")
+    caption = f"Circuits that meet the peak curve at {MAINS:g} V"
+    return text, (table(caption, head, rows),), (_power_chart(rig),)
+
+
+def _power_chart(rig: Rig) -> Chart:
+    """Power of the back-EMF and of the shaft in the course's circuit, cold, at full voltage or peak current."""
+    motor, constant, peak = circuit(rig), torque_constant(rig), motor_value(rig, "peak_current")
+    speed = np.linspace(0.0, motor.voltage / motor.back_emf_constant, 200)
+    left = (motor.voltage - motor.back_emf_constant * speed) / (motor.cold_share * motor.resistance)
+    current = np.minimum(peak, left)
+    shown = panel(
+        "speed n / rpm",
+        "power / W",
+        curve(speed * RPM, motor.back_emf_constant * current * speed, "into a constant back-EMF, Ke·Iq·ω"),
+        curve(speed * RPM, constant.torque(current) * speed, "out at the shaft, kT(Iq)·Iq·ω", "dashes"),
+    )
+    return chart("Task 11: power that the course's circuit loses", shown)
 
 
 def cross_voltage(motor: Circuit, low: PeakCurve, high: PeakCurve) -> tuple[float, float]:

@@ -1,10 +1,11 @@
 """`bench lab`, run once for all tests that read its tasks, its report or what it prints."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
 
+from bench.course import course as course_module
 from bench.course import report as course_report
 from tests.command import bench
 
@@ -41,3 +42,20 @@ def done(lab):
     missed = [task for task in lab.results if task.reason is not None]
     assert not missed, [f"{task.key}: {task.reason}" for task in missed]
     return {task.key: task for task in lab.results}
+
+
+#: Tasks of which nothing depends on the folder but time: simulations of the embedded example, and of the winding.
+SLOW = {"estimators", "equation", "emulation", "11"}
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """The command without what only simulates."""
+    monkeypatch.setattr(course_module, "TASKS", [task for task in course_module.TASKS if task.key not in SLOW])
+    # drawing takes seconds a folder, and test_report.py looks at what it draws
+    whole = course_report.task_section
+
+    def undrawn(result):
+        return whole(replace(result, charts=()))
+
+    monkeypatch.setattr(course_report, "task_section", undrawn)

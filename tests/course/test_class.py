@@ -3,14 +3,18 @@
 import csv
 import json
 import re
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from time import process_time
 
 import numpy as np
 import pytest
+from scipy.interpolate import make_interp_spline
+from scipy.signal import butter, filtfilt, savgol_filter
 
 from bench.course.grade import SEALED, seal
+from bench.course.record import draw_rig
 from bench.course.submission import QUESTIONS
 from bench.trace.read import read
 from tests.command import bench
@@ -43,7 +47,7 @@ class Student:
         current = milliamperes * ampere
         return (self.a * current**2 + self.c if constant is None else constant) * current
 
-    def answers(self, radian=DEG, set_back=2, width=4, rpm=RPM, fast=20.0, **torque):
+    def answers(self, radian=DEG, set_back=2, width=4, rpm=RPM, fast=20.0, method=None, **torque):
         found = {"kT_stall": self.stall[0] / self.stall[1], "kT_peak": self.peak[0] / self.peak[1]}
         found |= {"kT_a": self.a, "kT_b": 0.0, "kT_c": self.c}
         files = sorted((self.folder / "catapult").glob("*.csv"))
@@ -65,6 +69,9 @@ class Student:
         rows = np.arange(width, omega.size)
         alpha = (omega[rows] - omega[rows - width]) / (width * 1e-3)
         rows = rows - set_back
+        if method is not None:
+            rows = np.arange(omega.size)
+            alpha = method(omega)
         keep = np.abs(omega[rows]) >= fast
         matrix = np.stack([alpha, omega[rows], np.sign(omega[rows])], axis=1)[keep]
         if np.count_nonzero(keep) > 3:  # else no sample is fast enough in the wrong unit, and the task is left blank
@@ -87,6 +94,14 @@ RIGHT = (
     {"set_back": 1, "width": 2},
     {"set_back": 3, "width": 6},
     {"fast": 30.0},
+    {"method": lambda omega: np.gradient(omega, 1e-3)},
+    {"method": lambda omega: savgol_filter(omega, 9, 3, deriv=1, delta=1e-3)},
+    {"method": lambda omega: filtfilt(*butter(3, 0.2), np.gradient(omega, 1e-3))},
+    {
+        "method": lambda omega: make_interp_spline(1e-3 * np.arange(omega.size), omega, 5)(
+            1e-3 * np.arange(omega.size), 1
+        )
+    },
 )
 WRONG = {
     "degrees for radians": ({"radian": 1.0},),
@@ -105,7 +120,29 @@ WRONG = {
     "filter not synchronised": ({"set_back": 0}, *({"width": width, "set_back": 0} for width in (3, 5, 7))),
     "backward difference": ({"width": 1, "set_back": 0},),
     "2π": ({"rpm": 60.0}, {"radian": 1.0 / 360.0}, {"radian": 2.0 * np.pi * DEG}),
+    "rpm for rad/s": ({"radian": 1.0 / 6.0},),
+    "wrong sign": ({"ampere": -1e-3},),
+    "peak value for RMS": ({"ampere": 1e-3 * np.sqrt(2.0)},),
 }
+#: Made after the work: name, and what is changed in the answers.
+SLIPS = {
+    "J_motor not subtracted": lambda a: {"J_load": a["J"], "J_load_without_friction": a["J_without_friction"]},
+    "K_w and K_0 exchanged": lambda a: {"K_fric_w": a["K_fric_0"], "K_fric_0": a["K_fric_w"]},
+    "kg·m² as kg·cm²": lambda a: {name: 1e-4 * a[name] for name in a if name.startswith("J")},
+    "rad/s as rpm": lambda a: {"corner": a["corner"] / RPM},
+}
+#: Two at once, in how a student works.
+PAIRS = [
+    (first, second, {**WRONG[first][0], **WRONG[second][0]})
+    for first, second in (
+        ("degrees for radians", "milliamperes for amperes"),
+        ("degrees for radians", "no kT(Iq)"),
+        ("rpm for rad/s", "filter not synchronised"),
+        ("no kT(Iq)", "half-sample lag"),
+        ("milliamperes for amperes", "backward difference"),
+        ("peak value for RMS", "half-sample lag"),
+    )
+]
 
 
 def fill(folder, number, answers, random):
@@ -164,7 +201,8 @@ def graded(of, ways, out):
         constants = {"stall": student.stall[0] / student.stall[1], "peak": student.peak[0] / student.peak[1]}
         if "constant" in how:
             how = {**how, "constant": {**constants, "zero": student.c}[how["constant"]]}
-        fill(out / "handed in", number, student.answers(**how), random)
+        answers = student.answers(**{key: value for key, value in how.items() if key != "slip"})
+        fill(out / "handed in", number, {**answers, **how.get("slip", lambda a: {})(answers)}, random)
     forms, truth = out / "handed in", of.folder / "class.truth.json"
     status, _, err = bench("lab", "--grade", forms, "--truth", truth, "--out", out / "grades")
     assert (status, err) == (0, "")
@@ -191,6 +229,20 @@ def check(of, ways, out):
 #: Right ways, and every mistake in each of its ways.
 ALL_RIGHT = [("", how) for how in RIGHT]
 ALL_WRONG = [(mistake, how) for mistake, hows in WRONG.items() for how in hows]
+ALL_WRONG += [(mistake, {"slip": slip}) for mistake, slip in SLIPS.items()]
+
+
+def drawn_pairs(count):
+    """Two mistakes at once: in how a student works, and in that and a slip after it."""
+    random = np.random.default_rng(40)
+    works = [(f"{first} and {second}", how) for first, second, how in PAIRS]
+    works += [
+        (f"{mistake} and {slip}", {**how, "slip": SLIPS[slip]})
+        for mistake, hows in WRONG.items()
+        for how in hows
+        for slip in ("K_w and K_0 exchanged", "kg·m² as kg·cm²")
+    ]
+    return [works[k] for k in random.permutation(len(works))[:count]]
 
 
 @pytest.fixture(scope="module")
@@ -207,12 +259,82 @@ def test_every_mistake_is_named_and_no_right_one_marked_down(four, tmp_path):
 
 @pytest.mark.slow
 def test_forty_students(tmp_path):
-    """Half of forty with a mistake; recorded in CPU time that is below five minutes on one core."""
+    """Every mistake alone by forty, forty pairs, and 200 right ones; recorded in less than five minutes of CPU."""
     of = recorded(tmp_path, 40)
     print(f"40 students recorded in {of.took:.0f} s of CPU")
     assert of.took < 300.0
-    right = [ALL_RIGHT[number % len(RIGHT)] for number in range(40 - len(ALL_WRONG))]
-    check(of, dict(enumerate([*right, *ALL_WRONG], 1)), tmp_path / "out")
+    check(of, dict(enumerate(ALL_WRONG, 1)), tmp_path / "wrong")
+    for k, how in enumerate(RIGHT[3:]):
+        check(of, dict.fromkeys(of.students, ("", how)), tmp_path / f"right {k}")
+    told_as_two(of, dict(enumerate(drawn_pairs(40), 1)), tmp_path / "pairs")
+
+
+def told_as_two(of, ways, out):
+    """Of every two mistakes at once two or more are told, and of nine in ten both, in one task or in several."""
+    told = {number: {row["mistake"] for row in rows} - {""} for number, rows in graded(of, ways, out).items()}
+    assert not [(ways[n][0], found) for n, found in told.items() if len(found) < 2 and " and " not in "".join(found)]
+    named = [
+        ways[n][0] for n, found in told.items() if all(one in "; ".join(found) for one in ways[n][0].split(" and ", 1))
+    ]
+    missed = {ways[n][0]: found for n, found in told.items() if ways[n][0] not in named}
+    print(f"{len(named)} of {len(told)} pairs named as they are; not: {missed}")
+    assert len(named) >= 0.9 * len(told)
+
+
+def test_two_mistakes_at_once_are_told_to_be_two(four, tmp_path):
+    told_as_two(four, dict(enumerate(drawn_pairs(4), 1)), tmp_path)
+
+
+def grades_of(four, out):
+    """Rows of the grades of the forms in `out / in`."""
+    bench("lab", "--grade", out / "in", "--truth", four.folder / "class.truth.json", "--out", out / "out")
+    return [*csv.DictReader((out / "out" / "grades.csv").read_text(encoding="utf-8").splitlines())]
+
+
+def test_copied_answers_are_told_by_the_class_own_truths(four, tmp_path):
+    fill(tmp_path / "in", 4, four.students[2].answers(), np.random.default_rng(0))
+    rows = grades_of(four, tmp_path)
+    told = [row["mistake"] for row in rows if row["verdict"] == "wrong"]
+    assert all("copied from student 02" in one for one in told)
+    assert "copied from student 02" in told  # in tasks where no other neighbour has the same figures
+    assert all("times likelier than" in row["likelier"] for row in rows if row["verdict"] == "wrong")
+
+
+def test_what_fits_nothing_is_not_known(four, tmp_path):
+    """J too large by a tenth beside right friction is no mistake that has figures; nor is a number far away."""
+    answers = four.students[4].answers()
+    fill(
+        tmp_path / "in",
+        4,
+        {**answers, "J": 1.1 * answers["J"], "K_fric_0": 1e8 * answers["K_fric_0"]},
+        np.random.default_rng(0),
+    )
+    wrong = {row["quantity"]: row["mistake"] for row in grades_of(four, tmp_path) if row["verdict"] == "wrong"}
+    assert wrong == {"J": "", "K_fric_0": ""}
+    assert "1e+08 times" in (tmp_path / "out" / "grades.html").read_text(encoding="utf-8")
+
+
+def test_two_forms_of_one_student_leave_the_others_alone(tmp_path, known):
+    (tmp_path / "in").mkdir()
+    for name, student in (("a", "07"), ("b", "7"), ("c", "08")):
+        (tmp_path / "in" / f"{name}.csv").write_text(f"quantity,value,unit\nstudent,{student},\nJ,1,\n")
+    truth = sealed(tmp_path / "truth.json", {**known, "08": known["07"]})
+    ended = bench("lab", "--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
+    assert ended.status == 1
+    assert "found 2 of student 07" in ended.err
+    assert "08" in ended.out
+
+
+def test_the_seed_does_not_give_the_truth_away(four):
+    """Who draws axes for every seed, as the course's code does, finds none like a student's public rig file."""
+    public = tomllib.loads((four.folder / "class" / "student-01" / "rig.toml").read_text(encoding="utf-8"))
+    assert not [seed for seed in range(300) if draw_rig(np.random.default_rng([seed, 1]))["load"] == public["load"]]
+    salt = int(json.loads((four.folder / "class.truth.json").read_text())["salt"], 16)
+    assert salt.bit_length() > 64
+    # with the salt it is found: what keeps the truth is the salt, which no student's file has
+    assert draw_rig(np.random.default_rng([7, 1, salt]))["load"] == public["load"]
+    files = [path for path in (four.folder / "class").rglob("*") if path.is_file()]
+    assert not [path for path in files if f"{salt:032x}".encode() in path.read_bytes()]
 
 
 def test_students_folders_hold_no_truth(four, tmp_path):
@@ -232,16 +354,28 @@ def test_students_folders_hold_no_truth(four, tmp_path):
         disk = 19.0
         assert known["truth"]["J_load"] > 0.5 * disk
     again = recorded(tmp_path, 1)
-    assert (again.folder / "class" / "student-01" / "rig.toml").read_text(encoding="utf-8") == texts[0]
+    assert (again.folder / "class" / "student-01" / "rig.toml").read_text(encoding="utf-8") != texts[0]
     status, _, err = bench("lab", "--record", four.folder / "class", "--students", 2)
     assert (status, err.count("\n")) == (2, 1)
     assert "not empty" in err
 
 
+#: One, as the course and students write its unit.
+KG_CM2_AS_WRITTEN = {
+    "kgcm²": 1.0,
+    "[kgcm²]": 1.0,
+    "kgcm^2": 1.0,
+    "kgcm2": 1.0,
+    "kg cm²": 1.0,
+    "kgm²": 1e-4,
+    "gcm²": 1e3,
+}
+
+
 @pytest.fixture(scope="module")
 def known():
     expected = {question.name: 1.0 for question in QUESTIONS}
-    return {"07": {"expected": expected, "truth": {}, "mistakes": {}}}
+    return {"07": {"expected": expected, "truth": {}, "mistakes": [], "tolerance": {}}}
 
 
 def sealed(path, known):
@@ -257,7 +391,9 @@ def sealed(path, known):
         ("J,0.0001,kg·m²", "right", ""),
         ("J,1.0,", "right", ""),
         ("J,1.0,N*m", "wrong unit", "measures"),
-        ("J,1.0,kgcm2", "wrong unit", "no unit"),
+        *((f"J,{value},{unit}", "right", "") for unit, value in KG_CM2_AS_WRITTEN.items()),
+        ("K_fric_w,1.0,Nms/rad", "right", ""),
+        ("J,1.0,bananas", "wrong unit", "no unit"),
         ("J,1.5,kg*cm**2", "wrong", "no mistake that is known"),
         ("J,,kg*cm**2", "not answered", ""),
     ],
@@ -270,7 +406,7 @@ def test_units_are_checked(tmp_path, known, rows, verdict, word):
     assert status == 0
     with (tmp_path / "out" / "grades.csv").open(encoding="utf-8") as file:
         found = {row["quantity"]: row["verdict"] for row in csv.DictReader(file)}
-    assert found["J"] == verdict
+    assert found[rows.split(",")[0]] == verdict
     assert word in (tmp_path / "out" / "students" / "student-07.html").read_text(encoding="utf-8")
 
 

@@ -2,25 +2,25 @@
 
 import json
 import shutil
-from dataclasses import replace
 
 import numpy as np
 import pytest
 import scipy.io
 
 from bench.assets import asset
-from bench.course import course as course_module
-from bench.course import report
 from bench.course.axis import Sources, lab_rig
 from bench.course.flights import read_flights
 from bench.course.recordings import LabRecordings
 from bench.trace.read import read
 from tests.command import bench
+from tests.course.conftest import SLOW
 
 TRACES = asset("data", "traces")
 SI = "time [s];velocity [rad/s];current [A]"
 NAMES = ("JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc")
 ON_FRICTION = {"7", "8", "9", "range", "tracking"}
+#: Of recordings that contradict the axis nothing is done.
+REFUSED = {"5", "6", "10"} | ON_FRICTION
 RECORDED = {"1", "5", "6", "10"} | ON_FRICTION
 
 
@@ -186,7 +186,7 @@ def flights_straight_up(folder):
 #: What was made of the folder, the tasks that then cannot be done, and words that say why.
 STATES = [
     (as_it_is, set(), []),
-    (wrong_sign, {"6", "9", "10", "tracking"}, ["opposite signs", '[trace.columns] current = "-']),
+    (wrong_sign, REFUSED, ["opposite signs", '[trace.columns] current = "-']),
     (wrong_sign_turned_by_the_advice, set(), []),
     (one_way, {"9", "tracking"}, ["one way only"]),
     (german_names, set(), []),
@@ -209,22 +209,6 @@ STATES = [
     (flights_in_mm_without_a_unit, {"1"}, ["without a unit", "y [mm]"]),
     (flights_straight_up, {"1"}, ["fewer than three places"]),
 ]
-
-#: Tasks of which nothing depends on the folder but time: simulations of the embedded example, and of the winding.
-SLOW = {"estimators", "equation", "emulation", "11"}
-
-
-@pytest.fixture
-def quick(monkeypatch):
-    """The command without what only simulates."""
-    monkeypatch.setattr(course_module, "TASKS", [task for task in course_module.TASKS if task.key not in SLOW])
-    # drawing takes seconds a folder, and test_report.py looks at what it draws
-    whole = report.task_section
-
-    def undrawn(result):
-        return whole(replace(result, charts=()))
-
-    monkeypatch.setattr(report, "task_section", undrawn)
 
 
 @pytest.mark.parametrize(("state", "missing", "words"), STATES, ids=lambda value: getattr(value, "__name__", ""))

@@ -200,13 +200,18 @@ def test_10_corner_of_the_exact_circuit():
 
 def test_10_table_of_peak_torque_and_the_tail(done):
     task, rig = done["10"], lab_rig()
-    speeds = [n.name for n in task.numbers if n.name.startswith("M_max") and n.name.endswith("rpm")]
-    assert len(speeds) == 7
+    speeds = [n.name for n in task.tabled if n.name.endswith("rpm")]
+    assert [name.split()[-2] for name in speeds] == ["0", "1000", "2000", "2100", "3000", "4000"]
+    (table,) = task.tables
+    assert [column.heading for column in table.columns][1:] == ["0", "1000", "2000", "2100", "3000", "4000", "5000"]
+    assert table.rows[0][1:] == ("3.5", "3.5", "3.5", "3.5", "2.41", "1.21", "0")
+    assert table.rows[1][-1] == "-"
+    assert task["M_max at 5000 rpm, datasheet"].value == 0.0
     for name in speeds:
         speed = float(name.split()[-2])
         sheet = 3.5 * min(1.0, (5000.0 - speed) / 2900.0)
         assert task[f"{name}, datasheet"].value == pytest.approx(sheet)
-    assert task["M_max at 2500 rpm"].value == pytest.approx(rig.motor.peak_torque, rel=2e-3)
+    assert task["M_max at 2100 rpm"].value == pytest.approx(rig.motor.peak_torque, rel=2e-3)
     assert any("tail above" in text and "set to about 44" in text for text in task.findings)
 
 

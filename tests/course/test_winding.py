@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
 
 from bench.course.axis import lab_rig, torque_constant
 from bench.course.peak_torque import extrapolated_corner
@@ -14,6 +15,7 @@ from bench.course.winding import (
     TIME_CONSTANTS,
     VELOCITY_GAIN,
     WindingModel,
+    circuits,
     cross_voltage,
     run_winding,
 )
@@ -139,3 +141,26 @@ def test_11_voltage_at_a_right_angle_meets_both_curves(circuit):
         drops.append((-b + np.sqrt(b**2 - 4.0 * a * c)) / (2.0 * a))
     assert drops[0] == pytest.approx(drops[1], rel=1e-9)
     assert 0.0 < shift < 870.0 / RPM
+
+
+def test_11_circuits_by_their_power_and_by_both_mains_voltages():
+    """By a root finder: R, and what is across, from the two corners; then the corner with 0.7 R, and with 0.85 R."""
+    rig, ke, peak = lab_rig(), np.sqrt(3.0) * 230.0 * RPM / 5000.0, 3.5 / 5.7
+    corners, mains = np.array([2100.0, 4200.0]) / RPM, np.sqrt(3.0) * np.array([230.0, 400.0])
+    found = iter(circuits(rig, rig.motor.peak_curves[1]))
+    for constant in (ke, peak):
+
+        def off(unknown, w=corners, u=mains, constant=constant, share=1.0):
+            drop, across = unknown
+            return np.hypot(share * drop + constant * w, across * w) - u
+
+        alone, both = next(found), next(found)
+        drop = mains[0] - constant * corners[0]
+        assert alone.shift == pytest.approx(0.3 * drop / constant, rel=1e-9)
+        assert alone.at_other == pytest.approx((mains[1] - drop) / constant, rel=1e-9)
+        assert (alone.into_shaft, both.into_shaft) == pytest.approx((peak / constant,) * 2, rel=1e-9)
+        solved = fsolve(off, (100.0, 0.5))
+        for share, shift in ((0.7, both.shift), (0.85, both.half_way)):
+            corner = fsolve(lambda w, share=share, s=solved: off(s, w, mains[0], share=share), corners[0])[0]
+            assert shift == pytest.approx(corner - corners[0], rel=1e-6)
+    assert circuits(rig, rig.motor.peak_curves[1])[2].shift * RPM == pytest.approx(1229.0, abs=0.5)

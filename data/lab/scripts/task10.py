@@ -12,8 +12,9 @@ kept = (M >= 0.2) & (np.arange(M.size) >= start)
 show("peak torque", M[kept].max(), "N*m")
 up = slice(None, np.argmax(omega[kept]) + 1)
 corner, no_load = value("corner_speed"), value("no_load_speed")
-for rpm in (1500, 2000, 2500, 3000, 3500, 4000, 4500):
+for rpm in (0, 1000, 2000, 2100, 3000, 4000, 5000):
     near = np.abs(omega[kept][up] - rpm / RPM) <= 5
+    near &= omega[kept][up] < 0.97 * omega[kept].max()  # beyond, the drive's speed control takes the torque back
     if near.any():
         show(f"M_max at {rpm} rpm", np.median(M[kept][up][near]), "N*m")
     sheet = np.interp(rpm / RPM, [0, corner, no_load], [value("peak_torque")] * 2 + [0])

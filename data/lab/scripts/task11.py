@@ -7,28 +7,38 @@ U = np.sqrt(3) * 230
 Ke = U / value("no_load_speed")
 imax = value("peak_current")
 R_hot = (U - Ke * value("corner_speed")) / imax
-R_cold = value("cold_resistance_share") * R_hot
+HOT, COLD = 120, 20
+per_kelvin = (1 - value("cold_resistance_share")) / (HOT - COLD)
+R_th = (HOT - COLD) / (R_hot * value("continuous_stall_current") ** 2)
+capacity = value("thermal_time_constant") / R_th
 STEP = 25e-6
 
 
-def run_up(R, tau):
-    """omega, Iq: peak current as long as the voltage drives it; then it follows what is left, late by tau = L/R."""
-    omega, current = [0.0], [imax]
+def run_up(start, tau):
+    """omega, Iq, corner: peak current as long as the voltage drives it, then what is left, late by tau = L/R.
+
+    The winding starts at a temperature - degC - and warms.
+    """
+    omega, current, corner, T = [0.0], [imax], None, start
     while current[-1] > 0.3 * imax:
+        R = R_hot * (1 + per_kelvin * (T - HOT))
+        if corner is None and U - Ke * omega[-1] < R * imax:
+            corner = (U - R * imax) / Ke
+        T += STEP / capacity * (R * current[-1] ** 2 - (T - start) / R_th)
         left = min(imax, (U - Ke * omega[-1]) / R)
         late = left if tau == 0 else current[-1] + STEP / tau * (left - current[-1])
         friction = value("K_fric_w") * omega[-1] + value("K_fric_0")
         omega.append(omega[-1] + STEP / value("J") * (float(torque(current[-1])) - friction))
         current.append(late)
-    return np.array(omega), np.array(current)
+    return np.array(omega), np.array(current), corner
 
 
 runs = {
-    "hot, quasi-static": run_up(R_hot, 0),
-    "cold, quasi-static": run_up(R_cold, 0),
-    "cold, with inductance": run_up(R_cold, value("electrical_time_constant")),
+    "hot, quasi-static": run_up(HOT, 0),
+    "cold, quasi-static": run_up(COLD, 0),
+    "cold, with inductance": run_up(COLD, value("electrical_time_constant")),
 }
-for name, (omega, current) in runs.items():
-    show(f"corner, {name}", omega[np.argmax(current < imax * (1 - 1e-6))] * RPM, "rpm")
-curves = [(omega * RPM, torque(current), "-", name) for name, (omega, current) in runs.items()]
+for name, (_, _, corner) in runs.items():
+    show(f"corner, {name}", corner * RPM, "rpm")
+curves = [(omega * RPM, torque(current), "-", name) for name, (omega, current, _) in runs.items()]
 graph("task11.png", ("torque / (N*m)", *curves), x="speed n / rpm")

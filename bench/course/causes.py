@@ -1,0 +1,214 @@
+"""Why a recording cannot be of the lab's axis: known mistakes are undone on it until nothing contradicts it any more.
+
+The fewest mistakes that do are the cause; where several would, all are named, and where none does, none is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations, permutations, product
+
+import numpy as np
+
+from bench.arrays import Array
+from bench.course.axis import RPM
+from bench.course.plausible import FASTEST, FULL_CURRENT, LARGEST_CURRENT, LATE, balance, between, fault, glitches
+from bench.course.run import LabRun, made_run
+from bench.rig.rig import Rig
+
+DEG = math.pi / 180.0
+#: Causes that are told of one recording; more are none.
+TOLD = 3
+#: Between this and its inverse a factor on the current is no unit, and below √2.
+SCALE = 1.38
+#: Rounds in which a delay is searched, as a long one is not linear.
+ROUNDS = 6
+TURN = 'turn one of them by a rig.toml beside it with [trace.columns] current = "-name of its column [unit]"'
+
+
+@dataclass(frozen=True)
+class KnownMistake:
+    """A mistake in a recording.
+
+    Attributes:
+        kind: of two of a kind only one can have been made.
+        words: what is wrong, and what to do.
+        undo: gives the recording without it; None where it cannot have been made.
+    """
+
+    kind: str
+    words: str
+    undo: Callable[[LabRun, Rig], LabRun | None]
+
+
+#: Recordings by name, and what was undone in each.
+Undone = dict[str, tuple[KnownMistake, ...]]
+
+
+def _scaled(velocity: float = 1.0, current: float = 1.0, period: float = 1.0) -> Callable[[LabRun, Rig], LabRun]:
+    def undo(run: LabRun, rig: Rig) -> LabRun:
+        return made_run(run.velocity * velocity, run.current * current, run.sample_period * period, rig)
+
+    return undo
+
+
+def _speed(is_in: str, labelled: str, factor: float) -> KnownMistake:
+    words = f"the speed looks like {is_in} that is labelled {labelled}: correct its unit"
+    return KnownMistake("speed", words, _scaled(velocity=factor))
+
+
+def _in_time(run: LabRun, rig: Rig) -> LabRun | None:
+    """With the current set back by as many samples as it is late."""
+    late = 0
+    for _ in range(ROUNDS):
+        shifted = _shifted(run, late, rig)
+        found = balance(shifted)
+        if found is None or abs(found.late) <= LATE:
+            return shifted if late and found is not None else None
+        late += round(found.late) or int(math.copysign(1, found.late))
+        if abs(late) > run.time.size // 4:
+            return None
+    return None
+
+
+def _shifted(run: LabRun, late: int, rig: Rig) -> LabRun:
+    velocity = run.velocity[: run.velocity.size - late] if late >= 0 else run.velocity[-late:]
+    current = run.current[late:] if late >= 0 else run.current[:late]
+    return made_run(velocity, current, run.sample_period, rig)
+
+
+def _without_glitches(run: LabRun, rig: Rig) -> LabRun | None:
+    """With samples that stand alone replaced by the line through their neighbours."""
+    signals: list[Array] = []
+    found = False
+    for values, smooth in ((run.velocity, True), (run.current, False)):
+        kept = np.ones(values.size, dtype=bool)
+        kept[glitches(values, smooth)] = False
+        found = found or not kept.all()
+        signals.append(np.interp(run.time, run.time[kept], values[kept]))
+    return made_run(signals[0], signals[1], run.sample_period, rig) if found else None
+
+
+def _columns_swapped(run: LabRun, rig: Rig, speed: float = 1.0, ampere: float = 1.0) -> LabRun:
+    """With the numbers of speed and current exchanged, as both were written in units worth so much in SI."""
+    return made_run(run.current / ampere * speed, run.velocity / speed * ampere, run.sample_period, rig)
+
+
+MISTAKES = (
+    _speed("deg/s", "rad/s", DEG),
+    _speed("rad/s", "deg/s", 1.0 / DEG),
+    _speed("rpm", "rad/s", 1.0 / RPM),
+    _speed("rad/s", "rpm", RPM),
+    _speed("deg/s", "rpm", DEG * RPM),
+    _speed("rpm", "deg/s", 1.0 / DEG / RPM),
+    _speed("turns/s", "rad/s", 2.0 * math.pi),
+    _speed("rad/s", "turns/s", 0.5 / math.pi),
+    KnownMistake("current", "the current looks like mA that is labelled A: correct its unit", _scaled(current=1e-3)),
+    KnownMistake("current", "the current looks like A that is labelled mA: correct its unit", _scaled(current=1e3)),
+    KnownMistake(
+        "amplitude",
+        "the current looks like a peak value where kT takes the RMS value, √2 times too large: divide it by √2",
+        _scaled(current=math.sqrt(0.5)),
+    ),
+    KnownMistake("amplitude", "the current looks √2 times too small: multiply it by √2", _scaled(current=math.sqrt(2))),
+    KnownMistake("sign", f"current and speed are counted in opposite directions: {TURN}", _scaled(current=-1.0)),
+    KnownMistake("time", "the times look like ms that are labelled s: correct their unit", _scaled(period=1e-3)),
+    KnownMistake("time", "the times look like s that are labelled ms: correct their unit", _scaled(period=1e3)),
+    KnownMistake(
+        "delay", "current and speed are not of the same instants: record both in one task of the drive", _in_time
+    ),
+    KnownMistake("glitch", "a glitch: take these samples out, or record again", _without_glitches),
+    KnownMistake("columns", "the columns of speed and current look exchanged", _columns_swapped),
+    KnownMistake(
+        "columns",
+        "the columns of speed (deg/s) and current (mA) look exchanged",
+        lambda run, rig: _columns_swapped(run, rig, DEG, 1e-3),
+    ),
+)
+
+
+def refusals(runs: Mapping[str, LabRun], rig: Rig) -> dict[str, str]:
+    """Recordings that cannot be of the rig's axis, each with what contradicts it and, where it is known, why."""
+    own = {name: words for name, run in runs.items() if (words := fault(name, run, rig))}
+    contradicted = own or between(runs)
+    if not contradicted:
+        return {}
+    causes = _causes(runs, rig)
+    alike = [pair for pair in combinations(runs, 2) if np.array_equal(runs[pair[0]].current, runs[pair[1]].current)]
+    told = {}
+    for name in {**contradicted, **{name: "" for cause in causes for name in cause}}:
+        words = list(dict.fromkeys(_told(cause[name]) for cause in causes if cause.get(name)))
+        twins = next((pair for pair in alike if name in pair), None)
+        why = f"{' and '.join(twins)} are one and the same recording" if twins else " - or ".join(words)
+        found = contradicted.get(name) or f"its J contradicts that of {', '.join(contradicted)}"
+        known = why if why and len(words) <= TOLD else "no known mistake explains it: look at its signals"
+        told[name] = f"{found}; {known}"
+    return told
+
+
+def _told(undone: Sequence[KnownMistake]) -> str:
+    return ", and ".join(mistake.words for mistake in undone)
+
+
+def _causes(runs: Mapping[str, LabRun], rig: Rig) -> list[Undone]:
+    """The smallest sets of mistakes without which nothing contradicts the recordings."""
+    names, mistakes = tuple(runs), (*MISTAKES, *_scale(runs, rig))
+    for most, mixed in ((1, False), (1, True), (2, False)):
+        found: list[tuple[int, Undone]] = []
+        for order in permutations(names) if mixed else [names]:
+            exchanged = _exchanged(names, order)
+            moved = {name: runs[other] for name, other in zip(names, order, strict=True)}
+            options = [list(_options(name, moved[name], rig, most, mistakes)) for name in names]
+            for chosen in product(*options):
+                if between({name: run for name, (_, run) in zip(names, chosen, strict=True)}):
+                    continue
+                undone = {
+                    other: (*exchanged.get(other, ()), *made)
+                    for other, (made, _) in zip(order, chosen, strict=True)
+                    if made or other in exchanged
+                }
+                found.append((len({one.words for made in undone.values() for one in made}), undone))
+        if found:
+            fewest = min(count for count, _ in found)
+            return [undone for count, undone in found if count == fewest]
+    return []
+
+
+def _scale(runs: Mapping[str, LabRun], rig: Rig) -> Iterator[KnownMistake]:
+    """A scale of the current of its own, which the run-up's largest current tells."""
+    peak = rig.motor.peak_current
+    if FASTEST in runs and peak is not None:
+        factor = float(runs[FASTEST].current.max()) / peak
+        if 1.0 / SCALE < factor < SCALE and not FULL_CURRENT < factor < LARGEST_CURRENT:
+            words = f"the current is {factor:.3g} times what the drive's limit says: correct its scale"
+            yield KnownMistake("amplitude", words, _scaled(current=1.0 / factor))
+
+
+def _exchanged(names: Sequence[str], order: Sequence[str]) -> Undone:
+    """Recordings that stand under another one's name."""
+    return {
+        other: (KnownMistake("files", f"the files look exchanged: it looks like {name}", lambda run, rig: run),)
+        for name, other in zip(names, order, strict=True)
+        if name != other
+    }
+
+
+def _options(
+    name: str, run: LabRun, rig: Rig, most: int, mistakes: Sequence[KnownMistake]
+) -> Iterator[tuple[tuple[KnownMistake, ...], LabRun]]:
+    """Mistakes, at most so many, without which a recording is sound by itself, and it without them."""
+    sound = False
+    for count in range(most + 1):
+        for made in combinations(mistakes, count):
+            if len({mistake.kind for mistake in made}) < count:
+                continue
+            undone: LabRun | None = run
+            for mistake in made:
+                undone = mistake.undo(undone, rig) if undone is not None else None
+            if undone is not None and not fault(name, undone, rig):
+                sound = True
+                yield made, undone
+        if sound and count:  # more mistakes than needed explain anything
+            return

@@ -1,0 +1,163 @@
+"""Whether a recording can be of the lab's axis: what it says is held against motor, disk, and the other recordings.
+
+    M(t + late) = J*alpha + K_w*omega + K_0*sgn(omega)
+
+with every column through one filter, so that nothing is late by filtering. On 27 recordings of the class's axes J
+came out within 0.02 %, `late` within 0.055 samples, and 0.2 to 0.4 % of the torque were left; limits have room for a
+real axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array, rms
+from bench.course.axis import KG_CM2, MAINS, RPM
+from bench.course.run import LabRun
+from bench.rig.limits import peak_curve
+from bench.rig.rig import Rig
+from bench.trace.filter import GaussianFilter
+
+WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"
+#: Width of the filter - samples; slower samples than this share of the fastest are left out: friction is no constant.
+WIDTH, SLOW = 2.0, 0.13
+#: Shares of no-load speed and of peak current that are passed by a wrong unit only, and that MaxAcc reaches.
+FASTEST_SPEED, LARGEST_CURRENT, FULL_CURRENT = 1.05, 1.03, 0.95
+#: J_load over the disk's theory: hub, coupling and bolts are 10 to 20 % more.
+OVER_THEORY = (0.85, 1.35)
+#: Samples that torque may come after acceleration; share of the torque that may be left; of it that friction has.
+LATE, LEFT, FRICTION = 0.4, 0.05, 0.015
+#: J of one recording against the others', and the share of a recording that holes may cut off where they cut no run-up.
+BETWEEN, CUT = 0.05, 0.2
+#: An isolated sample is off by so many times the noise, and by more than twice the usual step between samples.
+GLITCH, STEP = 10.0, 2.0
+
+
+@dataclass(frozen=True)
+class TorqueBalance:
+    """What a recording says by itself.
+
+    Attributes:
+        inertia: J - kg*m**2.
+        viscous: K_w - N*m*s/rad.
+        coulomb: K_0 - N*m.
+        late: torque after acceleration - samples.
+        left: what none of it explains, as a share of the torque's RMS.
+        torque: RMS - N*m.
+    """
+
+    inertia: float
+    viscous: float
+    coulomb: float
+    late: float
+    left: float
+    torque: float
+
+
+def balance(run: LabRun) -> TorqueBalance | None:
+    """Least squares of the torque's balance; None where the axis hardly moves, or too short."""
+    smooth = GaussianFilter(WIDTH * run.sample_period, run.sample_period)
+    if run.time.size <= 2 * smooth.margin:
+        return None
+    velocity, alpha, jerk = smooth(run.velocity, 0, 1, 2)
+    torque = smooth(run.torque, 0)[0]
+    fast = np.abs(velocity) > SLOW * np.abs(velocity).max(initial=0.0)
+    columns = np.stack([alpha, velocity, np.sign(velocity), jerk], axis=1)[fast]
+    theta, _, _, _ = np.linalg.lstsq(columns, torque[fast], rcond=None)
+    if theta[0] == 0.0 or not fast.any():
+        return None
+    size = rms(torque[fast])
+    left = rms(torque[fast] - columns @ theta) / size if size else 0.0
+    inertia, viscous, coulomb, moved = theta.tolist()
+    return TorqueBalance(inertia, viscous, coulomb, -moved / inertia / run.sample_period, left, size)
+
+
+def glitches(values: Array, smooth: bool) -> NDArray[np.int64]:
+    """Samples of (n,) that stand alone; those of a smooth signal are held against a cubic through their neighbours."""
+    x = np.pad(values, 2, mode="edge")
+    around = np.stack([x[:-4], x[1:-3], x[3:-1], x[4:]])
+    expected = np.array([-1.0, 4.0, 4.0, -1.0]) / 6.0 @ around if smooth else np.median([*around, values], axis=0)
+    off = np.abs(values - expected)
+    off[[0, 1, -2, -1]] = 0.0
+    usual = np.quantile(np.abs(np.diff(values)), 0.98) * (1.0 if smooth else STEP)
+    found = np.flatnonzero(off > max(GLITCH * 1.4826 * float(np.median(off)), usual))
+    # the cubic of its neighbours is off, too, by less
+    return found[[off[k] == off[max(k - 2, 0) : k + 3].max() for k in found]] if found.size else found
+
+
+def fault(name: str, run: LabRun, rig: Rig) -> str:
+    """What cannot be so in one recording, in words; empty where nothing is."""
+    found = balance(run)
+    speed, current = (float(np.abs(signal).max()) for signal in (run.velocity, run.current))
+    limit, peak = peak_curve(rig.motor, MAINS, rig.source) if rig.motor.peak_curves else None, rig.motor.peak_current
+    share, since = run.missing
+    if share > (0.0 if name == FASTEST else CUT):
+        return f"it has a hole after {since:.4g} s, and {share:.0%} of it are cut off by holes"
+    if limit is not None and speed > FASTEST_SPEED * limit.no_load_speed:
+        top = limit.no_load_speed * RPM
+        return f"its highest speed is {speed * RPM:,.0f} rpm, and the motor has {top:,.0f} rpm at {MAINS:g} V at most"
+    if peak is not None and current > LARGEST_CURRENT * peak:
+        return f"its largest current is {current:.4g} A, and the drive gives {peak:.4g} A at most"
+    for signal, unit, values in (("speed", "rad/s", run.velocity), ("current", "A", run.current)):
+        alone = glitches(values, signal == "speed")
+        if alone.size:
+            k = int(alone[0])
+            which = f"one of {alone.size} samples" if alone.size > 1 else "a sample"
+            where = f"{values[k]:.4g} {unit} at {run.time[k]:.4g} s"
+            return f"{which} of the {signal}, {where}, stands alone, far from those beside it"
+    if found is None:
+        return ""
+    return _of_balance(name, found, rig) or (_of_run_up(run, rig) if name == FASTEST else "")
+
+
+def _of_balance(name: str, found: TorqueBalance, rig: Rig) -> str:
+    """What the torque's balance contradicts."""
+    theory = rig.load.disk_inertia if rig.load else None
+    inertia = found.inertia * KG_CM2
+    if inertia < 0.0:
+        return f"its J comes out as {inertia:.3g} kg*cm**2, as torque and acceleration have opposite signs"
+    if theory is not None and rig.motor.rotor_inertia is not None:
+        ratio = (found.inertia - rig.motor.rotor_inertia) / theory
+        if not OVER_THEORY[0] < ratio < OVER_THEORY[1]:
+            return (
+                f"its J comes out as {inertia:.4g} kg*cm**2 and J_load as {ratio:.3g} times what the disk's geometry "
+                f"gives, allowed: {OVER_THEORY[0]:g} to {OVER_THEORY[1]:g} times, as hub and bolts turn, too"
+            )
+    if abs(found.late) > LATE:
+        return f"its torque comes {found.late:+.1f} samples after the acceleration that it makes"
+    if found.left > LEFT:
+        return f"inertia and friction leave {found.left:.0%} of its torque unexplained, noise alone is below {LEFT:.0%}"
+    friction = found.coulomb / found.torque
+    if name == WITHOUT_FRICTION and friction > FRICTION:
+        return f"it shows friction, {found.coulomb:.3g} N*m, which was to be switched off"
+    if name == WITH_FRICTION and friction < FRICTION:
+        return f"it shows no friction ({found.coulomb:.2g} N*m), which was to be switched on"
+    return ""
+
+
+def _of_run_up(run: LabRun, rig: Rig) -> str:
+    """What is no run-up with full torque past the corner."""
+    top, peak = float(run.current.max()), rig.motor.peak_current
+    if peak is not None and top < FULL_CURRENT * peak:
+        return f"its largest current is {top:.4g} A, and the run-up with full torque takes {peak:.4g} A"
+    if rig.motor.peak_curves:
+        corner = peak_curve(rig.motor, MAINS, rig.source).corner_speed
+        if run.velocity.max() < corner:
+            reached = float(run.velocity.max()) * RPM
+            return f"its highest speed is {reached:.0f} rpm, below the corner of the datasheet, {corner * RPM:.0f} rpm"
+    return ""
+
+
+def between(runs: Mapping[str, LabRun]) -> dict[str, str]:
+    """Of recordings that are sound by themselves, those whose J contradicts the others', with what contradicts it."""
+    found = {name: one.inertia for name, run in runs.items() if (one := balance(run)) is not None}
+    if len(found) < 2:
+        return {}
+    middle, limit = float(np.median([*found.values()])), BETWEEN if len(found) > 2 else BETWEEN / 2.0
+    apart = {name: abs(value / middle - 1.0) > limit for name, value in found.items()}
+    told = ", ".join(f"{value * KG_CM2:.4g} by {name}" for name, value in found.items())
+    return {name: f"J in kg*cm**2 is {told}: one axis has one J" for name, is_apart in apart.items() if is_apart}
