@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from bench.axis_kind import COULOMB, INERTIA, ROTARY, VISCOUS, AxisKind
-from bench.baseline.observe import Observed, Under, differing, observe, unlike
-from bench.baseline.state import GAPS, TORQUE_GAP, VELOCITY_GAP, NamedHere, State, read_baseline
+from bench.baseline.observe import Observed, Under, differing, motion_ratio, observe, unlike
+from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, NamedHere, State, read_baseline
 from bench.comparison.difference import CHANGED, RESULTS, SAME, UNDECIDED, Comparison, Difference, Measured, holm
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Occasional
@@ -46,6 +46,10 @@ LEAST = 1e-3
 #: Factor on these standard deviations for recordings of different motion or sampling. For two recordings at 95 % it
 #: gives what `bench.diagnosis.same_axis` allows (1 % of inertia, 30 % of viscous and 10 % of Coulomb friction).
 OTHER_MOTION = 5.0
+#: What a model leaves, and the torque of an effect, go at most with this power of the largest factor by which two
+#: motions differ: drag with the second, saturation with the third. Beyond COMPARABLE, which 30 % less is within, nobody
+#: knows: the one motion may show what the other does not come to.
+POWER, COMPARABLE = 3.0, 1.45
 #: The quantity of a motion that a parameter's torque is proportional to.
 _MADE_OF = {INERTIA: "rms_acceleration", VISCOUS: "rms_speed"}
 
@@ -124,17 +128,19 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     """Whether the axis is what it was, by recordings, at a rate of false alarms as `check` has it."""
     state = now.state
     rig, moved = differing(baseline.rig, state.rig), unlike(baseline.conditions, state.conditions)
+    ratio = motion_ratio(baseline.conditions, state.conditions) if moved else 1.0
+    motion = Otherwise(ratio**POWER, "the motion is not that of the baseline" if ratio > COMPARABLE else "")
     effects = matched(baseline, state)
     under = None if effects.alike or now.fitted is None else now.under(effects.others(baseline))
-    names = [*_of_names(effects, under, baseline, allowed, "the motion is not that of the baseline" if moved else "")]
-    pairs = [*_of_both(effects.both, allowed, baseline, OTHER_MOTION if moved else 0.0)]
+    names = [*_of_names(effects, under, baseline, allowed, motion)]
+    pairs = [*_of_both(effects.both, allowed, baseline, motion.beside)]
     named = {effect.name for effect in (*baseline.effects, *state.effects)}  # the others were searched for too
     silent = len(set(catalogue()) - named) if baseline.shows is not None else 0
     family = len(baseline.quantities) + len(names) + len(pairs) + silent
     # Where all names that differ are significant the axis changed, and each state is described by its own effects;
     # where a name is near its threshold, a change has to show with the effects of both.
     both_sets = None if all(one.chance <= rate / family for one in names) else under
-    quantities = [*_of_quantities(baseline, state, under, both_sets, allowed, bool(moved))]
+    quantities = [*_of_quantities(baseline, state, under, both_sets, allowed, motion)]
     missing = [name for name in baseline.quantities if name not in state.quantities]
     quantities += [_untold(name, "it is not told now", baseline.quantities[name]) for name in missing]
     comparisons = [*quantities, *pairs, *names]
@@ -146,8 +152,30 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     return replace(found, rig=tuple(rig), conditions=tuple(moved), false_alarm_rate=rate, family=family)
 
 
+@dataclass(frozen=True)
+class Otherwise:
+    """What another motion or sampling makes possible.
+
+    Attributes:
+        factor: by which it may change what a model leaves and the torque of an effect, at most; 1 without one.
+        unlike: why these cannot be compared, if they cannot.
+    """
+
+    factor: float
+    unlike: str
+
+    @property
+    def beside(self) -> float:
+        """Standard deviations between recordings that quantities may differ by, beside those that they always do."""
+        return OTHER_MOTION if self.factor > 1.0 else 0.0
+
+    def margin(self, margin: float, before: float) -> float:
+        """A margin that holds what the motion may do to a value and its margin."""
+        return self.factor * (before + margin) - before
+
+
 def _of_quantities(
-    baseline: State, now: State, under: Under | None, both_sets: Under | None, allowed: Allowed, moved: bool
+    baseline: State, now: State, under: Under | None, both_sets: Under | None, allowed: Allowed, motion: Otherwise
 ) -> Iterator[Comparison]:
     """Comparisons of parameters and gaps.
 
@@ -156,13 +184,13 @@ def _of_quantities(
         under: now with the effects of the baseline; None where they are the same.
         both_sets: the same where a change has to show with both sets of effects.
         allowed: margins and spreads.
-        moved: whether motion or sampling differ.
+        motion: whether motion or sampling differ.
     """
-    beside = OTHER_MOTION if moved else 0.0
     for name, own in now.quantities.items():
         if name not in baseline.quantities or (name == VELOCITY_GAP and under is not None):
             continue  # simulated models with other effects are compared by these
         before, values, least_chance = baseline.quantities[name], [own], 0.0
+        between, margin = allowed.between_of(name, before), allowed.margin_of(name, before, baseline)
         if before.unit != own.unit:
             yield _untold(name, f"now in {own.unit}", before)
             continue
@@ -170,12 +198,13 @@ def _of_quantities(
             if under is not None:
                 values = [under.quantities[name]]
             floor = now.gaps["torque"].noise_floor if under is None else under.noise_floor
-            least_chance = _louder(baseline, values[0].value / floor)
+            least_chance, margin = _louder(baseline, values[0].value / floor), motion.margin(margin, before.value)
         elif both_sets is not None and name in both_sets.quantities:
             values.append(both_sets.quantities[name])
-        between, margin = allowed.between_of(name, before), allowed.margin_of(name, before, baseline)
-        differences = tuple(Difference.of(before, value, between, beside * between) for value in values)
-        held_back = "what a model leaves depends on the motion" if name in GAPS and moved else ""
+        differences = tuple(Difference.of(before, value, between, motion.beside * between) for value in values)
+        held_back = motion.unlike if name == TORQUE_GAP else ""
+        if name == VELOCITY_GAP and motion.beside:
+            held_back = "what a simulation leaves depends on the motion"
         found = Comparison(name, before.unit, before.value, values[0].value, differences, margin, held_back=held_back)
         yield found.tested(least_chance)
 
@@ -261,39 +290,41 @@ def _of_both(
 
 
 def _of_names(
-    found: Matched, under: Under | None, baseline: State, allowed: Allowed, unlike: str
+    found: Matched, under: Under | None, baseline: State, allowed: Allowed, motion: Otherwise
 ) -> Iterator[Comparison]:
-    """Comparisons of all names that differ; `unlike` is why the motion of the two cannot be compared, if it cannot."""
+    """Comparisons of all names that differ."""
     torques = {} if under is None else under.torques
     for before, after in found.renamed:
-        yield _of_torque(before, after.torque, allowed, unlike, f"{before.label} or {after.label}")
+        yield _of_torque(before, after.torque, allowed, motion, f"{before.label} or {after.label}")
     for before in found.gone:
-        yield _of_torque(before, torques.get(before.label), allowed, unlike, before.label, "gone")
+        yield _of_torque(before, torques.get(before.label), allowed, motion, before.label, "gone")
     for after in found.appeared:
-        yield _of_appeared(after, baseline, allowed, unlike)
+        yield _of_appeared(after, baseline, allowed, motion)
 
 
 def _of_torque(
-    before: NamedHere, now: Measured | None, allowed: Allowed, unlike: str, name: str, effect: str = ""
+    before: NamedHere, now: Measured | None, allowed: Allowed, motion: Otherwise, name: str, effect: str = ""
 ) -> Comparison:
     """Comparison of the torque of an effect of the baseline, whatever its name is now."""
     was = before.torque
     if was is None or now is None:
         return _untold(name, "the torque balance does not hold it, so its strength is not told", effect=effect)
-    difference, margin = Difference.of(was, now, allowed.between_of(before.name, was)), OF_EFFECTS * was.value
-    return Comparison(name, was.unit, was.value, now.value, (difference,), margin, effect, unlike).tested()
+    difference = Difference.of(was, now, allowed.between_of(before.name, was))
+    margin = motion.margin(OF_EFFECTS * was.value, was.value)
+    return Comparison(name, was.unit, was.value, now.value, (difference,), margin, effect, motion.unlike).tested()
 
 
-def _of_appeared(after: NamedHere, baseline: State, allowed: Allowed, unlike: str) -> Comparison:
+def _of_appeared(after: NamedHere, baseline: State, allowed: Allowed, motion: Otherwise) -> Comparison:
     """Comparison of the torque of an effect that is new with what the baseline's recording would have shown."""
     torque = after.torque
     if torque is None or baseline.shows is None:
         why = "told by its signals alone, which do not say from when on the baseline would have shown it"
         return _untold(after.label, why, effect="appeared")
-    least = baseline.shows.named_from(max(len(after.quantities), 1))
+    least = motion.factor * baseline.shows.named_from(max(len(after.quantities), 1))
     nothing = Measured(0.0, torque.unit, torque.std_error)
     difference = Difference.of(nothing, torque, allowed.between_of(after.name, torque))
-    return Comparison(after.label, torque.unit, None, torque.value, (difference,), least, "appeared", unlike).tested()
+    found = Comparison(after.label, torque.unit, None, torque.value, (difference,), least, "appeared", motion.unlike)
+    return found.tested()
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -248,6 +249,12 @@ def _of(trace: Trace, rig: Rig) -> list[float]:
     top = float(np.quantile(np.abs(speed), 0.99))  # robust against one glitch
     duration = float(trace.time[-1] - trace.time[0])
     return [top, rms(speed), rms(np.concatenate(slopes)), rms(rig.net_effort(trace)[0]), duration, period]
+
+
+def motion_ratio(baseline: Mapping[str, Measured], now: Mapping[str, Measured]) -> float:
+    """The largest factor, 1 or above, by which a condition differs; inf where one is zero in one of the two only."""
+    pairs = [(baseline[name].value, now[name].value) for name in baseline if name in now and name not in FOLLOWING]
+    return max((max(pair) / min(pair) if min(pair) > 0.0 else math.inf for pair in pairs if any(pair)), default=1.0)
 
 
 def unlike(baseline: Mapping[str, Measured], now: Mapping[str, Measured]) -> list[str]:

@@ -145,8 +145,13 @@ def report(
     script: Annotated[
         Path | None, typer.Option("--script", help="Script file to write that the pages share, for many of them.")
     ] = None,
+    opened: Annotated[bool, typer.Option("--open", help="Open the pages in the browser.")] = False,
 ) -> None:
     """Make report.html of folders anew, from the report.json that lies in each."""
     from bench.report.publish import rebuild
 
-    common.list_files(rebuild(folders, script))
+    written = rebuild(folders, script)
+    common.list_files(written)
+    for page in written if opened else ():
+        if page != script:
+            typer.launch(page.resolve().as_uri())

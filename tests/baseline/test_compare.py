@@ -95,6 +95,31 @@ def test_another_motion_widens_what_can_be_said():
     assert checked(state(), moved(torque_gap=5.0)).result == "undecided"
 
 
+@pytest.mark.parametrize(
+    ("ratio", "rise", "result"),
+    [
+        (1.15, 26.0, "changed"),  # a dead zone that swallows some of the motion
+        (1.0 / 1.15, 26.0, "changed"),
+        (1.3, 5.0, "changed"),
+        (1.3, 2.5, "undecided"),  # 1.3**3 = 2.2: the motion may do that
+        (1.15, 0.2, "undecided"),
+        (1.5, 26.0, "undecided"),  # nobody knows what so much more comes to
+    ],
+)
+def test_a_gap_that_no_difference_of_the_motion_makes_has_changed(ratio, rise, result):
+    found = checked(state(), state({"torque_gap": rise}, rms_acceleration=ratio))
+    assert found.result == result
+    assert results(found)["torque_gap"] == result
+
+
+def test_an_effect_appears_beside_another_motion_where_its_torque_is_more_than_that_motion_makes_of_what_was_hidden():
+    """The baseline hides up to 2.5 mN*m, of which 1.3**3 makes 5.5."""
+    for torque, result in ((0.03, "changed"), (0.0056, "undecided")):
+        now = state(None, [named("cogging_torque", torque, **COGGING)], "explained", top_speed=1.3)
+        found = checked(state(), now, observed=GivenObserved(now))
+        assert results(found)["cogging_torque (harmonic 6)"] == result
+
+
 COGGING = {"amplitude": 0.05, "harmonic": 6.0, "phase": 1.0}
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.baseline.observe import conditions, unlike
+from bench.baseline.observe import conditions, motion_ratio, unlike
 from bench.comparison.difference import Measured
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
@@ -42,6 +42,17 @@ def test_a_tenth_more_or_less_is_another_motion(name):
         assert bool(unlike(before, {name: Measured(2.0 * factor, "s", 0.0)})) is differs
     assert unlike(before, {}) == []
     assert unlike(before, {name: Measured(3.0, "s", 0.0)}) == [f"{name.replace('_', ' ')}: 2 -> 3 s"]
+
+
+def test_motions_differ_by_the_largest_of_their_ratios():
+    def told(**values):
+        return {name: Measured(value, "s", 0.0) for name, value in values.items()}
+
+    before = told(top_speed=2.0, duration=4.0, rms_acceleration=0.0, rms_effort=1.0)
+    assert motion_ratio(before, before) == 1.0
+    assert motion_ratio(before, before | told(top_speed=2.2, duration=3.2, rms_effort=9.0)) == pytest.approx(1.25)
+    assert motion_ratio(before, before | told(rms_acceleration=0.1)) == np.inf
+    assert motion_ratio(before, {}) == 1.0
 
 
 @pytest.mark.parametrize("name", ["rms_effort", "cutoff"])

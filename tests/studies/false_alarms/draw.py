@@ -23,6 +23,7 @@ from bench.validation.independent import (
     simulate,
 )
 from bench.validation.independent.case import residual_ratio
+from bench.validation.independent.references import Phase
 from bench.validation.independent.rig import write_rig
 
 #: Tick of all drives, so that many run side by side, and step of the integration - s.
@@ -108,6 +109,35 @@ def with_effect(one: Drawn, name: str) -> Again:
 def moved_otherwise(one: Drawn) -> Again:
     """Another motion."""
     return replace(as_it_was(one), motion=random_motion(one.axis, one.rng, DURATION))
+
+
+@dataclass(frozen=True)
+class Smaller:
+    """A part of a motion, this much smaller, in the same time."""
+
+    phase: Phase
+    factor: float
+
+    @property
+    def duration(self) -> float:
+        """s."""
+        return self.phase.duration
+
+    @property
+    def distance(self) -> float:
+        """rad."""
+        return self.factor * self.phase.distance
+
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Position, speed, acceleration - rad, rad/s, rad/s**2."""
+        return tuple(self.factor * values for values in self.phase.at(time))
+
+
+def smaller(again: Again, by: float) -> Again:
+    """The same with a motion that is smaller by a share: its positions, speeds and accelerations."""
+    if not by:
+        return again
+    return replace(again, motion=Motion(tuple(Smaller(phase, 1.0 - by) for phase in again.motion.phases)))
 
 
 def sampled_otherwise(one: Drawn) -> Again:

@@ -1,0 +1,79 @@
+"""What is shipped beside the package: scripts of continuous integration run as they stand, and versions agree."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import bench as package
+from bench.trace.write import write
+from tests.baseline.test_command import AS_IT_WAS, again
+from tests.diagnosis.conftest import bench
+from tests.fit.motions import Truth
+
+yaml = pytest.importorskip("yaml", reason="needs PyYAML (pip install -e '.[docs]')")
+ROOT = Path(__file__).resolve().parents[1]
+__all__ = ["bench"]
+
+
+def loaded(*parts):
+    return yaml.safe_load(ROOT.joinpath(*parts).read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def shell(bench, tmp_path):
+    """Runs a script in a folder with a baseline, where `bench` is this one."""
+    write(again(1), Path("before.csv"))
+    files = ("--rig", "rig.toml", "--baseline", "base.toml")
+    assert bench("check", "before.csv", *files, "--update", "--without-names")[0] == 0
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    for name, does in (("bench", "-P -m bench"), ("python", "-P"), ("pip", "-c pass")):
+        (programs / name).write_text(f'#!/bin/sh\nexec {sys.executable} {does} "$@"\n')
+        (programs / name).chmod(0o755)
+
+    def run(script, **variables):
+        whole = os.environ | variables | {"PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
+        return subprocess.run(["bash", "-eo", "pipefail", "-c", script], env=whole, check=False, timeout=300).returncode
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("truth", "result", "status"), [(AS_IT_WAS, "same", 0), (Truth(coulomb=1.5 * Truth.coulomb), "changed", 3)]
+)
+def test_the_action_checks_an_axis(shell, truth, result, status):
+    write(again(2, truth), Path("now.csv"))
+    action = loaded(".github", "actions", "check", "action.yml")
+    (step,) = (step for step in action["runs"]["steps"] if step.get("id") == "check")
+    assert set(step["env"].values()) <= {f"${{{{ inputs.{name} }}}}" for name in action["inputs"]}
+    inputs = {"RECORDINGS": "now.csv", "RIG": "rig.toml", "BASELINE": "base.toml", "UNDECIDED": "pass"}
+    rate = {"RATE": action["inputs"]["false-alarm-rate"]["default"], "GITHUB_OUTPUT": "outputs"}
+    assert shell(step["run"], **inputs, **rate, GITHUB_STEP_SUMMARY="summary.md") == status
+    assert Path("outputs").read_text() == f"result={result}\n"
+    assert "kg&#42;m&#42;&#42;2 | same |" in Path("summary.md").read_text()
+    assert {path.name for path in Path("bench-check").iterdir()} == {"check.json", "check.xml", "check.html"}
+
+
+def test_the_template_checks_an_axis(shell):
+    write(again(2), Path("now.csv"))
+    job = loaded(".ci", "gitlab-check.yml")[".bench-check"]
+    variables = job["variables"] | {"RECORDINGS": "now.csv", "BASELINE": "base.toml"}
+    assert shell("\n".join(job["script"]), **variables) == 0
+    reports = job["artifacts"]["reports"].values()
+    assert all(Path(name).stat().st_size for name in (*reports, *job["artifacts"]["paths"]))
+
+
+def test_the_citation_is_of_this_version():
+    assert loaded("docs", "CITATION.cff")["version"] == package.__version__
+
+
+def test_pages_open_in_the_browser_where_asked(bench, monkeypatch):
+    opened = []
+    monkeypatch.setattr("typer.launch", opened.append)
+    write(again(1), Path("run.csv"))
+    assert bench("identify", "run.csv", "--rig", "rig.toml", "--out", "out")[0] == 0
+    assert bench("report", "out", "--script", "pages.js", "--open")[0] == 0
+    assert opened == [(Path("out") / "report.html").resolve().as_uri()]
