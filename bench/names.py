@@ -12,6 +12,8 @@ from pathlib import Path
 _OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 #: Persons after whom something is called.
 _PERSONS = re.compile(r"\b(coulomb|stribeck)\b")
+#: What a cut may have left of a word; what is longer is none.
+_FIRST_WORD, _LAST_WORD = re.compile(r"^\S{0,19}\s+"), re.compile(r"\s+\S{0,19}$")
 _NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?([eE][+-]?\d+)?")
 
 
@@ -42,11 +44,11 @@ def in_a_row(paths: Iterable[Path]) -> str:
 
 
 def short(text: str, most: int = 200) -> str:
-    """The text in at most `most` characters: beginning and end where it is longer."""
+    """The text in at most `most` characters: beginning and end where it is longer, of whole words."""
     if len(text) <= most:
         return text
     half = (most - 5) // 2
-    return f"{text[:half]} ... {text[-half:]}"
+    return f"{_LAST_WORD.sub('', text[:half])} ... {_FIRST_WORD.sub('', text[-half:])}"
 
 
 def nearest(name: str, names: list[str]) -> str:

@@ -13,7 +13,7 @@ from bench.course.report import Cover, lab_document
 from bench.course.result import TaskResult
 from bench.files import write_text
 from bench.fit.identify import identify
-from bench.names import cell, readable
+from bench.names import cell, readable, short
 from bench.plant.model_file import StoredModel, load_model, model_toml
 from bench.plant.plant import Plant
 from bench.report.figures import drawn, save
@@ -118,3 +118,13 @@ def test_a_run_with_such_names_ends_well(tmp_path, name):
     assert (done.returncode, done.stderr) == (0, "")
     assert "\x1b" not in run("inspect", f"{file}.csv", cwd=tmp_path).stdout
     assert_one_line(run("identify", f"{file}.none", "--rig", "rig.toml", cwd=tmp_path), "no such file")
+
+
+def test_a_text_is_cut_between_words():
+    text = " ".join(f"word{k}" for k in range(100))
+    for most in range(40, 120):
+        cut = short(text, most)
+        assert len(cut) <= most
+        assert set(cut.split()) <= {*text.split(), "..."}
+        assert (cut[:6], cut[-7:]) == ("word0 ", " word99")
+    assert len(short("x" * 300, 80)) == 79
