@@ -10,20 +10,21 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array, symmetric_inverse
+from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.acting import Friction
-from bench.effects.effect import Columns, Contact, Coupling, Effect, Proposal
+from bench.effects.effect import Columns, Contact, CopiesTorque, Coupling, Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
 from bench.fit.hypothesis import Hypothesis, Term, hang_together, in_line, with_friction, with_load
-from bench.fit.layout import DIGIT, Layout, delays, lay_out, rounding, seen_by
+from bench.fit.layout import DIGIT, Layout, by_model, delays, lay_out, rounding, seen_by
 from bench.fit.noise import Floor, noise_power
 from bench.fit.normal_equations import bounded, solved
 from bench.fit.rows import ColumnsOf, Rows
 from bench.trace.filter import Column
 
-#: Rounds in which levels of dry friction that multiply are brought in line.
-LEVEL_ROUNDS = 4
+#: Rounds in which levels of dry friction that multiply, and torque that is copied, are brought in line, and change of
+#: what is left at which they are.
+ROUNDS, IN_LINE = 6, 0.01
 #: Share of the noise floor by which a row's torque may hang on what the recording does not tell, an impact's instant.
 OPEN_SHARE = 0.3
 #: Numbers of all shapes tried at once, which bounds memory: 8 bytes each, some four times over.
@@ -162,8 +163,12 @@ class Fit:
     @cached_property
     def beside(self) -> Rows:
         """The recording as one term more would see it."""
-        seen = with_friction(seen_by(self.rows, self.hypothesis), self.hypothesis, len(self.terms))
+        seen = with_friction(self._modelled, self.hypothesis, len(self.terms))
         return with_load(seen, ((term, self.strengths(index)) for index, term in enumerate(self.terms)))
+
+    @cached_property
+    def _modelled(self) -> Rows:
+        return by_model(seen_by(self.rows, self.hypothesis), self.residual)
 
     def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array:
         """Columns (m, k) of raw signals as one term more would see them; `of_motion`: accelerations or speeds."""
@@ -222,7 +227,8 @@ class Fit:
                 return _own(tables[0], tables[0].shape[1] // len(shapes))
 
             grams = rows.memory.get((*known, resting, rows.made_by), own)
-            products = tables[0].T @ self._targets if tables else self._against(made)
+            copied = isinstance(effect, CopiesTorque)
+            products = tables[0].T @ self._targets if tables and not copied else self._against(made)
             worth = _taken(grams, products, self._targets)
         return [Proposal(shape, float(gain)) for shape, gain in zip(shapes, worth, strict=True)]
 
@@ -233,20 +239,23 @@ class Fit:
 
     @cached_property
     def _against(self) -> Callable[[ColumnsOf], Array]:
-        return seen_by(self.rows, self.hypothesis).against(self._targets, delays(self.rows, self.hypothesis)[1])
+        return self._modelled.against(self._targets, delays(self.rows, self.hypothesis)[1])
 
 
 def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
     """Least squares of a hypothesis; the levels that scaled frictions see are brought in line with what is found."""
     layout = lay_out(rows, hypothesis)
+    left = _without_copies(layout, hypothesis)
+    layout = layout if left is None else lay_out(rows, hypothesis, left)
     theta, held = _balanced(layout, None)
-    for _ in range(LEVEL_ROUNDS):
+    for _ in range(ROUNDS):
         found = in_line(hypothesis, theta, layout.owners)
-        settled = not hang_together(found) or _alike(found, hypothesis)
-        hypothesis = found
+        after = None if left is None else layout.effort - layout.columns @ theta
+        settled = (not hang_together(found) or _alike(found, hypothesis)) and _settled(left, after)
+        hypothesis, left = found, after
         if settled:
             break
-        layout = lay_out(rows, hypothesis)
+        layout = lay_out(rows, hypothesis, left)
         theta, held = _balanced(layout, None)
     every = np.ones(layout.effort.size, dtype=bool)
     fitted = Fit(rows, hypothesis, layout, theta, held, every)
@@ -268,6 +277,21 @@ def _determined(fitted: Fit) -> NDArray[np.bool_] | None:
             sure = moved * abs(fitted.strengths(index)[0]) < OPEN_SHARE * fitted.floor
             determined = sure if determined is None else determined & sure
     return determined
+
+
+def _without_copies(layout: Layout, hypothesis: Hypothesis) -> Array | None:
+    """What is left of the torque without the effects that copy it (m,) - N*m (N); None where there is none."""
+    copies = [index for index, term in enumerate(hypothesis.terms) if isinstance(term.effect, CopiesTorque)]
+    if not copies:
+        return None
+    kept = ~np.isin(layout.owners, copies)
+    noise = layout.noise[np.ix_(kept, kept)]
+    return layout.effort - layout.columns[:, kept] @ least_squares(layout.columns[:, kept], layout.effort, noise)
+
+
+def _settled(left: Array | None, after: Array | None) -> bool:
+    """Whether what is left stays as it was."""
+    return left is None or after is None or rms(after - left) <= IN_LINE * rms(after)
 
 
 def _alike(found: Hypothesis, before: Hypothesis) -> bool:

@@ -16,7 +16,7 @@ Source: B. Widrow, I. Kollar, Quantization Noise, 2008 (characteristic function 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.effects.acting import FollowsLoad
-from bench.effects.effect import Columns, Coupling, Distortion, EffortLag, MotionLag
+from bench.effects.effect import Columns, CopiesTorque, Coupling, Distortion, EffortLag, MotionLag
 from bench.effects.signals import Signals
 from bench.fit.hypothesis import Hypothesis, loads_of, with_friction, with_load
 from bench.fit.normal_equations import Name
@@ -101,8 +101,18 @@ def effort_lag(hypothesis: Hypothesis) -> float:
     return sum(term.effect.effort_lag(term.shape) for term in hypothesis.terms if isinstance(term.effect, EffortLag))
 
 
-def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
-    """Columns of a hypothesis."""
+def by_model(rows: Rows, left: Array) -> Rows:
+    """The recording with the modelled torque in the place of the measured, whose residual (m,) is given - N*m (N).
+
+    Columns made of the measured torque would hold what a model leaves of it, and so explain it by itself: errors in the
+    variables, for which the modelled torque is the instrument (W. A. Fuller, Measurement Error Models, 1987, 1.4).
+    """
+    time = rows.time
+    return rows.with_signals(lambda s: replace(s, torque=s.torque - np.interp(s.time + s.began, time, left)))
+
+
+def lay_out(rows: Rows, hypothesis: Hypothesis, left: Array | None = None) -> Layout:
+    """Columns of a hypothesis; `left`: what it leaves of the torque (m,), of which no column is made - N*m (N)."""
     seen, late = seen_by(rows, hypothesis), effort_lag(hypothesis)
     moving, resting = delays(rows, hypothesis)
     lags = moving, moving, resting, resting + late
@@ -118,7 +128,9 @@ def lay_out(rows: Rows, hypothesis: Hypothesis) -> Layout:
         parts.append(seen.kept((_of_hum, lines), lambda s: _of_hum(s, lines, starts), resting))
         owners += [HUM] * parts[-1].shape[1]
     for index, term in enumerate(hypothesis.terms):
-        parts.append(_of_term(seen, hypothesis, index, moving if isinstance(term.effect, Coupling) else resting))
+        lag = moving if isinstance(term.effect, Coupling) else resting
+        modelled = left is not None and isinstance(term.effect, CopiesTorque)
+        parts.append(_of_term(by_model(seen, left) if modelled else seen, hypothesis, index, lag))
         if isinstance(term.effect, Columns):
             bounds |= {len(owners) + place: most for place, most in term.effect.bounded.items()}
         owners += [index] * parts[-1].shape[1]

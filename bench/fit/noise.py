@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.axis_kind import INERTIA, MISALIGNMENT, VISCOUS
-from bench.effects.effect import CopiesTorque, Coupling
+from bench.effects.effect import Coupling
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.layout import Layout, delays, effort_lag
 from bench.fit.rows import Rows
@@ -98,10 +98,9 @@ class Floor:
 def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> Power:
     """Power of noise of effort and speed in the torque balance, over angular frequency.
 
-    s_M**2*|(1 + tau*s)*(1 + T*s)|**2*<(1 - dM_model/dM)**2> + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
+    s_M**2*|(1 + tau*s)*(1 + T*s)|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
     """
     conditioning = rows.conditioning
-    left = _left_of_effort(rows, hypothesis, layout, theta)
     moving, _ = delays(rows, hypothesis)
     inertia, viscous, shift = (float(theta[layout.owners == name][0]) for name in (INERTIA, VISCOUS, MISALIGNMENT))
 
@@ -114,36 +113,11 @@ def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
                 kinetic = kinetic + theta[layout.owners == index][0] * s * heard
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
         late = (1.0 + shift * s) * (1.0 + effort_lag(hypothesis) * s)
-        effort = left * conditioning.effort_noise**2 * np.abs(late) ** 2
+        effort = conditioning.effort_noise**2 * np.abs(late) ** 2
         known = conditioning.known_noise**2 * np.abs((1.0 + moving * s) * s) ** 2
         return effort + known + source * np.abs(kinetic) ** 2
 
     return power
-
-
-def _left_of_effort(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> float:
-    """Mean of (1 - dM_model/dM)**2: what effects made of the measured torque leave of its noise's power.
-
-    An effect that copies the torque copies its noise, and so would take all of it for explained.
-    """
-    copies = [
-        (term.effect, term.shape, theta[layout.owners == k])
-        for k, term in enumerate(hypothesis.terms)
-        if isinstance(term.effect, CopiesTorque)
-    ]
-    if not copies:
-        return 1.0
-    total, count = 0.0, 0
-    for part in rows.stretches:
-        signals = part.signals
-        step = 1e-6 * signals.peak_effort
-        more, slope = replace(signals, torque=signals.torque + step), np.zeros(signals.torque.size)
-        for effect, shape, strengths in copies:
-            high, low = (effect.columns(s, shape) for s in (more, signals))
-            for ((after, _),), ((before, _),), strength in zip(high, low, strengths, strict=True):
-                slope += strength * (after - before) / step
-        total, count = total + float(np.sum((1.0 - slope) ** 2)), count + slope.size
-    return total / count
 
 
 def colour(

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.signal import lfilter, savgol_filter
 
 from bench.arrays import Array, rms
+from bench.effects.catalogue import catalogue
 from bench.errors import InputError
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
@@ -35,8 +36,9 @@ MOVING = frozenset({"driven_current", "remember"})
 #: Steps in a swing of a load on its contact: its frequency is right to 0.7 %.
 STEPS = 16
 #: Severities between which an effect of a wanted size is sought, the ratio at which the search ends, and the one by
-#: which the size may fall short where physics ends before it. Beyond the last severity it is no axis any more.
-SEVERITIES, CLOSE, SHORT = (1e-4, 30.0), 1.03, 1.1
+#: which the size may fall short where physics ends before it. The last severity is four times the strongest of the
+#: blind set: beyond it is no axis any more, as with warm-up of five times the friction.
+SEVERITIES, CLOSE, SHORT = (1e-4, 3.0), 1.03, 1.1
 #: Steps in which what drives the axis is found, and the share of it that it is found to.
 TRIES, EXACT = 200, 1e-9
 
@@ -327,18 +329,23 @@ def drawn(host: Host, kind: str, size: float, seed: int) -> Effect | None:
         seed: of its other parameters.
 
     Returns:
-        None if the axis cannot have it, or not of this size.
+        None if the axis cannot have it, or not of this size within its physical bounds.
     """
     if not KINDS[kind].possible(host.axis):
         return None
+    bounds = {quantity.name: quantity for quantity in catalogue()[kind].quantities}
     duration = float(host.trace.time[-1] - host.trace.time[0])
 
     def of(severity: float) -> Effect:
         return KINDS[kind].draw(host.axis, severity, np.random.default_rng(seed), duration)
 
     def reached(severity: float) -> float:
+        effect = of(severity)
+        values = effect.quantities(host.axis).items()
+        if any(not bounds[name].lower <= value <= bounds[name].upper for name, value in values if name in bounds):
+            return math.inf
         try:
-            return disturbance(host, injected(host, of(severity)))[1]
+            return disturbance(host, injected(host, effect))[1]
         except InputError:  # the axis cannot have it so strong
             return math.inf
 

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
-from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.hypothesis import Hypothesis
 from bench.fit.layout import BASE, lay_out
 from bench.fit.noise import noise_power
 from bench.fit.rows import Rows
@@ -36,18 +35,6 @@ def test_noise_of_the_effort_passes_its_misalignment_and_that_of_the_speed_inert
     np.testing.assert_allclose(power(rows, Hypothesis(), NONE, misalignment=1e-3), effort * late)
     moved = power(rows, Hypothesis(), np.full(3, 4.0), inertia=2e-3, viscous=0.3) - effort
     np.testing.assert_allclose(moved, 4.0 * ((2e-3 * OMEGA) ** 2 + 0.3**2))
-
-
-@pytest.mark.parametrize("rate", [0.05, -0.1])
-def test_an_effect_that_copies_torque_takes_its_share_of_the_torques_noise(rate):
-    """What is left is 1 - dM_model/dM = 1 + r*t of it, in power its mean square over the recording."""
-    rows = Rows.of(recording(np.random.default_rng(1)), RIG)
-    drift = Hypothesis((Term(catalogue()["torque_constant_drift"]),))
-    time = rows.stretches[0].signals.time
-    left = np.mean((1.0 + rate * time) ** 2)
-    assert abs(left - 1.0) > 0.2
-    found = power(rows, drift, NONE, strength=rate) / power(rows, Hypothesis(), NONE)
-    np.testing.assert_allclose(found, left, rtol=1e-6)
 
 
 def test_the_floor_of_a_plain_axis_is_the_filtered_noise_of_both_sensors():

@@ -133,7 +133,7 @@ class CurrentGainAsymmetry(Effect):
 
     @classmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
-        return cls(float(rng.choice([-1.0, 1.0]) * 0.08 * about(severity, rng)))
+        return cls(float(rng.choice([-1.0, 1.0]) * min(0.08 * about(severity, rng), 0.1)))  # of two shunts of 5 %
 
     def true_current(self, rows: Rows, reading: np.ndarray) -> np.ndarray:
         return np.where(reading > 0.0, 1.0 + self.gain_difference / 2.0, 1.0 - self.gain_difference / 2.0) * reading
@@ -163,7 +163,7 @@ class TorqueConstantDrift(Effect):
 
     @classmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
-        return cls(float(rng.choice([-1.0, 1.0]) * 0.12 * about(severity, rng) / duration))
+        return cls(float(rng.choice([-1.0, 1.0]) * min(0.12 * about(severity, rng), 0.3) / duration))  # of ferrites
 
     def torque_factor(self, rows: Rows) -> np.ndarray | float:
         return 1.0 + self.rate * rows.time
