@@ -71,8 +71,7 @@ class Table:
 
     def of_right(self, shares: Array) -> Array:
         """Probability of the right answer (c,)."""
-        none = shares[:, -1] + np.sum(shares[:, :-1] * self.of["outside"], axis=1)
-        return np.where(self.lacking, none, np.sum(shares[:, :-1] * self.right, axis=1))
+        return self.lacking * shares[:, -1] + np.sum(shares[:, :-1] * self.right, axis=1)
 
     def loss(self, weights: Mapping[str, float]) -> float:
         """Mean negative logarithm of it, and the penalty."""
@@ -98,7 +97,7 @@ def names_of(case: Known, shares: Array) -> dict[str, float]:
     """Probability of each name of a case."""
     found: dict[str, float] = {}
     for one, share in zip(case.hypotheses, shares.tolist(), strict=False):
-        for name in set(one.names) if not one.outside else ():
+        for name in set(one.names):
             found[name] = found.get(name, 0.0) + share
     return found
 

@@ -13,6 +13,7 @@ from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
+from bench.effects.rivals import Outside
 from bench.errors import BenchError
 from bench.rig.rig import load_rig
 from bench.trace.read import read
@@ -21,7 +22,7 @@ from tests.studies.blind.score import same, twins
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A set of names and what `bench.diagnosis.score` says of it."""
+    """A set of names of the catalogue and what `bench.diagnosis.score` says of it."""
 
     names: tuple[str, ...]
     left: float
@@ -50,11 +51,11 @@ class Known:
     hypotheses: tuple[Hypothesis, ...]
 
     def right(self, one: Hypothesis) -> bool:
-        """Whether a hypothesis has the names that are true, and no other."""
-        if self.truth is None or one.outside:
-            return False
+        """Whether a hypothesis has the names that are true, and no other; of a real axis, whatever acts beside."""
+        if self.truth is None:
+            return one.outside and not one.names
         found, hidden = same(one.names), same(self.truth)
-        return hidden <= found and found - hidden <= same(self.own)
+        return hidden <= found and found - hidden <= same(self.own) and (self.group == "injected" or not one.outside)
 
     def true(self, name: str) -> bool:
         """Whether a name is."""
@@ -84,7 +85,7 @@ def known(folder: Path, withheld: bool) -> Known | None:
     searched = search(fit_bare(recordings.rows), effects, POLICY)
     hypotheses = [
         Hypothesis(
-            one.fitted.hypothesis.names,
+            tuple(t.effect.name for t in one.fitted.terms if not isinstance(t.effect, Outside)),
             one.left,
             one.over,
             len(set(one.fitted.hypothesis.names)),
