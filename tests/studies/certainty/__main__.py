@@ -155,6 +155,8 @@ def markdown(cases: Sequence[Known], found: Mapping[str, float], command: str) -
     lines += ["|---|---|---|---|---|---|---|", *by_group(cases, shares, every.of_right(shares))]
     lines += ["", f"Names by their probability; expected calibration error {error:.3f}:", ""]
     lines += ["| from | names | mean probability | true |", "|---|---|---|---|", *rows]
+    shown = [case.true(name) for case in cases for name in case.detected if "withheld" not in case.group]
+    lines += ["", f"Of {len(shown)} names that the signals show directly {sum(shown)} are true."]
     return "\n".join(lines) + "\n"
 
 

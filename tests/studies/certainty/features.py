@@ -41,6 +41,7 @@ class Known:
         name, group: of the case.
         truth: what is hidden and has to be found in the torque balance; None: it is not in the catalogue.
         own: names that the recording had before anything was put into it, right or wrong.
+        detected: names that the signals show directly.
         hypotheses: the first one is the bare axis.
     """
 
@@ -48,6 +49,7 @@ class Known:
     group: str
     truth: tuple[str, ...] | None
     own: tuple[str, ...]
+    detected: tuple[str, ...]
     hypotheses: tuple[Hypothesis, ...]
 
     def right(self, one: Hypothesis) -> bool:
@@ -99,7 +101,9 @@ def known(folder: Path, withheld: bool) -> Known | None:
     truth = tuple(name for name in told["effects"] if name not in detected and name != "voltage_limit")
     lacking = withheld or told["group"] == "outside"
     group = f"{told['group']}, truth withheld" if withheld else told["group"]
-    return Known(folder.name, group, None if lacking else truth, tuple(told.get("own", ())), tuple(hypotheses))
+    # what is detected is not looked for in the balance, and is right where it is hidden
+    own = (*told.get("own", ()), *detected.intersection(told["effects"]))
+    return Known(folder.name, group, None if lacking else truth, own, (*sorted(detected),), tuple(hypotheses))
 
 
 def kept(path: Path) -> list[Known]:
@@ -107,8 +111,9 @@ def kept(path: Path) -> list[Known]:
 
     def case(told: dict[str, Any]) -> Known:
         every = tuple(Hypothesis(**each | {"names": tuple(each["names"])}) for each in told.pop("hypotheses"))
-        truth, own = told.pop("truth"), tuple(told.pop("own"))
-        return Known(**told, truth=None if truth is None else tuple(truth), own=own, hypotheses=every)
+        truth, own, detected = told.pop("truth"), tuple(told.pop("own")), tuple(told.pop("detected"))
+        truth = None if truth is None else tuple(truth)
+        return Known(**told, truth=truth, own=own, detected=detected, hypotheses=every)
 
     return [case(told) for told in json.loads(path.read_text(encoding="utf-8"))]
 
