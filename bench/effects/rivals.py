@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from bench.arrays import Array, recursive_filter
-from bench.effects.effect import Columns, Effect
+from bench.effects.effect import Columns, CopiesTorque, Effect
 from bench.effects.shape import DURATION, FREQUENCY, SPEED, Shape
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
@@ -98,7 +98,7 @@ class FrictionalMemory(Outside):
         return [[(signals.sign * np.exp(-_lowpass(np.abs(signals.velocity), keep) / shape[1]), 0)]]
 
 
-class OtherWave(Outside):
+class OtherWave(Outside, CopiesTorque):
     """A wave of position of one number, times what a torque may hang on: one of FACTORS, or all of them.
 
     Where a wave sits right and is not what it is called, or is called by several names, this takes its place.
