@@ -11,6 +11,7 @@ gave, leaves of it beyond twice what the best one does.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -18,9 +19,9 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.diagnosis.policy import Policy, freedom
-from bench.diagnosis.search import Candidate, Searched, candidates, refined
+from bench.diagnosis.search import Candidate, Searched, backward_elimination, candidates, refined
 from bench.effects.catalogue import simpler_forms
-from bench.effects.effect import Coupling, Occasional
+from bench.effects.effect import Coupling, Effect, Occasional
 from bench.effects.rivals import RIVALS, WAVES, Outside
 from bench.effects.waves import Wave
 from bench.fit.fit import Fit, fit
@@ -68,7 +69,8 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
     """The steps of a search, its result less each of its effects, the next best beside it, and its rivals.
 
     Rivals are simpler forms of an effect, a wave of another form in the place of waves, and the best effect from
-    outside the catalogue beside the result and in the place of each of its names; those `excluded` are not tried.
+    outside the catalogue beside the result and in the place of each of its names, and of all that it leaves nothing to;
+    those `excluded` are not tried.
     """
     last = searched.last
     yield from (step.fitted for step in searched.steps)
@@ -85,7 +87,8 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
     rivals = [effect for effect in RIVALS if effect.name not in excluded]
     waveless = _without_waves(last)
     for beside in filter(policy.remains, (last, *less, *waveless)):
-        yield from _promising(beside, candidates(beside, rivals)[:1], policy)
+        for rival in _promising(beside, candidates(beside, rivals)[:1], policy):
+            yield from (rival, backward_elimination(rival, policy))
 
 
 def _of_other_form(last: Fit, policy: Policy) -> Iterator[Fit]:
@@ -114,8 +117,16 @@ def _promising(beside: Fit, found: Sequence[Candidate], policy: Policy) -> Itera
 
 
 def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[Contender]:
-    """Hypotheses that physics allows, the first of them the bare axis, with what speaks for each."""
-    physical = [tried[0], *(each for each in tried[1:] if policy.physical(each) and _credible(each))]
+    """Hypotheses that physics allows, the first of them the bare axis, with what speaks for each.
+
+    Of several with the same effects it is the one that leaves least.
+    """
+    best: dict[frozenset[tuple[Effect, int]], Fit] = {frozenset(): tried[0]}
+    for each in tried[1:]:
+        effects = frozenset(Counter(term.effect for term in each.terms).items())
+        if policy.physical(each) and _credible(each):
+            best[effects] = min(best.get(effects, each), each, key=lambda fitted: fitted.squares)
+    physical = list(best.values())
     determined = np.logical_and.reduce([each.determined for each in physical])
     power = np.array([np.mean(each.left[determined] ** 2) for each in physical])
     white = np.array([each.noise.white**2 for each in physical])
