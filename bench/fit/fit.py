@@ -24,7 +24,7 @@ from bench.trace.filter import Column
 
 #: Rounds in which levels of dry friction that multiply, and torque that is copied, are brought in line, and change of
 #: what is left at which they are.
-ROUNDS, IN_LINE = 6, 0.01
+ROUNDS, IN_LINE = 4, 0.01
 #: Share of the noise floor by which a row's torque may hang on what the recording does not tell, an impact's instant.
 OPEN_SHARE = 0.3
 #: Numbers of all shapes tried at once, which bounds memory: 8 bytes each, some four times over.
