@@ -12,7 +12,7 @@ from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities, probabilities
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.score import neighbourhood, of_catalogue, scored
+from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import Searched, search
 from bench.effects.acting import MisreadEffort
 from bench.effects.catalogue import catalogue
@@ -90,7 +90,7 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     hypotheses = scored([*neighbourhood(searched, excluded, policy)], recordings.holdout_rows, policy)
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
     likely = probabilities(hypotheses, frozenset(effect.name for effect in kept), policy)
-    ending = searched.ending(of_catalogue(likely.fits[likely.chosen.names]))
+    ending = searched.ending(likely.fits[likely.chosen.names])
     return Suspects(ending, likely, kept, len(kept) < len(recordings.detected), policy, excluded)
 
 

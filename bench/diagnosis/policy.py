@@ -77,13 +77,13 @@ class Policy:
     replaces: float = 0.5
     determined: float = 0.5
     holdout_gap: float = 3.0
-    left: float = 2.97
-    over: float = 1.87
-    each: float = 0.91
-    number: float = 0.61
-    event: float = 1.18
-    outside: float = 1.54
-    none: float = -2.96
+    left: float = 4.6
+    over: float = 1.7
+    each: float = 2.5
+    number: float = 0.3
+    event: float = 1.6
+    outside: float = 2.2
+    none: float = -2.7
     most: int = 12
     members: int = 12
 

@@ -3,17 +3,16 @@
     ln P = -left*max(U, LEAST) - over*min(V, MUCH) - each*names - number*numbers - event*events*min(V, MUCH) + constant
 
 U, V - logarithms of what a set leaves beyond noise, over what the bare axis leaves and over noise; numbers - fitted
-(`bench.diagnosis.score`). What holds an effect from outside the catalogue weighs `outside` less; the names beside it
-stand. "None of the catalogue" is such an effect, and what was not tried, of a constant weight. The weights, of
-`bench.diagnosis.policy`, are those under which recordings whose truth is known were likeliest
-(`python -m tests.studies.certainty`). The likelihood of the recording itself adds nothing to U and V: its weight beside
-them came out as zero.
+(`bench.diagnosis.score`). What holds an effect from outside the catalogue weighs `outside` less and, together with a
+constant weight for what was not tried, makes up "none of the catalogue". The weights, of `bench.diagnosis.policy`, are
+those under which recordings whose truth is known were likeliest (`python -m tests.studies.certainty`). The likelihood
+of the recording itself adds nothing to U and V: its weight beside them came out as zero.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -21,7 +20,6 @@ import numpy as np
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.score import Contender
 from bench.effects.effect import Effect
-from bench.effects.rivals import Outside
 from bench.effects.signals import Scope
 from bench.fit.fit import Fit
 
@@ -37,16 +35,9 @@ CALIBRATED_ON = "docs/certainty.md"
 
 @dataclass(frozen=True)
 class NameSet:
-    """A set of names with its probability.
-
-    Attributes:
-        names: of effects of the catalogue.
-        beyond: whether something acts beside that no catalogue holds.
-        probability: of the set.
-    """
+    """A set of names with its probability."""
 
     names: frozenset[str]
-    beyond: bool
     probability: float
 
 
@@ -55,35 +46,29 @@ class Probabilities:
     """How likely each set of names is.
 
     Attributes:
-        sets: of names of the torque balance, likeliest first; the empty one says that it lacks nothing, or nothing of
-            the catalogue.
-        untried: probability of what is not among them.
+        sets: of names of the torque balance, likeliest first; the empty one says that it lacks nothing.
+        none: probability that it lacks something and none of the catalogue is it.
         detected: names that the signals show directly.
-        fits: the likeliest with names, as long as they are searched; what is told of them keeps none.
+        fits: the best of each set, as long as they are searched; what is told of them keeps none.
     """
 
     sets: tuple[NameSet, ...]
-    untried: float
+    none: float
     detected: frozenset[str] = frozenset()
     fits: Mapping[frozenset[str], Fit] = field(default_factory=dict)
 
     @cached_property
     def names(self) -> dict[str, float]:
-        """Probability of every name that was considered, whatever acts beside, likeliest first."""
+        """Probability of every name that was considered, likeliest first."""
         every = {name for each in self.sets for name in each.names}
         found = {name: sum(each.probability for each in self.sets if name in each.names) for name in every}
         found |= dict.fromkeys(self.detected, DETECTED)
         return dict(sorted(found.items(), key=lambda one: (-one[1], one[0])))
 
     @property
-    def none(self) -> float:
-        """Probability that something acts that none of the catalogue is, whatever acts beside."""
-        return self.untried + sum(each.probability for each in self.sets if each.beyond)
-
-    @property
     def nothing(self) -> float:
         """Probability that nothing is missing."""
-        bare = sum(each.probability for each in self.sets if not each.names and not each.beyond)
+        bare = sum(each.probability for each in self.sets if not each.names)
         return bare * (1.0 - DETECTED) if self.detected else bare
 
     @property
@@ -94,29 +79,25 @@ class Probabilities:
 
     def instead_of(self, name: str) -> dict[str | None, float]:
         """What stands in the place of a chosen name in the sets without it; None: none of the catalogue."""
-        without = [each for each in self.sets if name not in each.names]
-        found: dict[str | None, float] = {None: self.untried + sum(e.probability for e in without if e.beyond)}
-        for each in without:
-            for other in each.names - self.chosen.names:
+        found: dict[str | None, float] = {None: self.none}
+        for each in self.sets:
+            for other in each.names - self.chosen.names if name not in each.names else ():
                 found[other] = found.get(other, 0.0) + each.probability
         return dict(sorted(found.items(), key=lambda one: -one[1]))
 
-    def holding(self, level: float) -> list[frozenset[str | None]]:
-        """The fewest sets that hold the truth with a probability of at least `level`; None: what no catalogue holds."""
-        shares: dict[frozenset[str | None], float] = {frozenset({None}): self.untried}
-        for each in self.sets:
-            names = each.names | self.detected | ({None} if each.beyond else frozenset())
-            shares[names] = shares.get(names, 0.0) + each.probability
-        ranked = sorted(shares.items(), key=lambda one: -one[1])
-        before = np.cumsum([0.0, *(share for _, share in ranked)])[:-1]
-        return [names for (names, _), sure in zip(ranked, before, strict=True) if sure < level]
+    def holding(self, level: float) -> list[frozenset[str] | None]:
+        """The fewest sets that hold the truth with a probability of at least `level`; None: none of the catalogue."""
+        ranked = [(each.probability, each.names | self.detected) for each in self.sets] + [(self.none, None)]
+        ranked.sort(key=lambda one: -one[0])
+        before = np.cumsum([0.0, *(share for share, _ in ranked)])[:-1]
+        return [names for (_, names), sure in zip(ranked, before, strict=True) if sure < level]
 
     def without(self, names: frozenset[str]) -> Probabilities:
         """Given that some names are wrong: what held-out motion spoke against."""
         kept = [each for each in self.sets if not each.names & names]
-        whole = self.untried + sum(each.probability for each in kept)
-        sets = (replace(each, probability=each.probability / whole) for each in kept)
-        return Probabilities(tuple(sets), self.untried / whole, self.detected - names)
+        whole = self.none + sum(each.probability for each in kept)
+        sets = (NameSet(each.names, each.probability / whole) for each in kept)
+        return Probabilities(tuple(sets), self.none / whole, self.detected - names)
 
 
 def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy: Policy) -> Probabilities:
@@ -125,15 +106,15 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
     weights = np.exp(np.array([*logs, policy.none]) - max(*logs, policy.none))
     shares = (weights / weights.sum()).tolist()
     called: dict[str, str] = {}
-    shared: dict[tuple[frozenset[str], bool], float] = {}
+    shared: dict[frozenset[str], float] = {}
     fits: dict[frozenset[str], Fit] = {}
     for each, share in sorted(zip(scored, shares, strict=False), key=lambda one: -one[1]):
-        effects = [term.effect for term in each.fitted.terms if not isinstance(term.effect, Outside)]
-        names = frozenset(_called(effect, each.fitted.scope, called) for effect in effects)
-        fits.setdefault(names, each.fitted)
-        shared[names, each.outside] = shared.get((names, each.outside), 0.0) + share
-    ranked = sorted((NameSet(*key, share) for key, share in shared.items()), key=lambda one: -one.probability)
-    return Probabilities(tuple(ranked), shares[-1], detected, fits)
+        if not each.outside:
+            names = frozenset(_called(term.effect, each.fitted.scope, called) for term in each.fitted.terms)
+            fits.setdefault(names, each.fitted)
+            shared[names] = shared.get(names, 0.0) + share
+    ranked = sorted((NameSet(*each) for each in shared.items()), key=lambda one: -one.probability)
+    return Probabilities(tuple(ranked), 1.0 - sum(each.probability for each in ranked), detected, fits)
 
 
 def _log(one: Contender, policy: Policy) -> float:

@@ -171,12 +171,6 @@ def _blocks(fitted: Fit, holdout: Rows) -> Array:
     return np.array([float(np.mean(part**2)) for part in np.array_split(left, BLOCKS) if part.size])
 
 
-def of_catalogue(fitted: Fit) -> Fit:
-    """The same without effects from outside the catalogue."""
-    kept = [term for term in fitted.terms if not isinstance(term.effect, Outside)]
-    return fitted if len(kept) == len(fitted.terms) else fit(fitted.rows, fitted.hypothesis.with_terms(kept))
-
-
 def _credible(fitted: Fit) -> bool:
     """Whether no coupling hardly rings: a search may pass such a shape but not end with it."""
     return all(term.effect.credible(term.shape) for term in fitted.terms if isinstance(term.effect, Coupling))

@@ -72,7 +72,7 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
         "probability": {
             "none_of_the_catalogue": found.probabilities.none,
             "nothing": found.probabilities.nothing,
-            "set90": [_names_json(one) for one in found.probabilities.holding(SURE)],
+            "set90": [[None] if one is None else sorted(one) for one in found.probabilities.holding(SURE)],
             "calibrated_on": CALIBRATED_ON,
         },
         "where": found.where,
@@ -90,11 +90,6 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
         "model": {"mjcf": "model.xml" if found.model is not None else None, "toml": "model.toml"},
         **picked(found, "checks", "warnings"),
     }
-
-
-def _names_json(names: frozenset[str | None]) -> list[str | None]:
-    """Names in order, None behind them."""
-    return [*sorted(name for name in names if name is not None), *[None] * (None in names)]
 
 
 def _likely_json(probabilities: Probabilities, name: str) -> dict[str, Any]:

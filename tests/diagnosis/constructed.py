@@ -10,7 +10,7 @@ import numpy as np
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities, probabilities
 from bench.diagnosis.recordings import fit_bare
-from bench.diagnosis.score import neighbourhood, of_catalogue, scored
+from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import Fit
@@ -118,7 +118,7 @@ def likely(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace 
 def names(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace | None = None) -> tuple[str, ...]:
     """The likeliest names."""
     found = likely(policy, trace, effects, holdout)
-    return of_catalogue(found.fits[found.chosen.names]).hypothesis.names
+    return found.fits[found.chosen.names].hypothesis.names
 
 
 def sought(policy: Policy, trace: Trace, effects: Sequence[str]) -> tuple[str, ...]:

@@ -7,15 +7,13 @@ import pytest
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.probability import DETECTED, NameSet, Probabilities, probabilities
 from bench.diagnosis.score import Contender
-from bench.effects.rivals import RIVALS
-from bench.fit.hypothesis import Term
 from tests.diagnosis.hand_made import level, made, term
 
 SPRING, COGGING = term("torsion_spring"), term("cogging_torque", 6.0)
 
 
 def of(sets, none, detected=()):
-    every = [NameSet(frozenset(names) - {None}, None in names, share) for names, share in sets]
+    every = [NameSet(frozenset(names), share) for names, share in sets]
     return Probabilities(tuple(every), none, frozenset(detected))
 
 
@@ -39,19 +37,10 @@ def test_what_stands_in_the_place_of_a_name():
     assert THREE.instead_of("a") == pytest.approx({None: 0.1})
 
 
-def test_a_name_stands_whatever_acts_beside():
-    beside = of([(("a", None), 0.7), ((None,), 0.15), (("a",), 0.05)], 0.1)
-    assert beside.names == pytest.approx({"a": 0.75})
-    assert beside.none == pytest.approx(0.95)
-    assert beside.chosen.names == {"a"}
-    assert beside.instead_of("a") == pytest.approx({None: 0.25})
-    assert beside.holding(0.8) == [{"a", None}, {None}]
-
-
 @pytest.mark.parametrize(("level", "count"), [(0.5, 1), (0.6, 1), (0.61, 2), (0.9, 3), (0.99, 4)])
 def test_the_fewest_sets_that_hold_the_truth(level, count):
     assert len(THREE.holding(level)) == count
-    assert THREE.holding(0.99)[2] == {None}
+    assert THREE.holding(0.99)[2] is None
 
 
 def test_what_held_out_motion_speaks_against_leaves_the_others():
@@ -80,7 +69,7 @@ def test_the_logarithm_is_the_sum_of_what_speaks_for_and_against():
 
 
 def test_what_no_catalogue_holds_gets_no_name():
-    every = [contender(0.0, 5.0), contender(-5.0, 0.0, Term(RIVALS[0], (0.4,)), numbers=2, outside=True)]
+    every = [contender(0.0, 5.0), contender(-5.0, 0.0, COGGING, numbers=2, outside=True)]
     found = probabilities(every, frozenset(), POLICY)
     assert found.names == {}
     assert found.none > 0.99

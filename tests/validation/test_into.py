@@ -27,7 +27,7 @@ def found(verdict, *names, ambiguous=()):
         )
         for name in names
     ]
-    sets = (NameSet(frozenset(names), False, 0.9), NameSet(frozenset({"torsion_spring"}), False, 0.06))
+    sets = (NameSet(frozenset(names), 0.9), NameSet(frozenset({"torsion_spring"}), 0.06))
     return SimpleNamespace(verdict=verdict, effects=effects, probabilities=Probabilities(sets, 0.04))
 
 

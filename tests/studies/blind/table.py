@@ -121,9 +121,9 @@ def likeliest(score: Score) -> float:
 def holds(score: Score, lacking: bool) -> bool:
     """Whether the sets of a case hold its truth."""
     if lacking:
-        return frozenset({None}) in score.outcome.sets
+        return None in score.outcome.sets
     truth = same(score.truth["effects"])
-    return any(None not in names and same(list(names)) == truth for names in score.outcome.sets)
+    return any(names is not None and same(list(names)) == truth for names in score.outcome.sets)
 
 
 def calibration_error(pairs: Sequence[tuple[float, bool]], bins: int = 10) -> float:

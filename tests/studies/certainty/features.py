@@ -13,7 +13,6 @@ from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
-from bench.effects.rivals import Outside
 from bench.errors import BenchError
 from bench.rig.rig import load_rig
 from bench.trace.read import read
@@ -22,7 +21,7 @@ from tests.studies.blind.score import same, twins
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A set of names of the catalogue and what `bench.diagnosis.score` says of it."""
+    """A set of names and what `bench.diagnosis.score` says of it."""
 
     names: tuple[str, ...]
     left: float
@@ -53,11 +52,11 @@ class Known:
     hypotheses: tuple[Hypothesis, ...]
 
     def right(self, one: Hypothesis) -> bool:
-        """Whether a hypothesis has the names that are true, and no other; of a real axis, whatever acts beside."""
-        if self.truth is None:
-            return one.outside and not one.names
+        """Whether a hypothesis has the names that are true, and no other."""
+        if self.truth is None or one.outside:
+            return False
         found, hidden = same(one.names), same(self.truth)
-        return hidden <= found and found - hidden <= same(self.own) and (self.group == "injected" or not one.outside)
+        return hidden <= found and found - hidden <= same(self.own)
 
     def true(self, name: str) -> bool:
         """Whether a name is."""
@@ -87,7 +86,7 @@ def known(folder: Path, withheld: bool) -> Known | None:
     searched = search(fit_bare(recordings.rows), effects, POLICY)
     hypotheses = [
         Hypothesis(
-            tuple(t.effect.name for t in one.fitted.terms if not isinstance(t.effect, Outside)),
+            one.fitted.hypothesis.names,
             one.left,
             one.over,
             len(set(one.fitted.hypothesis.names)),
