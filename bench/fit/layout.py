@@ -129,8 +129,8 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, left: Array | None = None) -> La
         owners += [HUM] * parts[-1].shape[1]
     for index, term in enumerate(hypothesis.terms):
         lag = moving if isinstance(term.effect, Coupling) else resting
-        modelled = left is not None and isinstance(term.effect, CopiesTorque)
-        parts.append(_of_term(by_model(seen, left) if modelled else seen, hypothesis, index, lag))
+        made_of = seen if left is None or not isinstance(term.effect, CopiesTorque) else by_model(seen, left)
+        parts.append(_of_term(made_of, hypothesis, index, lag))
         if isinstance(term.effect, Columns):
             bounds |= {len(owners) + place: most for place, most in term.effect.bounded.items()}
         owners += [index] * parts[-1].shape[1]

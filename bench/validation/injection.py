@@ -153,7 +153,7 @@ def injected(host: Host, effect: Effect) -> Trace:
         return _read_otherwise(host.trace, effect, acts)
     seen = stand_in(host)
     current = _reported(effect, acts, seen.driven_by(_needed(effect, acts, seen)))
-    return _driven(host, effect, current * seen.torque_constant)
+    return _driven(host, effect.name, current * seen.torque_constant)
 
 
 def _needed(effect: Effect, acts: set[str], seen: StandIn) -> Array:
@@ -168,7 +168,7 @@ def _needed(effect: Effect, acts: set[str], seen: StandIn) -> Array:
     if "transmitted_torque" in acts:
         torque = torque - _behind_coupling(effect, rows)
     if acts & {"friction_excess", "friction_difference", "friction_factor"}:  # of the very torque that overcomes it
-        return _solved(lambda at: at - _friction(effect, acts, seen.driven_by(at)), torque, effect)
+        return _solved(lambda at: at - _friction(effect, acts, seen.driven_by(at)), torque, effect.name)
     return torque
 
 
@@ -216,7 +216,7 @@ def _behind_coupling(effect: Effect, rows: Rows) -> Array:
     return less
 
 
-def _solved(function: Callable[[Array], Array], wanted: Array, effect: Effect) -> Array:
+def _solved(function: Callable[[Array], Array], wanted: Array, what: str) -> Array:
     """Where a function that is nearly its argument is as wanted (m,); InputError where it is not near enough."""
     at, missing = wanted, wanted - function(wanted)
     scale = float(np.abs(wanted).max() + np.abs(missing).max())
@@ -228,7 +228,7 @@ def _solved(function: Callable[[Array], Array], wanted: Array, effect: Effect) -
             break
         at = at + missing
         missing = wanted - function(at)
-    raise InputError(effect.name, "found so strong that no torque moves the axis as it moved", "allowed: a weaker one")
+    raise InputError(what, "found so strong that no torque moves the axis as it moved", "allowed: a weaker one")
 
 
 def _reported(effect: Effect, acts: set[str], seen: StandIn) -> Array:
@@ -242,9 +242,9 @@ def _reported(effect: Effect, acts: set[str], seen: StandIn) -> Array:
         return at * effect.torque_factor(rows)
 
     if "torque_factor" in acts:
-        current = _solved(delivered, current, effect)
+        current = _solved(delivered, current, effect.name)
     if "true_current" in acts:
-        current = _solved(lambda at: effect.true_current(Rows(seen, slice(None), effect), at), current, effect)
+        current = _solved(lambda at: effect.true_current(Rows(seen, slice(None), effect), at), current, effect.name)
     if acts & {"acting_current", "recorded_current"}:
         constant: float = effect.time_constant  # type: ignore[attr-defined]
         lagging = partial(
@@ -285,7 +285,7 @@ def _read_otherwise(trace: Trace, effect: Effect, acts: set[str]) -> Trace:
     return trace.with_signals(signals, {})
 
 
-def _driven(host: Host, effect: Effect, effort: Array) -> Trace:
+def _driven(host: Host, what: str, effort: Array) -> Trace:
     """The recording with another effort, in the signal that tells it."""
     trace, rig = host.trace, host.rig
     name = next(each for each in (rig.axis_kind.effort, "current", "voltage") if each in trace)
@@ -295,7 +295,7 @@ def _driven(host: Host, effect: Effect, effort: Array) -> Trace:
 
     step = np.full(len(trace), 1e-6 * float(np.abs(trace[name]).max() or 1.0))
     gain = float(np.median((told(step) - told(0.0 * step)) / step))
-    return trace.with_signals({name: _solved(lambda at: told(at / gain), effort, effect) / gain}, {})
+    return trace.with_signals({name: _solved(lambda at: told(at / gain), effort, what) / gain}, {})
 
 
 def disturbance(host: Host, made: Trace) -> tuple[float, float]:
@@ -319,8 +319,17 @@ def disturbance(host: Host, made: Trace) -> tuple[float, float]:
     return rms(more), rms(more - columns @ np.linalg.lstsq(columns, more, rcond=None)[0])
 
 
+def modelled(host: Host) -> Host:
+    """The axis alone, as it was found to move under J, K_w, K_0 and its load: what else a recording holds left out."""
+    seen, axis = stand_in(host), host.axis
+    torque = axis.inertia * seen.acceleration + axis.viscous * seen.velocity + axis.coulomb * seen.direction
+    return replace(host, trace=_driven(host, "the axis", torque + (0.0 if host.load is None else host.load)))
+
+
 def drawn(host: Host, kind: str, size: float, seed: int) -> Effect | None:
-    """An effect of a kind that leaves a wanted RMS beyond what J, K_w and K_0 take up.
+    """An effect of a kind that leaves a wanted RMS beyond what J, K_w and K_0 take up, on the axis alone.
+
+    An effect made of torque scales what else a recording holds, too, which shows nothing of it.
 
     Args:
         host: that it is to be put into.
@@ -334,7 +343,7 @@ def drawn(host: Host, kind: str, size: float, seed: int) -> Effect | None:
     if not KINDS[kind].possible(host.axis):
         return None
     bounds = {quantity.name: quantity for quantity in catalogue()[kind].quantities}
-    duration = float(host.trace.time[-1] - host.trace.time[0])
+    duration, alone = float(host.trace.time[-1] - host.trace.time[0]), modelled(host)
 
     def of(severity: float) -> Effect:
         return KINDS[kind].draw(host.axis, severity, np.random.default_rng(seed), duration)
@@ -345,7 +354,7 @@ def drawn(host: Host, kind: str, size: float, seed: int) -> Effect | None:
         if any(not bounds[name].lower <= value <= bounds[name].upper for name, value in values if name in bounds):
             return math.inf
         try:
-            return disturbance(host, injected(host, effect))[1]
+            return disturbance(alone, injected(alone, effect))[1]
         except InputError:  # the axis cannot have it so strong
             return math.inf
 

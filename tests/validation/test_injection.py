@@ -23,7 +23,7 @@ from bench.validation.independent.effects import (
     VoltageLimit,
 )
 from bench.validation.independent.references import Multisine
-from bench.validation.injection import INJECTABLE, Host, behind, disturbance, drawn, hooks, injected
+from bench.validation.injection import INJECTABLE, Host, behind, disturbance, drawn, hooks, injected, modelled
 from tests.kept import kept
 
 PERIOD = 250e-6
@@ -192,12 +192,13 @@ def test_what_j_and_friction_take_up_is_not_left():
     assert beyond < 1e-9
 
 
-@pytest.mark.parametrize("name", ["cogging_torque", "stribeck_friction", "torque_constant_saturation"])
+@pytest.mark.parametrize("name", ["cogging_torque", "stribeck_friction", "load_dependent_friction"])
 @pytest.mark.parametrize("size", [0.002, 0.01])
 def test_one_is_drawn_of_the_size_that_is_wanted(name, size):
+    """On the axis alone, whatever else its torque holds: friction by load scales that, too."""
     host = host_of(SWING, 2.0 * np.cos(2.0 * np.pi * 0.8 * TIME))
-    effect = drawn(host, name, size, 4)
-    assert disturbance(host, injected(host, effect))[1] == pytest.approx(size, rel=0.1)
+    effect, alone = drawn(host, name, size, 4), modelled(host)
+    assert disturbance(alone, injected(alone, effect))[1] == pytest.approx(size, rel=0.1)
     assert effect == drawn(host, name, size, 4)
 
 
