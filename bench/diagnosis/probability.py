@@ -27,7 +27,7 @@ from bench.fit.fit import Fit
 LEAST = -9.0
 #: Largest V that counts: real axes leave more than noise whatever is named.
 MUCH = 3.0
-#: How often a name that the signals show directly was right there.
+#: How often a name that the signals show directly is right: 45 of 46 in the sets that the weights come from.
 DETECTED = 0.98
 #: Where the weights come from.
 CALIBRATED_ON = "docs/certainty.md"
