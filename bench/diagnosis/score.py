@@ -135,8 +135,8 @@ def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[C
     excess = np.maximum(power - floor, 0.0)
     if holdout is not None:
         excess += _on_holdout(physical, holdout, floor)
-    left = np.log(excess + BESIDE_NOISE * floor)
-    over = left - np.log(BESIDE_NOISE * floor)
+    left = np.log(excess + BESIDE_NOISE * floor[0])  # of one noise: what damps it leaves no less for that
+    over = np.log1p(excess / (BESIDE_NOISE * floor))
     numbers = [freedom(each) - freedom(tried[0]) for each in physical]
     outside = [any(isinstance(term.effect, Outside) for term in each.terms) for each in physical]
     columns = (left - left[0]).tolist(), over.tolist(), numbers, outside

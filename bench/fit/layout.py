@@ -129,8 +129,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, left: Array | None = None) -> La
         owners += [HUM] * parts[-1].shape[1]
     for index, term in enumerate(hypothesis.terms):
         lag = moving if isinstance(term.effect, Coupling) else resting
-        made_of = seen if left is None or not isinstance(term.effect, CopiesTorque) else by_model(seen, left)
-        parts.append(_of_term(made_of, hypothesis, index, lag))
+        parts.append(_of_term(seen, hypothesis, index, lag, left))
         if isinstance(term.effect, Columns):
             bounds |= {len(owners) + place: most for place, most in term.effect.bounded.items()}
         owners += [index] * parts[-1].shape[1]
@@ -144,7 +143,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, left: Array | None = None) -> La
     return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds)
 
 
-def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float) -> Array:
+def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, left: Array | None) -> Array:
     """Columns (m, k) of one term; none of one that only changes how the recording is seen.
 
     What follows the motion behind a coupling is integrated at length, and only once where nothing but a lag differs.
@@ -155,6 +154,8 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float) -> Arra
     seen = with_friction(seen, hypothesis, index)
     if isinstance(effect, FollowsLoad):
         seen = with_load(seen, ((other, other.pull) for other in hypothesis.terms))
+    if left is not None and isinstance(effect, CopiesTorque):
+        return _copied(seen, effect, term.shape, lag, left)
     if not isinstance(effect, Coupling):
         return seen.kept((effect.columns, term.shape), lambda s: effect.columns(s, term.shape), lag)
     loads = loads_of(hypothesis)
@@ -166,6 +167,23 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float) -> Arra
         return seen.memory.get(made_of, lambda: effect.columns_of(signals, [term.shape]))
 
     return seen.kept((effect.columns_of, term.shape), integrated, lag)
+
+
+def _copied(seen: Rows, effect: Columns, shape: tuple[float, ...], lag: float, left: Array) -> Array:
+    """Columns (m, k) of the modelled torque: of samples less what is left at the rows between them (m,) - N*m (N).
+
+    That has passed the filter, which takes the fastest of it once more: the slope of the columns makes it good.
+    """
+    time, step = seen.time, 1e-3 * rms(seen.effort)
+
+    def columns(s: Signals) -> list[Column]:
+        between = np.interp(s.time + s.began, time, left)
+        low, high = (replace(s, torque=s.torque - between + more) for more in (0.0, step))
+        return [*effect.columns(low, shape), *effect.columns(high, shape), [(between, 0)]]
+
+    table = seen.table(columns, lag)
+    low, high, twice = np.split(table, [table.shape[1] // 2, table.shape[1] - 1], axis=1)
+    return low - (high - low) / step * (left[:, None] - twice)
 
 
 def _axis(seen: Rows, lags: tuple[float, ...]) -> Array:
