@@ -34,8 +34,16 @@ class _Touched:
 _TOUCHED: ContextVar[_Touched | None] = ContextVar("touched", default=None)
 #: The same for each folder that it has locked for writing.
 _HELD: ContextVar[frozenset[Identity]] = ContextVar("held", default=frozenset())
+#: What tells that a folder is one recording, and the endings of its files that are read.
+_OF_FOLDERS, _READ = ("meta/info.json", "metadata.yaml"), (".parquet", ".json", ".yaml", ".db3", ".mcap")
 #: Names of files that are being written.
 _UNDER_WAY = re.compile(r"\.bench-[0-9a-f]{12}-.*", re.DOTALL)
+
+
+def marker(path: Path) -> Path:
+    """The file itself, or of a folder that is one recording the file that tells what it holds."""
+    found = (path / name for name in _OF_FOLDERS) if path.is_dir() else ()
+    return next((file for file in found if file.is_file()), path)
 
 
 def read_bytes(path: str | Path, kind: str, replaced: bool = False) -> bytes:
@@ -85,8 +93,15 @@ def read_text(path: str | Path, kind: str, replaced: bool = False) -> str:
 
 
 def sha256(path: Path) -> str:
-    """SHA-256 of a regular file in hexadecimal digits; raises as `read_bytes`, but for its size."""
+    """SHA-256 of a file in hexadecimal digits, of a folder that is one recording that of its files' in their order.
+
+    Raises as `read_bytes`, but for its size.
+    """
     digest = hashlib.sha256()
+    if marker(path) != path:
+        files = sorted(file for file in path.rglob("*") if file.suffix in _READ and file.is_file())
+        digest.update("".join(map(sha256, files)).encode())
+        return digest.hexdigest()
     with opened(path, "a file") as file:
         left = os.fstat(file.fileno()).st_size
         while left > 0 and (piece := file.read(min(left, _PIECE))):

@@ -133,7 +133,7 @@ SHIPPED |= {"report/html.py", "rig/motor.py"}
 WRITES = {"cli/__init__.py", "cli/check.py", "jobs/process.py", "trace/write.py", "validation/independent/case.py"}
 WRITES |= {"view/video.py"}
 BYTES = {"trace/readers/arrow.py", "trace/readers/measurement.py", "trace/readers/named_arrays.py"}
-READ_BEFORE = {"course/flights.py", "plant/mjcf_file.py", "plant/robot.py", "export/mjcf.py", "trace/stream.py"}
+READ_BEFORE = {"course/flights.py", "plant/mjcf_file.py", "export/mjcf.py", "trace/stream.py"}
 COPIED = {"fleet/evaluate.py"}  # from a storage
 
 

@@ -293,7 +293,15 @@ def subject(
     robot = Robot.of(mjcf, joint)
     within = joint_rig(None if rig is None else bench.load_rig(rig).on_axis(axis), robot)
     stands = positions(at or (), robot.units)
-    return Subject(within, lambda path: read_log(path, within, robot, stands), robot=True)
+    told: set[str] = set()
+
+    def read(path: Path) -> bench.Trace:
+        trace = read_log(path, within, robot, stands)
+        warn(note for note in trace.notes if note not in told)
+        told.update(trace.notes)
+        return trace
+
+    return Subject(within, read, robot=True)
 
 
 def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.Rig:

@@ -21,6 +21,8 @@ from bench.units import Quantity
 EDGES = 240
 #: Longest events together, as share of the recording (of the longest, of several).
 LONGEST = 0.6
+#: Speed, as share of its RMS, below which an axis creeps.
+CREEPS = 0.05
 #: Widths of the filter that an event lasts at least: the full width at half maximum of its impulse response.
 RESOLVED = 2.355
 
@@ -44,12 +46,17 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         return [[(np.clip(start, 0.0, 1.0) - np.clip(end, 0.0, 1.0), 0)]]
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
-        """The best window of time, all of them compared through cumulative sums; none beside what leaves bursts."""
+        """The best window of time, all of them compared through cumulative sums; none beside what leaves bursts.
+
+        Where the axis stands or creeps, friction takes what it is given: nothing there speaks for an event.
+        """
         if fitted.places(Contact).size:
             return []
-        time, basis = fitted.time, fitted.span
+        speed = fitted.seen(lambda signals: [[(signals.velocity, 0)]], of_motion=True)[:, 0]
+        moves = (np.abs(speed) > CREEPS * fitted.scope.rms_speed).astype(np.float64)
+        time, basis = fitted.time, fitted.span * moves[:, None]
         edges = np.unique(np.linspace(0, time.size, EDGES + 1).astype(int))
-        summed = np.concatenate([[0.0], np.cumsum(fitted.residual)])[edges]
+        summed, moved = (np.concatenate([[0.0], np.cumsum(of)])[edges] for of in (fitted.residual * moves, moves))
         spanned = np.concatenate([np.zeros((1, basis.shape[1])), np.cumsum(basis, axis=0)])[edges]
         first, last = np.triu_indices(edges.size, 1)
         kept = (edges[last] - edges[first]) < LONGEST * time.size
@@ -57,9 +64,10 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
             instants = time[np.minimum(edges, time.size - 1)]
             kept &= instants[last] - instants[first] <= LONGEST * fitted.scope.duration
         first, last = first[kept], last[kept]
-        count = edges[last] - edges[first]
+        count = moved[last] - moved[first]
         power = count - np.sum((spanned[last] - spanned[first]) ** 2, axis=1)
-        gain = np.where(power > 0.02 * count, (summed[last] - summed[first]) ** 2 / np.maximum(power, 1e-9), 0.0)
+        told = (power > 0.02 * count) & (count > 0.0)
+        gain = np.where(told, (summed[last] - summed[first]) ** 2 / np.maximum(power, 1e-9), 0.0)
         best = int(np.argmax(gain))
         stop = min(int(edges[last[best]]), time.size - 1)
         return [Proposal((float(time[edges[first[best]]]), float(time[stop])), float(gain[best]))]

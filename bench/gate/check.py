@@ -55,6 +55,8 @@ def absent(name: str, found: str, allowed: str) -> Check:
     return Check(name, "not_applicable", found, allowed)
 
 
+#: Deviation of a step from whole sample periods, as share of one, that is told; a loss cannot be told from more.
+JITTER = 0.05
 #: Least number of windows.
 LEAST = 60
 #: Number of columns of motion; those of position follow.

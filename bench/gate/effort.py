@@ -2,9 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+
+from bench.arrays import rms
 from bench.gate.check import Balanced, Check, Seen, absent
 
-FOLLOWS, CONSTANTS = "effort_follows_motion", "motor_constants_agree"
+FOLLOWS, CONSTANTS, SIGNED = "effort_follows_motion", "motor_constants_agree", "effort_has_a_sign"
+#: Share of the RMS speed above which an axis moves; of the largest effort that counts as zero; of the motion that goes
+#: each way, and that is at zero. Percentage of samples that interpolation may bring to the other side of zero.
+MOVING, NEAR_ZERO, BOTH, AT_ZERO, FEW = 0.2, 0.03, 0.1, 0.01, 0.5
+#: Share explained with positive inertia that speaks for a load held up; five such recordings have 0.96 at least.
+HELD = 0.9
+#: Speed below which a joint creeps - rad/s: a turn in two minutes.
+CREEPING = 0.05
+#: Samples of a stretch.
+LEAST = 64
 #: Shares of the effort, explained by motion and position, below which a recording fails, and warns. The least of any
 #: sound recording is 0.48 (`python -m tests.gate`).
 REFUSED, WARNED = 0.3, 0.45
@@ -14,7 +28,39 @@ AUDIBLE = 3.0
 MORE = 0.3
 
 ALLOWED = f"inertia, friction and position explain {WARNED:.0%} of the effort at least, with positive inertia"
+ALLOWED_SIGN = "an effort of both signs, or one that leaves zero where the axis moves"
 ALLOWED_CONSTANTS = "kT is Ke, 3/2 or sqrt(3) of it, as Ke is meant, within their tolerances, 10 % where none is stated"
+
+
+def has_sign(seen: Seen) -> Check:
+    """Whether the effort has lost its sign: it is never below zero (or above), yet at zero while the axis moves.
+
+    What holds a load up is of one sign, too: then inertia, friction and position explain it.
+    """
+    trace = seen.trace
+    if seen.effort is None or not seen.tells_motion:
+        return absent(SIGNED, "not both effort and motion are recorded", ALLOWED_SIGN)
+    name = seen.effort[1]
+    raw = trace[name] if name in trace else seen.effort[0]
+    parts, fitted = seen.stretches(LEAST), seen.balance()
+    if not parts or fitted is None:
+        return absent(SIGNED, f"too few samples, or {name} never changes", ALLOWED_SIGN)
+    speed, effort = (
+        np.concatenate(each) for each in ([seen.speed(part) for part in parts], [raw[part] for part in parts])
+    )
+    moving = np.abs(speed) > MOVING * rms(speed)
+    forward = float(np.mean(speed[moving] > 0.0)) if moving.any() else 0.0
+    side = 1.0 if abs(effort.max()) > abs(effort.min()) else -1.0
+    top, bottom = float((side * effort).max()), float(np.percentile(side * effort, FEW))
+    at_zero = float(np.mean(np.abs(effort[moving]) <= NEAR_ZERO * top)) if moving.any() else 0.0
+    held = fitted.by_position > HELD and fitted.inertia > 0.0
+    if held or bottom < -NEAR_ZERO * top or not BOTH < forward < 1.0 - BOTH or at_zero < AT_ZERO:
+        return Check(SIGNED, "pass", f"{name} has {'both signs' if bottom < 0.0 else 'one sign'}", ALLOWED_SIGN)
+    found = (
+        f"{name} is never {'below' if side > 0.0 else 'above'} 0, and at 0 in {at_zero:.0%} of the motion, both ways"
+    )
+    advice = "its sign is lost: a register's sign bit, a magnitude or an effective value; record it with its sign"
+    return Check(SIGNED, "fail", found, ALLOWED_SIGN, advice, unanswerable=True)
 
 
 def follows_motion(seen: Seen) -> Check:
@@ -25,7 +71,11 @@ def follows_motion(seen: Seen) -> Check:
     fitted = seen.balance()
     if fitted is None:
         return absent(FOLLOWS, f"too few samples, or {name} never changes", ALLOWED)
-    return judged(fitted, name)
+    found, speed = judged(fitted, name), rms(fitted.columns[:, 1])
+    if found.status == "fail" and seen.trace.axis_kind.turns and speed < CREEPING:
+        advice = "the joint stands or creeps, and its friction takes what it is given: move it"
+        return replace(found, found=f"{found.found}; it moves at {speed:.2g} rad/s RMS", advice=advice)
+    return found
 
 
 def judged(fitted: Balanced, name: str) -> Check:

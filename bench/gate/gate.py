@@ -16,6 +16,7 @@ from bench.trace.trace import Trace, require_plausible
 CHECKS: tuple[Look, ...] = (
     signals.moves,
     timing.regular,
+    effort.has_sign,
     repairs.runs_on,
     velocity.is_derivative,
     repairs.none_lost,
@@ -26,10 +27,10 @@ CHECKS: tuple[Look, ...] = (
     effort.constants,
 )
 #: Checks that do not apply at one steady speed: signals may stay the same, and effort follows no motion.
-UNSTEADY = (signals.moves, repairs.none_lost, timing.rate, signals.resolution, effort.follows_motion)
+UNSTEADY = (signals.moves, repairs.none_lost, timing.rate, signals.resolution, effort.has_sign, effort.follows_motion)
 STEADY = tuple(look for look in CHECKS if look not in UNSTEADY)
 #: Checks of a later part of a recording: what can go wrong there, without what holds for all of it.
-WHOLE = (timing.rate, signals.resolution, effort.follows_motion, effort.constants)
+WHOLE = (timing.rate, signals.resolution, effort.has_sign, effort.follows_motion, effort.constants)
 PARTS = tuple(look for look in CHECKS if look not in WHOLE)
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
-from bench.gate.check import Check, Repaired, Seen, absent, resolution_of
+from bench.gate.check import JITTER, Check, Repaired, Seen, absent, resolution_of
 from bench.trace.time_base import HOLE, counted, interpolate
 from bench.trace.trace import Trace
 from bench.trace.wraps import Wraps, jumps, period_of, undone
@@ -80,6 +80,8 @@ def none_lost(seen: Seen) -> Check | Repaired:
     trace = seen.trace
     if len(trace) < SHORTEST or not {"position", "velocity"} & set(trace.signals):
         return absent(NAME, "too short a recording to tell, or without motion", ALLOWED)
+    if trace.time_base is not None and trace.time_base.resampled and trace.time_base.jitter > JITTER:
+        return absent(NAME, "the times jitter: what is between samples tells of no loss", ALLOWED)
     right, lost, stale = trace, 0, 0
     most = (MOST if "velocity" in trace else MOST_BLIND) * len(trace)
     for _ in range(PASSES):

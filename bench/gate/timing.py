@@ -8,13 +8,15 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
-from bench.gate.check import Check, Seen, absent
+from bench.gate.check import JITTER, Check, Seen, absent
 from bench.trace.time_base import HOLE, TimeBase
 from bench.trace.trace import Trace
 
 REGULAR, RATE = "time_is_regular", "sampling_rate_plausible"
-#: Deviation of a step from whole sample periods that is told, and that is refused where nothing resampled it - share.
-JITTER, IRREGULAR = 0.05, 0.1
+#: Deviation of a step from whole sample periods that is refused where nothing resampled it - share.
+IRREGULAR = 0.1
+#: Times the shortest of four of five steps that the longest may have: what two of three lost samples leave.
+UNEVEN = 3.0
 #: Share of a regular base that may be placed between measured samples.
 PLACED = 0.5
 #: Rates that no recording of a servo's motion has: a unit of time is wrong - Hz.
@@ -44,6 +46,9 @@ def regular(seen: Seen) -> Check:
     holes = f"{len(base.holes)} holes" if base.holes else "no hole"
     found = f"steps of {base.sample_period:.4g} s within {base.jitter:.1%}, {holes}"
     advice = "record with the drive's own clock"
+    if base.steps is not None and base.steps[1] > UNEVEN * base.steps[0]:
+        found = f"steps of {base.steps[0]:.3g} to {base.steps[1]:.3g} s, four of five: no sample period"
+        return Check(REGULAR, "fail", found, ALLOWED_TIME, f"{advice}, or at a rate that the recorder keeps up with")
     if base.interpolated > PLACED * len(trace):
         return Check(REGULAR, "fail", f"{found}; {base.interpolated} samples missing", ALLOWED_TIME, advice)
     if not base.resampled and base.jitter > IRREGULAR:

@@ -15,6 +15,7 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.gate.check import Check, Seen, absent, resolution_of
+from bench.gate.timing import rate
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
@@ -39,6 +40,8 @@ def is_derivative(seen: Seen) -> Check:
     found = compared(seen)
     if found is None:
         return absent(NAME, f"hardly any motion, or no stretch of {2 * SPAN} samples without a hole", ALLOWED)
+    if found.remainder >= REMAINDER and rate(seen).status == "fail":
+        return absent(NAME, "sampled too coarsely to compare them", ALLOWED)
     return judged(found)
 
 

@@ -54,12 +54,32 @@ def _fault(path: str) -> str:
     """Why an MJCF is none; empty if it is one."""
     with silenced():
         try:
-            model = mujoco.MjSpec.from_file(path).compile()
+            model, _ = compiled(path)
             mujoco.mj_forward(model, mujoco.MjData(model))
         except (ValueError, OSError, RuntimeError, mujoco.FatalError, UnicodeError) as error:
             return " ".join(str(error).split())
     wrong = [field for field in FINITE if not np.isfinite(getattr(model, field)).all()]
     return f"{wrong[0]} is not finite" if wrong else ""
+
+
+def compiled(path: str) -> tuple[mujoco.MjModel, tuple[str, ...]]:
+    """The model of an MJCF or URDF, and what is left out of it: meshes that are not there.
+
+    Raises ValueError as MuJoCo does, and where an inertia is made of such a mesh.
+    """
+    spec = mujoco.MjSpec.from_file(path)
+    folder = Path(path).parent / spec.meshdir
+    missing = {mesh.name: mesh for mesh in spec.meshes if mesh.file and not (folder / mesh.file).is_file()}
+    for geom in [one for one in spec.geoms if one.meshname in missing]:
+        if not geom.parent.explicitinertial:
+            raise ValueError(
+                f"mesh '{geom.meshname}' is not there, and the inertia of '{geom.parent.name}' is made of it"
+            )
+        spec.delete(geom)
+    for mesh in missing.values():
+        spec.delete(mesh)
+    told = f"meshes that are not there are left out of {Path(path).name}: {', '.join(sorted(missing))}"
+    return spec.compile(), (told,) if missing else ()
 
 
 def _read_all(path: Path) -> None:

@@ -13,7 +13,7 @@ correctly.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -25,13 +25,16 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.names import nearest
-from bench.plant.mjcf_file import require_compiles
+from bench.plant.mjcf_file import compiled, require_compiles
 from bench.plant.run import silenced
 from bench.rig.load import Load
-from bench.rig.rig import Rig
-from bench.trace.channel import Recording
-from bench.trace.choose import GivenOptions
+from bench.rig.rig import JointNotes, Rig
+from bench.trace.channel import Channel, Recording
+from bench.trace.choose import GivenOptions, axes_of
+from bench.trace.inspect import time_unit
+from bench.trace.joints import named
 from bench.trace.read import read_recording
+from bench.trace.signals import signal_of
 from bench.trace.time_base import interpolate
 from bench.trace.trace import Trace, assemble, with_known
 
@@ -52,16 +55,16 @@ DISABLED = (
 
 def joint_units(path: Path) -> dict[str, str]:
     """Names of the hinges and slides of an MJCF file with the units of their positions; InputError as `Robot.of`."""
-    model = _loaded(path)
+    model, _ = _loaded(path)
     units = {int(mujoco.mjtJoint.mjJNT_HINGE): "rad", int(mujoco.mjtJoint.mjJNT_SLIDE): "m"}
-    named = {model.joint(k).name: units.get(int(model.jnt_type[k])) for k in range(model.njnt)}
-    return {name: unit for name, unit in named.items() if name and unit is not None}
+    found = {model.joint(k).name: units.get(int(model.jnt_type[k])) for k in range(model.njnt)}
+    return {name: unit for name, unit in found.items() if name and unit is not None}
 
 
-def _loaded(path: Path) -> mujoco.MjModel:
+def _loaded(path: Path) -> tuple[mujoco.MjModel, tuple[str, ...]]:
     require_compiles(path)
     with silenced():
-        return mujoco.MjModel.from_xml_path(str(path))
+        return compiled(str(path))
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,21 +77,23 @@ class Robot:
         source: file of the model.
         joints: numbers of the joints that move with it, itself among them, in the model's order: what hangs on the
             world apart from them is not felt.
+        notes: what was left out of the model.
     """
 
     model: mujoco.MjModel
     joint: str
     source: str
     joints: tuple[int, ...]
+    notes: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, path: Path, joint: str | None) -> Robot:
-        """From an MJCF file.
+        """From an MJCF or URDF file.
 
         InputError if there is no such file or joint; if a joint of its tree has more than one coordinate; if a loop, a
         tendon or an equality of the MJCF puts a torque on it that no log tells.
         """
-        model = _loaded(path)
+        model, notes = _loaded(path)
         names = [model.joint(k).name for k in range(model.njnt)]
         if joint is None or joint not in names:
             found = "missing" if joint is None else f"found no joint '{joint}'{nearest(joint, names)}"
@@ -110,19 +115,22 @@ class Robot:
             field[dof] = 0.0
         for flag in DISABLED:
             model.opt.disableflags |= int(flag)
-        return cls(model, joint, str(path), joints)
+        return cls(model, joint, str(path), joints, notes)
 
     @property
     def units(self) -> dict[str, str]:
         """Names of the other joints with the units of their positions."""
-        turning = int(mujoco.mjtJoint.mjJNT_HINGE)
-        joints = {self.model.joint(k).name: self.model.jnt_type[k] for k in self.joints}
-        return {name: "rad" if kind == turning else "m" for name, kind in joints.items() if name != self.joint}
+        names = [self.model.joint(k).name for k in self.joints]
+        return {name: self.unit(name) for name in names if name != self.joint}
+
+    def unit(self, joint: str) -> str:
+        """Of a joint's position."""
+        return "rad" if self.model.jnt_type[self.model.joint(joint).id] == int(mujoco.mjtJoint.mjJNT_HINGE) else "m"
 
     @property
     def turns(self) -> bool:
         """Whether the joint turns rather than slides."""
-        return bool(self.model.jnt_type[self.model.joint(self.joint).id] == int(mujoco.mjtJoint.mjJNT_HINGE))
+        return self.unit(self.joint) == "rad"
 
     @cached_property
     def inertia(self) -> float:
@@ -237,7 +245,7 @@ def joint_rig(rig: Rig | None, robot: Robot) -> Rig:
     InputError where the rig is of another kind.
     """
     alone = {"name": robot.joint, "kind": "rotary" if robot.turns else "linear"}
-    own = Rig.of(alone, robot.source) if rig is None else rig
+    own = Rig.of(alone, robot.source) if rig is None else rig.of_joint(robot.joint)
     if own.axis_kind.turns is not robot.turns:
         found = f"found a joint that {'turns' if robot.turns else 'slides'}"
         raise InputError(f"--joint {robot.joint}", found, f"allowed: a {own.kind} one, as {own.source} says")
@@ -253,27 +261,30 @@ def rig_within(rig: Rig, robot: Robot) -> Rig:
 def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Trace:
     """A log of a joint with the torque that the rest of the robot asks of it.
 
-    The log holds, beside the joint's own signals, `NAME.position` of every other joint and `NAME.velocity` where it is
-    recorded; joints that it does not hold stand where they are `stated` to - rad (m). The rig's gear lies between the
-    log's position and the joint's. InputError where the log cannot be read, or a joint is neither in it nor stated.
+    The log holds, beside the joint's own signals, the position of every other joint, and its velocity where that is
+    recorded, by their names in the MJCF or by their numbers in its order (`bench.trace.joints`), or as the rig's
+    `[joints.NAME]` says; joints that it does not hold stand where they are `stated` to - rad (m). What has no unit is
+    taken for SI. The rig's gear lies between the log's position and the joint's.
+
+    Raises:
+        InputError: the log cannot be read, a joint is neither in it nor stated, stands beyond what the MJCF allows by
+            the unit assumed, or its effort is in A or V, which the MJCF's links are not.
     """
-    recording = read_recording(path)
-    if (
-        any(_holds(recording, name) for name in robot.units)
-        and not _holds(recording, robot.joint)
-        and not rig.trace.columns
+    recording = named(
+        read_recording(path), list(filter(None, (robot.model.joint(k).name for k in range(robot.model.njnt))))
+    )
+    own, names = rig.of_joint(robot.joint), [robot.model.joint(k).name for k in robot.joints]
+    if any(_holds(recording, name) for name in robot.units) and not (
+        _holds(recording, robot.joint) or own.trace.columns or own.trace.axis
     ):
         allowed = f"allowed: a column '{robot.joint}.position [rad]' and so on, or [trace.columns] in a rig"
         raise InputError(f"{path}: joint '{robot.joint}'", "has no column of its own", allowed)
-    own = rig.on_axis(robot.joint) if _holds(recording, robot.joint) and rig.trace.axis is None else rig
-    trace, ratio = assemble(recording, own.trace), (rig.load or Load()).gear_ratio
-    motion, names = {}, [robot.model.joint(k).name for k in robot.joints]
-    for name in names:
-        if name == robot.joint:
-            position, velocity = _motion(trace, trace)
-            motion[name] = position / ratio, velocity / ratio
-        elif _holds(recording, name):
-            motion[name] = _motion(assemble(recording, GivenOptions(axis=name)), trace)
+    trace, ratio = _joint_of(recording, robot.joint, own, robot), (own.load or Load()).gear_ratio
+    position, velocity = _motion(trace, trace)
+    motion = {robot.joint: (position / ratio, velocity / ratio)}
+    for name in robot.units:
+        if name in rig.joints or _holds(recording, name):
+            motion[name] = _motion(_joint_of(recording, name, rig, robot), trace)
         elif name in stated:
             motion[name] = np.full(len(trace), stated[name]), np.zeros(len(trace))
     for name in names:
@@ -281,11 +292,64 @@ def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) ->
         if followed is not None:
             motion[name] = followed
         elif name not in motion:
-            allowed = f"allowed: a column '{name}.position [rad]', or --at {name}=0"
+            allowed = f"allowed: a column '{name}.position [rad]', or --at {name}=0, or which one of the log it is "
+            allowed += f'({", ".join(axes_of(recording.channels))}): axis = "..." under [joints.{name}] in a rig'
             raise InputError(f"{path}: joint '{name}'", "is neither in the log nor stated", allowed)
+        _require_within(motion[name][0], name, robot, path)
+    if own.effort(trace)[1] != own.effort_unit:
+        allowed = f"allowed: {own.effort_unit}, or its torque_constant under [joints.{robot.joint}] in a rig"
+        found = f"found an effort in {own.effort(trace)[1]}, beside links in kg"
+        raise InputError(f"{path}: joint '{robot.joint}'", found, allowed)
     position, velocity = (np.column_stack([motion[name][k] for name in names]) for k in (0, 1))
     torque, momentum = robot.rest(position, velocity)
-    return with_known(trace, torque / ratio, momentum / ratio, rig.effort_unit)
+    known = with_known(trace, torque / ratio, momentum / ratio, own.effort_unit)
+    standing = [
+        name for name in robot.units if name in stated and name not in rig.joints and not _holds(recording, name)
+    ]
+    told = f"{', '.join(standing)}: stated to stand; what they ask for where they move passes for {robot.joint}'s"
+    return replace(known, notes=(*robot.notes, *known.notes, *([told] if standing else [])))
+
+
+#: What a joint that slides has where messages tell all joints as if they turned.
+_SLIDES = {"rad": "m", "rad/s": "m/s", "N*m": "N"}
+
+
+def _joint_of(recording: Recording, name: str, rig: Rig, robot: Robot) -> Trace:
+    """The log of one of a robot's joints, counted as the robot's model does."""
+    notes = rig.joints.get(name, JointNotes())
+    how = rig.trace if name == robot.joint else GivenOptions(notes.columns, rig.trace.sample_period, axis=notes.axis)
+    axis = how.axis or (name if _holds(recording, name) else None)
+    how = GivenOptions(how.columns, how.sample_period, how.position_period, axis)
+    angle = robot.unit(name)
+    if angle == "m":
+        recording = replace(recording, channels=tuple(map(_sliding, recording.channels)))
+    units = {"position": angle, "velocity": f"{angle}/s", "torque": "N*m", "force": "N", "current": "A", "time": "s"}
+    recording = replace(recording, usual_units={**units, **recording.usual_units})
+    trace = assemble(recording, how)
+    if {"position", "velocity"} <= set(trace.signals):  # times in no unit are in the one in which these two agree
+        unit = time_unit(trace.time, trace["position"], trace["velocity"])
+        if unit not in (None, "s") and any("time taken as s" in note for note in trace.notes):
+            trace = assemble(replace(recording, usual_units={**recording.usual_units, "time": unit}), how)
+    turned = {one: -values for one, values in trace.signals.items() if notes.sign < 0 and one != "temperature"}
+    return trace.with_signals(turned, {})
+
+
+def _sliding(channel: Channel) -> Channel:
+    """A column of a joint that slides: its effort is a force."""
+    unit = _SLIDES.get(channel.unit or "", channel.unit)
+    is_effort = (channel.signal or signal_of(channel.name)) == "torque"
+    return replace(channel, unit=unit, **({"name": f"{channel.name}.force", "signal": "force"} if is_effort else {}))
+
+
+def _require_within(position: Array, joint: str, robot: Robot, path: Path) -> None:
+    """InputError where a joint stands further beyond its limits than these are apart: its unit is another."""
+    at = robot.model.joint(joint).id
+    low, high = robot.model.jnt_range[at]
+    if robot.model.jnt_limited[at] and max(low - position.min(), position.max() - high) > high - low:
+        unit = robot.unit(joint)
+        found = f"stands at {position.min():.4g} to {position.max():.4g} {unit}"
+        allowed = f"allowed: {low:.4g} to {high:.4g} {unit}, as the MJCF limits it; its unit (or axis) may be another: "
+        raise InputError(f"{path}: joint '{joint}'", found, f"{allowed}columns under [joints.{joint}] in a rig say it")
 
 
 def _holds(recording: Recording, name: str) -> bool:

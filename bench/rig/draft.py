@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 
 from bench.errors import InputError
 from bench.rig.motor import catalogue_motor
 from bench.rig.rig import Rig, without_constant
 from bench.trace.choose import GivenOptions
-from bench.trace.inspect import Inspection, inspect_recording
+from bench.trace.inspect import ColumnSummary, Inspection, inspect_recording
 from bench.trace.read import read_recording
 from bench.trace.trace import assemble
 
@@ -92,10 +93,25 @@ def _trace(inspection: Inspection, axis: str | None) -> list[str]:
     if not (timed or any(one.signal == "time" or one.rate is not None for one in inspection.columns)):
         settings.append('# sample_period = "? ms"     # the file holds no time: how often was it sampled?')
     lines = ["[trace]", *settings, ""] if settings else []
-    columns = []
-    for column in inspection.columns:
+    several = axis is None and len(inspection.axes) > 1
+    columns = _columns(one for one in inspection.columns if not several or one.axis is None)
+    lines += ["[trace.columns]", *columns] if columns else []
+    for joint in inspection.axes if several else ():
+        own = _columns(one for one in inspection.columns if one.axis == joint)
+        lines += [
+            "",
+            f"[joints.{json.dumps(joint)}.columns]     # the name that the joint has in its MJCF; without unit SI",
+        ]
+        lines += [line.removeprefix("# ").replace(" [?]", "").removesuffix("; its unit?") for line in own]
+    return lines
+
+
+def _columns(columns: Iterable[ColumnSummary]) -> list[str]:
+    """Lines of what columns are likely to be, as comments where only the user knows the unit."""
+    lines = []
+    for column in columns:
         if column.suggestion is not None:
             why = f"     # {', '.join(column.why)}" if column.why else ""
             open_unit = "[?]" in column.suggestion
-            columns.append(("# " if open_unit else "") + column.suggestion + why + ("; its unit?" if open_unit else ""))
-    return [*lines, "[trace.columns]", *columns] if columns else lines
+            lines.append(("# " if open_unit else "") + column.suggestion + why + ("; its unit?" if open_unit else ""))
+    return lines

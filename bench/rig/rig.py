@@ -39,6 +39,24 @@ class TraceNotes(RigTable):
     axis: str | None = None
 
 
+class JointNotes(RigTable):
+    """`[joints.NAME]`: what a log of a robot holds of one of its joints, and how it counts.
+
+    Attributes:
+        axis: what the log calls the joint, where that is not its name.
+        columns: as of `[trace]`, of any column of the log.
+        sign: -1 where the log counts angle, speed and torque of the joint the other way than the robot's model.
+        torque_constant: of the joint's motor - N*m/A.
+        gear_ratio: turns of the motor, whose angle and torque the log then has, per turn of the joint.
+    """
+
+    axis: str | None = None
+    columns: dict[str, str] = Field(default_factory=dict)
+    sign: Literal[1, -1] = 1
+    torque_constant: values.TorquePerAmpere | None = None
+    gear_ratio: Annotated[float, Field(gt=0.0)] | None = None
+
+
 class CheckTable(RigTable):
     """What `bench check` allows, by quantity: a change that does not matter, and the standard deviation of one axis
     from recording to recording; each a share such as `"2 %"` or a number with its unit.
@@ -123,6 +141,7 @@ class Rig(RigTable):
     trace: TraceNotes = TraceNotes()
     simulation: Simulation | None = None
     check: CheckTable | None = None
+    joints: dict[str, JointNotes] = Field(default_factory=dict)
     source: Annotated[str, Field(exclude=True)] = "rig"
 
     def __init__(self, /, **table: Any) -> None:  # noqa: ANN401 - whatever a rig file holds
@@ -167,6 +186,18 @@ class Rig(RigTable):
         """The same rig, reading the axis of this name from recordings that hold several; None: as the rig says."""
         trace = self.trace if name is None else self.trace.model_copy(update={"axis": name})
         return self.model_copy(update={"trace": trace})
+
+    def of_joint(self, name: str) -> Rig:
+        """The same rig with what `[joints.NAME]` says of a joint in place of what is said of all."""
+        own = self.joints.get(name, JointNotes())
+        motor, load, trace = self.motor, self.load or Load(), self.trace
+        if own.torque_constant is not None:
+            motor = motor.model_copy(update={"torque_constant": own.torque_constant})
+        if own.gear_ratio is not None:
+            load = load.model_copy(update={"gear_ratio": own.gear_ratio})
+        columns = {**trace.columns, **own.columns}
+        trace = trace.model_copy(update={"columns": columns, "axis": own.axis or trace.axis})
+        return self.model_copy(update={"motor": motor, "load": load if own.gear_ratio else self.load, "trace": trace})
 
     def effort(self, trace: Trace) -> tuple[Array, str]:
         """What drives the axis in a trace, and its unit: motor torque - N*m (force - N) wherever the rig tells how.

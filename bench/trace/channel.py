@@ -31,6 +31,7 @@ class Channel:
         defect: why the values cannot be read; raised only where a trace needs them.
         open_unit: why the file leaves the unit open though it names one.
         axis: of a file that tells several apart.
+        signal: that it holds of that axis, where its name tells (`bench.trace.joints`).
         moments: whether the values are moments of a calendar or a clock, as times from the first of them.
     """
 
@@ -44,6 +45,7 @@ class Channel:
     defect: InputError | None = None
     open_unit: str | None = None
     axis: str | None = None
+    signal: str | None = None
     moments: bool = False
 
     @property

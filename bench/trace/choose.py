@@ -84,13 +84,13 @@ def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, SignalC
         if signal not in SI_UNITS and signal != "time":
             allowed = f"allowed: time, {', '.join(SI_UNITS)}"
             raise InputError(f"columns: {signal}", f"not a signal{nearest(signal, [*SI_UNITS])}", allowed)
-    recording = replace(recording, channels=of_axis(recording, how.axis))
+    whole, recording = recording, replace(recording, channels=of_axis(recording, how.axis))
     chosen: dict[str, SignalColumn] = {}
     faults: dict[str, InputError] = {}
     notes: list[str] = []
     for signal in ("time", *SI_UNITS):
         try:
-            found = _signal(recording, signal, how.columns, notes)
+            found = _signal(recording, whole, signal, how.columns, notes)
         except InputError as fault:
             if signal in how.columns and not (signal == "time" and how.sample_period):
                 raise
@@ -151,14 +151,16 @@ def _require(
                     raise faults[signal]
 
 
-def _signal(recording: Recording, signal: str, columns: Mapping[str, str], notes: list[str]) -> SignalColumn | None:
-    """The channel of a signal; None where the recording has none."""
+def _signal(
+    recording: Recording, whole: Recording, signal: str, columns: Mapping[str, str], notes: list[str]
+) -> SignalColumn | None:
+    """The channel of a signal, by a column's name of the whole recording's; None where there is none."""
     given = columns.get(signal)
     channel, unit, sign = None, None, 1.0
     if given is not None:
         sign = -1.0 if given.strip().startswith("-") else 1.0
         name, unit = split_label(given.strip().removeprefix("-"))
-        channel = _named(recording, signal, name)
+        channel = _named(recording, signal, name) or _named(whole, signal, name)
     named = channel is not None
     if channel is None:
         channel, sign, unit = _known(recording, signal), 1.0, None
@@ -220,6 +222,7 @@ def _without_marks(name: str) -> str:
 def _known(recording: Recording, signal: str) -> Channel | None:
     alike = [channel for channel in recording.channels if signal_of(channel.name) == signal]
     matches = [channel for channel in recording.channels if channel.name == signal] or alike
+    matches = matches or [channel for channel in recording.channels if channel.signal == signal]
     return _one(recording, signal, matches) if matches else None
 
 
@@ -227,11 +230,12 @@ def _one(recording: Recording, signal: str, matches: list[Channel]) -> Channel:
     if len(matches) == 1:
         return matches[0]
     where, axes = f"{recording.origin}: {signal}", axes_of(matches)
-    if len(axes) > 1:
+    if len(axes) > 1 and not any(channel.signal for channel in matches):
         advice = f"pick one: --axis {axes[0]}, or axis in the rig's [trace]"
         raise InputError(where, f"found {len(axes)} axes ({', '.join(axes)})", advice)
     names = ", ".join(f"'{channel.label}'" for channel in matches)
-    raise InputError(where, f"found several columns for it ({names})", "name one in the rig's [trace.columns]")
+    pick = f"pick one: --axis {axes[0]}, or " if len(axes) > 1 else ""
+    raise InputError(where, f"found several columns for it ({names})", f"{pick}name one in the rig's [trace.columns]")
 
 
 def _index(recording: Recording, columns: Mapping[str, str]) -> Channel | None:

@@ -23,31 +23,23 @@ from bench.trace.channel import Channel, Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis, reading_options
 from bench.trace.in_si import in_si
 from bench.trace.read import read_recording
-from bench.trace.signals import SI_UNITS, is_index, scale_in, signal_of, unit_of, wanted_units
+from bench.trace.signals import (
+    REFERENCE,
+    SI_UNITS,
+    WORDS,
+    is_index,
+    scale_in,
+    signal_of,
+    unit_of,
+    wanted_units,
+)
 from bench.trace.trace import on_time_base, unused
 from bench.units.conversion import is_unit, scale_of
 from bench.units.grammar import UnitError
 
 SCHEMA = "bench.inspect/1"
 
-#: Words in column names, in the languages of drives, and letters of the field.
-WORDS: dict[str, str] = {
-    "time": r"time|zeit|temps|tempo|tiempo|timestamp|stamp|ms_today|clock|uhrzeit|t",
-    "velocity": r"vel|velo|velocity|speed|spd|geschw\w*|drehzahl\w*|vitesse|velocidad|velocita|omega|rpm|erpm|"
-    r"dq|qd|qdot|n_?ist|nact|v_?ist|606c|60:?6c|vact|actvel\w*|r63|r0063|vl|w",
-    "position": r"pos|position\w*|angle|winkel|theta|enc|encoder|lage\w*|phi|weg|6064|actpos\w*|pl|q|x",
-    "current": r"cur|curr|current|iq|i_q|isq|strom\w*|courant|corriente|amps?|r78|r0078|il|q_axis_current|i",
-    "torque": r"torque|trq|tq|moment|drehmoment\w*|effort\w*|tau|couple|coppia|m_?ist|6077|r80|r0080|force|kraft",
-    "voltage": r"volt\w*|spannung|uq|vq|vbus|udc|tension|u",
-    "temperature": r"temp\w*|motor_temp",
-    "acceleration": r"acc|accel\w*|beschl\w*",
-}
 _NAMED = {signal: re.compile(rf"(?:{words})\d*", re.I) for signal, words in WORDS.items()}
-_REFERENCE = re.compile(
-    r"set|soll\w*|ref|reference|cmd|command\w*|demand|target|goal|input|setpoint|sp|des|desired|consigne|"
-    r"r62|r0062|607a|60ff",
-    re.I,
-)
 _FOREIGN = re.compile(
     r"d_axis\w*|id|in|battery|supply|mos|frame|seq|state|status|flags?|mode|error|fault|checksum", re.I
 )
@@ -163,6 +155,7 @@ class Inspection:
         duplicates: samples dropped because their time stood already in the recording.
         interpolated: samples placed between measured ones.
         resampled: whether jittering samples were interpolated onto regular times.
+        steps: between which four of five steps are, where they are not regular - s.
         signals: in the order of `bench.trace.signals`.
         dropped: columns that are no known signal.
         metadata: what the file says about itself.
@@ -184,6 +177,7 @@ class Inspection:
     duplicates: int = 0
     interpolated: int = 0
     resampled: bool = False
+    steps: tuple[float, float] | None = None
     signals: tuple[SignalSummary, ...] = ()
     dropped: tuple[str, ...] = ()
     metadata: Mapping[str, str] | None = None
@@ -352,16 +346,20 @@ def _with_time_unit(given: dict[int, Guess], channels: Sequence[Channel]) -> dic
     ticks = channels[place].values[:ENOUGH]
     if angle is None or speed is None or not angle.size == speed.size == ticks.size:
         return given
-    step = np.diff(angle)
-    travelled = 0.5 * (speed[1:] + speed[:-1]) * np.diff(ticks)
-    plain = np.abs(step) < 0.2 * np.ptp(angle)
+    unit = time_unit(ticks, angle, speed)
+    if unit is None:
+        return given
+    return {**given, place: replace(time, unit=unit, why=(*time.why, f"position and velocity agree in {unit}"))}
+
+
+def time_unit(ticks: Array, position: Array, velocity: Array) -> str | None:
+    """The unit in which times (n,) make a position and its velocity - SI, (n,) each - agree; None where none does."""
+    step = np.diff(position)
+    travelled = 0.5 * (velocity[1:] + velocity[:-1]) * np.diff(ticks)
+    plain = np.abs(step) < 0.2 * np.ptp(position)
     power = float(travelled[plain] @ travelled[plain])
     second = float(travelled[plain] @ step[plain]) / power if power > 0.0 else 0.0
-    for unit, factor in TIMES.items():
-        if abs(second / factor - 1.0) < AGREEMENT:
-            why = (*time.why, f"position and velocity agree in {unit}")
-            return {**given, place: replace(time, unit=unit, why=why)}
-    return given
+    return next((unit for unit, factor in TIMES.items() if abs(second / factor - 1.0) < AGREEMENT), None)
 
 
 def _in_si(channel: Channel, guess: Guess) -> Array | None:
@@ -377,14 +375,18 @@ def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> 
     parts = [part for part in _PARTS.split(channel.name) if part]
     names = [channel.name.strip().rsplit(".", 1)[-1], *parts]
     speaks = 1.0 if any(_FOREIGN.fullmatch(part) for part in parts) else 2.0
-    is_reference = any(_REFERENCE.fullmatch(part) for part in parts)
+    is_reference = any(REFERENCE.fullmatch(part) for part in parts)
     guesses = []
-    for signal in WORDS if rises else [signal for signal in WORDS if signal != "time"]:
+    told = (channel.signal or signal_of(channel.name) or "").removesuffix("_reference")
+    signals = [signal for signal in WORDS if signal == told] or [signal for signal in WORDS if not told]
+    for signal in signals if rises else [signal for signal in signals if signal != "time"]:
         fits = _fits(signal, unit)
         if fits is False:
             continue
         why: list[tuple[float, str]] = [(4.0, "holds moments")] if signal == "time" and channel.moments else []
-        if signal_of(channel.name) == signal:
+        if (channel.signal or "").removesuffix("_reference") == signal:
+            why.append((3.0, f"is of {channel.axis}"))
+        elif signal_of(channel.name) == signal:
             why.append((3.0, f"is called '{channel.name}'"))
         elif any(_NAMED[signal].fullmatch(name) for name in names):
             why.append((speaks, f"'{channel.name}' speaks of {signal}"))
@@ -443,7 +445,7 @@ def _derivatives(columns: Mapping[int, Channel]) -> dict[int, tuple[str, str]]:
     for place, channel in long.items():
         rate = _rate_of(channel.values[:ENOUGH])
         for other, second in long.items() if rate.size else ():
-            alike = other != place and second.values.size == channel.values.size
+            alike = other != place and second.values.size == channel.values.size and second.axis == channel.axis
             if alike and abs(_correlation(rate, smooth[other])) > DERIVATIVE:
                 found[place] = ("position", f"its derivative is '{second.name}'")
                 found[other] = ("velocity", f"is the derivative of '{channel.name}'")

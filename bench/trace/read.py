@@ -18,11 +18,14 @@ from typing import Protocol, runtime_checkable
 from bench.errors import InputError
 from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions
+from bench.trace.joints import by_joints
 from bench.trace.readers.arrow import PARQUET
 from bench.trace.readers.bam import BAM
 from bench.trace.readers.codesys import CODESYS_CSV, CODESYS_TEXT, CODESYS_XML
 from bench.trace.readers.epos import EPOS
-from bench.trace.readers.mcap import MCAP
+from bench.trace.readers.json_log import JSON_LOG
+from bench.trace.readers.lerobot import LEROBOT
+from bench.trace.readers.mcap import BAG, MCAP
 from bench.trace.readers.measurement import MDF, TDMS
 from bench.trace.readers.named_arrays import HDF5, MAT, NUMPY
 from bench.trace.readers.table import TABLE
@@ -63,8 +66,8 @@ class Reader(Protocol):
 
 #: The surest to tell first. The plain table is asked last: many a format looks like one.
 OWN: tuple[Reader, ...] = (
-    *(PARQUET, MAT, HDF5, NUMPY, TDMS, MCAP, MDF),
-    *(CODESYS_XML, SINUMERIK, CODESYS_CSV, CODESYS_TEXT, TWINCAT, EPOS, BAM),
+    *(LEROBOT, PARQUET, MAT, HDF5, NUMPY, TDMS, MCAP, MDF),
+    *(CODESYS_XML, SINUMERIK, CODESYS_CSV, CODESYS_TEXT, TWINCAT, EPOS, BAM, BAG, JSON_LOG),
 )
 
 
@@ -116,6 +119,9 @@ def read(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = 
 
 
 def read_recording(path: str | Path) -> Recording:
-    """Channels of a file as they stand in it, before any mapping to signals; raises as `open_source` and `Reader`."""
+    """Channels of a file, or of a dataset's or a bag's folder, as they stand in it, before any mapping to signals.
+
+    Those of joints have them as their axes. Raises as `open_source` and `Reader`.
+    """
     source = open_source(path)
-    return reader_of(source).read(source)
+    return by_joints(reader_of(source).read(source))

@@ -51,6 +51,23 @@ ALIASES: dict[str, tuple[str, ...]] = {
     "velocity_reference": ("reference velocity", "velocity demand value"),
     "torque_reference": ("reference torque", "torque demand value"),
 }
+#: Words in column names, in the languages of drives, and letters of the field.
+WORDS: dict[str, str] = {
+    "time": r"time|zeit|temps|tempo|tiempo|timestamp|stamp|ms_today|clock|uhrzeit|t",
+    "velocity": r"vel|velo|velocit(?:y|ies)|speeds?|spd|geschw\w*|drehzahl\w*|vitesse|velocidad|velocita|omega|rpm|"
+    r"erpm|dq|qd|qvel|qdot|n_?ist|nact|v_?ist|606c|60:?6c|vact|actvel\w*|r63|r0063|vl|w",
+    "position": r"pos|position\w*|angles?|qpos|winkel|theta|enc|encoder|lage\w*|phi|weg|6064|actpos\w*|pl|q|x",
+    "current": r"cur|curr|currents?|iq|i_q|isq|strom\w*|courant|corriente|amps?|r78|r0078|il|q_axis_current|i",
+    "torque": r"torques?|trq|tq|moment|drehmoment\w*|effort\w*|taus?|couple|coppia|m_?ist|6077|r80|r0080|force|kraft",
+    "voltage": r"volt\w*|spannung|uq|vq|vbus|udc|tension|u",
+    "temperature": r"temp\w*|motor_temp",
+    "acceleration": r"acc|accel\w*|beschl\w*",
+}
+REFERENCE = re.compile(
+    r"set|action|soll\w*|ref|reference|cmd|command\w*|demand|target|goal|input|setpoint|sp|des|desired|consigne|"
+    r"r62|r0062|607a|60ff",
+    re.I,
+)
 #: Names of columns that count samples.
 _INDEX = re.compile(
     r"samples?|sample (index|number|no\.?|nr)|index|idx|n|nr\.?|no\.?|row|abtastung|point|cycle|ticks?|count|counter"
@@ -69,7 +86,7 @@ def unit_on(kind: AxisKind, name: str) -> str:
 
 def plain_name(name: str) -> str:
     """Last part of a name in lower case, by which names are compared."""
-    return name.lstrip("#% ").rsplit(".", 1)[-1].strip().lower().replace("_", " ")
+    return name.lstrip("#% ").rsplit(".", 1)[-1].lower().replace("_", " ").strip()
 
 
 def signal_of(name: str) -> str | None:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from bench.bounds import read_bounded
 from bench.errors import InputError
-from bench.files import read_bytes
+from bench.files import marker, read_bytes
 from bench.names import readable
 from bench.trace.channel import Recording
 
@@ -104,12 +104,12 @@ def utf8(content: bytes) -> bytes:
 
 
 def open_source(path: str | Path) -> Source:
-    """Read a file.
+    """Read a file, or of a folder that is one recording the file that tells what it holds.
 
     Raises:
         InputError: not there, not a file, not readable, empty, or a damaged gzip.
     """
-    path = Path(path)
+    path = marker(Path(path))
     content = read_bytes(path, "a trace")
     name = path.name.lower()
     if content.startswith(_GZIP):

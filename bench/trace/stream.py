@@ -50,11 +50,13 @@ def stream(
 
 
 def _is_parquet(path: Path) -> bool:
-    """Whether a file is Parquet without timestamps, which count from the first one, unknown to later chunks."""
+    """Whether a file is Parquet of plain numbers: timestamps count from the first one, unknown to later chunks, and of
+    lists there are more channels than columns.
+    """
     try:
         with opened(path, "a trace") as file:
             parquet = readable(path) == str(path) and file.read(len(MAGIC)) == MAGIC  # Arrow opens UTF-8 names
-        return parquet and not any(is_moment(field.type) for field in pq.read_schema(str(path)))
+        return parquet and not any(is_moment(kind) or pa.types.is_nested(kind) for kind in pq.read_schema(path).types)
     except (*DAMAGE, InputError, ValueError):
         return False  # `read` says what is wrong with it
 

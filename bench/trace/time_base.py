@@ -54,6 +54,7 @@ class TimeBase:
         duplicates: samples dropped because their time stood already in the recording.
         interpolated: samples placed between measured ones, inside steps too short to be a hole.
         resampled: whether signals were interpolated onto the regular base.
+        steps: between which four of five steps are, where they are not regular - s.
     """
 
     sample_period: float
@@ -62,6 +63,7 @@ class TimeBase:
     duplicates: int = 0
     interpolated: int = 0
     resampled: bool = False
+    steps: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -253,7 +255,8 @@ def _find(clock: Clock, duplicates: int) -> _RegularTimes:
         line, starts, spread = _line(segments, counts, period)
     if spread > tolerance:
         missing = int(np.maximum(np.rint(contiguous / period), 1.0).sum()) - contiguous.size
-        found = TimeBase(period, _jitter(contiguous, period), holes, duplicates, missing, True)
+        usual = (float(np.percentile(step, 10.0)), float(np.percentile(step, 90.0)))
+        found = TimeBase(period, _jitter(contiguous, period), holes, duplicates, missing, True, usual)
         placed = [t[0] + period * np.arange(int((t[-1] - t[0]) / period + EXACT) + 1) for t in segments]
         return _RegularTimes(np.concatenate(placed), None, found)
     missing = int(sum(count[-1] + 1 - count.size for count in counts))

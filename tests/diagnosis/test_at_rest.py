@@ -30,3 +30,24 @@ def test_what_is_held_out_at_rest_judges_no_torque():
     found = diagnose(stopping(np.random.default_rng(0)), RIG)
     assert [effect.name for effect in found.effects] == ["cogging_torque"]
     assert found.effects[0].parameters["harmonic"].value == HARMONIC
+
+
+def creeping(rng, moving=6.0, resting=4.0, period=1e-3):
+    """Motion both ways, then 0.4 rad/s while friction holds a torque that is not its own."""
+    truth, time = Truth(), period * np.arange(round((moving + resting) / period), dtype=np.float64)
+    moved = time < moving
+    speed = np.where(moved, 30.0 * np.sin(2.0 * np.pi * time) + 12.0 * np.sin(6.6 * np.pi * time), 0.0)
+    speed += np.where(moved, 0.0, 0.4)
+    acceleration = np.gradient(speed, period) * (np.abs(time - moving) > 2.0 * period)
+    torque = truth.inertia * acceleration + truth.viscous * speed + truth.coulomb * np.sign(speed)
+    torque += np.where(moved, 0.0, 0.05)
+    signals = {
+        "velocity": speed + 0.03 * rng.standard_normal(time.size),
+        "current": (torque + 2e-3 * rng.standard_normal(time.size)) / 0.8,
+    }
+    return Trace(time, signals, UNITS, "creeps")
+
+
+def test_where_an_axis_creeps_nothing_speaks_for_an_event():
+    trace = creeping(np.random.default_rng(0))
+    assert "load_torque_event" not in [effect.name for effect in diagnose(trace, RIG).effects]

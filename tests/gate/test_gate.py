@@ -17,6 +17,7 @@ NAMES = [
     "signal_moves",
     "signal_clips",
     "resolution",
+    "effort_has_a_sign",
     "effort_follows_motion",
     "sampling_rate_plausible",
     "motor_constants_agree",

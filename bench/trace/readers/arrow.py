@@ -1,12 +1,15 @@
-"""Columns of Arrow, out of Parquet, a table or a data frame: numbers, or moments as times from the first of them.
+"""Columns of Arrow, out of Parquet, a table, JSON or a data frame: numbers, or moments as times from the first of them.
 
-In Parquet a unit stands in the column's name, `velocity [deg/s]`, or in its field metadata under `unit`.
+In Parquet a unit stands in the column's name, `velocity [deg/s]`, or in its field metadata under `unit`. A list of a
+number for each joint is a channel for each, `q[0]`, or `q.elbow` where the file names them; a line for each joint, with
+its name or number in a column, is the channels of each.
 """
 
 from __future__ import annotations
 
 import importlib
 import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -25,6 +28,8 @@ MAGIC = b"PAR1"
 DAMAGE = (pa.ArrowException, OSError, UnicodeDecodeError)
 #: Bytes of a value once it is read.
 WIDTH = 8
+#: Numbers of a list; a robot has fewer joints, a picture more points.
+MOST_PLACES = 256
 
 #: 2024-03-05T12:34:56.789+01:00, 05.03.2024 12:34:56,789, 12:34:56.789, 12:34:56:789, 1:34:56.7 PM, 34:56.7.
 _MOMENT = (
@@ -37,22 +42,31 @@ _DAY = 86400.0
 
 
 def _read(source: Source) -> Recording:
+    table = parquet_table(source.content, source.path)
+    return Recording(tuple(channels_of_table(table, source.path)), PARQUET.format, source.path)
+
+
+def parquet_table(content: bytes, path: str) -> pa.Table:
+    """Columns of Parquet, those that hold no numbers as empty ones.
+
+    Raises:
+        InputError: damaged, without rows, or of more than it may expand to; names `path`.
+    """
     import pyarrow.parquet as pq  # 0.04 s, for one format of fifteen
 
-    with reading(source.path, PARQUET.format, DAMAGE), pq.ParquetFile(pa.BufferReader(source.content)) as file:
-        fields = list(file.schema_arrow)
+    with reading(path, PARQUET.format, DAMAGE), pq.ParquetFile(pa.BufferReader(content)) as file:
+        fields, meta = list(file.schema_arrow), file.metadata
         wanted = [field.name for field in fields if is_numeric(field.type)]
-        rows = file.metadata.num_rows
-        require_expansion(source.path, rows * len(wanted) * WIDTH, len(source.content))
+        chunks = [meta.row_group(k).column(j) for k in range(meta.num_row_groups) for j in range(meta.num_columns)]
+        read = [one for one in chunks if any(f"{one.path_in_schema}.".startswith(f"{name}.") for name in wanted)]
+        size = sum(max(one.num_values * WIDTH, one.total_uncompressed_size) for one in read)
+        require_expansion(path, size, len(content))
+        if not meta.num_rows:
+            raise InputError(path, "found columns and no rows", "allowed: at least two samples")
         table = file.read(None if len(wanted) == len(fields) else wanted)
-    if not rows:
-        raise InputError(source.path, "found columns and no rows", "allowed: at least two samples")
     columns = iter(table.columns)
-    channels = tuple(
-        channel_of(field, next(columns) if is_numeric(field.type) else pa.nulls(0, field.type), source.path)
-        for field in fields
-    )
-    return Recording(channels, PARQUET.format, source.path)
+    found = [next(columns) if one.name in wanted else pa.nulls(meta.num_rows, one.type) for one in fields]
+    return pa.Table.from_arrays(found, schema=pa.schema(fields))
 
 
 PARQUET = FileFormat("Parquet", (".parquet", ".pq"), begins(MAGIC), _read)
@@ -75,8 +89,66 @@ def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, s
     return replace(channel, values=values, moments=pa.types.is_timestamp(kind))
 
 
+def channels_of_table(table: pa.Table, path: str, known: Mapping[str, Sequence[str]] | None = None) -> list[Channel]:
+    """Channels of columns; of lists a channel for each place in them, and of a line for each joint one for each.
+
+    Args:
+        table: the columns.
+        path: of the file.
+        known: names of the places in a list, by its column; a column of lists of names tells those of the same length.
+    """
+    table = _flat(table)
+    lists = {len(first): first for one in table.columns if _names(one.type) and (first := one[0].as_py())}
+    found: list[Channel] = []
+    for field, column in zip(table.schema, table.columns, strict=True):
+        if (
+            pa.types.is_list(field.type)
+            or pa.types.is_large_list(field.type)
+            or pa.types.is_fixed_size_list(field.type)
+        ):
+            found.extend(_places(field, _in_one(column), path, (known or {}).get(field.name), lists))
+        else:
+            found.append(channel_of(field, column, path))
+    return found
+
+
+def _flat(table: pa.Table) -> pa.Table:
+    """The table with a column for each field of what holds fields, however deep, `parent.field`."""
+    while any(pa.types.is_struct(kind) for kind in table.schema.types):
+        table = table.flatten()
+    return table
+
+
+def _names(kind: pa.DataType) -> bool:
+    return pa.types.is_list(kind) and pa.types.is_string(kind.value_type)
+
+
+def _places(
+    field: pa.Field, lists: pa.Array, path: str, names: Sequence[str] | None, known: Mapping[int, Sequence[str]]
+) -> Iterator[Channel]:
+    """A channel for each place in lists of numbers; one with a defect where they are none, or of several lengths."""
+    lengths = np.unique(compute().list_value_length(lists).drop_null().to_numpy(zero_copy_only=False))
+    plain = len(lengths) == 1 and not lists.null_count and is_numeric(field.type.value_type)
+    if not plain or not 0 < lengths[0] <= MOST_PLACES:
+        found = f"found {field.type}" if len(lengths) < 2 else f"found lists of {lengths[0]} to {lengths[-1]} numbers"
+        channel = Channel(*split_label(field.name), np.empty(0), path)
+        allowed = f"allowed: numbers, or lists of as many each, {MOST_PLACES} at most"
+        yield replace(channel, defect=InputError(channel.place(), found, allowed))
+        return
+    matrix = floats(lists.flatten()).reshape(-1, int(lengths[0]))
+    names = names if names is not None and len(names) == lengths[0] else known.get(int(lengths[0]))
+    label, unit = split_label(field.name)
+    for k, values in enumerate(matrix.T):
+        name = f"{label}.{names[k]}" if names is not None else f"{label}[{k}]"
+        yield Channel(name, unit, np.ascontiguousarray(values), path)
+
+
 def is_numeric(kind: pa.DataType) -> bool:
-    """Whether a column holds numbers or moments; of others, texts and lists, nothing is read."""
+    """Whether a column holds numbers or moments, or lists of them; of others, texts and pictures, nothing is read."""
+    if pa.types.is_list(kind) or pa.types.is_large_list(kind) or pa.types.is_fixed_size_list(kind):
+        return is_numeric(kind.value_type)
+    if pa.types.is_struct(kind):
+        return any(is_numeric(kind.field(k).type) for k in range(kind.num_fields))
     number = pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_decimal(kind)
     return number or pa.types.is_boolean(kind) or is_moment(kind)
 

@@ -20,6 +20,7 @@ _EXTRAS = {
     "h5py": ("h5py", "hdf5"),
     "mcap": ("mcap", "mcap"),
     "mcap_ros2": ("mcap-ros2-support", "mcap"),
+    "rosbags": ("rosbags", "ros"),
     "nptdms": ("npTDMS", "tdms"),
 }
 

@@ -1,4 +1,6 @@
-"""Reader of MCAP (ROS 2 bags, Foxglove), by mcap and mcap-ros2-support: joint states, and plain numbers of any message.
+"""Readers of MCAP (ROS 2 bags, Foxglove), by mcap and mcap-ros2-support, and of bags of ROS as folders, by rosbags.
+
+They hold joint states, and plain numbers of any message.
 
 `sensor_msgs/msg/JointState` gives a position, velocity and effort of each joint, in rad, rad/s and N*m (REP 103); a
 joint is an axis. Of other messages in ROS 2's encoding or in JSON every number is a channel, `topic.field`. Times are
@@ -9,20 +11,24 @@ from __future__ import annotations
 
 import json
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from io import BytesIO
 from itertools import islice
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bench.bounds import require_expansion
+from bench.bounds import require_expansion, require_size
 from bench.errors import InputError
+from bench.files import opened
 from bench.trace.channel import Channel, Recording, with_shared_times
 from bench.trace.readers.containers import library, reading, unpack
 from bench.trace.source import FileFormat, Source, begins
 
+#: Topic, type, time of the log - ns - and content of a message.
+_Logged = tuple[str, str, int, Any]
 _JOINT_STATE = ("sensor_msgs/msg/JointState", "sensor_msgs/JointState")
 _JOINT_UNITS = {"position": "rad", "velocity": "rad/s", "effort": "N*m"}
 #: Numbers of a message, and messages in one another; a scope has fewer, a point cloud more.
@@ -43,11 +49,37 @@ class _Column:
 
 
 def _read(source: Source) -> Recording:
-    columns: dict[tuple[str, str], _Column] = {}
     unread: dict[str, str] = {}
+    return _recording(_messages(source, unread), unread, MCAP.format, source.path, len(source.content))
+
+
+def _read_bag(source: Source) -> Recording:
+    highlevel, typesys = (library(f"rosbags.{part}", source.path, BAG.format) for part in ("highlevel", "typesys"))
+    folder = Path(source.path).parent
+    size = sum(file.stat().st_size for file in folder.iterdir())
+    require_size(folder, size)
+    for file in folder.iterdir():
+        with opened(file, "a file of a bag"):
+            pass  # an input from now on, which rosbags opens itself
+
+    def messages() -> Iterator[_Logged]:
+        usual = typesys.get_typestore(typesys.Stores.LATEST)  # of a bag that holds no definitions
+        with highlevel.AnyReader([folder], default_typestore=usual) as bag:
+            known = [one for one in bag.connections if one.msgtype in bag.typestore.types]
+            for one, logged, data in bag.messages(known):
+                yield one.topic, one.msgtype, logged, bag.deserialize(data, one.msgtype)
+
+    return _recording(messages(), {}, BAG.format, str(folder), size)
+
+
+def _recording(
+    messages: Iterable[_Logged], unread: Mapping[str, str], container: str, origin: str, size: int
+) -> Recording:
+    """Channels of the numbers in messages out of `size` bytes; `unread`: topics left out meanwhile, and why."""
+    columns: dict[tuple[str, str], _Column] = {}
     numbers = 0
-    with reading(source.path, MCAP.format):
-        for topic, schema, logged, message in _messages(source, unread):
+    with reading(origin, container):
+        for topic, schema, logged, message in messages:
             stamp = _stamp(message, logged)
             for path, value, unit, joint in _fields(schema, message):
                 column = columns.setdefault((topic, path), _Column(unit, joint))
@@ -55,28 +87,30 @@ def _read(source: Source) -> Recording:
                 column.times.append(stamp)
                 column.values.append(value)
                 numbers += 1
-            require_expansion(source.path, numbers * _WIDTH, len(source.content))
+            require_expansion(origin, numbers * _WIDTH, size)
     notes = tuple(f"{topic} left out: messages in {encoding}" for topic, encoding in unread.items())
     first = min((column.times[np.argmin(column.logged)] for column in columns.values()), default=0)
     several = len({topic for (topic, _), column in columns.items() if column.axis is not None}) > 1
     channels = [
-        _channel(topic, name, column, first, several, source.path)
+        _channel(topic, name, column, first, several, origin)
         for (topic, name), column in columns.items()
         if len(column.values) > 1
     ]
     if not channels:
         raise InputError(
-            source.path,
+            origin,
             f"holds no message of numbers ({'; '.join(notes) or 'no messages'})",
             "allowed: joint states or numbers, in ROS 2's encoding (cdr) or JSON",
         )
-    return Recording(with_shared_times(channels), MCAP.format, source.path, notes=notes)
+    return Recording(with_shared_times(channels), container, origin, notes=notes)
 
 
 MCAP = FileFormat("MCAP", (".mcap",), begins(b"\x89MCAP0\r\n"), _read)
+#: By its metadata.yaml, which says what files the bag has.
+BAG = FileFormat("ROS 2 bag", (), begins(b"rosbag2_bagfile_information:"), _read_bag)
 
 
-def _messages(source: Source, unread: dict[str, str]) -> Iterator[tuple[str, str, int, Any]]:
+def _messages(source: Source, unread: dict[str, str]) -> Iterator[_Logged]:
     """Topic, schema's name, time - ns - and content of each message that can be decoded."""
     ros2 = library("mcap_ros2.decoder", source.path, MCAP.format).DecoderFactory()
     records = library("mcap.records", source.path, MCAP.format)
@@ -145,17 +179,17 @@ def _numbers(message: Any, path: str, depth: int) -> Iterator[tuple[str, float]]
     """Path and value of every number in a message but its header."""
     if depth > _DEEPEST:
         return
-    if isinstance(message, bool | int | float):
+    if isinstance(message, bool | int | float | np.number):
         yield path, float(message)
     elif isinstance(message, dict):
         for name, value in message.items():
             yield from _numbers(value, f"{path}.{name}" if path else name, depth + 1)
-    elif isinstance(message, list | tuple | array):
+    elif isinstance(message, list | tuple | array | np.ndarray):
         for number, value in enumerate(message[:_MOST]):
             yield from _numbers(value, f"{path}[{number}]", depth + 1)
     elif not isinstance(message, str | bytes):
-        for name in getattr(message, "__slots__", ()):
-            if name != "header":
+        for name in getattr(message, "__slots__", None) or getattr(message, "__dict__", ()):
+            if name not in ("header", "__msgtype__"):
                 yield from _numbers(getattr(message, name), f"{path}.{name}" if path else name, depth + 1)
 
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO
 from typing import Any
@@ -56,10 +56,12 @@ def is_samples(value: object) -> bool:
     return value.dtype.kind in "fiubmM" or (value.dtype.names is not None and value.ndim == 1)
 
 
-def channels_of(name: str, value: np.ndarray, path: str, unit: str | None = None) -> Iterator[Channel]:
+def channels_of(
+    name: str, value: np.ndarray, path: str, unit: str | None = None, names: Mapping[int, Sequence[str]] | None = None
+) -> Iterator[Channel]:
     """Channels of an array: `name`; of a matrix `name(:,1)` with a signal a column, `name(1,:)` with a signal a row.
 
-    The longer side of a matrix is taken for its samples.
+    The longer side of a matrix is taken for its samples; where `names` has as many as the other, `name.elbow`.
     """
     if value.dtype.names is not None:
         for field in value.dtype.names:
@@ -71,8 +73,10 @@ def channels_of(name: str, value: np.ndarray, path: str, unit: str | None = None
         return
     by_rows = value.shape[0] < value.shape[1]
     signals = value if by_rows else value.T
+    known = (names or {}).get(len(signals))
     for number, signal in enumerate(signals if len(signals) <= MOST_SIGNALS else (), 1):
-        yield _channel(f"{name}({number},:)" if by_rows else f"{name}(:,{number})", signal, path, unit)
+        label = f"{name}({number},:)" if by_rows else f"{name}(:,{number})"
+        yield _channel(label if known is None else f"{name}.{known[number - 1]}", signal, path, unit)
 
 
 def _channel(name: str, values: np.ndarray, path: str, unit: str | None) -> Channel:
@@ -107,9 +111,11 @@ def _read_numpy(source: Source) -> Recording:
         loaded = np.load(BytesIO(source.content), allow_pickle=False)
         lone = isinstance(loaded, np.ndarray)
         arrays = {"": loaded} if lone else {name: _array(loaded, name) for name in loaded.files}
+    texts = [one for one in arrays.values() if one is not None and one.dtype.kind == "U" and one.ndim == 1]
+    names = {one.size: [str(text) for text in one] for one in texts}
     for name, value in arrays.items():
         if is_samples(value):
-            channels.extend(channels_of(name, value, source.path))
+            channels.extend(channels_of(name, value, source.path, names=names))
         elif value is not None and value.ndim == 0:
             metadata[name] = str(value)
     if lone and loaded.dtype.names is None:

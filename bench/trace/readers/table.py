@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +20,7 @@ import pyarrow.csv
 from bench.errors import InputError
 from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.readers.arrow import compute, floats, seconds, speaks_of_moment
+from bench.trace.readers.arrow import channels_of_table, compute, floats, seconds, speaks_of_moment
 from bench.trace.signals import signal_of, unit_of
 from bench.trace.source import FileFormat, Source, decode, no_samples, utf8
 from bench.units.conversion import is_unit, scale_of
@@ -37,14 +37,19 @@ EMPTY = (
 HEAD, SHOWN = 1 << 18, 60
 #: Columns of a table; a recorder has some hundred channels at most.
 MOST_COLUMNS = 10_000
-#: Of the kinds of columns; `exact` are epochs in ns with more digits than a float holds, and seconds to the ns.
-TYPES = {"number": pa.float64(), "exact": pa.decimal128(30, 9), "text": pa.string()}
+#: Joints that take turns in the lines of a file, and the share of the lines in which they do.
+MOST_JOINTS, IN_TURN = 64, 0.9
+#: Of the kinds of columns; `list` is one of numbers; `exact` are epochs in ns with more digits than a float holds, and
+#: seconds to the ns.
+TYPES = {"number": pa.float64(), "exact": pa.decimal128(30, 9), "text": pa.string(), "list": pa.string()}
 
 _NUMBER = re.compile(r"[+-]?(?:\d[\d.,'’\u00a0\u202f]*|[.,]\d+)(?:[eE][+-]?\d+)?")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?|[+-]?\d{1,3}(?:[.'’\u00a0\u202f]\d{3})+,\d*")
 _WORDS = frozenset(("true", "false", "inf", "-inf", "+inf", "infinity", "-infinity"))
 _LEADING = re.compile(r"^\s*(?:#+|//+|!+|%+(?=\s))\s*")
 _EXACT = re.compile(r"[+-]?\d{16,}|[+-]?\d{9,}[.,]\d{4,9}")
+_LIST = re.compile(r"[\[(]\s*[-+\d.][-+\d.eE,;\s]*[\])]")
+_NUMBERED = re.compile(r"(?:^|_)(?:joint|motor|servo|actuator|axis|id)(?:_?(?:id|index|number|no))?$", re.IGNORECASE)
 _COMMENT = re.compile(rb"^[ \t]*(?:#|//)")
 
 
@@ -126,17 +131,62 @@ def read_lines(lines: SampleLines, layout: TableLayout, path: str) -> tuple[tupl
     gaps = _has_blank_lines(lines, table.num_rows) or (rows is not None and not rows[: int(rows.sum())].all())
     line = None if gaps else lines.line
     table = table if rows is None else table.filter(pa.array(rows))
+    by_line = _joint_of_line(table, layout)
+    if by_line is not None:
+        return tuple(_of_joints(table, layout, path, *by_line)), lines.notes
     unnamed = [label == f"column {number}" for number, label in enumerate(layout.labels, 1)]
-    channels = [
-        channel_of_cells(label, column, layout.decimal, path, line)
-        for label, column in zip(layout.labels, table.columns, strict=True)
-    ]
-    kept = tuple(
-        channel
-        for channel, plain in zip(channels, unnamed, strict=True)
-        if not plain or all(unnamed) or channel.defect is not None or np.isfinite(channel.values).any()
-    )
-    return kept, lines.notes
+    kept: list[Channel] = []
+    for label, column, kind, plain in zip(layout.labels, table.columns, layout.kinds, unnamed, strict=True):
+        lists = as_lists(column) if kind == "list" else None
+        if lists is not None:
+            kept.extend(channels_of_table(pa.table({label: lists}), path))
+            continue
+        channel = channel_of_cells(label, column, layout.decimal, path, line)
+        if not plain or all(unnamed) or channel.defect is not None or np.isfinite(channel.values).any():
+            kept.append(channel)
+    return tuple(kept), lines.notes
+
+
+def _joint_of_line(table: pa.Table, layout: TableLayout) -> tuple[int, np.ndarray, list[str]] | None:
+    """Column that names the joint of each line, where they take turns: its place, which one (n,), and their names."""
+    for place, (label, column, kind) in enumerate(zip(layout.labels, table.columns, layout.kinds, strict=True)):
+        if kind == "text" or _NUMBERED.search(label):
+            encoded = compute().dictionary_encode(column.combine_chunks())
+            which = encoded.indices.fill_null(0).to_numpy(zero_copy_only=False)
+            names = [f"{name:g}" if isinstance(name, float) else str(name) for name in encoded.dictionary.to_pylist()]
+            turns = len(names)
+            if not 2 <= turns <= MOST_JOINTS or which.size < 4 * turns:
+                continue
+            again, other = which[turns:] == which[:-turns], which[turns:] != which[turns - 1 : -1]
+            if float(np.mean(again & other)) >= IN_TURN:
+                return place, which, names
+    return None
+
+
+def _of_joints(
+    table: pa.Table, layout: TableLayout, path: str, place: int, which: np.ndarray, names: Sequence[str]
+) -> Iterator[Channel]:
+    """Channels of each joint out of lines that are of one each, with times of their own: `joint.column`, or `joint`."""
+    kinds = zip(layout.labels, table.columns, layout.kinds, strict=True)
+    others = [(label, column) for k, (label, column, kind) in enumerate(kinds) if k != place and kind != "text"]
+    alone = sum(signal_of(split_label(label)[0]) != "time" for label, _ in others) == 1
+    for k, joint in enumerate(names):
+        own = pa.array(which == k)
+        channels = [channel_of_cells(label, cells.filter(own), layout.decimal, path, None) for label, cells in others]
+        time = next((channel for channel in channels if signal_of(channel.name) == "time"), None)
+        for channel in channels:
+            if channel is not time:
+                yield replace(channel, name=joint if alone else f"{joint}.{channel.name}", time=time)
+
+
+def as_lists(cells: pa.ChunkedArray) -> pa.ChunkedArray | None:
+    """Cells such as `[0.1, 0.2]` as lists of numbers; None where one is no list of numbers."""
+    pc = compute()
+    bare = pc.replace_substring_regex(pc.utf8_trim(cells, " []()"), r"[,;\s]+", ",")
+    try:
+        return pc.cast(pc.split_pattern(bare, ","), pa.list_(pa.float64()))
+    except pa.ArrowInvalid:
+        return None
 
 
 def read_timed(lines: Sequence[str], line: int, labels: Sequence[str], separator: str, path: str) -> list[Channel]:
@@ -304,7 +354,7 @@ def find_layout(lines: list[str]) -> TableLayout | None:
     rows = [row for row in (cells_of(line, separator) for line in shown) if len(row) == width]
     kinds = [_kind(column) for column in zip(*rows, strict=True)]
     start = next((number for number in range(len(lines)) if _begins(lines, number, separator, kinds)), None)
-    if start is None or not {"number", "exact"} & set(kinds):
+    if start is None or not {"number", "exact", "list"} & set(kinds):
         return None
     decimal = "," if any(_DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row) else "."
     labels = _labels(lines[:start], separator, width)
@@ -349,8 +399,10 @@ def _separator(shown: list[str]) -> tuple[str, int]:
         if width < 2 or often < 0.5 * len(rows):
             continue
         cells = [cell for row in rows if len(row) == width for cell in row]
-        values = sum(cell in EMPTY or is_number(cell) or speaks_of_moment(cell) for cell in cells)
-        score = values / often * values / len(cells) * often / len(rows)
+        count = [cell.count(",") + 1 if _LIST.fullmatch(cell) else 1 for cell in cells]
+        plain = (cell in EMPTY or is_number(cell) or speaks_of_moment(cell) for cell in cells)
+        values = sum(n for n, is_plain in zip(count, plain, strict=True) if n > 1 or is_plain)
+        score = values / often * values / sum(count) * often / len(rows)
         if score > best:
             best, found = score, (separator, width)
     return found
@@ -358,6 +410,8 @@ def _separator(shown: list[str]) -> tuple[str, int]:
 
 def _kind(cells: tuple[str, ...]) -> str:
     filled = [cell for cell in cells if cell not in EMPTY]
+    if filled and all(map(_LIST.fullmatch, filled)):
+        return "list"
     if filled and sum(map(is_number, filled)) < 0.5 * len(filled):
         return "text"
     return "exact" if filled and all(map(_EXACT.fullmatch, filled)) else "number"
@@ -373,8 +427,8 @@ def _is_sample(cells: list[str], kinds: Sequence[str]) -> bool:
     if len(cells) != len(kinds):
         return False
     numeric = [cell for cell, kind in zip(cells, kinds, strict=True) if kind != "text"]
-    numbers = sum(cell in EMPTY or is_number(cell) for cell in numeric)
-    return numbers > 0.5 * len(numeric) and any(map(is_number, numeric))
+    numbers = sum(cell in EMPTY or is_number(cell) or _LIST.fullmatch(cell) is not None for cell in numeric)
+    return numbers > 0.5 * len(numeric) and any(is_number(cell) or _LIST.fullmatch(cell) for cell in numeric)
 
 
 def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:
