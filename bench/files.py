@@ -93,15 +93,11 @@ def read_text(path: str | Path, kind: str, replaced: bool = False) -> str:
 
 
 def sha256(path: Path) -> str:
-    """SHA-256 of a file in hexadecimal digits, of a folder that is one recording that of its files' in their order.
-
-    Raises as `read_bytes`, but for its size.
-    """
+    """SHA-256 of a file, or of those of a recording's folder, in digits; raises as `read_bytes`, but for its size."""
     digest = hashlib.sha256()
     if marker(path) != path:
         files = sorted(file for file in path.rglob("*") if file.suffix in _READ and file.is_file())
-        digest.update("".join(map(sha256, files)).encode())
-        return digest.hexdigest()
+        return hashlib.sha256("".join(map(sha256, files)).encode()).hexdigest()
     with opened(path, "a file") as file:
         left = os.fstat(file.fileno()).st_size
         while left > 0 and (piece := file.read(min(left, _PIECE))):

@@ -45,9 +45,7 @@ def has_sign(seen: Seen) -> Check:
     parts, fitted = seen.stretches(LEAST), seen.balance()
     if not parts or fitted is None:
         return absent(SIGNED, f"too few samples, or {name} never changes", ALLOWED_SIGN)
-    speed, effort = (
-        np.concatenate(each) for each in ([seen.speed(part) for part in parts], [raw[part] for part in parts])
-    )
+    speed, effort = np.concatenate([seen.speed(part) for part in parts]), np.concatenate([raw[part] for part in parts])
     moving = np.abs(speed) > MOVING * rms(speed)
     forward = float(np.mean(speed[moving] > 0.0)) if moving.any() else 0.0
     side = 1.0 if abs(effort.max()) > abs(effort.min()) else -1.0
@@ -56,9 +54,8 @@ def has_sign(seen: Seen) -> Check:
     held = fitted.by_position > HELD and fitted.inertia > 0.0
     if held or bottom < -NEAR_ZERO * top or not BOTH < forward < 1.0 - BOTH or at_zero < AT_ZERO:
         return Check(SIGNED, "pass", f"{name} has {'both signs' if bottom < 0.0 else 'one sign'}", ALLOWED_SIGN)
-    found = (
-        f"{name} is never {'below' if side > 0.0 else 'above'} 0, and at 0 in {at_zero:.0%} of the motion, both ways"
-    )
+    other = "below" if side > 0.0 else "above"
+    found = f"{name} is never {other} 0, and at 0 in {at_zero:.0%} of the motion, both ways"
     advice = "its sign is lost: a register's sign bit, a magnitude or an effective value; record it with its sign"
     return Check(SIGNED, "fail", found, ALLOWED_SIGN, advice, unanswerable=True)
 

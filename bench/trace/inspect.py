@@ -23,16 +23,7 @@ from bench.trace.channel import Channel, Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis, reading_options
 from bench.trace.in_si import in_si
 from bench.trace.read import read_recording
-from bench.trace.signals import (
-    REFERENCE,
-    SI_UNITS,
-    WORDS,
-    is_index,
-    scale_in,
-    signal_of,
-    unit_of,
-    wanted_units,
-)
+from bench.trace.signals import REFERENCE, SI_UNITS, WORDS, is_index, scale_in, signal_of, unit_of, wanted_units
 from bench.trace.trace import on_time_base, unused
 from bench.units.conversion import is_unit, scale_of
 from bench.units.grammar import UnitError

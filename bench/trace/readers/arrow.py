@@ -47,11 +47,7 @@ def _read(source: Source) -> Recording:
 
 
 def parquet_table(content: bytes, path: str) -> pa.Table:
-    """Columns of Parquet, those that hold no numbers as empty ones.
-
-    Raises:
-        InputError: damaged, without rows, or of more than it may expand to; names `path`.
-    """
+    """Columns of Parquet, those of no numbers empty; InputError where it is damaged, too large or without rows."""
     import pyarrow.parquet as pq  # 0.04 s, for one format of fifteen
 
     with reading(path, PARQUET.format, DAMAGE), pq.ParquetFile(pa.BufferReader(content)) as file:
@@ -90,12 +86,9 @@ def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, s
 
 
 def channels_of_table(table: pa.Table, path: str, known: Mapping[str, Sequence[str]] | None = None) -> list[Channel]:
-    """Channels of columns; of lists a channel for each place in them, and of a line for each joint one for each.
+    """Channels of columns; of lists one for each place in them, called as those of a column are `known` to be.
 
-    Args:
-        table: the columns.
-        path: of the file.
-        known: names of the places in a list, by its column; a column of lists of names tells those of the same length.
+    A column of lists of names tells those of the same length.
     """
     table = _flat(table)
     lists = {len(first): first for one in table.columns if _names(one.type) and (first := one[0].as_py())}

@@ -63,8 +63,7 @@ def _read(source: Source) -> Recording:
     joined = f"{count} episodes stand one after another, a hole between each two"
     notes = ("times are those of LeRobot's frames, not of the sensors", *([joined] if count > 1 else []))
     kept = tuple(time if one.name == "timestamp" else one for one in channels)
-    told = {key: str(info[key]) for key in ("robot_type", "fps", "codebase_version") if key in info}
-    return Recording(kept, LEROBOT.format, str(root), told, notes, {"time": "s"})
+    return Recording(kept, LEROBOT.format, str(root), notes=notes, usual_units={"time": "s"})
 
 
 LEROBOT = FileFormat("LeRobot dataset", (), _recognises, _read)
