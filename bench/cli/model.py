@@ -16,13 +16,14 @@ from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from bench.cli.common import Subject
-    from bench.export.mjcf import Carried
     from bench.plant.model_file import StoredModel
     from bench.view.side_by_side import SideBySide
 
 ModelArgument = Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")]
-#: Name of the joint of a file that holds the joint alone, unless another is given.
+#: Name of a joint that no other is given for, as `load_models` has it.
 ALONE = "axis"
 
 
@@ -129,45 +130,48 @@ def export(
     ] = None,
 ) -> None:
     """Put a diagnosed model into a robot's MJCF, or write it as another simulator takes it, or ranges of its values."""
-    from bench.plant.model_file import load_model, load_models
+    from bench.plant.model_file import load_models
 
     if [snippet, mjcf is not None, ranges is not None, to != "mjcf"].count(True) != 1:
         found = "found none or several of --mjcf, --snippet, --ranges, --to"
         raise InputError("bench export", found, "allowed: one of them")
-    if to != "mjcf":
-        from bench.export.simulators import simulator_file
-
-        text, lines = simulator_file(to, load_models(model, joint), actuator)
-        write_text(out, text)
-        for line in lines:
-            common.say(line)
-        common.list_files([out])
-        return
-    stored = load_model(model)
+    models, lines = load_models(model, joint), []
+    if mjcf is None and to == "mjcf" and len(models) > 1:
+        raise InputError(model, "found several joints", f"allowed: --joint with one of {', '.join(models)}")
     if ranges is not None:
         from bench.export.ranges import ranges_json
 
-        write_text(out, ranges_json(stored, ranges))
+        text = ranges_json(next(iter(models.values())), ranges)
+    elif to != "mjcf":
+        from bench.export.simulators import simulator_file
+
+        text, lines = simulator_file(to, models, actuator)
     else:
-        text, carried = _text(stored, out, mjcf, joint, armature)
-        write_text(out, text)
-        for line in carried.lines:
-            common.say(line)
+        text, lines = _mjcf(models, out, mjcf, joint, armature)
+    write_text(out, text)
+    for line in lines:
+        common.say(line)
     common.list_files([out])
 
 
-def _text(
-    stored: StoredModel, out: Path, mjcf: Path | None, joint: str | None, armature: str | None
-) -> tuple[str, Carried]:
+def _mjcf(
+    models: Mapping[str, StoredModel], out: Path, mjcf: Path | None, joint: str | None, armature: str | None
+) -> tuple[str, list[str]]:
+    """Text of an MJCF with models of joints, and what went onto them."""
     from bench.export.mjcf import ArmatureShare, armature_of, joint_alone, robot_with
 
     if mjcf is None:
-        return joint_alone(stored, joint or ALONE)
+        name, lone = next(iter(models.items()))
+        text, carried = joint_alone(lone, name)
+        return text, list(carried.lines)
+    if joint is None and list(models) == [ALONE]:  # of a lone model, whose joint nobody has named
+        models = {"": models[ALONE]}
     shares = {share.value: share for share in ArmatureShare}
     if armature is not None and armature not in shares:
         raise InputError("--armature", f"found '{armature}'", f"allowed: {', '.join(shares)}")
-    text, carried = robot_with(mjcf, {joint or "": (stored, armature_of(stored, shares.get(armature or "")))}, out)
-    return text, carried[0]
+    share = shares.get(armature or "")
+    text, several = robot_with(mjcf, {name: (one, armature_of(one, share)) for name, one in models.items()}, out)
+    return text, [line for each in several for line in each.lines]
 
 
 def compensate(

@@ -73,6 +73,7 @@ class Actuators:
 
     Attributes:
         needs_forces: whether MuJoCo has to compute forces first, as those of a servo or a winding.
+        limited: whether an input or a force has a limit.
         controls: places of their inputs in `ctrl` (k,).
         actuators: their numbers (k,).
         gears: torque of each joint per force of each (k, joints).
@@ -82,6 +83,7 @@ class Actuators:
     """
 
     needs_forces: bool
+    limited: bool
     controls: Number
     actuators: Number
     gears: Number
@@ -106,6 +108,7 @@ class Actuators:
                 limits[2:, column] = model.actuator_forcerange[k]
         return cls(
             not plain.all(),
+            bool(np.isfinite(limits).any()),
             made(model.actuator_ctrladr[chosen].astype(np.intp)),
             made(chosen),
             made(np.where(on[chosen], model.actuator_gear[chosen, :1], 0.0)),
@@ -118,7 +121,9 @@ class Actuators:
         """Torque of the joints - N*m (N) - (..., joints), of inputs (..., nu) and forces (..., actuators)."""
         xp, (low, high, weakest, strongest) = namespace(control), self.limits
         inputs = xp.take(control, self.controls, axis=-1)
-        driven = xp.clip(xp.clip(inputs, low, high) * self.gains, weakest, strongest)
+        driven = inputs * self.gains
+        if self.limited:
+            driven = xp.clip(xp.clip(inputs, low, high) * self.gains, weakest, strongest)
         if self.needs_forces:
             driven = xp.where(self.asked, xp.take(force, self.actuators, axis=-1), driven)
         return driven @ self.gears

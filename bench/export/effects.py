@@ -121,7 +121,10 @@ class Effects:
         own = None
         if models is not None:
             own = [one if isinstance(one, Mapping) else dict.fromkeys(self.models, one) for one in models]
-        simulations = Simulations(batch.model, batch.nsim, batch.bind, batch.expand, batch.forward, batch.step)
+        time = batch.bind("time")
+        simulations = Simulations(
+            batch.model, batch.nsim, lambda: time, batch.bind, batch.expand, batch.forward, batch.step
+        )
         return Worlds(self.models, simulations, own)
 
     def on_warp(self, model: mujoco.MjModel, warp_model: Foreign, warp_data: Foreign) -> Worlds:
@@ -140,9 +143,11 @@ class Effects:
                 setattr(warp_model, name, warp.array(values, dtype=one.dtype, device=one.device))
             return view(getattr(warp_model, name))
 
+        time = view(warp_data.time)
         simulations = Simulations(
             model,
             count,
+            lambda: time,
             lambda name: view(getattr(warp_data, name)),
             field,
             lambda: mujoco_warp.forward(warp_model, warp_data),
@@ -171,6 +176,7 @@ class Simulations:
     Args:
         model: of all of them.
         count: how many.
+        time: gives that of each - s - (count,).
         state: gives a field of their data (count, ...), live.
         field: gives a field of the model that each has for itself (count, ...), live.
         forward: computes forces.
@@ -181,13 +187,14 @@ class Simulations:
         self,
         model: mujoco.MjModel,
         count: int,
+        time: Callable[[], Number],
         state: Callable[[str], Number],
         field: Callable[[str], Number],
         forward: Callable[[], object],
         advance: Callable[[], object],
     ) -> None:
         self.model, self.count, self.forward, self.advance = model, count, forward, advance
-        self.state, self.field = state, cache(field)
+        self.time, self.state, self.field = time, cache(state), cache(field)
 
 
 class Worlds:
@@ -233,7 +240,7 @@ class Worlds:
         state = self._simulations.state
         if self._actuators.needs_forces:
             (forward or self._simulations.forward)()
-        time = state("time").reshape(-1, 1)
+        time = self._simulations.time().reshape(-1, 1)
         again, self.last = time < self.last, time + 0.0
         position, velocity = (self._axes(state(name)[:, at]) for name, at in self._at.items())
         if self._memory is None:
@@ -285,7 +292,8 @@ class _Running(Worlds):
             Simulations(
                 model,
                 1,
-                lambda name: np.array([data.time]) if name == "time" else getattr(data, name)[None],
+                lambda: np.array([data.time]),
+                lambda name: getattr(data, name)[None],
                 lambda name: getattr(model, name)[None],
                 lambda: mujoco.mj_forward(model, data),
                 lambda: mujoco.mj_step(model, data),

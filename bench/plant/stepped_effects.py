@@ -354,6 +354,7 @@ class Joints:
         kind = mujoco.mjtObj.mjOBJ_ACTUATOR
         self._bristles = [mujoco.mj_name2id(model, kind, name) for name in bristles]
         self.bristled: NDArray[np.bool_] = np.array(self._bristles) >= 0
+        self._dry, self._bending = not self.bristled.all(), [int(k) for k in np.flatnonzero(self.bristled)]
 
     @classmethod
     def of(cls, batch: Batch) -> Joints:
@@ -380,14 +381,12 @@ class Joints:
             armature[:, self._columns] = bare
 
     def _set_friction(self, level: Number) -> None:
-        if not self.bristled.all():
+        if self._dry:
             loss = self._field("dof_frictionloss")
             loss[:, self._columns] = level
-        if self.bristled.any():
+        for k in self._bending:
             parameters = self._field("actuator_biasprm")
-            for k in np.flatnonzero(self.bristled):
-                of_joint = level[:, k : k + 1] if np.ndim(level) else level
-                parameters[:, self._bristles[k], BRISTLE_LEVELS] = of_joint
+            parameters[:, self._bristles[k], BRISTLE_LEVELS] = level[:, k : k + 1] if np.ndim(level) else level
 
     def _abreast(self, values: Number) -> Number:
         return values.reshape(-1, self._count) if np.ndim(values) else values

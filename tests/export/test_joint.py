@@ -244,9 +244,7 @@ def test_no_actuator_is_of_a_kind_that_only_mujoco_has(text):
     assert mujoco.mjtGain.mjGAIN_PID not in model.actuator_gaintype
 
 
-@pytest.mark.parametrize(
-    ("content", "says"), [("<mujoco>", "does not read"), ("", "does not read"), (None, "no such file")]
-)
+@pytest.mark.parametrize(("content", "says"), [("<mujoco>", "refuses it"), ("", "refuses it"), (None, "no such file")])
 def test_a_robot_that_is_none_is_reported_in_one_line(tmp_path, content, says):
     path = tmp_path / "robot.xml"
     if content is not None:

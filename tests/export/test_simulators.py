@@ -153,6 +153,7 @@ def test_nothing_of_a_name_becomes_code(monkeypatch):
         ("--to newton --actuator xl330", "allowed: with --to bam"),
         ("--to newton --joint wrist", "found no 'wrist'; allowed: shoulder, elbow"),
         ("--to newton --snippet", "found none or several"),
+        ("--snippet", "effects.toml: found several joints; allowed: --joint with one of shoulder, elbow"),
     ],
 )
 def test_what_no_simulator_takes_is_one_line(tmp_path, arguments, says, monkeypatch, capfd):
@@ -173,6 +174,16 @@ def test_the_command_writes_the_file_of_all_joints(tmp_path, monkeypatch, capfd)
     assert "elbow: not carried: stribeck_friction" in capfd.readouterr().out
 
 
+def test_an_mjcf_gets_all_joints(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "robot.xml").write_text(MJCF)
+    write_text(tmp_path / "effects.toml", joints_toml({"shoulder": of(), "elbow": of(COGGING)}))
+    assert started(tmp_path)("export", "effects.toml", "--mjcf", "robot.xml", "--out", "robot_id.xml") == 0
+    simulation = mujoco.MjModel.from_xml_path("robot_id.xml")
+    np.testing.assert_allclose(simulation.dof_frictionloss, 0.08 * RATIO)
+    assert "elbow: native: cogging_torque" in capfd.readouterr().out
+
+
 MODELS = {"shoulder": of(), "elbow": of(COGGING)}
 
 
@@ -181,6 +192,8 @@ def pushed(models):
     spec = mujoco.MjSpec.from_string(MJCF)
     for name, model in models.items():
         onto(spec, name, model, armature_of(model, ArmatureShare.MOTOR))
+        joint = spec.joint(name)  # others hold friction no harder than MuJoCo does by default
+        joint.solref_friction, joint.solimp_friction = [0.02, 1.0], [0.9, 0.95, 0.001, 0.5, 2.0]
     simulation = spec.compile()
     data, time = mujoco.MjData(simulation), 5e-4 * np.arange(400)
     torques, found = np.stack([30.0 * np.sin(40.0 * time), 12.0 * np.sin(23.0 * time)], axis=1), []

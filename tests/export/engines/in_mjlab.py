@@ -16,6 +16,7 @@ entity = Entity(
     )
 )
 model = entity.spec.compile()
+model.opt.timestep = 5e-4  # which mjlab takes from its simulation, not from the MJCF
 data, found = mujoco.MjData(model), []
 for inputs in json.loads(Path(torques).read_text()):
     data.ctrl[:] = inputs
