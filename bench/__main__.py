@@ -11,6 +11,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from bench import __version__
 
+#: Bytes of addresses that NumPy, Arrow and MuJoCo load in; less by any `ulimit -v` may never end.
+LEAST_MEMORY = 1000 * 1000 * 1024
+
 
 class Stopped(BaseException):
     """A signal to stop; no KeyboardInterrupt, which the command line's library turns into an exit without a word."""
@@ -20,11 +23,22 @@ def _stop(number: int, _frame: FrameType | None) -> None:
     raise Stopped(128 + number)  # the status a shell gives it
 
 
+def _memory() -> float:
+    """Bytes of addresses that this process may have."""
+    import resource
+
+    most = resource.getrlimit(resource.RLIMIT_AS)[0]
+    return float("inf") if most == resource.RLIM_INFINITY else most
+
+
 def main() -> None:
     """Entry point of `bench`."""
     if sys.argv[1:] == ["--version"]:
         print(__version__)  # 0.03 s of CPU; 0.2 s with the command line's library
         return
+    if os.name == "posix" and _memory() < LEAST_MEMORY:
+        os.write(2, b"bench: ulimit -v: found less than 1 GB, for which NumPy's OpenBLAS waits for ever; allow 1 GB\n")
+        os._exit(2)
     try:
         for number in (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if os.name == "posix" else [])):
             if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup leaves it

@@ -303,3 +303,18 @@ def test_a_folder_that_cannot_be_made(tmp_path):
     for place in ("file", "file/x", "a\0b"):
         with pytest.raises(InputError, match="cannot be written to"), held(tmp_path / place):
             pass
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no device that is full")
+def test_standard_output_that_takes_nothing_is_told(tmp_path):
+    for redirected, words in (("> /dev/full", "No space left on device"), (">&-", "is closed")):
+        line = f"{sys.executable} -m bench rigs {redirected}"
+        done = subprocess.run(["sh", "-c", line], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert_one_line(done, "standard output", words)
+
+
+def test_too_little_room_for_numpy_is_told_at_once(tmp_path):
+    """OpenBLAS waits for ever for memory that it does not get."""
+    line = f"ulimit -v 400000; exec {sys.executable} -m bench rigs"
+    done = subprocess.run(["bash", "-c", line], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
+    assert_one_line(done, "ulimit -v", "1 GB")

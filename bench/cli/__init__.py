@@ -11,6 +11,7 @@ Another package offers commands as entry points of the group `servobench.command
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import sys
@@ -79,14 +80,16 @@ for command in COMMANDS:
 #: Group of entry points of other packages' commands.
 GROUP = "servobench.commands"
 
+#: Errors of writing where nobody named a file.
+UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
 #: Characters of a line that says what is wrong; a path may have 4096.
 LONGEST = 6000
 
 
 def main() -> None:
     """Entry point of `bench`: errors become one line on standard error and an exit status."""
-    _encode_everything()
     try:
+        _encode_everything()
         _add_offered()
         status = app(standalone_mode=False)
         sys.stdout.flush()
@@ -97,11 +100,19 @@ def main() -> None:
     except (KeyboardInterrupt, typer.Abort):
         sys.exit(_failed("interrupted", 130))
     except BrokenPipeError:  # whoever reads what is printed has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # which Python flushes once more at its end
+        _leave_output()
         sys.exit(141)
     except Exception as fault:
+        if isinstance(fault, OSError) and fault.filename is None and fault.errno in UNWRITABLE:
+            _leave_output()
+            sys.exit(_failed(f"standard output: cannot be written ({fault.strerror}); send it where there is room", 2))
         sys.exit(_failed(_fault(fault), 70))
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _leave_output() -> None:
+    """Have what is left for standard output, which Python flushes once more at its end, go nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _add_offered() -> None:
@@ -121,7 +132,9 @@ def _add_offered() -> None:
 
 
 def _encode_everything() -> None:
-    """Have characters that standard output cannot encode written out, as standard error does."""
+    """Have characters that standard output cannot encode written out, as standard error does; InputError if closed."""
+    if sys.stdout is None:
+        raise InputError("standard output", "is closed", "send it to a file, or to /dev/null")
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
 

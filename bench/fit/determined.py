@@ -37,6 +37,10 @@ PLAINLY = {
 
 LOAD = "load_moment_of_inertia"
 TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
+PUSHING = (
+    "signals that are sound throughout: a sign that turns, a drop-out or a delay makes friction negative; else ask "
+)
+PUSHING += "bench diagnose what acts beside friction"
 LINKS = "nothing; the MJCF's links, the gear_ratio or the torque are another robot's"
 SMALLER = "nothing; the rig's rotor_inertia (gear_inertia, gear_ratio) or torque constant is another one's"
 EXPLAINED = "a motion in which inertia and friction take most of the effort, and ask bench diagnose what else acts"
@@ -134,6 +138,24 @@ def refused_masses(
     if LOAD in refused and kind.inertia not in refused:
         refused[kind.inertia] = UndeterminedError(kind.in_words(INERTIA), "it is less than the rotor's alone", SMALLER)
     return refused
+
+
+def negative_friction(
+    parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]
+) -> dict[str, UndeterminedError]:
+    """Why a friction is none, by name, with what else is suspicious: its interval lies below zero."""
+    found = {
+        term: parameters[kind.parameter(term)] for term in (VISCOUS, COULOMB) if kind.parameter(term) in parameters
+    }
+    return {
+        kind.parameter(term): UndeterminedError(
+            kind.in_words(term),
+            "; ".join([f"it comes out negative, {one.value:.3g} {one.unit} (at most {one.ci95[1]:.3g})", *suspicions]),
+            PUSHING,
+        )
+        for term, one in found.items()
+        if one.ci95[1] < 0.0
+    }
 
 
 def require_sound(estimate: Estimate, kind: AxisKind, suspicions: Sequence[str]) -> None:

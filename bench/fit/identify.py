@@ -29,7 +29,7 @@ from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.errors import InputError, UndeterminedError
-from bench.fit.determined import left_open, require_determined, require_inertia, require_sound
+from bench.fit.determined import left_open, negative_friction, require_determined, require_inertia, require_sound
 from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
 from bench.fit.gathered import Gathered, gather
 from bench.fit.layout import BASE
@@ -61,11 +61,14 @@ def sound(estimate: Estimate, equations: NormalEquations, kind: AxisKind, suspic
     Raises:
         RefusedEstimateError: else, with what is determined, and with what else is suspicious.
     """
+    negative = negative_friction(estimate.parameters, kind, suspicions)
     try:
         require_determined(equations, kind)
         require_sound(estimate, kind, suspicions)
+        for refusal in negative.values():
+            raise refusal
     except UndeterminedError as refusal:
-        unknown = {kind.parameter(term) for term in left_open(equations, kind)}
+        unknown = {kind.parameter(term) for term in left_open(equations, kind)} | negative.keys()
         determined = {name: value for name, value in estimate.parameters.items() if name not in unknown}
         raise RefusedEstimateError(refusal, replace(estimate, parameters=determined)) from refusal
     return estimate
@@ -94,7 +97,7 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solution) -> Estimate:
         samples_used=equations.count * smooth.stride,
         cutoff=smooth.cutoff,
         source=gathered.rows.conditioning.source,
-        warnings=(*gathered.warnings, *_shifted(found), *negative(parameters, kind)),
+        warnings=(*gathered.warnings, *_shifted(found)),
         explained=1.0 - found.power / max(squares - equations.count * mean**2, 1e-300),
         checks=gathered.checks,
     )
@@ -125,16 +128,6 @@ def _shifted(found: Solution) -> Iterator[str]:
             f"current and speed are {shift * 1e3:.3g} ms apart, more than a sample ({period * 1e3:.3g} ms): "
             "a lag in the drive or its filters, which bench diagnose can tell"
         )
-
-
-def negative(parameters: Mapping[str, Parameter], kind: AxisKind) -> Iterator[str]:
-    """A warning of each of J, K_w and K_0 whose interval lies below zero."""
-    for term in (INERTIA, VISCOUS, COULOMB):
-        name = kind.parameter(term)
-        found = parameters[name]
-        value = f"{found.value:.3g} {found.unit}"
-        if found.ci95[1] < 0.0:
-            yield f"{name} is negative ({value}): a sign of current or speed is turned, or the model lacks an effect"
 
 
 def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
@@ -173,7 +166,6 @@ def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
             *(f"{member.alone.origin} alone: {member.alone.reason}" for member in members if member.alone.reason),
             *_differences(members, excesses, kind),
             *_offset(gathered, members, rig),
-            *negative(parameters, kind),
         ),
         explained=1.0 - left / max(variation, 1e-300),
         checks=joined([one.checks for one in gathered]),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from bench.axis_kind import INERTIA
 from bench.errors import BenchError, InputError, UndeterminedError
-from bench.gate import effort, repairs, signals, timing, velocity
+from bench.gate import effort, plausible, repairs, signals, throughout, timing, velocity
 from bench.gate.check import STATUSES, Check, Look, Repaired, Seen
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace, require_plausible
@@ -23,14 +23,17 @@ CHECKS: tuple[Look, ...] = (
     timing.rate,
     signals.clips,
     signals.resolution,
+    throughout.holds,
     effort.follows_motion,
     effort.constants,
+    plausible.agrees,
 )
 #: Checks that do not apply at one steady speed: signals may stay the same, and effort follows no motion.
-UNSTEADY = (signals.moves, repairs.none_lost, timing.rate, signals.resolution, effort.has_sign, effort.follows_motion)
+UNSTEADY: tuple[Look, ...] = (signals.moves, repairs.none_lost, timing.rate, signals.resolution)
+UNSTEADY += (effort.has_sign, throughout.holds, effort.follows_motion)
 STEADY = tuple(look for look in CHECKS if look not in UNSTEADY)
 #: Checks of a later part of a recording: what can go wrong there, without what holds for all of it.
-WHOLE = (timing.rate, signals.resolution, effort.has_sign, effort.follows_motion, effort.constants)
+WHOLE = (timing.rate, signals.resolution, effort.has_sign, effort.follows_motion, effort.constants, plausible.agrees)
 PARTS = tuple(look for look in CHECKS if look not in WHOLE)
 
 

@@ -30,6 +30,8 @@ CLIPPED, ROW = 0.005, 5
 AT_LIMIT = 0.02
 #: Share of the largest value by which the motion must ask for more, for what lies beyond to be lost; and the windows.
 BEYOND, WINDOWS = 0.05, 8
+#: The same of a signal at zero, as a share of its mean size elsewhere.
+DROPPED = 0.3
 #: Samples of these windows: short, to lie within a clipped stretch.
 SHORT = (4, 16)
 #: Steps within a signal's spread that are told, and refused.
@@ -104,34 +106,41 @@ def clips(seen: Seen) -> Check:
     names = [name for name in ("current", "torque", "force", "velocity") if name in seen.trace]
     if not names:
         return absent(CLIPS, "no speed or effort is recorded", ALLOWED_CLIPS)
-    sides = [_clipped(seen, name, side) for name in names for side in (1.0, -1.0)]
+    sides = [_stands(seen, name, side) for name in names for side in (1.0, -1.0, 0.0)]
     faults = [found for found in sides if found is not None]
     worst = next((one for one in faults if one.status == "fail"), faults[0] if faults else None)
     return worst or Check(CLIPS, "pass", "none found", ALLOWED_CLIPS)
 
 
-def _clipped(seen: Seen, name: str, side: float) -> Check | None:
-    """What is wrong with a signal at the upper end of its range, or at the lower one at a side of -1."""
+def _stands(seen: Seen, name: str, side: float) -> Check | None:
+    """What is wrong with a signal at the upper end of its range, the lower one at a side of -1, or zero at one of 0."""
     trace, rig = seen.trace, seen.rig
-    values = side * trace[name]
+    values, speed_or_zero = side * trace[name], name == "velocity" and side == 0.0  # an axis may rest
     top = float(values.max())
     peak = rig.motor.peak_current if rig is not None and name == "current" else None
-    if top <= 0.0 or (peak is not None and abs(top / peak - 1.0) < AT_LIMIT):
+    if speed_or_zero or (side and (top <= 0.0 or (peak is not None and abs(top / peak - 1.0) < AT_LIMIT))):
         return None
-    standing = values == top
-    _, lengths = _runs(standing)
-    share = float(lengths[lengths >= ROW].sum()) / len(trace)
+    standing = values == top if side else trace[name] == 0.0
+    starts, lengths = _runs(standing)
+    long = lengths >= ROW
+    share = float(lengths[long].sum()) / len(trace)
     if share <= CLIPPED:
         return None
-    found = f"{share:.1%} of {name} stand at exactly {side * top:.4g} {trace.units[name]}"
-    advice = "the end of its range? What lies beyond is lost: record with a wider range, or move more gently"
     lost = name != "velocity" and _more_demanded(seen, name, standing, side)
-    status = "fail" if lost else "warn"
-    return Check(CLIPS, status, found, ALLOWED_CLIPS, advice, unanswerable=True)
+    if not side and not lost:
+        return None  # a motor that coasts has no current
+    begin, end = starts[long][0], starts[long][-1] + lengths[long][-1] - 1
+    found = (
+        f"{share:.1%} of {name} stand at exactly {side * top + 0.0:.4g} {trace.units[name]}, "
+        f"between {trace.time[begin] - trace.time[0]:.4g} and {trace.time[end] - trace.time[0]:.4g} s"
+    )
+    advice = "the end of its range? What lies beyond is lost: record with a wider range, or move more gently"
+    advice = advice if side else "the signal dropped out? The motion takes effort meanwhile: cut the recording there"
+    return Check(CLIPS, "fail" if lost else "warn", found, ALLOWED_CLIPS, advice, unanswerable=True)
 
 
 def _more_demanded(seen: Seen, name: str, standing: NDArray[np.bool_], side: float) -> bool:
-    """Whether the motion, by what the other windows say of the axis, takes more effort than stands there."""
+    """Whether the motion, by what the other windows say of the axis, takes more effort than stands there, or other."""
     fitted = seen.balance(SHORT) if seen.effort is not None and seen.effort[1] == name else None
     if fitted is None:
         return False
@@ -142,8 +151,9 @@ def _more_demanded(seen: Seen, name: str, standing: NDArray[np.bool_], side: flo
         return False
     scale = np.maximum(np.linalg.norm(fitted.columns[clear], axis=0), 1e-300)
     theta = np.linalg.lstsq(fitted.columns[clear] / scale, fitted.effort[clear], rcond=1e-8)[0] / scale
-    beyond = side * (fitted.columns[full] @ theta - fitted.effort[full])
-    return float(np.median(beyond)) > BEYOND * float(np.abs(fitted.effort[full]).mean())
+    beyond = fitted.columns[full] @ theta - fitted.effort[full]
+    most = float(np.abs(fitted.effort[full if side else clear]).mean())
+    return float(np.median(side * beyond) if side else np.abs(beyond).mean()) > (BEYOND if side else DROPPED) * most
 
 
 def resolution(seen: Seen) -> Check:

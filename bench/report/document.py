@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer, model_validator
 
 from bench.arrays import Array
 
@@ -34,6 +34,16 @@ class Part(BaseModel):
     """A part of a document: frozen, and an unknown key in it is an error."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+#: Largest number that a drawing has a place for; of a logarithmic one the smallest is its inverse.
+LARGEST = 1e100
+
+
+def _require(right: bool, allowed: str) -> None:
+    """What its parts cannot say of themselves, of a document that is read back."""
+    if not right:
+        raise ValueError(allowed)
 
 
 class Paragraph(Part):
@@ -74,6 +84,11 @@ class Table(Part):
     rows: tuple[tuple[str, ...], ...]
     marked: tuple[int, ...] = ()
 
+    @model_validator(mode="after")
+    def _is_whole(self) -> Table:
+        _require(all(len(row) == len(self.columns) for row in self.rows), "a cell for each column in every row")
+        return self
+
 
 def table(caption: str, headings: Sequence[str], rows: Iterable[Iterable[str]], marked: Iterable[int] = ()) -> Table:
     """A table; `>` behind a heading sets its cells to the right, as numbers are, `~` gives sentences room."""
@@ -98,6 +113,12 @@ class Series(Part):
     y: tuple[float, ...] = ()
     low: tuple[float, ...] = ()
     high: tuple[float, ...] = ()
+
+    @model_validator(mode="after")
+    def _is_whole(self) -> Series:
+        lengths = {len(values) for values in (self.y, self.low, self.high) if values}
+        _require(lengths <= {len(self.x)} and bool(self.low) == bool(self.high), "as many values as places")
+        return self
 
 
 def series(
@@ -143,7 +164,7 @@ class Chart(Drawing):
     kind: Literal["chart"] = "chart"
     y_label: str = ""
     y_unit: str = ""
-    panels: tuple[Panel, ...]
+    panels: tuple[Panel, ...] = Field(min_length=1)
 
     @property
     def stacked(self) -> bool:
@@ -180,6 +201,14 @@ class Intervals(Drawing):
     spans: tuple[Span, ...]
     log: bool = False
 
+    @model_validator(mode="after")
+    def _has_a_scale(self) -> Intervals:
+        least = 1.0 / LARGEST if self.log else -LARGEST
+        _require(
+            least <= self.limits[0] < self.limits[1] <= LARGEST, "limits that a scale can have, the lower one first"
+        )
+        return self
+
 
 class HeatMap(Part):
     """Counts as a table whose cells are coloured by their share of the row; drawn without a script.
@@ -196,6 +225,12 @@ class HeatMap(Part):
     rows: tuple[str, ...]
     columns: tuple[str, ...]
     counts: tuple[tuple[int, ...], ...]
+
+    @model_validator(mode="after")
+    def _is_whole(self) -> HeatMap:
+        whole = len(self.counts) == len(self.rows) and all(len(row) == len(self.columns) for row in self.counts)
+        _require(whole, "a count for each row and column")
+        return self
 
 
 class Samples(Part):

@@ -19,7 +19,7 @@ import numpy as np
 from markupsafe import Markup
 
 from bench.names import plain
-from bench.report.document import Chart, Document, File, Intervals, Moving, Panel, Series, TimeGraph
+from bench.report.document import LARGEST, Chart, Document, File, Intervals, Moving, Panel, Series, TimeGraph
 
 if TYPE_CHECKING:  # 0.05 s, which only a page has to pay
     from jinja2 import Environment
@@ -152,7 +152,7 @@ class Ruler:
 
 def shown(value: float, log: bool) -> bool:
     """Whether a value has a place on an axis."""
-    return math.isfinite(value) and (value > 0.0 or not log)
+    return abs(value) <= LARGEST and (value >= 1.0 / LARGEST or not log)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
+import numpy as np
+
 from bench.errors import InputError
 from bench.names import nearest, short
 from bench.trace.channel import Channel, Recording, split_label
@@ -14,6 +16,8 @@ from bench.units.conversion import UnitScale
 
 #: Signals of which one that can be read is enough: the others are then left out where they cannot.
 ENOUGH = (("velocity", "position"), ("torque", "force", "current"))
+#: Difference of two columns of one signal, as share of its spread, up to which they are one: a filter, a resolution.
+SAME = 0.1
 _INDEX = UnitScale("samples", 1.0)
 
 
@@ -223,7 +227,22 @@ def _known(recording: Recording, signal: str) -> Channel | None:
     alike = [channel for channel in recording.channels if signal_of(channel.name) == signal]
     matches = [channel for channel in recording.channels if channel.name == signal] or alike
     matches = matches or [channel for channel in recording.channels if channel.signal == signal]
-    return _one(recording, signal, matches) if matches else None
+    if not matches:
+        return None
+    chosen = _one(recording, signal, matches)
+    return _one(recording, signal, [chosen, *(channel for channel in alike if _differ(signal, chosen, channel))])
+
+
+def _differ(signal: str, one: Channel, other: Channel) -> bool:
+    """Whether two columns of one signal are two signals; where one of them cannot be read, the other is it."""
+    if other is one or signal == "time" or {one.defect, other.defect} != {None} or one.values.size != other.values.size:
+        return False
+    try:
+        ours, theirs = (c.values * scale_in(signal, c.unit or "", "").factor for c in (one, other))
+    except InputError:
+        return False
+    both = np.isfinite(ours) & np.isfinite(theirs)
+    return bool(both.any()) and float(np.std((ours - theirs)[both])) > SAME * float(np.std(ours[both]))
 
 
 def _one(recording: Recording, signal: str, matches: list[Channel]) -> Channel:

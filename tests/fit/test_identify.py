@@ -190,8 +190,14 @@ def test_an_inertia_below_zero_is_refused_and_reported():
         RefusedEstimateError, match="moment of inertia cannot be determined: it comes out negative"
     ) as told:
         identify(trace, RIG)
-    assert any("negative" in warning for warning in told.value.estimate.warnings)
     assert told.value.estimate["moment_of_inertia"].value < 0.0
+
+
+def test_a_friction_below_zero_is_refused_and_the_others_are_told():
+    trace = recording(np.random.default_rng(13), Truth(coulomb=-0.06))
+    with pytest.raises(RefusedEstimateError, match=r"Coulomb .* cannot be determined: it comes out negative") as told:
+        identify(trace, RIG)
+    assert NAMES[0] in told.value.estimate.parameters and NAMES[2] not in told.value.estimate.parameters
 
 
 @pytest.mark.parametrize("whole", [np.round, np.trunc])

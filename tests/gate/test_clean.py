@@ -51,7 +51,7 @@ def test_inspect_tells_every_check(tmp_path, capsys):
     path = SHARED / "data/real/damiao_m4/r1.csv.gz"
     assert started(tmp_path)("inspect", str(path), "--json", "-") == 0
     checks = {check["name"]: check for check in json.loads(capsys.readouterr().out)["checks"]}
-    assert len(checks) == 10
+    assert len(checks) == 13
     assert checks["velocity_is_derivative_of_position"]["status"] == "fail"
     assert checks["velocity_is_derivative_of_position"]["advice"]
     assert checks["position_wraps"]["status"] == "pass"

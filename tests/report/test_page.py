@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bench.errors import InputError
 from bench.report.document import (
     Chart,
     Document,
@@ -159,3 +160,43 @@ def test_a_page_of_an_earlier_version_is_read(bench, tmp_path):
                 part.pop(key, None)
     (tmp_path / "out" / DATA).write_text(json.dumps(content), encoding="utf-8")
     assert bench("report", "out")[0] == 0
+
+
+CELLS = Table(caption="", columns=(Heading(heading="a"), Heading(heading="b")), rows=(("1", "2"),))
+DOTS = Series(name="", style="dots", colour="ink", x=(1.0, 2.0), y=(1.0, 2.0), low=(0.0, 1.0), high=(2.0, 3.0))
+GRAPH = Chart(title="", alternative="", panels=(Panel(x_label="", series=(DOTS,)),))
+FOREST = Intervals(title="", alternative="", label="", right=(0.0, 0.0), limits=(-1.0, 1.0), spans=())
+COUNTS = HeatMap(caption="", corner="", rows=("a",), columns=("a", "b"), counts=((1, 2),))
+
+
+@pytest.mark.parametrize(
+    ("part", "old", "new"),
+    [
+        (CELLS, '["1","2"]', '["1"]'),
+        (GRAPH, '"high":[2.0,3.0]', '"high":[2.0]'),
+        (GRAPH, '"y":[1.0,2.0]', '"y":[1.0]'),
+        (FOREST, '"limits":[-1.0,1.0]', '"limits":[1.0,1.0]'),
+        (FOREST, '"limits":[-1.0,1.0]', '"limits":[-1e308,1e308]'),
+        (COUNTS, "[[1,2]]", "[[1]]"),
+        (GRAPH, '"panels":[', '"panels":[],"was":['),
+    ],
+)
+def test_data_that_no_page_can_show_is_refused(tmp_path, part, old, new):
+    """Each ended with status 70, found by damaging data of pages at random."""
+    text = page(part)
+    assert old in text
+    (tmp_path / DATA).write_text(text)
+    html(read_document(tmp_path / DATA))
+    (tmp_path / DATA).write_text(text.replace(old, new))
+    with pytest.raises(InputError, match="allowed"):
+        read_document(tmp_path / DATA)
+
+
+def test_numbers_that_have_no_place_are_left_out(tmp_path):
+    (tmp_path / DATA).write_text(page(GRAPH).replace("[1.0,2.0]", "[1.0,1e308]"))
+    assert "<svg" in html(read_document(tmp_path / DATA))
+
+
+def page(part):
+    section = Section(key="a", heading="", blocks=(part,))
+    return Document(title="", subject="", verdict="", tone="sure", answers={}, sections=(section,)).model_dump_json()

@@ -238,6 +238,24 @@ def test_two_columns_of_one_name_are_asked_about(tmp_path):
         read(written(tmp_path / "run.csv", [",".join((*NAMES, "velocity [rpm]"))], rows))
 
 
+@pytest.mark.parametrize("beside", ["speed [rad/s]", "ActVel [rpm]"])
+def test_two_names_of_one_signal_are_asked_about_where_they_differ(tmp_path, beside):
+    """Whichever comes first in the file."""
+    factor = np.pi / 30.0 if "rad" in beside else 1.0
+    for scale, told in ((1.0, None), (1.5, "velocity: found several columns")):
+        second = [repr(float(row.split(",")[1]) * factor * scale) for row in lines()]
+        for names, rows in (
+            ((*NAMES, beside), [f"{row},{more}" for row, more in zip(lines(), second, strict=True)]),
+            ((beside, *NAMES), [f"{more},{row}" for row, more in zip(lines(), second, strict=True)]),
+        ):
+            path = written(tmp_path / "run.csv", [",".join(names)], rows)
+            if told is None:
+                assert np.std(read(path)["velocity"]) > 0.0
+            else:
+                with pytest.raises(InputError, match=told):
+                    read(path)
+
+
 def wrapping(period, counts, speed=40.0):
     """A position that goes there and back, wrapped by a period, in counts."""
     true = speed * np.cumsum(np.sin(2 * np.pi * TIME / TIME[-1])) * 1e-3 * 12.0

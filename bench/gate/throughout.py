@@ -1,0 +1,133 @@
+"""Does one torque balance hold from the recording's beginning to its end, and at this delay of the effort?
+
+    gain of a block = (demand . effort)/(demand . demand),  demand = the balance of all blocks along the block's motion
+
+A block is a stretch of time. Physics changes the gain by tens of percent; a sign that turns makes it -1, a sensor that
+drops out 0, another unit a thousand. A delay is told by how much less the balance leaves with the effort shifted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from bench.arrays import Array, rms
+from bench.gate.check import Balanced, Check, Seen, absent
+from bench.trace.trace import Trace
+
+NAME = "balance_holds_throughout"
+#: Blocks of a recording, and windows that one has at least.
+BLOCKS, WINDOWS = 32, 6
+#: Share of the effort that the balance explains, with the gains' signs taken out, from which on they say something.
+EXPLAINED = 0.6
+#: Share of the demand's RMS that a block has at least.
+DEMANDED = 0.3
+#: Effort of a signal that dropped out, as share of the demand, and gain over the median one of another scale.
+QUIET, SCALED = 0.2, 3.0
+#: Correlation of effort and demand within a block from which on its gain is a scale.
+ALIKE = 0.95
+#: Delays that are tried to both sides, and the least that is refused - s, and samples: drives and filters have shorter.
+LONGEST, LATE, SAMPLES = 0.1, 0.012, 12
+#: Share of what is left that a fault, taken out, may leave; of signs, of which each block may have either, the first.
+LEFT_BY_SIGNS, LEFT = 0.25, 0.4
+
+ALLOWED = "one balance of effort and motion, from beginning to end"
+
+
+def holds(seen: Seen) -> Check:
+    """Whether one balance holds throughout, and the likeliest fault where none does."""
+    if seen.effort is None or not seen.tells_motion:
+        return absent(NAME, "not both effort and motion are recorded", ALLOWED)
+    fitted, (_, name) = seen.balance(), seen.effort
+    if fitted is None:
+        return absent(NAME, f"too few samples, or {name} never changes", ALLOWED)
+    for found, advice in (*_in_blocks(fitted, name, seen.trace), *_delayed(fitted, name, seen.trace)):
+        return Check(NAME, "fail", found, ALLOWED, advice)
+    return Check(NAME, "pass", "one balance holds", ALLOWED)
+
+
+def _basis(columns: Array) -> Array:
+    """Orthonormal columns (n, r) that span others (n, c)."""
+    ways, size, _ = np.linalg.svd(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False)
+    return ways[:, size > 1e-8 * size[0]]
+
+
+def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, str]]:
+    """What is wrong with the effort for a stretch of time, and what to do."""
+    effort, count = fitted.effort, min(BLOCKS, fitted.effort.size // WINDOWS)
+    edges = np.linspace(0, effort.size, count + 1).astype(int)
+    blocks = [slice(*pair) for pair in pairwise(edges)]
+    basis = _basis(fitted.columns)
+    along = np.stack([basis[block].T @ effort[block] for block in blocks], axis=1)
+    signs = _signs(along)
+    demand = basis @ (along @ signs)
+    if float(demand @ demand) < EXPLAINED * float(effort @ effort):
+        return
+    asked = np.array([rms(demand[block]) for block in blocks])
+    told = asked > DEMANDED * rms(demand)
+    gains = np.array([demand[block] @ effort[block] / max(demand[block] @ demand[block], 1e-300) for block in blocks])
+    scale = np.abs(gains) / np.median(np.abs(gains[told])) + 1e-300
+    alike = np.array([abs(_correlation(demand[block], effort[block])) for block in blocks]) > ALIKE
+    quiet = np.array([rms(effort[block]) for block in blocks]) < QUIET * asked
+    faults = (
+        (told & quiet, 0.0, f"{name} is nearly zero while the motion takes effort", "the signal dropped out"),
+        (told & alike & (abs(np.log(scale)) > np.log(SCALED)), 0.0, f"{name} has another scale", "a unit changed"),
+        (told & (gains < 0.0), -1.0, f"the sign of {name} is turned", "a mode of the drive turned it"),
+    )
+    whole = _left(fitted, np.ones(effort.size))
+    for wrong, factor, found, why in faults:
+        at = np.flatnonzero(wrong)
+        each = np.repeat(np.where(wrong, factor, signs if factor else 1.0), np.diff(edges))
+        if at.size and _left(fitted, each) < (LEFT_BY_SIGNS if factor else LEFT) * whole:
+            first, last = fitted.starts[edges[at[0]]], fitted.starts[edges[at[-1] + 1] - 1] + fitted.length
+            begins, ends = (float(trace.time[min(k, len(trace) - 1)] - trace.time[0]) for k in (first, last))
+            yield f"{found} from about {begins:.3g} s to {ends:.3g} s", f"likeliest {why}: cut the recording there"
+
+
+def _left(fitted: Balanced, factors: Array) -> float:
+    """Share of the effort that the balance leaves of the windows, their effort times factors (n,); 0 leaves one out."""
+    used = factors != 0.0
+    effort, basis = (fitted.effort * factors)[used], _basis(fitted.columns[used])
+    return 1.0 - float(np.sum((basis.T @ effort) ** 2)) / max(float(effort @ effort), 1e-300)
+
+
+def _signs(along: Array) -> Array:
+    """Signs of blocks (n,), mostly +1, by which the sum of their columns (r, n) becomes longest."""
+    signs = np.where(np.linalg.eigh(along.T @ along)[1][:, -1] < 0.0, -1.0, 1.0)
+    for _ in range(signs.size):
+        signs = np.where(along.T @ (along @ signs) < 0.0, -1.0, 1.0)
+    return signs if float(signs @ np.linalg.norm(along, axis=0)) > 0.0 else -signs
+
+
+def _correlation(one: Array, other: Array) -> float:
+    one, other = one - one.mean(), other - other.mean()
+    return float(one @ other) / max(float(np.sqrt((one @ one) * (other @ other))), 1e-300)
+
+
+def _delayed(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, str]]:
+    """That the effort is late, or early, by more than a drive makes it."""
+    most = round(LONGEST / trace.sample_period)
+    length, shifts = fitted.length, np.arange(-most, most + 1, max(1, most // 50))
+    columns, efforts = [], []
+    for part in fitted.sums:
+        found, at = part.windows(length), part.windows_of(length)
+        if found is not None:
+            inside = (at >= most) & (at + length + most < part.sums.shape[1])
+            ends = at[inside][:, None] + shifts
+            columns.append(found[0][inside])
+            efforts.append((part.sums[-1][ends + length] - part.sums[-1][ends]) / length)
+    if sum(map(len, columns)) < BLOCKS * WINDOWS // 3:
+        return
+    basis, effort = _basis(np.concatenate(columns)), np.concatenate(efforts)
+    effort = effort - effort.mean(axis=0)
+    basis = _basis(basis - basis.mean(axis=0))
+    power = np.einsum("nk,nk->k", effort, effort)
+    left = 1.0 - np.square(basis.T @ effort).sum(axis=0) / np.maximum(power, 1e-300)
+    best, none = int(np.argmin(left)), int(np.argmin(abs(shifts)))
+    delay = float(shifts[best]) * trace.sample_period
+    if abs(delay) >= max(LATE, SAMPLES * trace.sample_period) and left[best] < min(LEFT * left[none], 1.0 - EXPLAINED):
+        late = f"{name} is {abs(delay) * 1e3:.3g} ms {'late' if delay > 0.0 else 'early'}"
+        found = f"{late}: so shifted, motion explains {1.0 - left[best]:.0%} of it, and {1.0 - left[none]:.0%} as it is"
+        yield found, "likeliest the columns were recorded apart: record them by one clock, or shift one of them"

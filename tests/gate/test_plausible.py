@@ -1,0 +1,38 @@
+"""What a recording shows, held against what its rig says."""
+
+import numpy as np
+import pytest
+
+from bench.gate import plausible
+from bench.gate.check import Seen
+from tests.fit.motions import recording
+from tests.gate.damage import changed
+from tests.studies.corrupt.__main__ import RIG
+
+
+@pytest.fixture(scope="module")
+def run():
+    """An axis whose inertia is what its rig's motor and disk have together."""
+    return recording(np.random.default_rng(4))
+
+
+@pytest.mark.parametrize(
+    ("factor", "status"), [(1.0, "pass"), (1.15, "pass"), (0.87, "pass"), (1.3, "warn"), (0.7, "warn"), (9.5, "fail")]
+)
+def test_the_inertia_of_motor_and_disk(run, factor, status):
+    found = plausible.agrees(Seen(changed(run, velocity=run["velocity"] / factor), RIG))
+    assert found.status == status
+    assert (f"{0.0015 * factor:.2g}"[:4] in found.found) or status == "pass"
+
+
+def test_top_speed_and_peak_current(run):
+    slow = RIG.model_copy(update={"load": None, "motor": RIG.motor.model_copy(update={"maximum_speed": 20.0})})
+    found = plausible.agrees(Seen(run, slow))
+    assert found.status == "fail" and "velocity reaches" in found.found and "20 rad/s" in found.found
+    weak = RIG.model_copy(update={"load": None, "motor": RIG.motor.model_copy(update={"peak_current": 2.5})})
+    assert "current reaches" in plausible.agrees(Seen(run, weak)).found
+    silent = RIG.model_copy(update={"load": None, "motor": RIG.motor.model_copy(update=dict.fromkeys(LIMITS))})
+    assert plausible.agrees(Seen(run, silent)).status == "not_applicable"
+
+
+LIMITS = ("maximum_speed", "peak_current")
