@@ -54,7 +54,7 @@ def read_bytes(path: str | Path, kind: str, replaced: bool = False) -> bytes:
     """
     with opened(Path(path), kind, replaced) as file:
         require_size(path, size := os.fstat(file.fileno()).st_size)
-        return file.read(size)  # and not to its end, which some of the kernel's own files wait for; they have no size
+        return file.read(size)
 
 
 @contextmanager
@@ -71,6 +71,8 @@ def opened(path: Path, kind: str, replaced: bool = False) -> Iterator[BufferedRe
         if not stat.S_ISREG(state.st_mode):  # a pipe may never end, a device has no end
             raise InputError(path, "found a pipe or a device", f"{give}, a regular file")
         with path.open("rb") as file:
+            if not state.st_size and os.name == "posix" and not os.fstatvfs(file.fileno()).f_blocks:  # /proc, /sys
+                raise InputError(path, "found a file that the system makes while it is read", f"{give}, a regular file")
             touched, own = _TOUCHED.get(), _identity(os.fstat(file.fileno()))
             if touched is not None and not replaced and own not in touched.made:
                 touched.read.add(own)

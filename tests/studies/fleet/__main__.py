@@ -30,6 +30,15 @@ from tests.fleet.storage import offer
 ROOT = Path(__file__).resolve().parents[2]
 CHANGED = frozenset({7, 23, 40, 58, 91})
 EACH, HANGING, DEADLY = 10, 3, 2
+#: What a manifest may name instead of a recording: devices, folders, and storages that nobody asked for.
+ELSEWHERE = ("file:///dev/zero", "/dev/stdin", "/proc/kmsg", "/", "zip://a.csv::file:///x.zip", "dir:///etc")
+ELSEWHERE += (
+    "reference://x",
+    "tar://a::/x.tar",
+    "local:///etc/passwd",
+    "simplecache::https://127.0.0.1:9/x",
+    "a\tb://c",
+)
 
 
 def main(
@@ -37,14 +46,16 @@ def main(
     timed: Annotated[int, typer.Option(help="Of the fleet whose speed is measured; 0: none.")] = 200,
     duration: Annotated[float, typer.Option(help="Of one of these, at 1 kHz, in s.")] = 30.0,
     deadline: Annotated[float, typer.Option(help="Of one recording, in s.")] = 20.0,
+    hostile: Annotated[float, typer.Option(help="Share of its recordings that give no result.")] = 0.05,
     out: Annotated[Path | None, typer.Option(help="File for the table.")] = None,
 ) -> None:
     """Measure what is said of fleets, and write it down."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        lines = _endured(folder, recordings, deadline) if recordings else []
+        lines = _endured(folder, recordings, deadline, hostile) if recordings else []
         lines += _speed(folder / "timed", timed, duration) if timed else []
-    command = f"python -m tests.studies.fleet --recordings {recordings} --timed {timed} --duration {duration:g}"
+    options = f"--recordings {recordings} --hostile {hostile:g} --timed {timed} --duration {duration:g}"
+    command = f"python -m tests.studies.fleet {options}"
     text = "\n".join(["# A fleet, measured", "", f"`{command}`", "", "| what | found |", "|---|---|", *lines]) + "\n"
     typer.echo(text)
     if out is not None:
@@ -56,10 +67,10 @@ def _row(what: str, found: object) -> str:
     return f"| {what} | {found} |"
 
 
-def _endured(folder: Path, recordings: int, deadline: float) -> list[str]:
-    """A fleet with a twentieth damaged, some that hang and some that end their process: run, killed, run again."""
+def _endured(folder: Path, recordings: int, deadline: float, hostile: float) -> list[str]:
+    """A fleet with a share damaged, some that hang and some that end their process: run, killed, run again."""
     made = fleet_of(folder / "fleet", axes=recordings // EACH, each=EACH, changed=CHANGED)
-    wrong = _spoilt(made, recordings)
+    wrong = _spoilt(made, recordings, hostile)
     offer(folder / "site")
     manifest = made.write()
     began = time.monotonic()
@@ -96,16 +107,18 @@ def _endured(folder: Path, recordings: int, deadline: float) -> list[str]:
     ]
 
 
-def _spoilt(made: Made, recordings: int) -> set[int]:
+def _spoilt(made: Made, recordings: int, hostile: float) -> set[int]:
     """Places of the recordings that are replaced by ones that give no result."""
     rng = np.random.default_rng(0)
-    count = recordings // 20 + HANGING + DEADLY
+    count = round(hostile * recordings) + HANGING + DEADLY
     places = rng.choice(len(made.rows), count, replace=False).tolist()
     for number, place in enumerate(places):
         file = made.rows[place].split(",")[0]
         if number < HANGING + DEADLY:
             url = f"{'never' if number < HANGING else 'deadly'}://disk/{file}"
             made.rows[place] = made.rows[place].replace(file, url)
+        elif number % 2 and hostile > 0.05:
+            made.rows[place] = made.rows[place].replace(file, ELSEWHERE[number // 2 % len(ELSEWHERE)])
         else:
             DAMAGES[number % len(DAMAGES)](made.folder / file)
     return set(places)

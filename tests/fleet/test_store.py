@@ -1,0 +1,41 @@
+"""What a fleet reads beside its recordings: storages of a short list, and results that are as they were put."""
+
+import json
+
+import pytest
+
+from bench.errors import InputError
+from bench.fleet.evaluate import Store, marked
+
+KEY = "ab" * 32
+RESULT = {"status": "done", "reason": None, "parameters": {"moment_of_inertia": {"value": 1e-3, "unit": "kg*m**2"}}}
+
+
+@pytest.mark.parametrize(
+    "url",
+    ["zip://a.csv::file:///x.zip", "reference://x", "dir:///etc", "simplecache::https://x/a.csv", "://", "x\ty://z"],
+)
+def test_a_storage_that_nobody_allowed_is_refused_before_anything_is_opened(url):
+    with pytest.raises(InputError, match=r"found the storage .* allowed: https, .* --storage allows another"):
+        marked(url)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda kept: {name: value for name, value in kept.items() if name != "status"},
+        lambda kept: {**kept, "parameters": {"moment_of_inertia": {"value": 1e308, "unit": "kg*m**2"}}},
+        lambda kept: {**kept, "sha256": None},
+        lambda kept: [kept],
+        lambda kept: None,
+        lambda kept: "done",
+        lambda kept: {},
+    ],
+)
+def test_a_result_that_was_tampered_with_is_none(tmp_path, change):
+    store = Store(tmp_path)
+    store.put(KEY, RESULT)
+    kept = json.loads(store.path(KEY).read_text())
+    assert {name: value for name, value in (store.get(KEY) or {}).items() if name != "schema"} == RESULT
+    store.path(KEY).write_text(json.dumps(change(kept)))
+    assert store.get(KEY) is None
