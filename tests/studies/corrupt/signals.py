@@ -67,7 +67,7 @@ def low_passed(seconds: float) -> Callable:
 
     def passed(_: np.random.Generator, values: np.ndarray, time: np.ndarray) -> np.ndarray:
         pole = np.exp(-(time[1] - time[0]) / seconds)
-        return lfilter([1.0 - pole], [1.0, -pole], values)
+        return np.asarray(lfilter([1.0 - pole], [1.0, -pole], values))
 
     return passed
 
