@@ -147,7 +147,7 @@ def test_what_is_read_is_opened_in_one_place():
 def test_every_path_of_every_command_is_known_as_read_or_written():
     """An output of an unknown name would be taken for an input, and refused."""
     read = {"file", "trace", "traces", "rig", "holdout", "model", "mjcf", "simulated", "data"}
-    read |= {"manifest", "recordings", "submissions", "truth", "profile", "ranges", "folders", "into"}
+    read |= {"logs", "manifest", "recordings", "submissions", "truth", "profile", "ranges", "folders", "into"}
     for command in app.registered_commands:
         assert command.callback is not None
         for name, hint in command.callback.__annotations__.items():
