@@ -32,7 +32,7 @@ from bench.plant.measured_motion import in_stretches, measured_position, measure
 from bench.plant.model_file import Mounting, StoredModel
 from bench.plant.tracking import SoftTracking, Tracked, track_all
 from bench.rig.rig import Rig
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, less_known
 
 #: Bandwidth of the cascade by which a model tracks a recording - rad/s -, and the largest that a model may need. On the
 #: shared cases the effects found reduce the gap by a median factor of 15 at 10, 16 at 20 and 14 at 40 rad/s; at 20 none
@@ -191,7 +191,7 @@ class Recorded:
     Attributes:
         name: of it.
         trace: the recording.
-        effort: (n,) - N*m (N).
+        effort, known: of the motor, and known to resist it beside the axis (n,) - N*m (N).
         judged: (n,) samples over which the gap is taken.
         events: whether the model's events occur in it.
     """
@@ -199,6 +199,7 @@ class Recorded:
     name: str
     trace: Trace
     effort: Array
+    known: Array
     judged: NDArray[np.bool_]
     events: bool = True
 
@@ -207,7 +208,8 @@ class Recorded:
         cls, name: str, trace: Trace, rig: Rig, over: NDArray[np.bool_] | bool = True, events: bool = True
     ) -> Recorded:
         """A recording whose gap is taken over some samples (n,)."""
-        return cls(name, trace, rig.net_effort(trace)[0], in_stretches(trace) & over, events)
+        effort = rig.own_effort(trace)[0]
+        return cls(name, trace, effort, effort - less_known(trace, effort), in_stretches(trace) & over, events)
 
     def difference(self, simulated: Array) -> Array:
         """Simulated less measured velocity at the judged samples - rad/s (m/s)."""
@@ -233,7 +235,7 @@ class Recorded:
     def holding(self, stored: StoredModel, inertia: float | None) -> SoftTracking:
         """A model that tracks it by a cascade designed for an inertia - kg*m**2 (kg)."""
         model = stored.model if self.events else without_events(stored.model)
-        return SoftTracking(model, self.trace, self.effort, stored.misalignment, inertia)
+        return SoftTracking(model, self.trace, self.effort, stored.misalignment, inertia, self.known)
 
 
 @dataclass(frozen=True)

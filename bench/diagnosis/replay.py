@@ -22,6 +22,7 @@ from bench.plant.model_file import StoredModel, load_model, read_table
 from bench.plant.tracking import SoftTracking, track
 from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
+from bench.trace.trace import less_known
 
 #: Share of a recording's torque that the model of its axis does not leave unexplained.
 LEFT = 0.2
@@ -90,7 +91,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     kind = table.get("kind", rig.kind)
     if kind != rig.kind:
         raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
-    effort, unit = rig.net_effort(trace)
+    effort, unit = rig.own_effort(trace)
     peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
     try:
         rows = Rows.of(trace, rig, width=balance.width, every=True, peak_effort=peak)
@@ -109,7 +110,8 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
         happening = balance.recording in (EVERY, trace.origin)
         moving = stored.model if happening else without_events(stored.model)
         bandwidth = holding_bandwidth(moving, float(np.abs(measured[1]).max()))
-        tracked = track(SoftTracking(moving, trace, effort, stored.misalignment), bandwidth)
+        known = effort - less_known(trace, effort)
+        tracked = track(SoftTracking(moving, trace, effort, stored.misalignment, known=known), bandwidth)
         position, velocity = tracked.position, tracked.velocity
     warnings = []
     if str(table.get("name", rig.name)) != rig.name:

@@ -21,8 +21,9 @@ from bench.plant.stepped_effects import per_axis
 #: Bytes of inputs and states that a simulation holds at once, however long it is.
 BLOCK_BYTES = 8 * 2**20
 #: Of the number of a tick, which come in turn, and true position and velocity at it - rad (m), rad/s (m/s) - (axes,):
-#: effort from it to the next - N*m (N) - (axes,), reported and asked of the motor. Of a lone axis all may be numbers.
-Tick = Callable[[int, Number, Number], tuple[Number, Number]]
+#: effort from it to the next - N*m (N) - (axes,), reported, asked of the motor, and known to resist beside. Of a lone
+#: axis all may be numbers.
+Tick = Callable[[int, Number, Number], tuple[Number, Number, Number]]
 DIVERGED = "the simulation diverged: lower the drive's gains or its control period"
 
 
@@ -124,27 +125,30 @@ class PlannedInputs(Controller):
 
     @abstractmethod
     def between(self, start: int, stop: int) -> Array:
-        """Inputs from a tick to before another, held from each to the next - (ticks, inputs); the last is an effort."""
+        """Inputs from a tick to before another, held from each to the next - (ticks, inputs + 1).
+
+        The last two are the motor's effort, and what is known to resist it beside the axis.
+        """
 
     @classmethod
     def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Tick:
         """Read in blocks; after the end of a loop its last inputs are held."""
-        rows = _rows_of(loops, setpoints.shape[1] + 1)
+        rows = _rows_of(loops, setpoints.shape[1] + 2)
 
-        def tick(k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
+        def tick(k: int, position: Number, velocity: Number) -> tuple[Number, Number, Number]:
             inputs = next(rows)
-            setpoints[:] = inputs[:, :-1]
-            effort = per_axis(inputs[:, -1])
-            return effort, effort
+            setpoints[:] = inputs[:, :-2]
+            effort = per_axis(inputs[:, -2])
+            return effort, effort, per_axis(inputs[:, -1])
 
         return tick
 
 
 class Listed(PlannedInputs):
-    """Inputs in an array, (ticks, inputs)."""
+    """Inputs in an array, (ticks, inputs), of an axis with nothing known beside it."""
 
     def __init__(self, inputs: Array) -> None:
-        self._inputs = inputs
+        self._inputs = np.column_stack([inputs, np.zeros(len(inputs))])
 
     def between(self, start: int, stop: int) -> Array:
         """See `PlannedInputs`."""

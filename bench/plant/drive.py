@@ -146,11 +146,11 @@ class FollowReferences(Controller):
         together = CascadeDrive(cascade, side_by_side([drive.references for drive in drives]), emulation)
         encoders = on_axes([loop.axis for loop in loops], MisreadMotion)
 
-        def tick(k: int, position: Number, velocity: Number) -> tuple[Number, Number]:
+        def tick(k: int, position: Number, velocity: Number) -> tuple[Number, Number, Number]:
             for some in encoders:
                 turned, moving = some.effect.seen(some.values, some.of(position), some.of(velocity))
                 position, velocity = some.with_these(position, turned), some.with_these(velocity, moving)
-            return together.tick(k, position, velocity)
+            return *together.tick(k, position, velocity), 0.0
 
         return tick
 

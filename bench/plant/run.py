@@ -110,7 +110,8 @@ def run_native(loop: ClosedLoop) -> States:
     time = loop.time[::every]
     found = np.full((3, time.size), np.nan)
     for start, stop in blocks(loop.ticks, 8 * (model.nu + state.size + model.nsensordata)):
-        planned, inputs = loop.controller.between(start, stop), np.zeros((1, stop - start, model.nu))
+        *held, effort, known = loop.controller.between(start, stop).T
+        planned, inputs = np.column_stack([*held, effort - known]), np.zeros((1, stop - start, model.nu))
         inputs[0, :, first : first + planned.shape[1]] = planned
         # where the solver starts its search is no part of the state, but of the last bits of the result
         warm = data.qacc_warmstart[None].copy()
@@ -135,8 +136,7 @@ def run_ticked(loops: Sequence[ClosedLoop], progress: Progress | None = None) ->
     recorded = States(time[::every], *np.zeros((4, -(-time.size // every), len(loops))))
     for k in range(time.size):
         position, velocity = axes.state()
-        setpoint, motor = axes.tick(k, position, velocity)
-        reported, made = axes.advance(time[k], setpoint, motor)
+        reported, made = axes.advance(time[k], *axes.tick(k, position, velocity))
         if k % every == 0:
             row = k // every
             recorded.position[row], recorded.velocity[row] = position, velocity
@@ -179,31 +179,31 @@ class _SideBySide:
             self._here, self._now = self._position.copy(), self._velocity.copy()
         return self._here - self._step / 2.0 * self._now, self._now
 
-    def advance(self, time: float, setpoint: Number, motor: Number) -> tuple[Number, Number]:
+    def advance(self, time: float, setpoint: Number, motor: Number, known: Number) -> tuple[Number, Number]:
         """Go on by a tick from the state that was read; returns reported effort and motor torque, means over its steps.
 
         Args:
             time: at its start - s.
-            setpoint, motor: effort that is reported, and asked of the motor - N*m (N).
+            setpoint, motor, known: effort that is reported, asked of the motor, and known to resist beside - N*m (N).
         """
         if self._effects is None:
-            self._effort[:] = motor
+            self._effort[:] = motor - known
             self._batch.step(nstep=self._substeps)
             return setpoint, motor
-        flowing, acting = self._step_on(time, motor)
+        flowing, acting = self._step_on(time, motor, known)
         if self._substeps > 1:
             for substep in range(1, self._substeps):
                 self.state()
-                flows, acts = self._step_on(time + substep * self._step, motor)
+                flows, acts = self._step_on(time + substep * self._step, motor, known)
                 flowing, acting = flowing + flows, acting + acts
             flowing, acting = flowing / self._substeps, acting / self._substeps
         return setpoint + (flowing - motor), acting
 
-    def _step_on(self, time: float, motor: Number) -> tuple[Number, Number]:
+    def _step_on(self, time: float, motor: Number, known: Number) -> tuple[Number, Number]:
         """One step from the state that was read: effort that flows, and acts - N*m (N) - (axes,)."""
         assert self._effects is not None
         acts = self._effects.act(self._memory, self._since + time, self._here, self._now, motor, self._began)
-        self._memory, self._effort[:] = acts.memory, acts.motor
+        self._memory, self._effort[:] = acts.memory, acts.motor - known
         self._joints.take(acts)
         self._batch.step()
         return acts.reported, acts.motor

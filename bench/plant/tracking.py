@@ -56,9 +56,10 @@ class SoftTracking:
     Attributes:
         model: with effects.
         trace: the recording, with velocity or position.
-        effort: torque - N*m (force - N) - that the rig makes of it, (n,).
+        effort: the motor's torque - N*m (force - N) - that the rig makes of it, (n,).
         misalignment: by how much the effort is reported late - s.
         inertia: that the cascade is laid out for, the model's if None - kg*m**2 (kg).
+        known: torque (force) that is known to resist the motor beside the axis, as the rest of a robot does (n,).
     """
 
     model: AxisModel
@@ -66,6 +67,7 @@ class SoftTracking:
     effort: Array
     misalignment: float = 0.0
     inertia: float | None = None
+    known: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -153,7 +155,7 @@ class _HoldingInputs(PlannedInputs):
         self._position, self._velocity = true_motion(model, position, velocity)
         self._time, self._effort, self._held = trace.time[part], held.effort[part], held
         self._since, self._timestep = float(trace.time[part.start]) - trace.start_of(part), timestep
-        self._losses = model.acting(TorqueLoss)
+        self._known, self._losses = None if held.known is None else held.known[part], model.acting(TorqueLoss)
         self.ticks = (velocity.size - 1) * substeps + 1
         self.start = float(self._position[0]), float(self._velocity[0])
 
@@ -166,7 +168,8 @@ class _HoldingInputs(PlannedInputs):
         effort = self._recorded(start, stop) if self._acting is None else self._acting[start:stop]
         for effect, values in self._losses:
             effort = effect.delivered(values, self._held.model.axis, effort)
-        return np.stack([lead, wanted, effort], axis=-1)
+        known = np.zeros_like(effort) if self._known is None else np.interp(ticks, self._time, self._known)
+        return np.stack([lead, wanted, effort, known], axis=-1)
 
     def _ticks(self, start: int, stop: int) -> Array:
         return self._time[0] + np.arange(start, stop) * self._timestep
