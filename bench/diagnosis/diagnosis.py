@@ -49,9 +49,14 @@ def diagnose(
     unseen = passed(trace_of(holdout, rig), rig).trace if holdout is not None else None
     recordings = Recordings.of([each.trace for each in gated], rig, unseen)
     bare = fit_bare(recordings.rows)
-    located = where(bare, rig.axis_kind, recordings.unit, recordings.current)
     suspects = name(recordings, bare, left_out, policy)
+    recordings, moves = recordings.steady(suspects.searched.last)
+    if recordings.rows is not bare.rows:
+        bare = fit_bare(recordings.rows)
+        suspects = replace(suspects, searched=suspects.searched.through(recordings.rows))
+    located = where(bare, rig.axis_kind, recordings.unit, recordings.current)
     progress(0.6)
     added = add(recordings, suspects)
     progress(0.9)
-    return replace(show(recordings, bare, located, suspects, added), checks=joined([each.checks for each in gated]))
+    shown, checks = show(recordings, bare, located, suspects, added), joined([each.checks for each in gated])
+    return replace(shown, checks=checks, warnings=[*shown.warnings, *moves])

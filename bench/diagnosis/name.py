@@ -102,9 +102,7 @@ def named(
     hinted, over_noise = hint(fitted, catalogue().values()) or fitted, unbiased(fitted)
     parameters = {
         name: found.widened(*(other.value(term) - found.value for other in others)).reaching(hinted.value(term))
-        for term, (name, found) in zip(
-            (INERTIA, VISCOUS, COULOMB), numbers.base(recordings.base_units).items(), strict=True
-        )
+        for term, (name, found) in zip((INERTIA, VISCOUS, COULOMB), recordings.base(numbers).items(), strict=True)
     }
     effects = []
     for index, term in enumerate(fitted.terms):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,10 +17,13 @@ from bench.effects.effect import Detectable, Detected, Effect
 from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import require_friction, require_inertia
 from bench.fit.fit import Fit, fit
+from bench.fit.gathered import TELLS, TERMS, solved, steady
 from bench.fit.hum import with_hum
 from bench.fit.layout import lay_out, plain
+from bench.fit.quantities import Uncertain
 from bench.fit.rows import Rows, clear_motion
 from bench.fit.solution import equations_of
+from bench.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.trace.filter import LEAST_WIDTH
 from bench.trace.join import join
@@ -34,6 +37,9 @@ SMALL = 10.0
 #: Largest share of noise in the acceleration's power. Least squares underestimates inertia by it: by 27 % at 0.27, by 4
 #: % at 0.04; the shared cases have 6e-5 at most.
 NOISY = 0.1
+
+#: What is advised beyond what would just suffice.
+LONGER = 1.5
 
 WHAT = "whether the model lacks an effect"
 
@@ -49,6 +55,7 @@ class Recordings:
         holdout: another recording, not fitted; None without one.
         rows, holdout_rows: rows of both, without those faults.
         detected: effects outside the torque balance that the signals show directly.
+        doubt: half widths of J, K_w and K_0 at 95 % from how they move with the filter's cut-off, by their terms.
     """
 
     rig: Rig
@@ -58,6 +65,7 @@ class Recordings:
     rows: Rows
     holdout_rows: Rows | None
     detected: Mapping[Effect, Detected]
+    doubt: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, trace: Trace | Sequence[Trace], rig: Rig, holdout: Trace | None) -> Recordings:
@@ -101,6 +109,28 @@ class Recordings:
         same = self.rows.conditioning
         rigs = self.rig.within_tolerance()
         return [fit(Rows.of(self.corrected, rig, conditioning=same), fitted.hypothesis) for rig in rigs]
+
+    def steady(self, found: Fit) -> tuple[Recordings, tuple[str, ...]]:
+        """The same at the cut-off at which J, K_w and K_0 stand still beside the effects of a fit, and what moved.
+
+        Asked among the links of a robot: the noise and lags of other joints' speeds enter at high frequency, and what
+        is left of the inertia beside the links' is a small difference.
+        """
+        if not found.rows.stretches[0].signals.known:
+            return self, ()
+        calm, chosen = steady(solved(found.rows, found.hypothesis, self.rig), self.rig)
+        doubt = dict(zip(TERMS, chosen.doubt.tolist(), strict=True))
+        moves = tuple(warning.removesuffix(f"; {TELLS}") for warning in chosen.warnings)
+        if calm.rows is found.rows:
+            return replace(self, doubt=doubt), moves
+        smooth, unseen = calm.rows.conditioning.filter, self.holdout_rows
+        unseen = None if unseen is None else unseen.through(smooth)
+        return replace(self, rows=calm.rows, holdout_rows=unseen, doubt=doubt), moves
+
+    def base(self, numbers: Uncertain) -> dict[str, Parameter]:
+        """J, K_w and K_0 of a fit by name, as wide as they move with the cut-off."""
+        told = zip((INERTIA, VISCOUS, COULOMB), numbers.base(self.base_units).items(), strict=True)
+        return {name: found.widened(self.doubt.get(term, 0.0)) for term, (name, found) in told}
 
     @property
     def unit(self) -> str:
@@ -211,5 +241,6 @@ def _require_audible(base: Fit, unit: str) -> None:
             WHAT,
             f"only effects above {least:.3g} {unit} would stand out of the noise, friction is {friction:.3g} {unit} "
             f"and the torque {torque:.3g} {unit}",
-            f"{(least / loud) ** 2:.2g} times as long, or accelerations {least / loud:.2g} times as large",
+            f"{LONGER * (least / loud) ** 2:.2g} times as long, or accelerations {LONGER * least / loud:.2g} times as "
+            "large",
         )

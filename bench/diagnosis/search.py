@@ -16,6 +16,7 @@ from bench.effects.effect import Effect, Replacing
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Term, on_other_side, outer_loads
+from bench.fit.rows import Rows
 from bench.fit.shapes import shaped, together
 
 #: Said of a search that its limit ended.
@@ -68,6 +69,11 @@ class Searched:
             return self
         last = Step(fitted, self.steps[-1].rivals)
         return replace(self, steps=(*self.steps[:-1], last) if fitted.terms else self.steps[:1])
+
+    def through(self, rows: Rows) -> Searched:
+        """The same with the last fit anew, to rows through another filter."""
+        last = Step(fit(rows, self.last.hypothesis), self.steps[-1].rivals)
+        return replace(self, steps=(*self.steps[:-1], last))
 
 
 def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:

@@ -48,6 +48,7 @@ NARROWER = 0.6
 ROUNDING = 1e-4
 #: Terms of the axis, in whose order all numbers here stand.
 TERMS = (INERTIA, VISCOUS, COULOMB)
+TELLS = "bench diagnose may tell why"
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,17 +112,21 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Chos
         InputError: a signal is missing, or rig and recording do not fit together.
     """
     rows = Rows.of(first, rig, cutoff=cutoff)
-    highest = _solved(rows, plain(rows), rig)
+    highest = solved(rows, plain(rows), rig)
     hum = mains(rows, highest.residual)
     if hum:
-        highest = _solved(rows, replace(highest.hypothesis, hum=hum), rig)
-    if cutoff is None:
-        every = [(found, Tried.of(found, rig.axis_kind)) for found in (highest, *_lower(highest, rig))]
-        usable = [(found, tried) for found, tried in every if np.isfinite(tried.theta[0])]
-        if usable:
-            chosen = among([tried for _, tried in usable], rig.axis_kind)
-            return usable[chosen.place][0], chosen
-    return highest, Chosen(0, np.zeros(3))
+        highest = solved(rows, replace(highest.hypothesis, hum=hum), rig)
+    return (highest, Chosen(0, np.zeros(3))) if cutoff is not None else steady(highest, rig)
+
+
+def steady(highest: Solution, rig: Rig) -> tuple[Solution, Chosen]:
+    """The solution at the cut-off at which J, K_w and K_0 stand still, of one at the highest and those below it."""
+    every = [(found, Tried.of(found, rig.axis_kind)) for found in (highest, *_lower(highest, rig))]
+    usable = [(found, tried) for found, tried in every if np.isfinite(tried.theta[0])]
+    if not usable:
+        return highest, Chosen(0, np.zeros(3))
+    chosen = among([tried for _, tried in usable], rig.axis_kind)
+    return usable[chosen.place][0], chosen
 
 
 def _lower(highest: Solution, rig: Rig) -> Iterator[Solution]:
@@ -134,10 +139,11 @@ def _lower(highest: Solution, rig: Rig) -> Iterator[Solution]:
         except UndeterminedError:
             return
         hum = tuple(line for line in highest.hypothesis.hum if passes(line, smooth.width))
-        yield _solved(through, replace(plain(through), hum=hum), rig)
+        yield solved(through, replace(highest.hypothesis, step=plain(through).step, hum=hum), rig)
 
 
-def _solved(rows: Rows, hypothesis: Hypothesis, rig: Rig) -> Solution:
+def solved(rows: Rows, hypothesis: Hypothesis, rig: Rig) -> Solution:
+    """The solution of a hypothesis, at the cut-off of the rows."""
     laid = lay_out(rows, hypothesis)
     equations = equations_of(rows, laid).coarsened(BLOCKS)
     return solve(rows, hypothesis, laid, equations, rig.offset and only_direction(equations) is None)
@@ -177,7 +183,7 @@ def _moves(taken: Tried, usable: Sequence[Tried], kind: AxisKind) -> str:
     course = ", ".join(f"{tried.theta[term]:.4g} at {tried.cutoff:.3g} Hz" for tried in usable)
     return (
         f"{kind.parameter(TERMS[term])} moves with the filter's cut-off ({course}): taken at {taken.cutoff:.3g} Hz, "
-        "its interval counts what it may still be off; bench diagnose may tell why"
+        f"its interval counts what it may still be off; {TELLS}"
     )
 
 
@@ -217,6 +223,18 @@ class Gathered:
     def rows(self) -> Rows:
         """Of its first part, which determines filter and noise floor."""
         return self.first.rows
+
+    @cached_property
+    def measured(self) -> tuple[float, float]:
+        """Sum of the squares of the measured effort over all rows - its unit squared -, and its sum.
+
+        Beside a robot that is what its motor gave, not the small part that its own inertia and friction are to explain.
+        """
+        equations = self.equations
+        if not self.in_parts and self.rows.stretches[0].signals.known:
+            effort = self.rows.measured
+            return float(effort @ effort), float(effort.sum())
+        return float(equations.power.sum()), float(equations.moment[:, equations.place(OFFSET)].sum())
 
     @cached_property
     def one_way(self) -> str | None:

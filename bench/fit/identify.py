@@ -82,11 +82,10 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solution) -> Estimate:
         parameter = parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
         parameters[kind.parameter(term)] = parameter.reaching(parameter.value + gathered.hinted.get(term, 0.0))
     parameters |= load_inertia(parameters, rig)
-    squares = float(found.equations.power.sum())
+    squares, total = gathered.measured
     if squares == 0.0:
         reason = "the effort is zero throughout"
         raise UndeterminedError(kind.in_words(INERTIA), reason, "the motor's current or torque too")
-    mean = float(equations.moment[:, equations.place(OFFSET)].sum()) / equations.count
     rms, relative = math.sqrt(found.power / equations.count), math.sqrt(found.power / squares)
     smooth = gathered.rows.conditioning.filter
     estimate = Estimate(
@@ -98,7 +97,7 @@ def _estimate(gathered: Gathered, rig: Rig, found: Solution) -> Estimate:
         cutoff=smooth.cutoff,
         source=gathered.rows.conditioning.source,
         warnings=(*gathered.warnings, *_shifted(found)),
-        explained=1.0 - found.power / max(squares - equations.count * mean**2, 1e-300),
+        explained=1.0 - found.power / max(squares - total**2 / equations.count, 1e-300),
         checks=gathered.checks,
     )
     return replace(estimate, warnings=(*estimate.warnings, *_remaining(estimate)))
@@ -152,7 +151,8 @@ def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
         parameters[kind.parameter(term)] = found.widened(tolerance)
     filters = [one.rows.conditioning.filter for one in gathered]
     left = joint.left(members)
-    variation = float(whole.power.sum()) - float(whole.moment[:, whole.place(OFFSET)].sum()) ** 2 / whole.count
+    squares, total = (sum(one.measured[k] for one in gathered) for k in (0, 1))
+    variation = squares - total**2 / whole.count
     estimate = Estimate(
         estimator="regression",
         parameters=parameters | load_inertia(parameters, rig),
@@ -395,7 +395,7 @@ def _residual(members: Sequence[Member], left: float, unit: str) -> Residual:
     return Residual(
         rms=math.sqrt(left / counts.sum()),
         noise_floor=math.sqrt(float(counts @ np.square(floors)) / counts.sum()),
-        relative=math.sqrt(left / sum(float(member.equations.power.sum()) for member in members)),
+        relative=math.sqrt(left / sum(member.gathered.measured[0] for member in members)),
         unit=unit,
     )
 

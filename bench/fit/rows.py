@@ -221,6 +221,12 @@ class Rows:
         return self.values(_since_first)
 
     @property
+    def measured(self) -> Array:
+        """Filtered motor torque at the used rows, what is known to act beside the axis included - N*m (N) - (m,)."""
+        known = self.stretches[0].signals.known
+        return self.effort + self.table(known_of)[:, 0] if known else self.effort
+
+    @property
     def starts(self) -> tuple[float, ...]:
         """Of the recordings that were joined, since the start of the first - s."""
         return tuple(dict.fromkeys(part.signals.began for part in self.stretches))
