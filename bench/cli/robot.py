@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,6 +11,9 @@ import bench
 from bench.cli import common
 from bench.cli.common import AtOption, JsonOption, OptionalRigOption
 from bench.errors import InputError, UndeterminedError
+
+if TYPE_CHECKING:
+    from bench.plant.robot import AddedBody
 
 
 def robot(
@@ -21,6 +24,10 @@ def robot(
     rig: OptionalRigOption = None,
     joint: Annotated[list[str] | None, typer.Option("--joint", help="Only this joint. Repeatable.")] = None,
     at: AtOption = None,
+    payload: Annotated[
+        str | None,
+        typer.Option("--payload", help="What a body carried: BODY=2.8kg@x,y,z in its frame, in m; BODY to seek it."),
+    ] = None,
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
     json: JsonOption = None,
 ) -> None:
@@ -37,8 +44,8 @@ def robot(
     stated = common.positions(at or (), joint_units(mjcf))
     known = None if rig is None else bench.load_rig(rig)
     with progress(f"identifying the joints of {mjcf.name}") as done:
-        found = bench.robot(logs, mjcf, holdout, known, joint or (), stated, excluded, done)
-    options = {"joint": joint or [], "at": at or [], "without": sorted(excluded)}
+        found = bench.robot(logs, mjcf, holdout, known, joint or (), stated, excluded, _carried(payload), done)
+    options = {"joint": joint or [], "payload": payload, "at": at or [], "without": sorted(excluded)}
     basis = provenance(rig, logs, options, holdout, mjcf)
     title, files = title_of(mjcf, logs), []
     if found.answered:
@@ -48,6 +55,22 @@ def robot(
         common.write_json(json, robot_json(found, basis))
     common.tell(document_of(found, title, basis), files, json)
     _require_answers(found)
+
+
+def _carried(text: str | None) -> AddedBody | str | None:
+    """A payload of `BODY=2.8kg@x,y,z`, or the body alone."""
+    from bench.effects.present import parse_value
+    from bench.plant.robot import AddedBody
+
+    body, told, rest = (text or "").partition("=")
+    if not told:
+        return text
+    mass, at, places = rest.partition("@")
+    where = f"--payload {text}"
+    centre = [parse_value(place, "m", where) for place in places.split(",")] if at else [0.0, 0.0, 0.0]
+    if len(centre) != 3:
+        raise InputError(where, f"found {len(centre)} coordinates", "allowed: BODY=2.8kg@x,y,z, in m")
+    return AddedBody(body, parse_value(mass, "kg", where), (centre[0], centre[1], centre[2]))
 
 
 def _require_answers(found: bench.IdentifiedRobot) -> None:

@@ -19,7 +19,7 @@ from bench.gate.gate import passed, warnings_of
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
-from bench.plant.robot import Robot, joint_rig, read_log
+from bench.plant.robot import AddedBody, Robot, joint_rig, read_log
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -37,6 +37,7 @@ class JointLogs:
         rig: of the joints; None where nothing is known of them.
         stated: positions of joints that stand and that the logs do not hold - rad (m).
         excluded: effects that are not tried.
+        added: what the robot has beside its MJCF.
     """
 
     joint: str
@@ -46,6 +47,7 @@ class JointLogs:
     rig: Rig | None = None
     stated: Mapping[str, float] = field(default_factory=dict)
     excluded: frozenset[str] = frozenset()
+    added: tuple[AddedBody, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,7 @@ class IdentifiedJoint:
 def identified(asked: JointLogs) -> IdentifiedJoint:
     """The joint by its logs; what is wrong with them, or what they do not tell, is in it."""
     try:
-        robot = Robot.of(asked.mjcf, asked.joint)
+        robot = Robot.of(asked.mjcf, asked.joint, asked.added)
         rig = joint_rig(asked.rig, robot)
         traces, left_out = _moving(asked, asked.logs, rig, robot)
     except UndeterminedError as error:

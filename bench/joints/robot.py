@@ -7,18 +7,21 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bench.axis_kind import ARMATURE
-from bench.errors import InputError
+from bench.errors import InputError, UndeterminedError
 from bench.export.mjcf import Armature, Carried, robot_with
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
 from bench.joints.identified import IdentifiedJoint, JointLogs, identified
+from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links, seek_payload
 from bench.names import nearest
 from bench.plant.model_file import StoredModel
-from bench.plant.robot import joint_units
+from bench.plant.robot import AddedBody, joint_units
 from bench.rig.rig import Rig
 
 #: Of one joint: ten times what the longest log tried took (600 s at 500 Hz).
 LIMITS = Limits(deadline=1800.0, memory=8.0 * 1024**3)
+#: Share of the progress in which a payload is sought.
+SEEKING = 0.3
 
 
 @dataclass(frozen=True)
@@ -28,10 +31,16 @@ class IdentifiedRobot:
     Attributes:
         mjcf: its file.
         joints: each by its name, in the order of the MJCF.
+        payload: what a body carried in the logs, where that was sought and is told.
+        links: whose inertia is not the MJCF's; joints are told with what theirs is.
+        warnings: what concerns no joint alone.
     """
 
     mjcf: Path
     joints: Mapping[str, IdentifiedJoint]
+    payload: FoundPayload | None = None
+    links: tuple[DoubtedLink, ...] = ()
+    warnings: tuple[str, ...] = ()
 
     @property
     def answered(self) -> tuple[str, ...]:
@@ -65,6 +74,7 @@ def robot(
     joints: Sequence[str] = (),
     stated: Mapping[str, float] | None = None,
     excluded: frozenset[str] = frozenset(),
+    payload: AddedBody | str | None = None,
     progress: Callable[[float], None] = lambda share: None,
 ) -> IdentifiedRobot:
     """Identify and diagnose every joint of a robot, each beside the rest of it; one that fails leaves the others.
@@ -77,6 +87,7 @@ def robot(
         joints: names of those to identify; all hinges and slides of the MJCF where none is given.
         stated: positions of joints that stand and that the logs do not hold - rad (m).
         excluded: effects that are not tried.
+        payload: that a body carried in the logs, or the name of a body whose payload is sought.
         progress: called with the share done.
 
     Raises:
@@ -93,9 +104,29 @@ def robot(
     asked = [name for name in names if not joints or name in joints]
     unseen = None if holdout is None else Path(holdout)
     work = [JointLogs(name, Path(mjcf), tuple(paths), unseen, rig, stated or {}, excluded) for name in asked]
+    sought, warnings = None, list[str]()
+    if isinstance(payload, str):
+        try:
+            sought = seek_payload(work, payload, lambda share: progress(SEEKING * share))
+        except UndeterminedError as error:
+            warnings.append(str(error))
+    added = sought.added if sought is not None else payload
+    work = carrying(work, [added]) if isinstance(added, AddedBody) else work
+    found = _identified(work, lambda share: progress(SEEKING + (1.0 - SEEKING) * share))
+    open_ = [one for one in found.values() if one.diagnosis and one.diagnosis.verdict == "unexplained_remainder"]
+    links = doubt_links(work) if open_ else []
+    if links:
+        found = _identified(
+            carrying(work, [AddedBody(joint=one.joint, inertia=one.inertia) for one in links]), progress
+        )
+    return IdentifiedRobot(Path(mjcf), found, sought, tuple(links), tuple(warnings))
+
+
+def _identified(work: Sequence[JointLogs], progress: Callable[[float], None]) -> dict[str, IdentifiedJoint]:
+    """Every joint, side by side on processes."""
     found: dict[str, IdentifiedJoint] = {}
     for count, (place, one) in enumerate(each(identified, work, LIMITS), 1):
-        name = asked[place]
+        name = work[place].joint
         found[name] = IdentifiedJoint(name, failed=one.reason) if isinstance(one, Failure) else one
         progress(count / len(work))
-    return IdentifiedRobot(Path(mjcf), {name: found[name] for name in asked})
+    return {asked.joint: found[asked.joint] for asked in work}

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import html
 import re
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
@@ -62,8 +63,10 @@ def _fault(path: str) -> str:
     return f"{wrong[0]} is not finite" if wrong else ""
 
 
-def compiled(path: str) -> tuple[mujoco.MjModel, tuple[str, ...]]:
-    """The model of an MJCF or URDF, and what is left out of it: meshes that are not there.
+def compiled(
+    path: str, change: Callable[[mujoco.MjSpec], None] = lambda spec: None
+) -> tuple[mujoco.MjModel, tuple[str, ...]]:
+    """The model of an MJCF or URDF, changed where that is asked, and what is left out: meshes that are not there.
 
     Raises ValueError as MuJoCo does, and where an inertia is made of such a mesh.
     """
@@ -78,6 +81,7 @@ def compiled(path: str) -> tuple[mujoco.MjModel, tuple[str, ...]]:
         spec.delete(geom)
     for mesh in missing.values():
         spec.delete(mesh)
+    change(spec)
     told = f"meshes that are not there are left out of {Path(path).name}: {', '.join(sorted(missing))}"
     return spec.compile(), (told,) if missing else ()
 

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.names import nearest
+from bench.plant.axis_model import NO_MASS
 from bench.plant.mjcf_file import compiled, require_compiles
 from bench.plant.run import silenced
 from bench.rig.load import Load
@@ -53,6 +54,25 @@ DISABLED = (
 )
 
 
+@dataclass(frozen=True)
+class AddedBody:
+    """What a robot has beside its MJCF: a point of mass on a body, or more inertia of a link about its joint's axis.
+
+    Attributes:
+        body: that carries the mass.
+        mass: kg.
+        centre: of it in the body's frame - m.
+        joint: whose link has more inertia.
+        inertia: that, about the joint's axis - kg*m**2.
+    """
+
+    body: str = ""
+    mass: float = 0.0
+    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    joint: str = ""
+    inertia: float = 0.0
+
+
 def joint_units(path: Path) -> dict[str, str]:
     """Names of the hinges and slides of an MJCF file with the units of their positions; InputError as `Robot.of`."""
     model, _ = _loaded(path)
@@ -61,10 +81,35 @@ def joint_units(path: Path) -> dict[str, str]:
     return {name: unit for name, unit in found.items() if name and unit is not None}
 
 
-def _loaded(path: Path) -> tuple[mujoco.MjModel, tuple[str, ...]]:
+def _loaded(path: Path, added: Sequence[AddedBody] = ()) -> tuple[mujoco.MjModel, tuple[str, ...]]:
     require_compiles(path)
+
+    def add(spec: mujoco.MjSpec) -> None:
+        for k, one in enumerate(added):
+            _add(spec, f"added {k}", one, path)
+
     with silenced():
-        return compiled(str(path))
+        model, notes = compiled(str(path), add)
+    for k, one in enumerate(added):  # a compiler wants inertias as bodies have them, and a change may be of either sign
+        model.body_inertia[model.body(f"added {k}").id] = 0.0, 0.0, one.inertia
+    return model, notes
+
+
+def _add(spec: mujoco.MjSpec, name: str, one: AddedBody, path: Path) -> None:
+    """Fix a body to one of a robot, whose z axis is the axis of the joint whose link has more inertia."""
+    joint = spec.joint(one.joint) if one.joint else None
+    body = spec.body(one.body) if joint is None else joint.parent
+    if body is None:
+        names = [each.name for each in spec.bodies if each.name]
+        found = f"found no body '{one.body}'{nearest(one.body, names)}"
+        raise InputError(path, found, f"allowed: {', '.join(names)}")
+    child = body.add_body(name=name, pos=one.centre)
+    child.explicitinertial, child.mass, child.inertia = True, max(one.mass, NO_MASS), [NO_MASS] * 3
+    child.ipos, child.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
+    if joint is not None:
+        turn = np.empty(4)
+        mujoco.mju_quatZ2Vec(turn, joint.axis)
+        child.quat = turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,13 +132,13 @@ class Robot:
     notes: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, path: Path, joint: str | None) -> Robot:
-        """From an MJCF or URDF file.
+    def of(cls, path: Path, joint: str | None, added: Sequence[AddedBody] = ()) -> Robot:
+        """From an MJCF or URDF file, with what its robot has beside that.
 
         InputError if there is no such file or joint; if a joint of its tree has more than one coordinate; if a loop, a
         tendon or an equality of the MJCF puts a torque on it that no log tells.
         """
-        model, notes = _loaded(path)
+        model, notes = _loaded(path, added)
         names = [model.joint(k).name for k in range(model.njnt)]
         if joint is None or joint not in names:
             found = "missing" if joint is None else f"found no joint '{joint}'{nearest(joint, names)}"
@@ -131,6 +176,17 @@ class Robot:
     def turns(self) -> bool:
         """Whether the joint turns rather than slides."""
         return self.unit(self.joint) == "rad"
+
+    @property
+    def link_inertia(self) -> float:
+        """Of the joint's own link about its axis - kg*m**2."""
+        model, joint = self.model, self.model.joint(self.joint)
+        body, axis = int(joint.bodyid[0]), np.asarray(joint.axis) / np.linalg.norm(joint.axis)
+        turn = np.empty(9)
+        mujoco.mju_quat2Mat(turn, model.body_iquat[body])
+        arm = np.cross(axis, model.body_ipos[body] - joint.pos)
+        own = float(model.body_inertia[body] @ (turn.reshape(3, 3).T @ axis) ** 2)
+        return own + float(model.body_mass[body] * arm @ arm)
 
     @cached_property
     def inertia(self) -> float:

@@ -5,6 +5,7 @@ As the contract's JSON (`bench.robot/1`) and as a document, which has the MJCF w
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from bench.report.diagnosis import diagnosis, diagnosis_content, following, like
 from bench.report.numbers import interval, sentence
 from bench.report.parts import origin, parameters_table
 from bench.report.publish import write_document
-from bench.report.serial import serialised
+from bench.report.serial import as_json, serialised
 
 SCHEMA = "bench.robot/1"
 MJCF, EFFECTS_FILE, JSON = "robot_id.xml", "effects.toml", "robot.json"
@@ -33,12 +34,27 @@ def robot_json(found: IdentifiedRobot, provenance: Mapping[str, Any] | None = No
     content = {
         "schema": SCHEMA,
         "joints": {name: _joint_json(joint) for name, joint in found.joints.items()},
-        "payload": None,
-        "links": [],
+        "payload": _payload_json(found),
+        "links": [
+            {"joint": one.joint, "inertia_factor": one.factor.value, "ci95": one.factor.ci95} for one in found.links
+        ],
         "model": {"mjcf": MJCF, "effects": EFFECTS_FILE},
+        "warnings": found.warnings,
         "provenance": provenance,
     }
     return serialised(content)
+
+
+def _payload_json(found: IdentifiedRobot) -> dict[str, Any] | None:
+    payload = found.payload
+    if payload is None:
+        return None
+    centre = {
+        "value": [x.value for x in payload.centre],
+        "unit": "m",
+        "ci95": [as_json(x)["ci95"] for x in payload.centre],
+    }
+    return {"body": payload.body, "mass": payload.mass, "center_of_mass": centre}
 
 
 def _joint_json(joint: IdentifiedJoint) -> dict[str, Any]:
@@ -86,7 +102,7 @@ def robot(
             *((doc.section("model", "The model", *model, detail=True),) if model else ()),
         ),
         origin=origin(provenance),
-        warnings=warnings,
+        warnings=(*found.warnings, *warnings),
     )
 
 
@@ -127,6 +143,18 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
             "Values ± half of their intervals of 95 %, in SI, on the motor's side but the armature", headings, rows
         )
     ]
+    if found.payload is not None:
+        told = (math.isfinite(one.half_width) for one in found.payload.centre)
+        x, y, z = (
+            interval(one) if known else "not told" for one, known in zip(found.payload.centre, told, strict=True)
+        )
+        rows = [(found.payload.body, interval(found.payload.mass), f"{x}, {y}, {z}")]
+        tables.append(doc.table("Payload", ("body", "mass>", "centre in the body's frame>"), rows))
+    if found.links:
+        rows = [(one.joint, f"{interval(one.factor)} times the MJCF's") for one in found.links]
+        tables.append(
+            doc.table("Links whose inertia about their joint's axis is not the MJCF's", ("joint", "inertia~"), rows)
+        )
     lacking = [(name, why, motion) for name, joint in found.joints.items() for why, motion in _open(joint)]
     if lacking:
         tables.append(doc.table("What the logs cannot tell", ("joint", "what~", "the motion that would~"), lacking))

@@ -72,8 +72,11 @@ def skew(v):
     return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
-def asked(q, w, a, links=LINKS):
-    """Torque that the links ask of every joint - N*m - (n, 6) - for angles, speeds and accelerations (n, 6)."""
+def asked(q, w, a, links=LINKS, payload=None):
+    """Torque that the links ask of every joint - N*m - (n, 6) - for angles, speeds and accelerations (n, 6).
+
+    The payload of the last link is a point: its mass - kg - and its place - m.
+    """
     count = len(q)
     turn, rate, spin = np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3)), np.zeros((count, 3))
     place, lift, bodies = np.zeros((count, 3)), np.tile([0.0, 0.0, GRAVITY], (count, 1)), []
@@ -94,8 +97,13 @@ def asked(q, w, a, links=LINKS):
         momentum = np.einsum("nij,nj->ni", whole, rate)
         moment = np.einsum("nij,nj->ni", whole, spin) + np.cross(rate, momentum)
         bodies.append((place, along, place + arm, force, moment))
+    joints = bodies[:]
+    if payload is not None:
+        arm = turn @ np.array(payload[1], dtype=float)
+        force = payload[0] * (lift + np.cross(spin, arm) + np.cross(rate, np.cross(rate, arm)))
+        bodies.append((place, along, place + arm, force, np.zeros_like(force)))
     torque = np.empty_like(q)
-    for k, (joint, along, *_) in enumerate(bodies):
+    for k, (joint, along, *_) in enumerate(joints):
         about = sum(moment + np.cross(centre - joint, force) for _, _, centre, force, moment in bodies[k:])
         torque[:, k] = np.sum(along * about, axis=1)
     return torque
@@ -131,7 +139,7 @@ class Hidden:
 
 HIDDEN = (
     Hidden(0.80, 6.0, 5.0, "cogging_torque", {"amplitude": 2.0, "harmonic": 12.0}),
-    Hidden(0.90, 7.0, 6.0, "stribeck_friction", {"static_friction": 9.0, "stribeck_velocity": 0.08}),
+    Hidden(0.90, 7.0, 6.0, "stribeck_friction", {"static_friction": 10.0, "stribeck_velocity": 0.2}),
     Hidden(0.80, 5.0, 4.0, "load_dependent_friction", {"load_friction_coefficient": 0.08}),
     Hidden(0.12, 1.2, 1.4, "cogging_torque", {"amplitude": 0.4, "harmonic": 8.0}),
     Hidden(0.11, 1.1, 1.2, "stribeck_friction", {"static_friction": 2.2, "stribeck_velocity": 0.12}),
@@ -157,10 +165,10 @@ def motion(duration=20.0, period=2e-3, seed=0, scale=1.0):
     return time, q, w, a
 
 
-def log(hidden=HIDDEN, links=LINKS, seed=0, noise=1.0, **how):
+def log(hidden=HIDDEN, links=LINKS, seed=0, noise=1.0, payload=None, **how):
     """Columns of a log, by their names in its file, as the sensors have them."""
     time, q, w, a = motion(seed=seed, **how)
-    rest, rng, columns = asked(q, w, a, links), np.random.default_rng(seed), {"time [s]": time}
+    rest, rng, columns = asked(q, w, a, links, payload), np.random.default_rng(seed), {"time [s]": time}
     for k, (name, own) in enumerate(zip(NAMES, hidden, strict=True)):
         torque = own.torque(q[:, k], w[:, k], a[:, k], rest[:, k])
         loud = 0.05 if k < 3 else 0.02

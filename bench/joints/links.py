@@ -1,0 +1,261 @@
+"""What the MJCF does not tell of the links, over all joints together: a payload, or a link's inertia that it has wrong.
+
+What a mass more on a body asks of the joints is linear in the mass and, near a place, in the place; so is what more
+inertia of a link about its joint's axis asks. Each is a column of every joint's torque balance beside the joint's own
+inertia and friction, and its strength is common to all:
+
+    M_j = J_j*alpha_j + K_wj*omega_j + K_0j*sgn(omega_j) + sum over k of s_k*C_jk
+
+C_jk - known torque of the robot with the change less that without, per unit of it. Joints weigh by what they leave. The
+covariance is that of scores summed over stretches of time, in which residuals hang together (K.-Y. Liang, S. L. Zeger,
+Biometrika 73, 1986, 13-22). A link turns its own joint as an armature does: other joints tell its inertia, if any do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from bench.arrays import Array, symmetric_inverse
+from bench.errors import BenchError, UndeterminedError
+from bench.fit.layout import BASE, lay_out, plain
+from bench.fit.rows import Rows
+from bench.jobs.each import each
+from bench.joints.identified import JointLogs
+from bench.parameter import Parameter
+from bench.plant.robot import AddedBody, Robot, joint_rig, read_log
+
+#: Stretches that the rows of a log are cut into, equally many in each.
+STRETCHES = 24
+#: Rounds in which weights of the joints, and the place of a payload, settle.
+ROUNDS = 3
+#: Step of a derivative by the place of a mass - m.
+ASIDE = 0.02
+#: Share of the strongest column's power at which another has none.
+SILENT = 1e-9
+#: Least share of a column's power that the joints' own terms must leave.
+LEAST = 0.01
+#: A link's inertia is doubted where this many errors and this share of what all joints leave say so.
+SURE, TAKES = 6.0, 0.2
+#: Links at most whose inertia is doubted.
+MOST = 3
+
+
+@dataclass(frozen=True)
+class FoundPayload:
+    """A mass that a body carried: kg, and its centre in the body's frame - m -, as a point."""
+
+    body: str
+    mass: Parameter
+    centre: tuple[Parameter, Parameter, Parameter]
+
+    @property
+    def added(self) -> AddedBody:
+        """As the robot has it."""
+        x, y, z = (one.value for one in self.centre)
+        return AddedBody(self.body, self.mass.value, (x, y, z))
+
+
+@dataclass(frozen=True)
+class DoubtedLink:
+    """A link whose inertia about its joint's axis is not the MJCF's: by what factor, and what is added - kg*m**2."""
+
+    joint: str
+    factor: Parameter
+    inertia: float
+
+
+@dataclass(frozen=True)
+class Shared:
+    """Strengths (k,) common to all joints.
+
+    Attributes:
+        strengths, covariance: (k,) and (k, k).
+        reach: of an interval of 95 % in standard errors.
+        left: logarithms of what the joints leave, summed.
+        open: which strengths no joint shows (k,).
+    """
+
+    strengths: Array
+    covariance: Array
+    reach: float
+    left: float
+    open: NDArray[np.bool_]
+
+    def parameter(self, value: float, deviation: float, unit: str) -> Parameter:
+        """A value with its interval."""
+        half = self.reach * deviation
+        return Parameter(float(value), unit, float(deviation), (float(value - half), float(value + half)))
+
+
+def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
+    """Products of a joint's own columns, those of changes of the robot, and its effort, by stretch (s, n, n).
+
+    None of a joint that the logs do not tell.
+    """
+    found = []
+    for log in asked.logs:
+        try:
+            robot = Robot.of(asked.mjcf, asked.joint, asked.added)
+            rig = joint_rig(asked.rig, robot)
+            rows = Rows.of(read_log(log, rig, robot, asked.stated), rig)
+            columns = [lay_out(rows, plain(rows)).columns[:, : len(BASE)]]
+            for change in changes:
+                changed = Robot.of(asked.mjcf, asked.joint, (*asked.added, change))
+                trace = read_log(log, rig, changed, asked.stated)
+                columns.append(rows.effort - Rows.of(trace, rig, conditioning=rows.conditioning).effort)
+        except BenchError:  # told where the joint is identified
+            continue
+        table = np.column_stack([*columns, rows.effort])
+        found += [part.T @ part for part in np.array_split(table, STRETCHES)]
+    return np.array(found) if found else None
+
+
+def of_joints(work: Sequence[JointLogs], changes: Sequence[AddedBody]) -> list[Array]:
+    """Those products of all joints that the logs tell, each on a process."""
+    found = dict(each(partial(gathered, changes=tuple(changes)), work))
+    every = (found[place] for place in sorted(found))
+    return [one for one in every if isinstance(one, np.ndarray)]
+
+
+def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Shared:
+    """Strengths of columns: of some of them by their number, or of combinations of all (all, k)."""
+    own, every = len(BASE), products[0].shape[1] - len(BASE) - 1
+    mix = np.asarray(chosen, dtype=float) if np.ndim(chosen) == 2 else np.eye(every)[:, list(chosen)]
+    turn = np.zeros((products[0].shape[1], own + mix.shape[1] + 1))
+    turn[:own, :own], turn[own:-1, own:-1], turn[-1, -1] = np.eye(own), mix, 1.0
+    parts = [turn.T @ each @ turn for each in products]
+    reduced = np.array([_reduced(part.sum(axis=0), own) for part in parts])
+    lefts = [float(each[-1, -1]) for each in reduced]
+    for _ in range(ROUNDS - 1):
+        strengths, _, _ = _solved(reduced, lefts)
+        lefts = [_scores(part, own, strengths)[1] for part in parts]
+    strengths, inverse, weights = _solved(reduced, lefts)
+    scores, lefts = zip(*(_scores(part, own, strengths) for part in parts), strict=True)
+    stretches = max(len(part) for part in parts)
+    summed = np.zeros((stretches, strengths.size))
+    for score, weight in zip(scores, weights, strict=True):
+        summed[: len(score)] += weight * score
+    degrees = max(stretches - strengths.size - 1, 1)
+    covariance = inverse @ (summed.T @ summed) @ inverse * stretches / degrees
+    power = np.einsum("jkk->k", reduced[:, :-1, :-1])
+    silent = power <= SILENT * power.max()
+    return Shared(strengths, covariance, float(special.stdtrit(degrees, 0.975)), float(np.log(lefts).sum()), silent)
+
+
+def _solved(reduced: Array, lefts: Sequence[float]) -> tuple[Array, Array, Array]:
+    """Strengths (k,), the inverse of their matrix (k, k), and the weights of the joints, by what each leaves (j,)."""
+    weights = 1.0 / np.maximum(lefts, 1e-300)
+    inverse = symmetric_inverse(np.tensordot(weights, reduced[:, :-1, :-1], 1)[None], 1e-12)[0]
+    return inverse @ np.tensordot(weights, reduced[:, :-1, -1], 1), inverse, weights
+
+
+def _reduced(product: Array, own: int) -> Array:
+    """Products of the other columns and the effort, beyond what a joint's own columns explain."""
+    beside = product[:own, own:]
+    return product[own:, own:] - beside.T @ np.linalg.lstsq(product[:own, :own], beside, rcond=1e-12)[0]
+
+
+def _scores(part: Array, own: int, strengths: Array) -> tuple[Array, float]:
+    """Scores of the strengths by stretch (s, k) of a joint, and the sum of squares that it leaves."""
+    whole = part.sum(axis=0)
+    projection = np.linalg.lstsq(whole[:own, :own], whole[:own, own:], rcond=1e-12)[0]
+    theta = projection[:, -1] - projection[:, :-1] @ strengths
+    away = np.concatenate([-theta, -strengths, [1.0]])
+    felt = part @ away
+    scores = felt[:, own:-1] - felt[:, :own] @ projection[:, :-1]
+    return scores, float(away @ whole @ away)
+
+
+def seek_payload(work: Sequence[JointLogs], body: str, progress: Callable[[float], None]) -> FoundPayload:
+    """Mass and centre of what a body carries, by gravity and acceleration over all joints together.
+
+    Raises:
+        UndeterminedError: the logs do not tell a mass above zero.
+    """
+    centre, turn = np.zeros(3), 0
+    places = np.concatenate([np.zeros((1, 3)), ASIDE * np.eye(3)])
+    mix = np.concatenate([[[1.0, *[-1.0 / ASIDE] * 3]], np.eye(4)[1:] / ASIDE])
+    while True:
+        products = of_joints(work, [AddedBody(body, 1.0, tuple((centre + place).tolist())) for place in places])
+        if not products:
+            raise UndeterminedError(f"the payload of '{body}'", "no joint is told by the logs", "a log of all joints")
+        found = shared(products, mix)
+        mass = found.parameter(found.strengths[0], float(np.sqrt(found.covariance[0, 0])), "kg")
+        if mass.ci95[0] <= 0.0:
+            reason = f"its mass comes out as {mass.value:.3g} ± {mass.half_width:.2g} kg"
+            raise UndeterminedError(f"the payload of '{body}'", reason, "a log in which the body is lifted and turned")
+        centre = centre + found.strengths[1:] / mass.value
+        turn += 1
+        progress(turn / ROUNDS)
+        if turn == ROUNDS:
+            errors = np.where(found.open[1:], np.inf, np.sqrt(np.diag(found.covariance)[1:]) / mass.value)
+            moved = _without_each(products, mix, found.strengths) / np.array([1.0, *[mass.value] * 3])
+            told = zip(centre, errors, moved[1:], strict=True)
+            x, y, z = (found.parameter(value, error, "m").widened(by) for value, error, by in told)
+            return FoundPayload(body, mass.widened(moved[0]), (x, y, z))
+
+
+def _without_each(products: Sequence[Array], mix: Array, strengths: Array) -> Array:
+    """How far strengths (k,) move at most where a joint is left out, whose own misfit they may have taken."""
+    others = [
+        shared([*products[:k], *products[k + 1 :]], mix).strengths for k in range(len(products) if products[1:] else 0)
+    ]
+    return np.max(np.abs(np.array([strengths, *others]) - strengths), axis=0)
+
+
+def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink]:
+    """Links whose inertia the logs of other joints contradict, the clearest first."""
+    products = of_joints(work, [AddedBody(joint=asked.joint, inertia=1.0) for asked in work])
+    if len(products) < 2:
+        return []
+    told = [k for k in range(len(work)) if _tells(products, k)]
+    chosen: list[int] = []
+    left = sum(float(np.log(_scores(_only(one, []), len(BASE), np.zeros(0))[1])) for one in products)
+    while told and len(chosen) < MOST:
+        tried = {k: shared(products, [*chosen, k]) for k in told if k not in chosen}
+        best = min(tried, key=lambda k: tried[k].left, default=None)
+        if best is None or left - tried[best].left < TAKES:
+            break
+        found, deviation = tried[best], np.sqrt(np.diag(tried[best].covariance))
+        if np.abs(found.strengths[-1]) < SURE * deviation[-1]:
+            break
+        chosen, left = [*chosen, best], found.left
+    return list(_doubted(work, products, chosen))
+
+
+def _doubted(work: Sequence[JointLogs], products: Sequence[Array], chosen: Sequence[int]) -> Iterator[DoubtedLink]:
+    if not chosen:
+        return
+    found = shared(products, chosen)
+    for place, k in enumerate(chosen):
+        own = Robot.of(work[k].mjcf, work[k].joint, work[k].added).link_inertia
+        more, deviation = found.strengths[place], float(np.sqrt(found.covariance[place, place]))
+        factor = found.parameter(1.0 + more / own, deviation / own, "dimensionless")
+        yield DoubtedLink(work[k].joint, factor, float(more))
+
+
+def _only(product: Array, kept: Sequence[int]) -> Array:
+    """Products of a joint's own columns, some of the others and the effort."""
+    own = len(BASE)
+    places = [*range(own), *(own + k for k in kept), product.shape[1] - 1]
+    return product[:, places][:, :, places]
+
+
+def _tells(products: Sequence[Array], k: int) -> bool:
+    """Whether any joint shows a column apart from its own terms."""
+    for product in products:
+        whole = _only(product, [k]).sum(axis=0)
+        if whole[-2, -2] > 0.0 and _reduced(whole, len(BASE))[0, 0] > LEAST * whole[-2, -2]:
+            return True
+    return False
+
+
+def carrying(work: Sequence[JointLogs], added: Sequence[AddedBody]) -> list[JointLogs]:
+    """The same logs of a robot with something added."""
+    return [replace(asked, added=(*asked.added, *added)) for asked in work]

@@ -1,0 +1,79 @@
+"""A link's inertia that the MJCF has wrong, and what a body carried: both told by all joints together."""
+
+from dataclasses import replace
+
+import pytest
+
+from bench.errors import InputError, UndeterminedError
+from bench.joints.identified import JointLogs
+from bench.joints.links import doubt_links, seek_payload
+from bench.plant.robot import AddedBody, Robot
+from tests.export.two_links import C2, HIDDEN, I2, M2, MJCF, elbow_torque, log, motion, shoulder_torque, write_log
+
+#: The forearm's inertia about its centre, and as an MJCF has it that counts the parallel-axis share twice.
+ONCE, TWICE = (f'diaginertia="{own} {own} 1e-3"' for own in (I2, I2 + M2 * C2**2))
+#: What the forearm carries at the lower end: kg, m.
+MASS, DOWN = 0.5, 0.3
+
+
+def of_arm(folder, columns, text=MJCF):
+    """What is asked of both joints."""
+    (folder / "arm.xml").write_text(text)
+    logged = write_log(folder / "log.csv", columns)
+    return [JointLogs(joint, folder / "arm.xml", (logged,)) for joint in ("shoulder", "elbow")]
+
+
+def test_an_inertia_that_is_counted_twice_is_told_with_its_factor(tmp_path):
+    assert ONCE in MJCF
+    columns = log(replace(HIDDEN, cogging=0.0))
+    (found,) = doubt_links(of_arm(tmp_path, columns, MJCF.replace(ONCE, TWICE)))
+    assert found.joint == "elbow"
+    assert found.factor.value == pytest.approx((I2 + M2 * C2**2) / (I2 + 2.0 * M2 * C2**2), rel=0.01)
+    assert not doubt_links(of_arm(tmp_path, columns))
+
+
+def test_more_inertia_of_a_link_is_that_about_its_joint(tmp_path):
+    (tmp_path / "arm.xml").write_text(MJCF)
+    plain, more = (Robot.of(tmp_path / "arm.xml", "elbow", a) for a in ((), (AddedBody(joint="elbow", inertia=0.25),)))
+    assert more.inertia - plain.inertia == pytest.approx(0.25, abs=1e-5)
+    assert plain.link_inertia == pytest.approx(I2 + M2 * C2**2, rel=1e-12)
+
+
+def carried(columns):
+    """The same log with a point of mass at the lower end of the forearm, by the links' equations of a heavier one."""
+    import tests.export.two_links as arm
+
+    _, shoulder, elbow = motion()
+    whole, first = M2 + MASS, M2 * C2 + MASS * DOWN
+    heavier = {"M2": whole, "C2": first / whole}
+    heavier["I2"] = I2 + M2 * C2**2 + MASS * DOWN**2 - first**2 / whole
+    before = shoulder_torque(*shoulder, *elbow), elbow_torque(*shoulder, *elbow)
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in heavier.items():
+            patch.setattr(arm, name, value)
+        after = arm.shoulder_torque(*shoulder, *elbow), arm.elbow_torque(*shoulder, *elbow)
+    for joint, old, new in zip(("shoulder", "elbow"), before, after, strict=True):
+        columns[f"{joint}.torque [N*m]"] = columns[f"{joint}.torque [N*m]"] + new - old
+    return columns
+
+
+def test_a_payload_is_found_with_its_place(tmp_path):
+    """In the plane of the arm: across it no motion tells."""
+    found = seek_payload(of_arm(tmp_path, carried(log())), "forearm", lambda share: None)
+    x, y, z = found.centre
+    assert found.mass.value == pytest.approx(MASS, rel=0.02)
+    assert found.mass.ci95[0] < MASS < found.mass.ci95[1]
+    assert x.value == pytest.approx(0.0, abs=0.005)
+    assert z.value == pytest.approx(-DOWN, abs=0.005)
+    assert y.half_width == float("inf")
+
+
+def test_where_nothing_is_carried_no_payload_is_told(tmp_path):
+    with pytest.raises(UndeterminedError, match="the payload of 'forearm' cannot be determined: its mass comes out as"):
+        seek_payload(of_arm(tmp_path, log(replace(HIDDEN, cogging=0.0))), "forearm", lambda share: None)
+
+
+def test_a_body_that_is_not_there_is_named(tmp_path):
+    (tmp_path / "arm.xml").write_text(MJCF)
+    with pytest.raises(InputError, match="found no body 'foream', did you mean 'forearm'"):
+        Robot.of(tmp_path / "arm.xml", "elbow", (AddedBody("foream", 1.0),))
