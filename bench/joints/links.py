@@ -71,7 +71,7 @@ class DoubtedLink:
 
 
 @dataclass(frozen=True)
-class Shared:
+class Common:
     """Strengths (k,) common to all joints.
 
     Attributes:
@@ -123,7 +123,7 @@ def of_joints(work: Sequence[JointLogs], changes: Sequence[AddedBody]) -> list[A
     return [one for one in every if isinstance(one, np.ndarray)]
 
 
-def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Shared:
+def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Common:
     """Strengths of columns: of some of them by their number, or of combinations of all (all, k)."""
     own, every = len(BASE), products[0].shape[1] - len(BASE) - 1
     mix = np.asarray(chosen, dtype=float) if np.ndim(chosen) == 2 else np.eye(every)[:, list(chosen)]
@@ -145,7 +145,7 @@ def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Shared:
     covariance = inverse @ (summed.T @ summed) @ inverse * stretches / degrees
     power = np.einsum("jkk->k", reduced[:, :-1, :-1])
     silent = power <= SILENT * power.max()
-    return Shared(strengths, covariance, float(special.stdtrit(degrees, 0.975)), float(np.log(lefts).sum()), silent)
+    return Common(strengths, covariance, float(special.stdtrit(degrees, 0.975)), float(np.log(lefts).sum()), silent)
 
 
 def _solved(reduced: Array, lefts: Sequence[float]) -> tuple[Array, Array, Array]:

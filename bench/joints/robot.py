@@ -96,11 +96,7 @@ def robot(
     paths = [Path(log) for log in ([logs] if isinstance(logs, str | Path) else logs)]
     if not paths:
         raise InputError("logs", "found none", "allowed: at least one")
-    names = list(joint_units(Path(mjcf)))
-    for name in joints:
-        if name not in names:
-            unknown = f"found no hinge or slide of that name{nearest(name, names)}"
-            raise InputError(f"--joint {name}", unknown, f"allowed: {', '.join(names) or 'an MJCF with a named joint'}")
+    names = _required(Path(mjcf), joints)
     asked = [name for name in names if not joints or name in joints]
     unseen = None if holdout is None else Path(holdout)
     work = [JointLogs(name, Path(mjcf), tuple(paths), unseen, rig, stated or {}, excluded) for name in asked]
@@ -120,6 +116,16 @@ def robot(
             carrying(work, [AddedBody(joint=one.joint, inertia=one.inertia) for one in links]), progress
         )
     return IdentifiedRobot(Path(mjcf), found, sought, tuple(links), tuple(warnings))
+
+
+def _required(mjcf: Path, joints: Sequence[str]) -> list[str]:
+    """Names of the hinges and slides of an MJCF; InputError where one that is asked for is not among them."""
+    names = list(joint_units(mjcf))
+    for name in joints:
+        if name not in names:
+            unknown = f"found no hinge or slide of that name{nearest(name, names)}"
+            raise InputError(f"--joint {name}", unknown, f"allowed: {', '.join(names) or 'an MJCF with a named joint'}")
+    return names
 
 
 def _identified(work: Sequence[JointLogs], progress: Callable[[float], None]) -> dict[str, IdentifiedJoint]:
