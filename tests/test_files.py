@@ -82,7 +82,7 @@ def test_what_another_file_leads_to_is_an_input_too(folder, monkeypatch):
     (folder / "forms").mkdir()
     form = "quantity,value,unit\nstudent,07,\n"
     (folder / "forms" / "grades.csv").write_text(form)
-    content = {"schema": SEALED, "students": {"07": {"expected": {}, "truth": {}, "mistakes": {}}}}
+    content = {"schema": SEALED, "students": {"07": {"expected": {}, "truth": {}, "tolerance": {}, "mistakes": {}}}}
     (folder / "class.json").write_text(json.dumps({**content, "seal": seal(content)}))
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     with keeping([]):
