@@ -21,7 +21,7 @@ import typer
 from bench.bounds import bounds
 from bench.fleet.evaluate import Job, evaluate
 from bench.fleet.manifest import read_manifest
-from bench.jobs.on_dask import on_dask
+from bench.jobs.each import each
 from bench.jobs.process import Limits
 from bench.rig.rig import load_rig
 from tests.fleet.made import DAMAGES, Made, fleet_of
@@ -170,7 +170,7 @@ def _speed(folder: Path, recordings: int, duration: float) -> list[str]:
     tasks = [Job(place, "", rig, False, bounds()) for place in manifest.located("file")]
     for workers in (1, 2):
         began = time.monotonic()
-        ended = [time.monotonic() for _ in on_dask(evaluate, list(enumerate(tasks)), Limits(), workers, None)]
+        ended = [time.monotonic() for _ in each(evaluate, tasks, Limits(), workers)]
         warm = 4 * workers
         starts[workers] = ended[0] - began
         rates[workers] = (len(ended) - 1 - warm) / (ended[-1] - ended[warm])
