@@ -79,13 +79,14 @@ def judged(fitted: Balanced, name: str) -> Check:
     """What a balance of the effort of a name says."""
     by_motion, by_position = max(fitted.by_motion, 0.0), max(fitted.by_position, 0.0)
     explained = f"motion explains {by_motion:.0%} of {name}, with position {by_position:.0%}"
-    if by_position < REFUSED and fitted.moving < AUDIBLE:
-        found = f"the axis hardly moves, its speed is {fitted.moving:.1f} times its noise; {explained}"
-        return Check(FOLLOWS, "fail", found, ALLOWED, "record it in motion", unanswerable=True)
     if by_position < WARNED and fitted.audible < AUDIBLE:
         found = f"{explained}; {name} is {fitted.audible:.1f} times its noise"
         advice = "no torque signal, or accelerations too small for it: record harder ones"
         return Check(FOLLOWS, "warn", found, ALLOWED, advice)
+    if by_position < REFUSED and fitted.moving < AUDIBLE:
+        found = f"the speed hardly changes, by {fitted.moving:.1f} times its noise; {explained}"
+        advice = "a motion that accelerates, better in both directions"
+        return Check(FOLLOWS, "fail", found, ALLOWED, advice, unanswerable=True)
     if by_position > WARNED and fitted.inertia < 0.0 and fitted.coulomb < 0.0 and fitted.power < 0.0:
         found = f"{explained}, yet inertia and friction are negative: torque and motion have opposite signs"
         advice = "count both the same way (a leading - in the rig's [trace.columns] turns one)"
