@@ -36,13 +36,13 @@ class Explanation:
         names: of the mistakes, two where both were made; one of NOT_KNOWN, or that they were copied.
         odds: against the next explanation.
         next: its names.
-        figures: that the answers have by it.
+        given: answers that it gives, by their names: of others it says nothing.
     """
 
     names: tuple[str, ...]
     odds: float
     next: tuple[str, ...]
-    figures: Figures
+    given: frozenset[str]
 
     @property
     def text(self) -> str:
@@ -59,7 +59,9 @@ class Explanation:
         """How much likelier than the next, in words."""
         if self.names == (NOT_KNOWN,):
             return ""
-        times = f"10^{math.log10(self.odds):.0f}" if self.odds > 1e4 else f"{self.odds:.2g}"
+        times = (
+            f"10^{math.log10(self.odds):.0f}" if self.odds > 1e4 else f"{self.odds:.{0 if self.odds > 10.0 else 1}f}"
+        )
         return f"{times} times likelier than {' and '.join(self.next)}"
 
 
@@ -91,7 +93,12 @@ def explanation(
     weighed.sort(key=lambda one: -one[2])
     names, figures, best = weighed[0]
     after = next((one for one in weighed[1:] if one[0] != names), weighed[0])
-    return Explanation(names, math.exp(min(best - after[2], 600.0)), after[0], figures)
+    given = frozenset(
+        name
+        for name, value in asked.items()
+        if _near(value, name, figures, tolerances) > SLIPPED * _wide(value, name, expected)
+    )
+    return Explanation(names, math.exp(min(best - after[2], 600.0)), after[0], given)
 
 
 def _singles_and_pairs(of_student: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], float, Figures]]:
@@ -121,11 +128,20 @@ def _apart(answers: Figures, figures: Figures, name: str, tolerances: Mapping[st
 def _log_density(
     value: float, name: str, figures: Figures, expected: Figures, tolerances: Mapping[str, float], missed: float
 ) -> float:
-    """Of an answer's logarithm: normal about its figure, twice its deviation being what is allowed, or wide."""
+    """Of an answer's logarithm: about its figure, or anywhere."""
+    near = _near(value, name, figures, tolerances)
+    return math.log((1.0 - missed) * near + missed * _wide(value, name, expected) + 1e-300)
+
+
+def _near(value: float, name: str, figures: Figures, tolerances: Mapping[str, float]) -> float:
+    """Density of a logarithm that is normal about its figure, twice its deviation being what is allowed."""
     figure, deviation = figures.get(name, math.nan), 0.5 * tolerances[name]
-    wide = 0.25 / WIDE * math.exp(-abs(math.log(abs(value / expected[name]) or 1e-300)) / WIDE)
-    near = 0.0
-    if math.isfinite(figure) and value * figure > 0.0:
-        apart = math.log(value / figure) / deviation
-        near = math.exp(-0.5 * min(apart**2, 1400.0)) / (deviation * math.sqrt(2.0 * math.pi))
-    return math.log((1.0 - missed) * near + missed * wide + 1e-300)
+    if not math.isfinite(figure) or value * figure <= 0.0:
+        return 0.0
+    apart = math.log(value / figure) / deviation
+    return math.exp(-0.5 * min(apart**2, 1400.0)) / (deviation * math.sqrt(2.0 * math.pi))
+
+
+def _wide(value: float, name: str, expected: Figures) -> float:
+    """Density of a logarithm that may be anything."""
+    return 0.25 / WIDE * math.exp(-abs(math.log(abs(value / expected[name]) or 1e-300)) / WIDE)

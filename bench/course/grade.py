@@ -47,7 +47,7 @@ class GradedAnswer:
         expected: what the course's way gives on the student's recordings, in that unit.
         verdict: right, wrong, in a unit of another dimension, not answered, or not judged.
         tolerance: share by which a right answer may be off.
-        explained: how the task's answers were made, where this one is wrong; None otherwise.
+        explained: how the task's answers were made, where that gives this one and it is wrong; None otherwise.
     """
 
     question: Question
@@ -60,7 +60,7 @@ class GradedAnswer:
 
     @property
     def mistake(self) -> str:
-        """What went wrong in the task; empty where nothing did, or it is not known."""
+        """What went wrong in the task; empty where nothing did, it is not known, or does not give this answer."""
         return "" if self.explained is None or self.explained.names == (NOT_KNOWN,) else self.explained.text
 
     @property
@@ -235,14 +235,19 @@ def _measures(unit: str) -> str:
 
 
 def _explained(answers: list[GradedAnswer], student: str, known: Mapping[str, Any]) -> list[GradedAnswer]:
-    """Answers of a task, which is done in one way, the wrong ones with what explains them all."""
+    """Answers of a task, which is done in one way, the wrong ones with what explains most of them."""
     if all(answer.verdict != "wrong" for answer in answers):
         return answers
     given = {answer.question.name: answer.value for answer in answers if math.isfinite(answer.value)}
     tolerances = {answer.question.name: answer.tolerance for answer in answers}
     others = {name: one["expected"] for name, one in known.items() if name != student}
     found = explanation(given, tolerances, known[student], others)
-    return [replace(answer, explained=found) if answer.verdict == "wrong" else answer for answer in answers]
+    return [
+        replace(answer, explained=found)
+        if answer.verdict == "wrong" and answer.question.name in found.given
+        else answer
+        for answer in answers
+    ]
 
 
 def write_grades(graded: GradedClass, out: Path) -> list[Path]:
