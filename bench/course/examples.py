@@ -139,9 +139,9 @@ def _emulation_findings(found: dict[str, EquationOfMotion], truth: AxisParameter
 def geared(rig: Rig) -> Rig:
     """The lab's axis with a gear, a heavier disk and a load torque; identification fits a constant torque too."""
     load = rig.load or Load()
-    inertia = HEAVIER * (load.disk_inertia or 0.0)
-    load = load.model_copy(update={"gear_ratio": RATIO, "gear_inertia": GEAR_INERTIA})
-    total = motor_value(rig, "rotor_inertia") + GEAR_INERTIA + load.reflected(inertia)
+    mass = HEAVIER * (load.disk_mass or 0.0)
+    load = load.model_copy(update={"gear_ratio": RATIO, "gear_inertia": GEAR_INERTIA, "mass": mass, "density": None})
+    total = motor_value(rig, "rotor_inertia") + GEAR_INERTIA + load.reflected(load.disk_inertia or 0.0)
     rig = simulated_with(rig, moment_of_inertia=total, load_torque=LOAD_TORQUE, friction="mechanics")
     drive = rig.drive.model_copy(update={"inertia_feedforward": total}) if rig.drive else None
     return rig.model_copy(update={"load": load, "drive": drive, "offset": True})
