@@ -27,7 +27,7 @@ from bench.units import convert, dimensionality, same_dimension
 
 TITLE = "Industrial Drives, Part 2: grades"
 #: Schema of the truth of a class.
-SEALED = "bench.lab.class/1"
+SEALED = "bench.lab.class/2"
 #: An answer is a mistake's figure within the tolerance of a right one; E, which has none, within this share of it.
 OF_ERROR = 0.04
 #: What a student reads of each mistake.
