@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 
 from matplotlib import rc_context
@@ -16,7 +17,9 @@ from bench.report import figures
 from bench.report.document import Chart, Document, Paragraph, Section, Table
 
 #: A4 upright, and its margin all around - inch; height of a line - inch; characters in a line, and in one of a table.
-PAGE, MARGIN, LINE, CHARACTERS, IN_TABLE = (8.27, 11.69), 0.45, 0.18, 116, 118
+PAGE, MARGIN, LINE, CHARACTERS, IN_TABLE = (8.27, 11.69), 0.45, 0.18, 116, 114
+#: No column of words is made narrower - characters.
+NARROW = 12
 #: Size of a legend's letters, of which four entries stand beside each other - points.
 LEGEND = 6.2
 #: A chart gives up to this share of its height to stay on a page.
@@ -167,14 +170,21 @@ def _paragraph(text: str) -> list[Line]:
 
 
 def _rows(table: Table) -> list[Line]:
-    """Headings and rows of a table, each cell as wide as the widest of its column."""
+    """Headings and rows of a table, each cell as wide as the widest of its column; words wrap where all is too wide."""
     rows = [[column.heading for column in table.columns], *table.rows]
     widths = [max(map(len, cells)) for cells in zip(*rows, strict=True)]
     numbers = [column.number for column in table.columns]
-    return [Line(_row(row, widths, numbers), table=True) for row in rows]
+    words = [k for k, number in enumerate(numbers) if not number]
+    while words and sum(widths) + 2 * (len(widths) - 1) > IN_TABLE:
+        widest = max(words, key=lambda k: widths[k])
+        if widths[widest] <= NARROW:
+            break
+        widths[widest] -= 1
+    return [Line(text, table=True) for row in rows for text in _row(row, widths, numbers)]
 
 
-def _row(cells: Sequence[str], widths: Sequence[int], numbers: Sequence[bool]) -> str:
-    columns = zip(cells, widths, numbers, strict=True)
-    text = "  ".join(cell.rjust(width) if number else cell.ljust(width) for cell, width, number in columns)
-    return text[:IN_TABLE].rstrip()
+def _row(cells: Sequence[str], widths: Sequence[int], numbers: Sequence[bool]) -> Iterator[str]:
+    wrapped = [textwrap.wrap(cell, width) for cell, width in zip(cells, widths, strict=True)]
+    for parts in zip_longest(*wrapped, fillvalue=""):
+        columns = zip(parts, widths, numbers, strict=True)
+        yield "  ".join(cell.rjust(width) if number else cell.ljust(width) for cell, width, number in columns).rstrip()

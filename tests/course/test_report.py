@@ -11,10 +11,10 @@ import pytest
 from bench.assets import asset
 from bench.course import pdf
 from bench.course.recordings import LabRecordings
-from bench.course.report import Cover, course_table, lab_document, task_section, write_lab_report
+from bench.course.report import Cover, course_table, lab_document, summary, task_section, write_lab_report
 from bench.course.result import Number, TaskResult
 from bench.errors import InputError
-from bench.report.document import Picture
+from bench.report.document import Picture, Table
 from bench.report.figures import drawn
 from bench.report.html import html
 from bench.report.terminal import rendered
@@ -204,6 +204,23 @@ def test_pages_of_the_pdf_are_full(done):
     print("pages filled:", *(f"{share:.0%}" for share in filled))
     assert all(share <= 1.0 + 1e-9 for share in filled)
     assert all(share > 0.6 for share in filled[:-1])
+
+
+def test_no_line_of_a_table_is_wider_than_the_page_and_no_word_of_it_is_lost(done):
+    """Letters of the monospaced font are 0.602 of their size wide."""
+    sections = [summary(list(done.values())), *(task_section(task) for task in done.values())]
+    letter = 0.602 * 7.6 / 72.0
+    for section in sections:
+        lines = [line.text for part in pdf.flowing(section) if isinstance(part, tuple) for line in part if line.table]
+        assert max(map(len, lines), default=0) * letter < pdf.PAGE[0] - 2.0 * pdf.MARGIN, section.heading
+        cells = [cell for block in section.blocks if isinstance(block, Table) for row in block.rows for cell in row]
+        assert sorted("".join(lines).replace(" ", "")) == sorted(
+            "".join([*cells, *headings(section)]).replace(" ", "")
+        ), section.heading
+
+
+def headings(section):
+    return [column.heading for block in section.blocks if isinstance(block, Table) for column in block.columns]
 
 
 def test_a_legend_covers_no_data(done):
