@@ -299,7 +299,10 @@ def rig_file(given: str | Path) -> Path:
         InputError: neither a file nor a name.
     """
     path, known = Path(given), shipped()
-    if path.exists() or path.suffix or path.name != str(given):
+    try:
+        if path.suffix or path.name != str(given) or path.exists():
+            return path
+    except OSError:  # such as a name that is too long: who reads it says so
         return path
     if str(given) not in known:
         found = f"no such file and no shipped rig{nearest(str(given), list(known))}"
