@@ -91,10 +91,12 @@ def test_a_folder_that_may_only_be_read(read_only, bound_by_permissions):
     assert content(read_only) == before
 
 
-@pytest.mark.parametrize("name", ["run.csv", "rig.toml"])
-def test_a_file_that_may_not_be_read(folder, name, bound_by_permissions):
+@pytest.mark.parametrize(
+    ("name", "words"), [("run.csv", "not readable"), ("rig.toml", "cannot be read (Permission denied)")]
+)
+def test_a_file_that_may_not_be_read(folder, name, words, bound_by_permissions):
     (folder / name).chmod(0o000)
-    assert_one_line(bench(*IDENTIFY, cwd=folder, before=bound_by_permissions), name, "read")
+    assert_one_line(bench(*IDENTIFY, cwd=folder, before=bound_by_permissions), name, words)
 
 
 def test_an_installation_that_may_only_be_read(folder, bound_by_permissions):

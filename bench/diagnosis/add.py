@@ -174,7 +174,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
 
 
 def refusals(recordings: Recordings, fitted: Fit) -> dict[str, UndeterminedError]:
-    """Why the inertia, or the load's alone, is not determined beside the effects of a fit, by name."""
+    """Why the inertia, and with it the load's, is not determined beside the effects of a fit, by name."""
     found, rig = recordings.base(uncertain(fitted)), recordings.rig
     masses = found | load_inertia(found, rig)
     return refused_masses(masses, rig.axis_kind, clipped(recordings.trace, rig))

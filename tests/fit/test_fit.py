@@ -9,9 +9,9 @@ from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import fit_bare
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import CopiesTorque, Coupling
+from bench.effects.effect import Coupling
 from bench.effects.shape import grid_of
-from bench.fit.fit import fit
+from bench.fit.fit import _own, _taken, fit
 from bench.fit.hypothesis import Hypothesis, Term, in_line
 from bench.fit.identify import identify
 from bench.fit.rows import Rows
@@ -106,11 +106,15 @@ def test_what_shapes_would_take_is_the_same_without_filtering_them_again(name):
     )
     fit_bare(rows).tried(effect, shapes)  # which filters them, and keeps their products with each other
     again = [proposal.gain for proposal in wave_beside.tried(effect, shapes)]
-    columns = wave_beside.seen(lambda s: [one for shape in shapes for one in effect.columns(s, shape)], of_motion=False)
-    expected = wave_beside.gains(columns, columns.shape[1] // len(shapes))
-    # what is made of torque is held against products of the measured one with itself, which noise makes larger
-    kept = 1e-2 if isinstance(effect, CopiesTorque) else 1e-8
-    assert again == pytest.approx(expected, rel=kept, abs=1e-9 * wave_beside.squares)
+
+    def made(signals):
+        return [one for shape in shapes for one in effect.columns(signals, shape)]
+
+    columns, kept = wave_beside.seen(made, of_motion=False), rows.table(made)
+    # products with each other are kept: those of the measured torque, where they are made of torque
+    targets = np.column_stack([wave_beside.span, wave_beside.residual])
+    expected = _taken(_own(kept, kept.shape[1] // len(shapes)), columns.T @ targets, targets)
+    assert again == pytest.approx(expected, rel=1e-8, abs=1e-9 * wave_beside.squares)
 
 
 def test_others_see_strengths_of_dry_friction_as_share_of_coulombs():
