@@ -87,10 +87,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     """
     rig = rig_of(rig)
     trace = trace_of(trace, rig)
-    path, table, balance, stored = _told(model)
-    kind = table.get("kind", rig.kind)
-    if kind != rig.kind:
-        raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
+    path, table, balance, stored = _told(model, rig)
     effort, unit = rig.own_effort(trace)
     peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
     try:
@@ -123,14 +120,22 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     return Replay(trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, unit, tuple(warnings))
 
 
-def _told(model: Diagnosis | str | Path) -> tuple[str | Path, Mapping[str, Any], Balance, StoredModel | None]:
-    """Of a model: where it is from, its kind and name, its torque balance, and what MuJoCo runs where it can."""
-    if not isinstance(model, Diagnosis):
-        table = read_table(model)
-        return model, table, load_balance(model), load_model(model) if "parameters" in table else None
-    stored = model.model
-    table = {} if stored is None else {"kind": stored.model.parameters.kind.name, "name": stored.name}
-    return "diagnosis", table, model.balance, stored
+def _told(model: Diagnosis | str | Path, rig: Rig) -> tuple[str | Path, Mapping[str, Any], Balance, StoredModel | None]:
+    """Of a model of the rig's kind: where it is from, kind and name, its torque balance, what MuJoCo runs of it."""
+    if isinstance(model, Diagnosis):
+        stored = model.model
+        table = {} if stored is None else {"kind": stored.model.parameters.kind.name, "name": stored.name}
+        _require_kind("diagnosis", table, rig)
+        return "diagnosis", table, model.balance, stored
+    table = read_table(model)
+    _require_kind(model, table, rig)  # before its parameters are read, as those of that kind
+    return model, table, load_balance(model), load_model(model) if "parameters" in table else None
+
+
+def _require_kind(path: str | Path, table: Mapping[str, Any], rig: Rig) -> None:
+    kind = table.get("kind", rig.kind)
+    if kind != rig.kind:
+        raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
 
 
 def _rms(values: Array) -> float:

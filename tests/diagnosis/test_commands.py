@@ -270,7 +270,7 @@ DAMAGE = {
     "unknown effect": (r'name = "unbalance", shape', 'name = "unbalanse", shape', ["unbalanse", "unbalance"]),
     "shape": (r"shape = \[\]", "shape = [1.0]", ["unbalance.shape", "allowed: 0"]),
     "unit": (r"kg\*m\*\*2", "kg", ["moment_of_inertia", "kg"]),
-    "kind": (r'kind = "rotary"', 'kind = "linear"', ["moment_of_inertia", "moving_mass"]),
+    "kind": (r'kind = "rotary"', 'kind = "linear"', ["kind", "linear", "rotary"]),
 }  # fmt: skip
 
 
