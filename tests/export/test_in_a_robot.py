@@ -10,7 +10,7 @@ import pytest
 
 from tests.diagnosis.command import started
 from tests.export.held import followed
-from tests.export.two_links import HIDDEN, MJCF, log, motion, write_log
+from tests.export.two_links import HIDDEN, log, motion, ran
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "export.md").read_text(encoding="utf-8")
 COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
@@ -20,19 +20,7 @@ EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """Where the page's commands have run."""
-    before = Path.cwd()
-    folder = tmp_path_factory.mktemp("page")
-    (folder / "robot.xml").write_text(MJCF)
-    write_log(folder / "log.csv", log())
-    bench = started(folder)
-    try:
-        for command in COMMANDS:
-            assert bench(*shlex.split(command)[1:]) == 0, command
-    finally:
-        import os
-
-        os.chdir(before)
-    return folder
+    return ran(tmp_path_factory.mktemp("page"), COMMANDS)
 
 
 def test_the_joints_hidden_physics_is_recovered(folder):

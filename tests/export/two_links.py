@@ -6,9 +6,14 @@ and nothing of MuJoCo is in the log. Angles are zero where the arm hangs; the el
 
 from __future__ import annotations
 
+import os
+import shlex
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+
+from tests.diagnosis.command import started
 
 GRAVITY = 9.81
 #: Upper arm: mass, length, centre, inertia about it; forearm: the same without length.
@@ -102,3 +107,17 @@ def write_log(path, columns):
     """The log as CSV."""
     np.savetxt(path, np.column_stack(list(columns.values())), "%.9g", ",", header=",".join(columns), comments="")
     return path
+
+
+def ran(folder, commands):
+    """A folder with the arm and its log, in which a page's commands have run."""
+    before = Path.cwd()
+    (folder / "robot.xml").write_text(MJCF)
+    write_log(folder / "log.csv", log())
+    bench = started(folder)
+    try:
+        for command in commands:
+            assert bench(*shlex.split(command)[1:]) == 0, command
+    finally:
+        os.chdir(before)
+    return folder

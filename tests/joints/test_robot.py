@@ -1,9 +1,7 @@
 """docs/robot.md: every joint of an arm from its log, and what one that fails leaves of the others."""
 
 import json
-import os
 import re
-import shlex
 from pathlib import Path
 
 import mujoco
@@ -15,7 +13,7 @@ from bench.errors import InputError
 from bench.joints.identified import JointLogs, identified
 from bench.plant.model_file import load_joints
 from tests.diagnosis.command import started
-from tests.export.two_links import HIDDEN, MJCF, log, write_log
+from tests.export.two_links import HIDDEN, MJCF, log, ran, write_log
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "robot.md").read_text(encoding="utf-8")
 COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
@@ -25,16 +23,7 @@ HAND = '<body name="hand" pos="0 0 -.3"><joint name="wrist" axis="0 1 0"/><geom 
 @pytest.fixture(scope="module")
 def arm(tmp_path_factory):
     """Where the page's commands have run: an arm, its log, and what came of them."""
-    before, folder = Path.cwd(), tmp_path_factory.mktemp("robot.md")
-    (folder / "robot.xml").write_text(MJCF)
-    write_log(folder / "log.csv", log())
-    bench = started(folder)
-    try:
-        for command in COMMANDS:
-            assert bench(*shlex.split(command)[1:]) == 0, command
-    finally:
-        os.chdir(before)
-    return folder
+    return ran(tmp_path_factory.mktemp("robot.md"), COMMANDS)
 
 
 def test_every_joint_has_its_physics(arm):
