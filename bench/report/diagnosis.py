@@ -293,9 +293,10 @@ def _sure(found: Diagnosis) -> str:
         lines.append(f"Against it, too: {'; '.join(map(words, found.because[1:]))}.")
     if gap.holdout is not None:
         before, after = gap.holdout
+        goes = f"goes from {number(before, digits=3)} to" if found.effects else "is"
         lines.append(
-            f"On the recording that was not fitted the {effort} gap goes from {number(before, digits=3)} to "
-            f"{number(after, gap.unit, 3)}, where noise alone leaves {number(gap.noise_floor, digits=3)}."
+            f"On the recording that was not fitted the {effort} gap {goes} {number(after, gap.unit, 3)}, where noise "
+            f"alone leaves {number(gap.noise_floor, digits=3)}."
         )
     elif found.effects:
         lines.append("A third of the recording, kept from the fit, bears it out; no holdout was given.")

@@ -25,6 +25,8 @@ BESIDE = 1.5
 CUTS, NEARLY = (2, 4, 8, 16, 32), 0.7
 #: Of a stretch: samples at least, and points that are drawn at most.
 LEAST, POINTS = 60, 400
+#: Share of all that it spans which a stretch does at least: where an axis stands, steps of its sensor are all there is.
+MOVES = 0.05
 
 
 def at_a_glance(found: Diagnosis) -> tuple[doc.Chart, ...]:
@@ -66,6 +68,7 @@ def _whole(rows: NDArray[np.int64], curves: Array) -> list[slice]:
 def _telling(curves: Array, whole: Sequence[slice]) -> tuple[float, slice | None]:
     """The longest stretch in which what was found is nearly as large beside the motion as anywhere, and how large."""
     ranked: list[tuple[float, slice]] = []
+    least = MOVES * float(np.ptp(curves[:, ~np.isnan(curves.sum(axis=0))])) if whole else 0.0
     for cut in CUTS:
         size = max(LEAST, curves.shape[1] // cut)
         for part in whole:
@@ -73,7 +76,7 @@ def _telling(curves: Array, whole: Sequence[slice]) -> tuple[float, slice | None
                 here = slice(start, start + size)
                 measured, before, after = curves[:, here]
                 difference = before - after if (before != after).any() else measured - before
-                ranked.append((rms(difference) / max(float(np.ptp(curves[:, here])), 1e-300), here))
+                ranked.append((rms(difference) / max(float(np.ptp(curves[:, here])), least, 1e-300), here))
     best = max((score for score, _ in ranked), default=0.0)
     return next(((score, part) for score, part in ranked if score >= NEARLY * best), (0.0, None))
 

@@ -12,6 +12,7 @@ from bench.effects.acting import Sensing
 from bench.effects.catalogue import catalogue
 from bench.report.diagnosis import diagnosis, verdict_sentence
 from bench.report.document import Chart, Table, TimeGraph
+from bench.report.gap import _telling
 from bench.report.over_time import unpacked
 from bench.report.publish import read_document
 from bench.rig.rig import Rig
@@ -157,3 +158,13 @@ def test_a_page_says_where_no_model_could_be_had(diagnosed):
 def test_tables_have_a_cell_for_each_heading(page):
     for table in blocks(page, Table):
         assert {len(row) for row in table.rows} == {len(table.columns)}
+
+
+def test_the_stretch_that_is_shown_moves():
+    """Where an axis stands, steps of its sensor are all of the speed that the bare axis does not have."""
+    time = np.arange(2000) * 1e-3
+    stands = time < 1.0
+    measured = np.where(stands, 0.01 * (np.sin(40.0 * time) > 0.9), 3.0 * np.sin(8.0 * (time - 1.0)))
+    bare = np.where(stands, 0.0, measured + 0.3 * np.sin(25.0 * time))
+    _, part = _telling(np.stack([measured, bare, bare]), [slice(0, time.size)])
+    assert part is not None and not stands[part].any()
