@@ -112,14 +112,11 @@ def recursive_filter(
     return solve(len(denominator) - 1, bands, driven, lower=1, diag=1)
 
 
-def splined(values: Array, steps: int) -> tuple[Array, Array]:
-    """A cubic spline through samples (n,), four at least, and its slope per sample, at `steps` to each sample.
+def spline(values: Array) -> Array:
+    """Coefficients (4, n - 1) of a cubic spline through samples (n,), four at least, by powers of shares of a sample.
 
-    As `scipy.interpolate.CubicSpline` has them, which takes 0.2 s to import: its third derivative runs straight through
+    As `scipy.interpolate.CubicSpline` has it, which takes 0.2 s to import: its third derivative runs straight through
     the second and the last but one sample.
-
-    Returns:
-        Both ((n - 1)*steps + 1,).
     """
     from scipy.linalg import solve_banded  # 0.1 s, which only a spline has to pay
 
@@ -129,8 +126,19 @@ def splined(values: Array, steps: int) -> tuple[Array, Array]:
     bands[0, 1], driven[0] = 2.0, 2.5 * rise[0] + 0.5 * rise[1]
     bands[2, -2], driven[-1] = 2.0, 2.5 * rise[-1] + 0.5 * rise[-2]
     slope = solve_banded((1, 1), bands, driven)
-    start, bend = slope[:-1, None], (3.0 * rise - 2.0 * slope[:-1] - slope[1:])[:, None]
-    twist, at = (slope[:-1] + slope[1:] - 2.0 * rise)[:, None], np.arange(steps) / steps
-    between = values[:-1, None] + at * (start + at * (bend + at * twist))
-    slopes = start + at * (2.0 * bend + 3.0 * at * twist)
-    return np.append(between.ravel(), values[-1]), np.append(slopes.ravel(), slope[-1])
+    bend, twist = 3.0 * rise - 2.0 * slope[:-1] - slope[1:], slope[:-1] + slope[1:] - 2.0 * rise
+    return np.stack([values[:-1], slope[:-1], bend, twist])
+
+
+def splined(values: Array, steps: int) -> tuple[Array, Array]:
+    """A cubic spline through samples (n,) and its slope per sample, at `steps` to each sample; see `spline`.
+
+    Returns:
+        Both ((n - 1)*steps + 1,).
+    """
+    start, slope, bend, twist = spline(values)[:, :, None]
+    at = np.arange(steps) / steps
+    between = start + at * (slope + at * (bend + at * twist))
+    slopes = slope + at * (2.0 * bend + 3.0 * at * twist)
+    last = slope[-1] + 2.0 * bend[-1] + 3.0 * twist[-1]
+    return np.append(between.ravel(), values[-1]), np.append(slopes.ravel(), last)

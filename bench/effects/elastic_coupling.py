@@ -21,7 +21,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array, recursive_filter, splined
+from bench.arrays import Array, recursive_filter
 from bench.effects.acting import Native
 from bench.effects.effect import Coupling, FiltersMotion, Load
 from bench.effects.mjcf import Spec, add_coupling_joint
@@ -37,10 +37,6 @@ DAMPINGS = (0.01, 0.04, 0.12)
 #: quality 1/(2*D) is below one, so that hardly anything does; those of the blind set have 0.04 at most. On the way to
 #: another coupling a search may pass the latter.
 OVERDAMPED, DULL = 1.0, 0.5
-#: Longest step - rad of the antiresonance: speed that runs straight within it lacks step**2/12 of its swing.
-LONGEST_STEP = 0.1
-#: Steps of a sample at least and at most: a coupling that rings as fast as samples come is not told from a rigid one.
-LEAST, MOST = 2, 8
 #: Turns in which the load's motion and what acts on it are brought in line, the change that ends them and the one that
 #: no load beyond belief would make - shares of the twist under the load's own inertia.
 TURNS, SETTLED, ASTRAY = 40, 1e-6, 10.0
@@ -70,17 +66,7 @@ class ElasticCoupling(Coupling, FiltersMotion, Native):
 
         The own column of that in the balance is one of an effect on the motor, so only the difference enters here.
         """
-        fine: dict[int, Array] = {}
-        columns: list[Column] = []
-        for antiresonance, damping in shapes:
-            substeps = int(np.ceil(antiresonance * signals.sample_period / LONGEST_STEP))
-            substeps = min(max(substeps, LEAST), MOST)
-            if substeps not in fine:
-                by_position = signals.source == "position"
-                values, slopes = splined(signals.position if by_position else signals.velocity, substeps)
-                fine[substeps] = slopes / signals.sample_period if by_position else values
-            columns.append(_column(signals, fine[substeps], substeps, antiresonance, damping, loads))
-        return columns
+        return [_column(signals, *shape, loads) for shape in shapes]
 
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> NDArray[np.complex128]:
         """Load's acceleration over the motor's, less one: (1 + 2*D*s/w_a)/(1 + 2*D*s/w_a + (s/w_a)**2) - 1."""
@@ -110,10 +96,8 @@ class ElasticCoupling(Coupling, FiltersMotion, Native):
         joint.stiffness[0], joint.damping[0] = values["stiffness"], values["damping"]
 
 
-def _column(
-    signals: Signals, speed: Array, substeps: int, antiresonance: float, damping: float, loads: Sequence[Load]
-) -> Column:
-    """Terms of one coupling, driven by the motor's speed at substeps of the samples.
+def _column(signals: Signals, antiresonance: float, damping: float, loads: Sequence[Load]) -> Column:
+    """Terms of one coupling.
 
     What acts on the load is brought in line with its motion turn by turn. Half of its steepest damping is counted to
     the coupling's, so that a turn leaves less of an error than it found.
@@ -121,17 +105,19 @@ def _column(
     loss, spring, step = 2.0 * damping * antiresonance, antiresonance**2, signals.sample_period
     damped = 0.5 * _steepest(signals, loads) if loads else 0.0
     state = np.array([[0.0, 1.0], [-spring, -loss - damped]])
-    (to_twist, to_speed), free_denominator = _driven(state, np.array([-1.0, loss]), step / substeps)
-    driven = speed - speed[0]
-    twist = free = recursive_filter(to_twist, free_denominator, driven)[::substeps]
+    began = signals.course[0, 0]
+    course = np.vstack([signals.course[0] - began, signals.course[1:]])
+    driven, denominator = _driven(state, np.array([-1.0, loss]), step, course)
+    twist = free = recursive_filter([1.0], denominator, driven[0])
     if not loads:
         return [(free, 2)]
-    load_speed = free_speed = recursive_filter(to_speed, free_denominator, driven)[::substeps]
-    forcing, denominator = _driven(state, np.array([0.0, -1.0]), step)
+    load_speed = free_speed = recursive_filter([1.0], denominator, driven[1])
     torque = np.zeros_like(free)
     for _ in range(TURNS):
-        torque = _torque(replace(signals, position=signals.position + twist, velocity=load_speed + speed[0]), loads)
-        forced = [recursive_filter(row, denominator, torque - damped * load_speed) for row in forcing]
+        torque = _torque(replace(signals, position=signals.position + twist, velocity=load_speed + began), loads)
+        pulling = torque - damped * load_speed
+        forcing, _ = _driven(state, np.array([0.0, -1.0]), step, np.stack([pulling[:-1], np.diff(pulling)]))
+        forced = [recursive_filter([1.0], denominator, row) for row in forcing]
         before, twist, load_speed = twist, free + forced[0], free_speed + forced[1]
         change = np.abs(twist - before).max()
         if change < SETTLED * np.abs(free).max():
@@ -148,22 +134,25 @@ def _steepest(signals: Signals, loads: Sequence[Load]) -> float:
     return max(float(np.max(_torque(faster, loads) - _torque(signals, loads))) / step, 0.0)
 
 
-def _driven(state: Array, drive: Array, step: float) -> tuple[Array, Array]:
-    """Numerators (2, 3) and denominator (3,) of both states of x' = A*x + b*u from rest, u straight between steps.
+def _driven(state: Array, drive: Array, step: float, course: Array) -> tuple[Array, Array]:
+    """What drives both states of x' = A*x + b*u from rest (2, n), and the denominator (3,) of the filter it passes.
 
-    Exact over a step: x+ = F*x + (P - Q)*u + Q*u+, with F = exp(m*h)*(cosh(s*h) + sinh(s*h)/s*(A - m)) of a matrix A
-    (2, 2), m half its trace, s = sqrt(m**2 - det(A)).
+    Exact over a step: x+ = F*x + sum(g_m*c_m), where u = sum(c_m*(t/h)**m) (k, n - 1), with F = exp(m*h)*(cosh(s*h) +
+    sinh(s*h)/s*(A - m)) of a matrix A (2, 2), m half its trace, s = sqrt(m**2 - det(A)), and g_m = A^-1*(m/h*g_(m-1) -
+    b), g_0 = A^-1*(F - 1)*b.
     """
     one, inverse, mean = np.eye(2), np.linalg.inv(state), 0.5 * np.trace(state)
     turn = step * np.sqrt(complex(mean**2 - np.linalg.det(state)))
     shear = np.sinc(1j * turn / np.pi).real * step
     moved = np.exp(mean * step) * (np.cosh(turn).real * one + shear * (state - mean * one))
-    grown = inverse @ (moved - one)
-    later = inverse @ (grown / step - one) @ drive
-    first = grown @ drive - later
-    adjugate = np.array([[-moved[1, 1], moved[0, 1]], [moved[1, 0], -moved[0, 0]]])
-    numerators = np.stack([later, adjugate @ later + first, adjugate @ first], axis=1)
-    return numerators, np.array([1.0, -np.trace(moved), np.linalg.det(moved)])
+    gains = [inverse @ (moved - one) @ drive]
+    for power in range(1, len(course)):
+        gains.append(inverse @ (power / step * gains[-1] - drive))
+    added = np.stack(gains, axis=1) @ course
+    driven = np.zeros((2, course.shape[1] + 1))
+    driven[:, 1:] = added
+    driven[:, 2:] += (moved - np.trace(moved) * one) @ added[:, :-1]
+    return driven, np.array([1.0, -np.trace(moved), np.linalg.det(moved)])
 
 
 def _torque(signals: Signals, loads: Sequence[Load]) -> Array:

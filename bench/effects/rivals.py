@@ -3,13 +3,16 @@
 So what none of the effects is does not get the name of the nearest one.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from itertools import groupby
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
 from bench.effects.effect import Columns, CopiesTorque, Effect
-from bench.effects.shape import DURATION, FREQUENCY, SPEED, Shape
+from bench.effects.shape import DURATION, FREQUENCY, SPEED, Shape, Shapes
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -38,8 +41,8 @@ class Vibration(Outside):
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Sine and cosine of time."""
-        angle = 2.0 * np.pi * shape[0] * signals.time
-        return [[(np.sin(angle), 0)], [(np.cos(angle), 0)]]
+        wave = _turning(2.0 * np.pi * shape[0], signals)
+        return [[(wave.imag, 0)], [(wave.real, 0)]]
 
 
 class Notch(Outside):
@@ -59,9 +62,16 @@ class Notch(Outside):
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """The bump, and the bump of friction."""
-        away = np.angle(np.exp(1j * (signals.position - shape[0])))
-        bump = np.exp(-0.5 * (away / shape[1]) ** 2)
-        return [[(bump, 0)], [(bump * signals.sign, 0)]]
+        return self.columns_of(signals, [shape])
+
+    def columns_of(self, signals: Signals, shapes: Shapes) -> list[Column]:
+        """Of several bumps; those at one angle one after the other."""
+        columns: list[Column] = []
+        for angle, alike in groupby(shapes, key=lambda shape: shape[0]):
+            away = (signals.position - angle + np.pi) % (2.0 * np.pi) - np.pi
+            bumps = [np.exp(-0.5 * (away / width) ** 2) for _, width in alike]
+            columns += [column for bump in bumps for column in ([(bump, 0)], [(bump * signals.sign, 0)])]
+        return columns
 
 
 class SlowMemory(Outside):
@@ -117,6 +127,15 @@ class OtherWave(Outside, CopiesTorque):
         angle = shape[0] * signals.position
         waves = np.sin(angle), np.cos(angle)
         return [[(factor(signals) * wave, order)] for factor, order in self._factors for wave in waves]
+
+
+def _turning(rate: float, signals: Signals) -> NDArray[np.complex128]:
+    """e**(j*rate*t) at the samples (n,), of few exponentials: those of blocks times those within one."""
+    count = signals.time.size
+    size = math.isqrt(count) + 1
+    ahead = signals.sample_period * np.arange(size)
+    blocks = np.exp(1j * rate * (signals.time[0] + size * ahead))
+    return np.outer(blocks, np.exp(1j * rate * ahead)).ravel()[:count]
 
 
 def _lowpass(values: Array, keep: float) -> Array:

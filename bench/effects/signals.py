@@ -8,9 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
-from bench.arrays import Array
+import numpy as np
+
+from bench.arrays import Array, spline
 from bench.axis_kind import AxisKind
 from bench.trace.filter import Column
 
@@ -54,6 +57,16 @@ class Signals:
     load: Array | float = 0.0
     began: float = 0.0
     known: Column = ()
+
+    @cached_property
+    def course(self) -> Array:
+        """Speed between samples, by powers of shares of a sample - rad/s (m/s) - (k, n - 1): that of a cubic spline.
+
+        The spline runs through the signal that speed is taken from.
+        """
+        if self.source == "velocity":
+            return spline(self.velocity)
+        return spline(self.position)[1:] * np.array([[1.0], [2.0], [3.0]]) / self.sample_period
 
 
 @dataclass(frozen=True)

@@ -135,7 +135,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, left: Array | None = None) -> La
         owners += [index] * parts[-1].shape[1]
     columns = np.concatenate(parts, axis=1) if len(parts) > 1 else parts[0]
     held_by = np.array(owners, dtype=object)
-    effort = seen.kept(_of_effort, _of_effort, late, of_signals=True)[:, 0] if late else seen.effort
+    effort = seen.kept(_of_effort, _of_effort, late)[:, 0] if late else seen.effort
     if (moving or late) and seen.stretches[0].signals.known:
         # as the motion tells it, whose lag is undone; all of it of an effort that was made anew
         known = seen.kept(known_of, known_of, moving)[:, 0]
@@ -194,7 +194,7 @@ def _axis(seen: Rows, lags: tuple[float, ...]) -> Array:
         values = getattr(signals, seen.conditioning.source)
         return [[(values, order + 1)], [(values, order)], [(signals.sign, 0)], [(signals.effort, 1)]]
 
-    table = seen.table(columns, lags, of_signals=True)
+    table = seen.table(columns, lags)
     table[:, BASE.index(MISALIGNMENT)] *= -1.0
     return table
 

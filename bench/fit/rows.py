@@ -16,7 +16,7 @@ from bench.axis_kind import AxisKind
 from bench.effects.signals import Scope, Signals
 from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
-from bench.trace.filter import Column, GaussianFilter, Spectra
+from bench.trace.filter import Column, GaussianFilter
 from bench.trace.motion import Conditioning, condition, known_column, known_sign, raw_speed
 from bench.trace.trace import Trace
 
@@ -71,25 +71,23 @@ class Stretch:
         signals: of it.
         used: (r,).
         start: of its first sample in the recording.
-        spectra: of its signals, for filters of several widths.
     """
 
     signals: Signals
     used: NDArray[np.bool_]
     start: int
-    spectra: Spectra
 
     @classmethod
-    def of(cls, signals: Signals, start: int, smooth: GaussianFilter, spectra: Spectra) -> Stretch:
+    def of(cls, signals: Signals, start: int, smooth: GaussianFilter) -> Stretch:
         """The stretch through a filter: a row is used where the direction is known over SIGN_WIDTHS to each side."""
         wide = replace(smooth, width=smooth.width * SIGN_WIDTHS / SIGN_REACH)
         size = signals.time.size
         used = np.zeros(len(range(smooth.margin, size - smooth.margin, smooth.stride)), dtype=bool)
         if size > 2 * wide.margin:
-            (direction,) = wide.columns([[(signals.sign, 0)]], spectra=spectra)
+            (direction,) = wide.columns([[(signals.sign, 0)]])
             lost = (wide.margin - smooth.margin) // smooth.stride
             used[lost : lost + direction.size] = np.abs(direction) > 1.0 - 1e-3
-        return cls(signals, used, start, spectra)
+        return cls(signals, used, start)
 
     @cached_property
     def places(self) -> NDArray[np.intp]:
@@ -164,7 +162,7 @@ class Rows:
         stretches = []
         for part in _long(trace.segments, conditioning.filter):
             signals = _signals(trace, effort, part, conditioning, peak_effort, begins)
-            stretches.append(Stretch.of(signals, part.start, conditioning.filter, Spectra()))
+            stretches.append(Stretch.of(signals, part.start, conditioning.filter))
         clear = _require_clear(stretches, conditioning, trace.origin, trace.axis_kind)
         scope = _scope(trace, rig, clear, conditioning)
         return cls(clear, conditioning, trace.origin, scope, _explained(clear, conditioning.filter))
@@ -177,7 +175,7 @@ class Rows:
         """
         conditioning = replace(self.conditioning, filter=smooth)
         longer = [part for part in self.stretches if part.signals.time.size > 4 * smooth.margin]
-        parts = [Stretch.of(part.signals, part.start, smooth, part.spectra) for part in longer]
+        parts = [Stretch.of(part.signals, part.start, smooth) for part in longer]
         clear = _require_clear(parts, conditioning, self.origin, self.scope.kind)
         scope = replace(self.scope, width=smooth.width, **_moved(clear, conditioning))
         return Rows(clear, conditioning, self.origin, scope, _explained(clear, smooth))
@@ -190,7 +188,7 @@ class Rows:
 
     def with_signals(self, change: Callable[[Signals], Signals], made_by: Hashable = None) -> Rows:
         """The same rows over changed signals; columns of them are kept if `made_by` tells this change from others."""
-        stretches = tuple(replace(p, signals=change(p.signals), spectra=Spectra()) for p in self.stretches)
+        stretches = tuple(replace(p, signals=change(p.signals)) for p in self.stretches)
         pairs = [(new.signals, old.signals) for new, old in zip(stretches, self.stretches, strict=True)]
         moved = any(new.position is not old.position or new.velocity is not old.velocity for new, old in pairs)
         effort = self.effort
@@ -245,15 +243,14 @@ class Rows:
         smooth = self.conditioning.filter
         return values[smooth.margin : -smooth.margin : smooth.stride][: part.used.size]
 
-    def table(self, columns: ColumnsOf, lag: Lag = 0.0, *, of_signals: bool = False) -> Array:
+    def table(self, columns: ColumnsOf, lag: Lag = 0.0) -> Array:
         """Filtered columns at the used rows (m, k).
 
         Args:
             columns: of the raw signals.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
-            of_signals: whether they are sums of signals themselves, whose transforms are kept.
         """
-        return _table(self.stretches, self.conditioning.filter, columns, lag, of_signals)
+        return _table(self.stretches, self.conditioning.filter, columns, lag)
 
     def against(self, targets: Array, lag: float = 0.0) -> Callable[[ColumnsOf], Array]:
         """Inner products (k, t) of columns with targets (m, t), for which no column has to be filtered itself."""
@@ -276,10 +273,10 @@ class Rows:
 
         return products
 
-    def kept(self, made_of: Hashable, columns: ColumnsOf, lag: Lag = 0.0, *, of_signals: bool = False) -> Array:
+    def kept(self, made_of: Hashable, columns: ColumnsOf, lag: Lag = 0.0) -> Array:
         """The same, made once of what tells these columns from others."""
         key = made_of, lag, self.made_by
-        return self.memory.get(key, lambda: self.table(columns, lag, of_signals=of_signals))
+        return self.memory.get(key, lambda: self.table(columns, lag))
 
 
 def clear_motion(conditioning: Conditioning, kind: AxisKind) -> str:
@@ -312,23 +309,14 @@ def _require_clear(
 
 def _explained(stretches: Sequence[Stretch], smooth: GaussianFilter) -> Array:
     """Filtered motor torque less what is known to act, at the used rows - N*m (N) - (m,)."""
-    effort = _table(stretches, smooth, lambda s: [[(s.effort, 0)]], of_signals=True)[:, 0]
+    effort = _table(stretches, smooth, lambda s: [[(s.effort, 0)]])[:, 0]
     if not stretches[0].signals.known:
         return effort
     return effort - _table(stretches, smooth, known_of)[:, 0]
 
 
-def _table(
-    stretches: Sequence[Stretch],
-    smooth: GaussianFilter,
-    columns: ColumnsOf,
-    lag: Lag = 0.0,
-    of_signals: bool = False,
-) -> Array:
-    parts = [
-        smooth.columns(columns(part.signals), lag, part.spectra if of_signals else None).take(part.places, axis=1)
-        for part in stretches
-    ]
+def _table(stretches: Sequence[Stretch], smooth: GaussianFilter, columns: ColumnsOf, lag: Lag = 0.0) -> Array:
+    parts = [smooth.columns(columns(part.signals), lag).take(part.places, axis=1) for part in stretches]
     return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
 
 

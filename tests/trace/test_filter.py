@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 import pytest
-import scipy.fft
 
-from bench.trace.filter import GaussianFilter, fast_length
+from bench.trace.filter import GaussianFilter
 
 PERIOD = 1e-3
 
@@ -108,8 +107,3 @@ def test_what_lies_six_widths_away_is_not_seen():
     at = np.arange(smooth.margin, 1001 - smooth.margin, 2)
     assert np.abs(found[np.abs(at - 500) > 60]).max() < 1e-6 * found.max()
     assert found.max() == pytest.approx(PERIOD / (smooth.width * math.sqrt(2.0 * math.pi)), rel=1e-6)
-
-
-def test_lengths_of_transforms_are_scipys():
-    lengths = [*range(1, 400), 4097, 12_999, 25_001, 1_000_003]
-    assert [fast_length(n) for n in lengths] == [scipy.fft.next_fast_len(n, real=True) for n in lengths]
