@@ -66,7 +66,7 @@ class Contender:
 
 
 def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) -> Iterator[Fit]:
-    """The steps of a search, its result less each of its effects, the next best beside it, and its rivals.
+    """The steps of a search, its result less each of its effects, the next best beside it and in its place, and rivals.
 
     Rivals are simpler forms of an effect, a wave of another form in the place of waves, and the best effect from
     outside the catalogue beside the result and in the place of each of its names, and of all that it leaves nothing to;
@@ -77,6 +77,7 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
     less = [fit(last.rows, last.hypothesis.without(index)) for index in range(len(last.terms))]
     if len(less) > 1:
         yield from less
+    yield from _instead_of_the_last(searched, policy)
     if searched.ended is not None:
         yield from _promising(searched.ended.fitted, searched.ended.rivals[:NEXT], policy)
     for index, term in enumerate(last.terms):
@@ -89,6 +90,15 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
     for beside in filter(policy.remains, (last, *less, *waveless)):
         for rival in _promising(beside, candidates(beside, rivals)[:1], policy):
             yield from (rival, backward_elimination(rival, policy))
+
+
+def _instead_of_the_last(searched: Searched, policy: Policy) -> Iterator[Fit]:
+    """What was nearly as good as the name that was taken up last, in its place."""
+    rivals, taken = searched.steps[-1].rivals, {term.effect for term in searched.last.terms}
+    as_good = [each for each in rivals if each.gain > policy.as_good * rivals[0].gain]
+    others = [each for each in as_good if each.term.effect not in taken]
+    if others:
+        yield from _promising(searched.steps[-2].fitted, others[:NEXT], policy)
 
 
 def _of_other_form(last: Fit, policy: Policy) -> Iterator[Fit]:

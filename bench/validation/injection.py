@@ -17,8 +17,7 @@ from functools import partial
 import numpy as np
 from scipy.signal import lfilter, savgol_filter
 
-from bench.arrays import Array, rms
-from bench.effects.catalogue import catalogue
+from bench.arrays import Array
 from bench.errors import InputError
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
@@ -35,10 +34,6 @@ SURE = 4.0
 MOVING = frozenset({"driven_current", "remember"})
 #: Steps in a swing of a load on its contact: its frequency is right to 0.7 %.
 STEPS = 16
-#: Severities between which an effect of a wanted size is sought, the ratio at which the search ends, and the one by
-#: which the size may fall short where physics ends before it. The last severity is four times the strongest of the
-#: blind set: beyond it is no axis any more, as with warm-up of five times the friction.
-SEVERITIES, CLOSE, SHORT = (1e-4, 3.0), 1.03, 1.1
 #: Steps in which what drives the axis is found, and the share of it that it is found to.
 TRIES, EXACT = 200, 1e-9
 
@@ -153,7 +148,7 @@ def injected(host: Host, effect: Effect) -> Trace:
         return _read_otherwise(host.trace, effect, acts)
     seen = stand_in(host)
     current = _reported(effect, acts, seen.driven_by(_needed(effect, acts, seen)))
-    return _driven(host, effect.name, current * seen.torque_constant)
+    return driven(host, effect.name, current * seen.torque_constant)
 
 
 def _needed(effect: Effect, acts: set[str], seen: StandIn) -> Array:
@@ -285,7 +280,7 @@ def _read_otherwise(trace: Trace, effect: Effect, acts: set[str]) -> Trace:
     return trace.with_signals(signals, {})
 
 
-def _driven(host: Host, what: str, effort: Array) -> Trace:
+def driven(host: Host, what: str, effort: Array) -> Trace:
     """The recording with another effort, in the signal that tells it."""
     trace, rig = host.trace, host.rig
     name = next(each for each in (rig.axis_kind.effort, "current", "voltage") if each in trace)
@@ -296,73 +291,3 @@ def _driven(host: Host, what: str, effort: Array) -> Trace:
     step = np.full(len(trace), 1e-6 * float(np.abs(trace[name]).max() or 1.0))
     gain = float(np.median((told(step) - told(0.0 * step)) / step))
     return trace.with_signals({name: _solved(lambda at: told(at / gain), effort, what) / gain}, {})
-
-
-def disturbance(host: Host, made: Trace) -> tuple[float, float]:
-    """How much torque a change of a recording makes, and how much of it J, K_w and K_0 cannot take up - N*m (N).
-
-    RMS over the rows in motion of M - J*alpha - K_w*omega - K_0*sgn(omega), in `made` less in the recording: with the
-    axis' own values, and after the best change of them (and of the offset that the rig may tell of). A change of the
-    reported speed alone is judged by that speed, though a position be recorded.
-    """
-    trace, axis = host.trace, host.axis
-    changed = {name for name in trace.signals if not np.array_equal(trace[name], made[name])}
-    if changed == {"velocity"} and "position" in trace:
-        trace, made = trace.without("position"), made.without("position")
-    before, after = stand_in(host, trace), stand_in(host, made)
-    moving = before.direction != 0.0
-    plain = np.stack([after.acceleration, after.velocity, after.direction])
-    values = np.array([axis.inertia, axis.viscous, axis.coulomb])
-    more = after.motor_torque - before.motor_torque
-    more = (more - values @ (plain - [before.acceleration, before.velocity, before.direction]))[moving]
-    columns = np.stack([*plain, *[np.ones(moving.size)] * host.rig.offset], axis=1)[moving]
-    return rms(more), rms(more - columns @ np.linalg.lstsq(columns, more, rcond=None)[0])
-
-
-def modelled(host: Host) -> Host:
-    """The axis alone, as it was found to move under J, K_w, K_0 and its load: what else a recording holds left out."""
-    seen, axis = stand_in(host), host.axis
-    torque = axis.inertia * seen.acceleration + axis.viscous * seen.velocity + axis.coulomb * seen.direction
-    return replace(host, trace=_driven(host, "the axis", torque + (0.0 if host.load is None else host.load)))
-
-
-def drawn(host: Host, kind: str, size: float, seed: int) -> Effect | None:
-    """An effect of a kind that leaves a wanted RMS beyond what J, K_w and K_0 take up, on the axis alone.
-
-    An effect made of torque scales what else a recording holds, too, which shows nothing of it.
-
-    Args:
-        host: that it is to be put into.
-        kind: name of the effect.
-        size: the second RMS of its `disturbance` - N*m (N).
-        seed: of its other parameters.
-
-    Returns:
-        None if the axis cannot have it, or not of this size within its physical bounds.
-    """
-    if not KINDS[kind].possible(host.axis):
-        return None
-    bounds = {quantity.name: quantity for quantity in catalogue()[kind].quantities}
-    duration, alone = float(host.trace.time[-1] - host.trace.time[0]), modelled(host)
-
-    def of(severity: float) -> Effect:
-        return KINDS[kind].draw(host.axis, severity, np.random.default_rng(seed), duration)
-
-    def reached(severity: float) -> float:
-        effect = of(severity)
-        values = effect.quantities(host.axis).items()
-        if any(not bounds[name].lower <= value <= bounds[name].upper for name, value in values if name in bounds):
-            return math.inf
-        try:
-            return disturbance(alone, injected(alone, effect))[1]
-        except InputError:  # the axis cannot have it so strong
-            return math.inf
-
-    (low, high), below = SEVERITIES, 0.0
-    if not reached(high) > size:
-        return None
-    while high > CLOSE * low:
-        middle = math.sqrt(low * high)
-        now = reached(middle)
-        low, high, below = (low, middle, below) if now > size else (middle, high, now)
-    return of(low) if below > size / SHORT else None

@@ -23,8 +23,9 @@ from bench.validation.coverage import UNEXPLAINED
 from bench.validation.independent.effects import KINDS, Effect
 from bench.validation.independent.effects.effect import Rows
 from bench.validation.independent.rig import Axis
-from bench.validation.injection import INJECTABLE, Host, disturbance, drawn, injected, stand_in
+from bench.validation.injection import INJECTABLE, Host, injected, stand_in
 from bench.validation.score import Named, Scored, of_effects
+from bench.validation.severity import disturbance, drawn
 
 #: What becomes of an effect. Right: named, and nothing else is that was not before; part: something else, too; flagged:
 #: not named, and a remainder is left or a refusal says why; missed: neither; wrong: not named, and something else is.

@@ -16,8 +16,9 @@ import numpy as np
 import bench
 from bench.errors import BenchError
 from bench.trace.write import write
-from bench.validation.injection import INJECTABLE, disturbance, drawn, injected
+from bench.validation.injection import INJECTABLE, injected
 from bench.validation.into import Injection, Own, own, put_into
+from bench.validation.severity import disturbance, drawn
 from tests.studies.injected.sources import Source
 
 #: Strengths over what the recording's own diagnosis leaves.
