@@ -8,7 +8,7 @@ from bench.diagnosis.search import exchanged
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
-from tests.diagnosis.constructed import bare, moved, recorded, wave
+from tests.diagnosis.constructed import COULOMB, bare, likely, moved, recorded, wave
 
 EFFECTS = [catalogue()[name] for name in ("quadratic_drag", "cogging_torque", "stribeck_friction", "torque_offset")]
 COGGING = Term(catalogue()["cogging_torque"], (7.0,))
@@ -31,3 +31,13 @@ def test_names_that_leave_noise_alone_stay():
     without = bare(recorded(moved(), drag, wave(0.02, 7.0)))
     right = fit(without.rows, Hypothesis((Term(catalogue()["quadratic_drag"]), COGGING)))
     assert exchanged(right, EFFECTS, Policy()) is None
+
+
+def test_what_was_nearly_as_good_as_the_only_name_is_weighed_too():
+    """A slow axis' torque is friction: a wave of it is hardly told from a wave of torque, and a search takes one."""
+    trace = recorded(
+        moved(20.0, ((6.0, 0.1, 0.3),)), lambda motion: 0.2 * COULOMB * np.sin(motion.position) * motion.sign
+    )
+    found = likely(Policy(), trace, ["torque_ripple", "position_dependent_friction"]).names
+    assert 0.1 < found["position_dependent_friction"] < 0.9
+    assert 0.1 < found["torque_ripple"] < 0.9
