@@ -162,11 +162,12 @@ def require_writable(path: str | Path) -> Path:
 
 
 @contextmanager
-def whole(path: str | Path) -> Iterator[Path]:
+def whole(path: str | Path, lasting: bool = True) -> Iterator[Path]:
     """A temporary path beside `path` that takes its name once the block has ended well, and is gone otherwise.
 
-    The file is on the disk before it takes the name. Links are followed; permissions are those of the file that is
-    replaced, else what the umask leaves. Its folder is made; what a run that was killed has left in it is removed.
+    The file is on the disk before it takes the name, unless it is one of many that can be made again (not `lasting`).
+    Links are followed; permissions are those of the file that is replaced, else what the umask leaves. Its folder is
+    made; what a run that was killed has left in it is removed.
 
     Raises:
         InputError: the place cannot be written to, or is an input.
@@ -180,11 +181,13 @@ def whole(path: str | Path) -> Iterator[Path]:
             if target.exists():
                 temporary.chmod(stat.S_IMODE(target.stat().st_mode))
             yield temporary
-            _flush(temporary)
+            if lasting:
+                _flush(temporary)
             temporary.replace(target)
             if (touched := _TOUCHED.get()) is not None:
                 touched.made.add(_identity(target.stat()))
-            _flush(target.parent)
+            if lasting:
+                _flush(target.parent)
         finally:
             os.close(handle)
             temporary.unlink(missing_ok=True)
@@ -261,7 +264,7 @@ def held(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
-def write_text(path: str | Path, text: str) -> None:
+def write_text(path: str | Path, text: str, lasting: bool = True) -> None:
     """Write a text file, UTF-8, whole or not at all; what no text may hold (half a surrogate) is written as \\udc80."""
-    with whole(path) as temporary:
+    with whole(path, lasting) as temporary:
         temporary.write_bytes(text.encode("utf-8", errors="backslashreplace"))

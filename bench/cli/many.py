@@ -12,15 +12,12 @@ import bench
 from bench.cli import common
 from bench.cli.common import STDOUT, JsonOption, OptionalRigOption
 from bench.errors import InputError, UndeterminedError
-from bench.files import sha256, write_text
+from bench.files import sha256
 from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
 if TYPE_CHECKING:
-    from bench.fleet.fleet import Fleet
     from bench.validation.own import OwnAxis
-
-SUMMARY = "summary.json"
 
 
 Effects = Annotated[
@@ -157,25 +154,27 @@ def fleet(
     from bench.fleet.fleet import TABLE
     from bench.fleet.fleet import fleet as run_fleet
     from bench.jobs.process import Limits
-    from bench.report.fleet import fleet_document, fleet_json
-    from bench.report.publish import write_html
+    from bench.report.fleet import FLEET, SUMMARY, fleet_document, fleet_json, write_fleet
     from bench.report.terminal import progress
 
     limits = Limits(deadline, memory * 1024**3)
     basis = {"version": bench.__version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
-    page = out / "fleet.html"
-
-    def write_document(found: Fleet) -> None:
-        write_text(out / SUMMARY, fleet_json(found, basis) + "\n")
-        write_html(page, fleet_document(found, SUMMARY, basis))
-
     with progress(f"evaluating {manifest.name}") as done:
         found = run_fleet(
-            manifest, out, diagnose, retry, limits, workers, scheduler, done, write_document, storage or ()
+            manifest,
+            out,
+            diagnose,
+            retry,
+            limits,
+            workers,
+            scheduler,
+            done,
+            lambda found: write_fleet(out, found, basis),
+            storage or (),
         )
     if json is not None:
         common.write_json(json, fleet_json(found, basis))
-    common.tell(fleet_document(found, SUMMARY, basis), (out / TABLE, out / SUMMARY, page), json)
+    common.tell(fleet_document(found, basis), (out / TABLE, out / SUMMARY, out / FLEET), json)
     if json != STDOUT:
         common.say(f"{found.evaluated} evaluated now")
     if not found.summary.counts["done"]:

@@ -182,18 +182,18 @@ def change_point(values: Array, errors: Array) -> ChangePoint | None:
     )
 
 
-def expected(values: Array, errors: Array, place: int) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Intervals of 95 % of the next recording, as those before a step and those after it have it - the quantity's unit.
+def expected(values: Array, errors: Array, *steps: int) -> list[tuple[float, float]]:
+    """Intervals of 95 % of the next recording, as those before, between and after steps have it - the quantity's unit.
 
-    Their scatter is the variance pooled about both means, or that of the recordings' own errors (n,).
+    Their scatter is the variance pooled about all means, or that of the recordings' own errors (n,), n > steps + 1.
     """
-    sides = np.split(values, [place])
-    pooled = sum(float(((side - side.mean()) ** 2).sum()) for side in sides) / (values.size - 2)
-    student = float(special.stdtrit(values.size - 2, 0.975))
+    sides = np.split(values, steps)
+    degrees = values.size - len(sides)
+    pooled = sum(float(((side - side.mean()) ** 2).sum()) for side in sides) / degrees
+    student = float(special.stdtrit(degrees, 0.975))
 
     def interval(side: Array, own: Array) -> tuple[float, float]:
         reach = student * max(pooled, float(np.mean(own**2))) ** 0.5
         return next_interval(float(side.mean()), reach, side.size)
 
-    before, after = zip(sides, np.split(errors, [place]), strict=True)
-    return interval(*before), interval(*after)
+    return [interval(side, own) for side, own in zip(sides, np.split(errors, steps), strict=True)]

@@ -65,7 +65,7 @@ class Job:
 
 
 def evaluate(job: Job) -> Plain:
-    """Row of one recording: `done`, or `refused` with the reason, and all that was found."""
+    """Row of one recording: `done`, or `missing` or `refused` with the reason, and all that was found."""
     with ExitStack() as stack:
         stack.enter_context(within(job.bounds))
         path, digest = Path(job.place), None
@@ -77,16 +77,17 @@ def evaluate(job: Job) -> Plain:
             axis = job.axis if job.axis in axes_of(recording.channels) else None
             found = _found(assemble(recording, job.rig.on_axis(axis).trace), job)
         except RefusedEstimateError as refusal:
-            found = {**_estimated(refusal.estimate), **refused(str(refusal))}
+            found = {**_estimated(refusal.estimate), **refused(refusal, str(refusal))}
         except BenchError as error:
             checks = error.checks if isinstance(error, UnanswerableError) else ()
-            found = {"checks": _checks(checks), **refused(str(error).replace(str(path), CALLED))}
+            found = {"checks": _checks(checks), **refused(error, str(error).replace(str(path), CALLED))}
         return {**_known(found), "trace_sha256": digest}
 
 
-def refused(reason: str) -> Plain:
-    """Of a recording that cannot answer, or cannot be read."""
-    return {"status": "refused", "reason": reason}
+def refused(error: BenchError, reason: str) -> Plain:
+    """Of a recording that is not there, cannot be read, or cannot answer."""
+    status = "missing" if isinstance(error.__cause__, FileNotFoundError) else "refused"
+    return {"status": status, "reason": reason}
 
 
 def _found(trace: Trace, job: Job) -> Plain:
@@ -242,7 +243,7 @@ def _rig(named: str, _: Sequence[str]) -> tuple[Rig, str] | Plain:
     try:
         return load_rig(named).model_copy(update={"source": "rig"}), sha256(Path(named))
     except InputError as error:
-        return refused(str(InputError(error.where.replace(named, "rig"), error.found, error.allowed)))
+        return refused(error, str(InputError(error.where.replace(named, "rig"), error.found, error.allowed)))
 
 
 def _marked(place: str, storages: Sequence[str]) -> str | Plain:
@@ -250,7 +251,7 @@ def _marked(place: str, storages: Sequence[str]) -> str | Plain:
     try:
         return marked(place, storages) if "://" in place else sha256(Path(place))
     except InputError as error:
-        return refused(str(error).replace(place, CALLED))
+        return refused(error, str(error).replace(place, CALLED))
 
 
 def _planned(

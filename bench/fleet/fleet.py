@@ -23,7 +23,7 @@ from bench.jobs.process import Failure, Limits
 UNLUCKY = ("failed", "timed_out")
 #: Of a recording whose result was in the store before, and no longer is.
 LOST = {"status": "failed", "reason": "its result was removed from the folder, or changed, while the fleet ran"}
-TABLE = "fleet.parquet"
+TABLE, RESULTS = "fleet.parquet", "results"
 #: Share of the progress until it is known what is missing.
 PLANNING = 0.05
 NUMBER, TEXT, TEXTS = pa.float64(), pa.string(), pa.list_(pa.string())
@@ -34,9 +34,14 @@ OF_GAP = {"": "after", "_before": "before", "_noise_floor": "noise_floor", "_uni
 
 @dataclass(frozen=True)
 class Fleet:
-    """What was found of a fleet; `evaluated` is how many were evaluated now, the others' results were there."""
+    """What was found of a fleet; `evaluated` is how many were evaluated now, the others' results were there.
+
+    Recordings as planned and their results are those of the manifest's rows (n,).
+    """
 
     manifest: Manifest
+    planned: Sequence[PlannedRecording]
+    results: Sequence[Plain]
     summary: Summary
     evaluated: int
 
@@ -73,7 +78,7 @@ def fleet(
     with keeping(manifest.inputs), held(out):
         require_writable(out / TABLE)
         planned = plan(manifest, diagnose, storages, limits, workers, lambda share: progress(PLANNING * share))
-        store = Store(out / "results")
+        store = Store(out / RESULTS)
         missing = _missing(store, planned, retry)
         keys = list(missing)
         for count, (place, result) in enumerate(each(evaluate, missing.values(), limits, workers, scheduler), 1):
@@ -81,7 +86,7 @@ def fleet(
             progress(PLANNING + (1.0 - PLANNING) * count / len(keys))
         results = [one.refusal or store.get(one.key) or dict(LOST) for one in planned]
         write_table(out / TABLE, tabulate(manifest, planned, results))
-        found = Fleet(manifest, summarise(manifest, planned, results), len(keys))
+        found = Fleet(manifest, planned, results, summarise(manifest, planned, results), len(keys))
         finish(found)
     return found
 

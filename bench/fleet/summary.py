@@ -6,9 +6,10 @@ An axis changed where what its recordings tell of inertia or friction steps (`be
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
+from typing import Any
 
 import numpy as np
 
@@ -27,9 +28,9 @@ VAGUE = 5.0
 COMPARED = (INERTIA, VISCOUS, COULOMB, OFFSET)
 #: Share of the effort's variance below which the model of an axis misses too much to be believed unseen.
 EXPLAINED = 0.9
-STATUSES = ("done", "refused", "failed", "timed_out")
+STATUSES = ("done", "missing", "refused", "failed", "timed_out")
 #: Why a person should look, from gravest to least.
-KINDS = ("failed", "timed_out", "refused", "unexplained", "checks")
+KINDS = ("failed", "timed_out", "missing", "refused", "unexplained", "checks")
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,11 @@ class Changed:
     chance: float
 
     @property
+    def axis(self) -> str:
+        """Whose it is."""
+        return self.history.axis
+
+    @property
     def counts(self) -> tuple[int, int]:
         """Recordings before and after."""
         return self.step.place, len(self.history.rows) - self.step.place
@@ -95,12 +101,25 @@ class Concern:
 
 
 @dataclass(frozen=True)
+class AxisSummary:
+    """The part of a summary that is of one axis, each as `Summary` has it."""
+
+    name: str
+    rows: Sequence[int]
+    histories: Sequence[History]
+    changed: Sequence[Changed]
+    shown: Sequence[ShownEffect]
+    concerns: Sequence[Concern]
+
+
+@dataclass(frozen=True)
 class Summary:
     """Of a fleet.
 
     Attributes:
+        rows: of the manifest, by axis, in the order of time; those without a time come last.
+        histories: what they tell of each quantity.
         counts: recordings of each status.
-        axes: how many there are.
         compared: series of a quantity over the recordings of an axis in which a change could be sought.
         changed: surest first.
         shown: effects, those shown by most recordings of their axis first.
@@ -108,11 +127,31 @@ class Summary:
     """
 
     counts: Mapping[str, int]
-    axes: int
+    rows: Mapping[str, Sequence[int]]
+    histories: Sequence[History]
     compared: int
     changed: tuple[Changed, ...]
     shown: tuple[ShownEffect, ...]
     concerns: tuple[Concern, ...]
+
+    @property
+    def axes(self) -> int:
+        """How many there are."""
+        return len(self.rows)
+
+    def by_need(self) -> list[AxisSummary]:
+        """Each axis: what changed comes first, the surest foremost, then the gravest concern, then all others."""
+        parts = [_by_axis(each) for each in (self.histories, self.changed, self.shown, self.concerns)]
+        order = dict.fromkeys((*parts[1], *parts[3], *self.rows))
+        return [AxisSummary(axis, self.rows[axis], *(part.get(axis, ()) for part in parts)) for axis in order]
+
+
+def _by_axis(found: Iterable[Any]) -> dict[str, list[Any]]:
+    """Parts of a summary by the axis that each is of."""
+    groups: dict[str, list[Any]] = {}
+    for one in found:
+        groups.setdefault(one.axis, []).append(one)
+    return groups
 
 
 def summarise(manifest: Manifest, planned: Sequence[PlannedRecording], results: Sequence[Plain]) -> Summary:
@@ -122,13 +161,15 @@ def summarise(manifest: Manifest, planned: Sequence[PlannedRecording], results: 
     axes, files, times = (manifest.text(column) for column in ("axis", "file", "time"))
     for row in order:
         rows.setdefault(axes[row], []).append(row)
-    compared, changed = _changes(manifest, planned, results, order)
+    histories = tuple(_histories(manifest, planned, results, order))
+    compared, changed = _changes(manifest, histories)
     shown = [one for axis, own in rows.items() for one in _shown(axis, times, results, own)]
     concerns = [one for axis, own in rows.items() for one in _concerns(axis, files, results, own)]
     counts = Counter(found["status"] for found in results)
     return Summary(
         counts={status: counts[status] for status in STATUSES},
-        axes=len(rows),
+        rows=rows,
+        histories=histories,
         compared=compared,
         changed=changed,
         shown=tuple(sorted(shown, key=lambda one: (-one.recordings / one.of, one.axis, one.name))),
@@ -136,11 +177,8 @@ def summarise(manifest: Manifest, planned: Sequence[PlannedRecording], results: 
     )
 
 
-def _changes(
-    manifest: Manifest, planned: Sequence[PlannedRecording], results: Sequence[Plain], order: Sequence[int]
-) -> tuple[int, tuple[Changed, ...]]:
+def _changes(manifest: Manifest, histories: Sequence[History]) -> tuple[int, tuple[Changed, ...]]:
     """How many histories could be compared, and the steps that stand out of all of them together, surest first."""
-    histories = _histories(manifest, planned, results, order)
     steps = [(one, found) for one in histories if (found := change_point(one.values, one.errors)) is not None]
     files, times = manifest.text("file"), manifest.text("time")
     chances = holm(np.array([step.chance for _, step in steps])).tolist()

@@ -38,6 +38,8 @@ class Part(BaseModel):
 
 #: Largest number that a drawing has a place for; of a logarithmic one the smallest is its inverse.
 LARGEST = 1e100
+#: A file near the page, by its path from there: it leads to no other machine.
+Address = Annotated[str, Field(pattern=r"^(\.\./)*([A-Za-z0-9_][A-Za-z0-9_.-]*/)*([A-Za-z0-9_][A-Za-z0-9_.-]*)?$")]
 
 
 def _require(right: bool, allowed: str) -> None:
@@ -75,29 +77,6 @@ class Heading(Part):
     prose: bool = False
 
 
-class Table(Part):
-    """A table: the first cell of a row names it; `marked` are numbers of rows to be noticed."""
-
-    kind: Literal["table"] = "table"
-    caption: str
-    columns: tuple[Heading, ...]
-    rows: tuple[tuple[str, ...], ...]
-    marked: tuple[int, ...] = ()
-
-    @model_validator(mode="after")
-    def _is_whole(self) -> Table:
-        _require(all(len(row) == len(self.columns) for row in self.rows), "a cell for each column in every row")
-        return self
-
-
-def table(caption: str, headings: Sequence[str], rows: Iterable[Iterable[str]], marked: Iterable[int] = ()) -> Table:
-    """A table; `>` behind a heading sets its cells to the right, as numbers are, `~` gives sentences room."""
-    columns = tuple(
-        Heading(heading=one[:-1], **SET[one[-1]]) if one[-1:] in SET else Heading(heading=one) for one in headings
-    )
-    return Table(caption=caption, columns=columns, rows=tuple(map(tuple, rows)), marked=tuple(marked))
-
-
 class Series(Part):
     """What is drawn into a chart, under its name in the legend, in the colour of what it stands for.
 
@@ -128,6 +107,41 @@ def series(
     found = {key: tuple(map(float, values)) for key, values in (("x", x), ("y", y)) if values is not None}
     low, high = ((), ()) if bounds is None else (tuple(map(float, bound)) for bound in bounds)
     return Series(name=name, style=style, colour=colour, low=low, high=high, **found)
+
+
+class Table(Part):
+    """A table: the first cell of a row names it.
+
+    Attributes:
+        marked: numbers of rows to be noticed.
+        links: where the names of rows lead to, a page each, "" for none; () without.
+        sketches: what is drawn small into the second cell of each row, without axes; () without.
+        sought: whether a reader can seek rows by words.
+    """
+
+    kind: Literal["table"] = "table"
+    caption: str
+    columns: tuple[Heading, ...]
+    rows: tuple[tuple[str, ...], ...]
+    marked: tuple[int, ...] = ()
+    links: tuple[Address, ...] = ()
+    sketches: tuple[tuple[Series, ...], ...] = ()
+    sought: bool = False
+
+    @model_validator(mode="after")
+    def _is_whole(self) -> Table:
+        _require(all(len(row) == len(self.columns) for row in self.rows), "a cell for each column in every row")
+        beside = {len(each) for each in (self.links, self.sketches) if each}
+        _require(beside <= {len(self.rows)}, "a link and a sketch for every row, or for none")
+        return self
+
+
+def table(caption: str, headings: Sequence[str], rows: Iterable[Iterable[str]], marked: Iterable[int] = ()) -> Table:
+    """A table; `>` behind a heading sets its cells to the right, as numbers are, `~` gives sentences room."""
+    columns = tuple(
+        Heading(heading=one[:-1], **SET[one[-1]]) if one[-1:] in SET else Heading(heading=one) for one in headings
+    )
+    return Table(caption=caption, columns=columns, rows=tuple(map(tuple, rows)), marked=tuple(marked))
 
 
 class Panel(Part):
@@ -325,9 +339,9 @@ class Downloads(Part):
 
 
 class Neighbour(Part):
-    """A file in the folder of the page, or in one below it, by its name; `about`: what it is."""
+    """A file near the page, by its path from there; `about`: what it is."""
 
-    name: str = Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]*(/[A-Za-z0-9_][A-Za-z0-9_.-]*)?$")
+    name: Address
     about: str
 
 

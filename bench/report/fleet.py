@@ -1,4 +1,4 @@
-"""A fleet: who needs a person first and why, what changed since when, and how the recordings went.
+"""A fleet: every axis by how much it needs a person and why, what changed since when, and how the recordings went.
 
 As the contract's JSON (`bench.fleet/1`), which has all, and as a document, which stays small however large a fleet is.
 """
@@ -6,30 +6,42 @@ As the contract's JSON (`bench.fleet/1`), which has all, and as a document, whic
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from bench.arrays import NORMAL95, Array
-from bench.comparison.spread import expected
-from bench.fleet.fleet import TABLE, Fleet
-from bench.fleet.summary import ALARM, STATUSES, Changed, Summary
+from bench.axis_kind import COULOMB, INERTIA, KINDS, VISCOUS
+from bench.files import write_text
+from bench.fleet.evaluate import Store
+from bench.fleet.fleet import RESULTS, TABLE, Fleet
+from bench.fleet.summary import ALARM, STATUSES, AxisSummary, Changed, History, Summary
 from bench.names import short, words
 from bench.report import document as doc
-from bench.report.numbers import SPACE, number, sentence, share, unit_text
+from bench.report.fleet_axis import FLEET, NAME, TOLD, FleetPages, by_how_much, drawn_values
+from bench.report.numbers import brief, chance, number, sentence
+from bench.report.publish import write_html
 from bench.report.serial import as_json, picked, serialised
 
 SCHEMA = "bench.fleet/1"
-#: Rows of a table, charts, and recordings in one of them: a page of a large fleet stays small, the table has all.
-ROWS, CHARTS, DOTS = 100, 12, 200
-#: Characters of a name, and of a reason.
-NAME, REASON = 80, 200
-#: Seconds of the units that times are told in, the largest first.
-CLOCK = {"d": 86400.0, "h": 3600.0, "min": 60.0, "s": 1.0}
-#: Of these units there are at least so many from the first recording to the last.
-SEVERAL = 3.0
+#: Rows of a table, axes and charts: a page of a large fleet stays small, the table has all.
+ROWS, AXES, CHARTS = 100, 1000, 12
+#: Recordings in a sketch, the latest.
+SKETCHED = 40
+#: Characters of a reason.
+REASON = 200
+SUMMARY = "summary.json"
+#: Quantities in a row of many.
+BRIEFLY = {
+    kind.parameter(term): name
+    for kind in KINDS
+    for term, name in (
+        (INERTIA, kind.inertia.split("_")[-1]),
+        (VISCOUS, "viscous friction"),
+        (COULOMB, "Coulomb friction"),
+    )
+}
 MEANT = {
     "done": "evaluated",
+    "missing": "no such file; evaluated by the next run that finds it",
     "refused": "cannot be read, or cannot answer; the column reason says what to record instead",
     "failed": "raised what nobody foresaw, or its process was ended; --retry does it again",
     "timed_out": "no result within the deadline; --retry does it again",
@@ -69,14 +81,39 @@ def _(one: Changed) -> dict[str, Any]:
     }
 
 
-def fleet_document(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any]) -> doc.Document:
+def write_fleet(folder: Path, fleet: Fleet, provenance: Mapping[str, Any]) -> None:
+    """Write summary and pages of a fleet: its own, one of each axis that it shows, and one beside each result.
+
+    Raises:
+        InputError: the folder cannot be written to.
+    """
+    write_text(folder / SUMMARY, fleet_json(fleet, provenance) + "\n")
+    write_html(folder / FLEET, fleet_document(fleet, provenance))
+    pages, store, manifest = FleetPages(fleet, provenance), Store(folder / RESULTS), fleet.manifest.path
+    for axis in fleet.summary.by_need()[:AXES]:
+        results = {row: store.path(key) for row in axis.rows if (key := fleet.planned[row].key)}
+        page = folder / pages.axis_place(axis.name)
+        if _older(page, manifest, *results.values()):
+            write_html(page, pages.axis(axis), lasting=False)
+        for row, result in results.items():
+            if _older(page := folder / pages.recording_place(row), manifest, result):
+                write_html(page, pages.recording(row), lasting=False)
+
+
+def _older(page: Path, *files: Path) -> bool:
+    """Whether a page is not there, not whole, or of a time before the files that it is made from."""
+    state = page.stat() if page.exists() else None
+    return state is None or not state.st_size or state.st_mtime < max(file.stat().st_mtime for file in files)
+
+
+def fleet_document(fleet: Fleet, provenance: Mapping[str, Any]) -> doc.Document:
     """The document of a fleet; the same for the same results, however many were evaluated now.
 
     Args:
         fleet: what was found.
-        summary_file: name of the file beside the page that holds all of the summary.
         provenance: of it: version, manifest_sha256 and options.
     """
+    pages = FleetPages(fleet, provenance)
     summary, name = fleet.summary, short(fleet.manifest.path.name, NAME)
     rows = [
         (short(one.axis, NAME), words(one.name), f"{one.recordings} of {one.of}", one.since) for one in summary.shown
@@ -85,7 +122,7 @@ def fleet_document(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any
     effects = _first(caption, ("axis", "effect", "recordings>", "first"), rows)
     shown = (doc.section("effects", "Effects that axes show", effects),)
     rows_of = "a row for each recording: parameters, errors, verdict, reason, provenance"
-    files = {TABLE: rows_of, summary_file: "all that this page says, without a bound on its length"}
+    files = {TABLE: rows_of, SUMMARY: "all that this page says, without a bound on its length"}
     options = ", ".join(key for key, value in provenance["options"].items() if value) or "none"
     return doc.Document(
         title=f"{name}: fleet",
@@ -94,8 +131,9 @@ def fleet_document(fleet: Fleet, summary_file: str, provenance: Mapping[str, Any
         tone="refused" if summary.changed else "open" if summary.concerns or not summary.compared else "sure",
         answers=_answers(fleet),
         sections=(
+            doc.section("axes", "All axes", _dashboard(pages), detail=True),
             doc.section("people", "Who needs a person first", _people(summary)),
-            doc.section("changes", "What changed", *_changes(fleet)),
+            doc.section("changes", "What changed", *_changes(pages)),
             *(shown if summary.shown else ()),
             doc.section("recordings", "Recordings", _statuses(summary), doc.neighbours(files)),
         ),
@@ -142,7 +180,7 @@ def _reasons(summary: Summary) -> dict[str, list[str]]:
     """By axis, why a person should look: what changed surely comes before what could not be told, gravest first."""
     reasons: dict[str, list[str]] = {}
     for one in summary.changed:
-        why = f"{words(one.history.quantity)} {_share(one)} since {one.since}"
+        why = f"{words(one.history.quantity)} {by_how_much(one)} since {one.since}"
         reasons.setdefault(one.history.axis, []).append(why)
     for one in summary.concerns:
         which = f"{one.recordings} of {one.of} recordings, the latest {short(one.file, NAME)}"
@@ -151,14 +189,48 @@ def _reasons(summary: Summary) -> dict[str, list[str]]:
     return reasons
 
 
-def _share(one: Changed) -> str:
-    """By how much a quantity changed, with the interval of 95 %."""
-    step = one.step
-    difference = step.after - step.before
-    if not step.before:
-        return f"{difference:+.3g}{SPACE}±{SPACE}{number(step.reach, one.history.unit, 2)}".replace("-", "−")
-    text = f"{100.0 * difference / abs(step.before):+.3g}{SPACE}±{SPACE}{share(step.reach / abs(step.before))}"
-    return text.replace("-", "−")
+def _dashboard(pages: FleetPages) -> doc.Table:
+    """A row for each axis: drawn over time, last change and how sure, why to look, latest values, effects."""
+    axes = pages.fleet.summary.by_need()
+    more = f"; the first {AXES} of {len(axes)}" if len(axes) > AXES else ""
+    axes = axes[:AXES]
+    rows, sketches = zip(*(_row(pages, axis) for axis in axes), strict=True)
+    headings = ("axis", "over time", "last change", "noted", "inertia>", "viscous>", "Coulomb>", "effects")
+    marked = (k for k, axis in enumerate(axes) if axis.changed)
+    caption = f"Those that need a person most come first{more}; values by the latest recording that has a result"
+    made = doc.table(caption, headings, rows, marked)
+    links = tuple(pages.axis_place(axis.name) for axis in axes)
+    return made.model_copy(update={"links": links, "sketches": sketches, "sought": True})
+
+
+def _row(pages: FleetPages, axis: AxisSummary) -> tuple[tuple[str, ...], tuple[doc.Series, ...]]:
+    """Of an axis, and what is drawn of it."""
+    done = next((row for row in reversed(axis.rows) if pages.fleet.results[row]["status"] == "done"), None)
+    values = () if done is None else pages.parameters(done)
+    changed = max(axis.changed, key=lambda one: pages.times[one.history.rows[one.step.place]], default=None)
+    history = max(axis.histories, key=lambda one: pages.times[one.rows[-1]], default=None)
+    last = "none" if axis.histories else "–"
+    if changed is not None:
+        history = changed.history
+        last = f"{by_how_much(changed)} since {changed.since}, by chance {chance(changed.chance)}"
+    noted = ("changed",) * bool(changed) + tuple(words(one.kind) for one in axis.concerns)
+    cells = (
+        short(axis.name, NAME),
+        "" if history is None else BRIEFLY.get(history.quantity, words(history.quantity)),
+        last,
+        ", ".join(noted) or "–",
+        *("–" if one is None else brief(one) for one in values or (None,) * len(TOLD)),
+        ", ".join(f"{words(one.name)} ({one.recordings} of {one.of})" for one in axis.shown) or "–",
+    )
+    return cells, () if history is None else _sketch(pages, history, changed)
+
+
+def _sketch(pages: FleetPages, history: History, changed: Changed | None) -> tuple[doc.Series, ...]:
+    """The latest values over time, the last of them a dot, over where the next one was to be expected."""
+    x = pages.times[list(history.rows)]
+    bands, x, values = drawn_values(x, history, slice(max(0, x.size - SKETCHED), x.size), changed)
+    line, dot = doc.series("", "line", "ink", x, values), doc.series("", "dots", "model", x[-1:], values[-1:])
+    return (*bands, line, dot)
 
 
 def _people(summary: Summary) -> doc.AnyPart:
@@ -170,11 +242,11 @@ def _people(summary: Summary) -> doc.AnyPart:
     return _first("Changed first, then by how grave it is", ("axis", "why~"), rows, marked)
 
 
-def _changes(fleet: Fleet) -> Iterator[doc.AnyPart]:
+def _changes(pages: FleetPages) -> Iterator[doc.AnyPart]:
     """The table of changes, and the first of them over time."""
-    changed = fleet.summary.changed
+    changed = pages.fleet.summary.changed
     if not changed:
-        yield doc.Paragraph(text=f"Nothing, in {fleet.summary.compared} series of a quantity over time.")
+        yield doc.Paragraph(text=f"Nothing, in {pages.fleet.summary.compared} series of a quantity over time.")
         return
     headings = ("axis", "quantity", "before>", "after>", "change (95 %)>", "since", "recordings before, after>")
     rows = [
@@ -183,7 +255,7 @@ def _changes(fleet: Fleet) -> Iterator[doc.AnyPart]:
             words(one.history.quantity),
             number(one.step.before),
             number(one.step.after, one.history.unit),
-            _share(one),
+            by_how_much(one),
             one.since,
             f"{one.counts[0]}, {one.counts[1]}",
         )
@@ -193,50 +265,7 @@ def _changes(fleet: Fleet) -> Iterator[doc.AnyPart]:
     if len(changed) > CHARTS:
         yield doc.Paragraph(text=f"The {CHARTS} surest over time:")
     for one in changed[:CHARTS]:
-        yield _over_time(one, fleet)
-
-
-def _over_time(one: Changed, fleet: Fleet) -> doc.Chart:
-    """A quantity over time, and where the next recording was to be expected before and after the change."""
-    step, history = one.step, one.history
-    near = slice(max(0, step.place - DOTS // 2), step.place + DOTS // 2)
-    times, label, unit = _clock(fleet, history.rows)
-    x, values, reach = times[near], history.values[near], NORMAL95 * history.errors[near]
-    until, later = np.array([x[0], times[step.place]]), np.array([times[step.place], x[-1]])
-    before, after = expected(history.values, history.errors, step.place)
-    drawn = (
-        _band("the next recording (95 %), as told before and after", np.array([x[0], x[-1]]), before),
-        _band("", later, after),
-        doc.series("mean", "line", "model", until, np.full(2, step.before)),
-        doc.series("", "line", "model", later, np.full(2, step.after)),
-        doc.series(
-            "recordings, each with its own interval", "dots", "ink", x, values, (values - reach, values + reach)
-        ),
-    )
-    count = len(history.rows)
-    nearest = "" if count <= x.size else f" Of {count} recordings the {x.size} nearest to it are drawn."
-    return doc.Chart(
-        title=f"{short(history.axis, NAME)}: {words(history.quantity)}.",
-        alternative=f"From {number(step.before)} to {number(step.after, history.unit)}, {_share(one)}, since "
-        f"{one.since} ({short(one.file, NAME)}).{nearest}",
-        y_label=words(history.quantity),
-        y_unit=unit_text(history.unit),
-        panels=(doc.Panel(x_label=label, x_unit=unit, series=drawn),),
-    )
-
-
-def _clock(fleet: Fleet, rows: Sequence[int]) -> tuple[Array, str, str]:
-    """Times of recordings, what they are called, and their unit: of moments, since the first of them."""
-    times = fleet.manifest.times[list(rows)]
-    if not fleet.manifest.dated:
-        return times, "time", ""
-    since = times - times[0]
-    unit = next((unit for unit, size in CLOCK.items() if since[-1] >= SEVERAL * size), "s")
-    return since / CLOCK[unit], f"time since {fleet.manifest.text('time')[rows[0]]}", unit
-
-
-def _band(name: str, x: Array, around: tuple[float, float]) -> doc.Series:
-    return doc.series(name, "band", "floor", x, bounds=(np.full(2, around[0]), np.full(2, around[1])))
+        yield pages.over_time(one.history, one)
 
 
 def _statuses(summary: Summary) -> doc.Table:

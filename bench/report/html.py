@@ -19,7 +19,7 @@ import numpy as np
 from markupsafe import Markup
 
 from bench.names import plain
-from bench.report.document import LARGEST, Chart, Document, File, Intervals, Moving, Panel, Series, TimeGraph
+from bench.report.document import LARGEST, Chart, Document, File, Intervals, Moving, Panel, Series, Table, TimeGraph
 
 if TYPE_CHECKING:  # 0.05 s, which only a page has to pay
     from jinja2 import Environment
@@ -33,8 +33,9 @@ def html(document: Document, script: str | None = None) -> str:
         script: address, as seen from the page, of the script file that it shares with others; inside of it without.
     """
     blocks = [block for section in document.sections for block in section.blocks]
-    lively = any(isinstance(block, TimeGraph | Moving) for block in blocks)
-    inside = program() if lively and script is None else None
+    moving = any(isinstance(block, TimeGraph | Moving) for block in blocks)
+    lively = moving or any(isinstance(block, Table) and block.sought for block in blocks)
+    inside = (program() if moving else _asset("assets", "seek.js")) if lively and script is None else None
     return (
         _environment()
         .get_template("page.html.j2")
@@ -50,7 +51,7 @@ def html(document: Document, script: str | None = None) -> str:
 
 def program() -> str:
     """uPlot and the page's own scripts, for inside of a page or for a file of its own."""
-    own = (_asset("assets", name) for name in ("page.js", "motion.js"))
+    own = (_asset("assets", name) for name in ("page.js", "motion.js", "seek.js"))
     return "\n".join((_asset("uplot", "uPlot.iife.min.js"), *own))
 
 
@@ -67,7 +68,7 @@ def _environment() -> Environment:
         loader=PackageLoader("bench.report", "page/templates"), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True, finalize=_shown,
     )  # fmt: skip
-    found.filters |= {"data": _data, "link": _link, "drawn": drawn, "laid": laid, "rail": rail}
+    found.filters |= {"data": _data, "link": _link, "drawn": drawn, "sketched": sketched, "laid": laid, "rail": rail}
     return found
 
 
@@ -101,6 +102,8 @@ def _policy(inside: str | None) -> str:
 #: Size of a panel, and of its margins left, right, top, bottom - units of the drawing; one panel alone is wider.
 WIDTH, ALONE, HEIGHT = 380.0, 760.0, 230.0
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 12.0, 12.0, 42.0
+#: Size of a sketch in a row, and what its largest dot takes of each side.
+SKETCH, DOT = (150.0, 30.0), 4.0
 #: Share of the span that is left free around the points.
 MARGIN = 0.04
 #: Width of a row of intervals, which the page stretches, and ends of the travel of a slide, which is 760 wide.
@@ -212,6 +215,14 @@ def _drawn(series: Series, across: Ruler, down: Ruler) -> Drawn:
         " ".join(f"{a},{b}" for a, b in around),
         list(zip(x, low, high, strict=True)) if series.style in DOTTED and low else [],
     )
+
+
+def sketched(parts: Sequence[Series]) -> list[Drawn]:
+    """A drawing without axes in the row of a table."""
+    (wide, high), x = SKETCH, [value for one in parts for value in one.x]
+    across = Ruler.around(x, DOT, wide - DOT)
+    down = Ruler.around((value for one in parts for value in (*one.y, *one.low, *one.high)), high - DOT, DOT)
+    return [_drawn(one, across, down) for one in parts]
 
 
 def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:

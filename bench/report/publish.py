@@ -49,14 +49,14 @@ def write_document(
     return written
 
 
-def write_html(path: Path, document: Document) -> None:
-    """Write the page of a document alone into a file that a person named.
+def write_html(path: Path, document: Document, lasting: bool = True) -> None:
+    """Write the page of a document alone into a file; `lasting`: whether it is on the disk before it takes its name.
 
     Raises:
         InputError: another ending than .html, or a place that cannot be written to.
     """
     _require_ending(path, ".html", ".htm")
-    write_text(path, html(document))
+    write_text(path, html(document), lasting)
 
 
 def _require_ending(path: Path, *endings: str) -> None:

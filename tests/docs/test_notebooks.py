@@ -26,6 +26,15 @@ assert abs(level / 0.085 - 1.0) < 0.03
 assert elbow.actuator("elbow cogging_torque 0") is not None
 assert np.std(identified[2000:]) > 5.0 * np.std(as_written[2000:])
 """,
+    "fleet": """
+changed = {one.axis: one for one in found.summary.changed}
+assert set(changed) == set(truth)
+assert [changed[axis].since[:10] for axis in truth] == ["2026-03-07", "2026-03-09"]
+for axis, factor in (("press 03", 1.25), ("press 08", 1.04)):
+    step = changed[axis].step
+    assert abs(step.after - factor * step.before) < step.reach
+assert [(one.axis, one.kind) for one in found.summary.concerns] == [("press 10", "missing"), ("press 05", "refused")]
+""",
 }
 
 

@@ -20,7 +20,7 @@ from bench.trace.write import write
 from tests.command import bench
 from tests.diagnosis.command import RIG
 from tests.fit.motions import NAMES, Truth, recording
-from tests.fleet.made import DAMAGES, fleet_of
+from tests.fleet.made import DAMAGES, fleet_of, missing
 from tests.fleet.storage import Deadly, Never, offer
 
 STORAGES = ("never", "deadly")
@@ -79,8 +79,9 @@ def test_every_recording_has_a_row_in_the_manifests_order(made, found):
     assert [row["file"] for row in rows] == named
     statuses = {row["file"]: row["status"] for row in rows[:-4]}
     assert {statuses[name] for name in named[:16]} == {"done"}
-    assert {statuses[f"{damage.__name__}.csv.gz"] for damage in DAMAGES} == {"refused"}
-    assert [row["status"] for row in rows[-4:]] == ["refused", "timed_out", "failed", "done"]
+    for damage in DAMAGES:
+        assert statuses[f"{damage.__name__}.csv.gz"] == ("missing" if damage is missing else "refused")
+    assert [row["status"] for row in rows[-4:]] == ["missing", "timed_out", "failed", "done"]
     assert all((row["reason"] is None) == (row["status"] == "done") for row in rows)
 
 
@@ -170,8 +171,9 @@ def test_who_needs_a_person_is_reported_gravest_first(found):
     assert told == [
         ("press 2", "failed", 1, 4),
         ("press 2", "timed_out", 1, 4),
-        ("press 0", "refused", 7, 15),
-        ("press 2", "refused", 1, 4),
+        ("press 0", "missing", 1, 15),
+        ("press 2", "missing", 1, 4),
+        ("press 0", "refused", 6, 15),
     ]
 
 
@@ -181,12 +183,12 @@ def test_the_command_prints_and_writes_what_it_found(made, found):
         "fleet", made, "--out", out, "--workers", 1, *(word for one in STORAGES for word in ("--storage", one))
     )
     assert status == 0
-    for told in ("27 recordings of 3 axes", "17 done, 8 refused, 1 failed, 1 timed out", "0 evaluated now"):
+    for told in ("27 recordings of 3 axes", "17 done, 2 missing, 6 refused, 1 failed, 1 timed out", "0 evaluated now"):
         assert told in printed
     assert "press 1" in printed
     summary = json.loads((out / "summary.json").read_text())
     assert summary["schema"] == "bench.fleet/1"
-    assert summary["recordings"] == {"total": 27, "done": 17, "refused": 8, "failed": 1, "timed_out": 1}
+    assert summary["recordings"] == {"total": 27, "done": 17, "missing": 2, "refused": 6, "failed": 1, "timed_out": 1}
     assert [one["quantity"] for one in summary["changed"]] == ["coulomb_friction_torque"]
     assert summary["attention"][1]["reason"] == "no result within 12 s"
     page = (out / "fleet.html").read_text(encoding="utf-8")

@@ -32,7 +32,8 @@ def looked_over(values, times=None, rigs=None, errors=None, results=None):
 
 
 def found(value, error, **more):
-    parameter = {"value": float(value), "unit": "kg*m**2", "std_error": float(error)}
+    around = [float(value - 1.96 * error), float(value + 1.96 * error)]
+    parameter = {"value": float(value), "unit": "kg*m**2", "std_error": float(error), "ci95": around}
     told = {"status": "done", "reason": None, "parameters": {NAMES[0]: parameter}, "explained": 0.99, "checks": []}
     return told | more
 

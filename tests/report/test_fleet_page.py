@@ -1,5 +1,8 @@
 """The page of a fleet: who needs a person first, what changed with its prediction band, and small."""
 
+import dataclasses
+import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -7,18 +10,28 @@ import pyarrow as pa
 import pytest
 
 from bench.comparison.spread import expected
-from bench.fleet.evaluate import PlannedRecording
+from bench.fleet.evaluate import PlannedRecording, Store
 from bench.fleet.fleet import Fleet
 from bench.fleet.manifest import Manifest
 from bench.fleet.summary import summarise
 from bench.report.document import Chart, Table
-from bench.report.fleet import CHARTS, DOTS, ROWS, fleet_document
+from bench.report.fleet import AXES, CHARTS, ROWS, SKETCHED, fleet_document, write_fleet
+from bench.report.fleet_axis import DOTS
 from bench.report.html import html
+from bench.report.publish import write_html
 from tests.fleet.test_summary import JOB, found
 from tests.report.test_page import HOSTILE
 
 BASIS = {"version": "0.1.0", "manifest_sha256": "abc", "options": {"diagnose": False}}
 DAY = np.timedelta64(1, "D")
+MISSING = {"status": "missing", "reason": "recording: no such file; give the path of a file"}
+SEEK = """async (words) => { // how long until a frame shows what is sought - ms
+  const input = document.querySelector(".seek input"), from = performance.now();
+  input.value = words;
+  input.dispatchEvent(new Event("input"));
+  await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+  return performance.now() - from;
+}"""
 
 
 def fleet_of(values, results=None, name="axis {}", dated=True, evaluated=0):
@@ -33,9 +46,9 @@ def fleet_of(values, results=None, name="axis {}", dated=True, evaluated=0):
         "time": days if dated else np.tile(np.arange(each, dtype=float), count),
     }
     manifest = Manifest(Path("fleet.csv"), pa.table(columns))
-    planned = [PlannedRecording(str(row), JOB, None, {"rig_sha256": "same"}) for row in rows]
+    planned = [PlannedRecording(f"{row:064x}", JOB, None, {"rig_sha256": "same"}) for row in rows]
     told = [(results or {}).get(row, found(value, 1e-3)) for row, value in enumerate(values.ravel())]
-    return Fleet(manifest, summarise(manifest, planned, told), evaluated)
+    return Fleet(manifest, planned, told, summarise(manifest, planned, told), evaluated)
 
 
 def stepped(count, each, changed, step=0.3):
@@ -45,7 +58,19 @@ def stepped(count, each, changed, step=0.3):
 
 
 def page_of(fleet):
-    return fleet_document(fleet, "summary.json", BASIS)
+    return fleet_document(fleet, BASIS)
+
+
+def write_pages(fleet, folder, results=True):
+    """All pages of a fleet, and a manifest and results as old as they are."""
+    fleet = dataclasses.replace(fleet, manifest=dataclasses.replace(fleet.manifest, path=folder / "fleet.csv"))
+    if results:
+        fleet.manifest.path.write_text("")
+        for one in fleet.planned:
+            path = Store(folder / "results").path(one.key)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text("{}")
+    write_fleet(folder, fleet, BASIS)
 
 
 def blocks(page, kind):
@@ -60,7 +85,7 @@ def test_who_needs_a_person_first_comes_first_with_the_reason():
     page = page_of(fleet_of(stepped(6, 10, [4]), {3: refused("too short")}))
     assert page.verdict == "1 of 6 axes changed; 1 more needs a person for another reason."
     assert page.tone == "refused"
-    people = blocks(page, Table)[0]
+    people = blocks(page, Table)[1]
     assert [row[0] for row in people.rows] == ["axis 4", "axis 0"]
     assert people.marked == (0,)
     assert "since 2026-03-07" in people.rows[0][1]
@@ -121,7 +146,7 @@ def test_the_band_is_never_narrower_than_the_recordings_own_errors():
 def test_names_are_text():
     page = page_of(fleet_of(stepped(2, 10, [1]), {0: refused(HOSTILE)}, name=HOSTILE.replace("{", "(") + " {}"))
     made = html(page)
-    assert "<script" not in made
+    assert made.count("<script") == 1  # what seeks in rows
     assert "&lt;script&gt;alert(1)" in made
 
 
@@ -130,7 +155,9 @@ def test_a_large_fleet_is_a_small_page_that_says_what_it_leaves_out():
     long = {row: refused("x" * 5000) for row in range(0, 12000, 12)}
     page = page_of(fleet_of(values, long, name="a" * 500 + "{}"))
     assert len(blocks(page, Chart)) == CHARTS
-    assert all(len(table.rows) <= ROWS for table in blocks(page, Table))
+    dashboard, *tables = blocks(page, Table)
+    assert len(dashboard.rows) == AXES == 1000
+    assert all(len(table.rows) <= ROWS for table in tables)
     assert "the first 100 of 300" in "".join(table.caption for table in blocks(page, Table))
     assert len(html(page).encode()) < 1e6
 
@@ -148,6 +175,70 @@ def test_of_an_axis_recorded_a_thousand_times_those_around_the_change_are_drawn(
 def test_the_page_is_the_same_however_many_were_evaluated_now():
     values = stepped(3, 10, [1])
     assert html(page_of(fleet_of(values))) == html(page_of(fleet_of(values, evaluated=30)))
+
+
+def test_every_axis_has_a_row_by_how_much_it_needs_a_person():
+    (dashboard, *_) = blocks(page_of(fleet_of(stepped(6, 10, [4]), {3: refused("too short"), 59: MISSING})), Table)
+    assert [row[0] for row in dashboard.rows] == [f"axis {k}" for k in (4, 5, 0, 1, 2, 3)]
+    told = {row[0]: row[1:5] for row in dashboard.rows}
+    assert told["axis 4"][:2] == ("inertia", dashboard.rows[0][2])
+    assert re.fullmatch(r"\+\d+\s±\s\S+\s% since 2026-03-07 06:00:00, by chance < 0.1\s%", told["axis 4"][1])
+    assert [told[f"axis {k}"][1:3] for k in (5, 0, 1)] == [("none", "missing"), ("none", "refused"), ("none", "–")]
+    assert told["axis 1"][3] == "0.997\xa0kg·m²\xa0±\xa00.2\xa0%"
+
+
+def test_a_sketch_has_the_band_that_the_next_recording_is_expected_in():
+    values = stepped(2, 60, [1])
+    changed, calm = blocks(page_of(fleet_of(values)), Table)[0].sketches
+    band, line, dot = calm
+    assert (band.low[0], band.high[0]) == pytest.approx(expected(values[0], np.full(60, 1e-3))[0])
+    assert line.y == pytest.approx(values[0, -SKETCHED:])
+    assert dot.y == pytest.approx([values[0, -1]])
+    assert [band.low[0] < changed[2].y[0] < band.high[0] for band in changed[:2]] == [True, False]
+    assert [band.low[0] < changed[2].y[-1] < band.high[0] for band in changed[:2]] == [False, True]
+    late = stepped(1, 100, [0])[:, ::-1]  # a step before what is in sight
+    (sketch,) = blocks(page_of(fleet_of(late)), Table)[0].sketches
+    assert [one.style for one in sketch] == ["band", "line", "dots"]
+    assert (sketch[0].low[0], sketch[0].high[0]) == pytest.approx(expected(late[0], np.full(100, 1e-3), 50)[1])
+
+
+def test_each_axis_and_each_recording_has_its_page(tmp_path, opened):
+    fleet = fleet_of(stepped(2, 10, [1]), {3: refused("too short"), 4: MISSING})
+    write_pages(fleet, tmp_path)
+    page = opened(tmp_path / "fleet.html")
+    page.click("tbody a:text-is('axis 1')")
+    assert page.locator("h1").inner_text().startswith("Moment of inertia +")
+    page.click("tbody tr:last-child a")
+    assert page.locator("h1").inner_text() == "Inertia and friction are known and explain 99\xa0% of the effort."
+    page.click("a:text-is('../../fleet.html')")
+    page.click("tbody a:text-is('axis 0')")
+    assert page.locator("tr.marked").count() == 2
+    page.locator("tr.marked a").first.click()
+    assert page.locator("h1").inner_text() == "Missing: no result."
+    assert "no such file" in page.locator("main").inner_text()
+
+
+def test_pages_are_written_again_only_where_a_result_or_the_manifest_is_newer(tmp_path):
+    fleet = fleet_of(stepped(2, 3, []))
+    write_pages(fleet, tmp_path)
+    pages = sorted(tmp_path.rglob("*.html"))
+    assert len(pages) == 1 + 2 + 6
+    times = {path: path.stat().st_mtime_ns for path in pages}
+    os.utime(next((tmp_path / "results").rglob("*.json")), ns=(2 * max(times.values()),) * 2)
+    write_pages(fleet, tmp_path, results=False)
+    again = {path: path.stat().st_mtime_ns for path in pages}
+    assert {path.parent.name for path in pages if again[path] != times[path]} == {tmp_path.name, "axes", "00"}
+    assert sum(again[path] != times[path] for path in pages) == 3
+
+
+def test_rows_with_the_words_are_shown_of_a_thousand_axes(opened, tmp_path):
+    write_html(tmp_path / "fleet.html", page_of(fleet_of(stepped(1000, 12, [4, 700]))))
+    page = opened(tmp_path / "fleet.html")
+    took = min(page.evaluate(SEEK, words) for words in ("axis 5", "axis 9 none", "axis 70 changed"))
+    shown = page.locator("tbody tr:visible th").all_inner_texts()
+    assert shown[:1] == ["axis 700"]
+    assert page.locator(".seek output").inner_text() == "1 of 1000"
+    print(f"\n1000 axes: {took:.0f} ms from a key to the frame")
 
 
 def test_the_table_is_one_step_away():

@@ -35,7 +35,7 @@ def test_a_page_opens(opened, tmp_path, name, width, scheme):
     write_html(tmp_path / "page.html", PAGES[name]())
     page = opened(tmp_path / "page.html", width, color_scheme=scheme, bypass_csp=True)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
-    assert page.locator("script").count() == 0
+    assert page.locator("script").count() == (name == "fleet")  # what seeks in its rows
     assert "alert(1)" in page.locator("body").inner_text()
     violations = axe.Axe().run(page).response["violations"]
     assert [(one["id"], [node["html"] for node in one["nodes"]][:3]) for one in violations] == []
