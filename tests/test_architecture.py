@@ -24,6 +24,7 @@ LAYERS = (
     {"rig"},
     {"gate"},
     {"effects"},
+    {"packed"},
     {"plant"},
     {"fit"},
     {"friction_map"},

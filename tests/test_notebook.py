@@ -85,6 +85,8 @@ len(repr(found).splitlines()) <= 25 and "ogging torque" in repr(found)
 found.to_dict()["verdict"] == found.verdict
 set(found.to_frame()["of"]) == {"axis", "cogging_torque"}
 found.save("kept") is None and {p.name for p in Path("kept").iterdir()} >= {"report.html", "model.toml", "model.xml"}
+bench.Diagnosis.load("kept").to_dict() == found.to_dict()
+repr(bench.Diagnosis.load("kept")) == repr(found) and len(bench.Diagnosis.load("kept").plot().lines) > 0
 found.mjspec.compile().njnt == 1
 bench.replay(found, "run2.csv", "rig.toml").summary == bench.replay("kept/model.toml", "run2.csv", rig).summary
 len(repr(bench.replay(found, trace, rig))) < 300
@@ -110,6 +112,7 @@ REFUSED = {
     "bench.identify(5, rig)": r"found int; allowed: arrays by their names, or a data frame",
     "bench.identify(trace, 5)": r"rig: found 5; allowed: a Rig, a rig file",
     'bench.load_rig("emp")': r"no shipped rig, did you mean 'emps'",
+    'bench.Diagnosis.load("estimate")': r"estimate/diagnosis.npz: no such file",
     'bench.Estimate.load("estimate.json").plot()': r"plot\(\): found no recording beside the estimate",
     'bench.Estimate.load("kept/diagnosis.json")': r"kept/diagnosis.json: holds no estimate",
 }

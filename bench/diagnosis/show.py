@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -29,11 +30,15 @@ from bench.fit.fit import Fit
 from bench.fit.stored import Balance
 from bench.gate.check import Check
 from bench.names import nearest
+from bench.packed import unpack
 from bench.parameter import Parameter
 from bench.plant.measured_motion import measured_velocity
 from bench.plant.model_file import StoredModel, model_xml
 from bench.presented import Presented
 from bench.trace.noise import white_noise
+
+#: File of a saved diagnosis that holds all of it.
+PACKED = "diagnosis.npz"
 
 
 @dataclass(frozen=True)
@@ -166,6 +171,15 @@ class Diagnosis(Presented):
         if name not in found:
             raise KeyError(f"{name}: found none{nearest(name, [*found])}; allowed: {', '.join(found) or 'none'}")
         return found[name]
+
+    @classmethod
+    def load(cls, folder: str | Path) -> Diagnosis:
+        """The diagnosis of a folder that `save` wrote, with all that it draws.
+
+        Raises:
+            InputError: no such folder, or one of another version of the bench.
+        """
+        return unpack(Path(folder) / PACKED, cls)
 
     @property
     def mjspec(self) -> mujoco.MjSpec:

@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from bench.axis_kind import KINDS
 from bench.baseline.check import Checked
 from bench.diagnosis.diagnosis import Diagnosis
+from bench.diagnosis.show import PACKED
 from bench.errors import InputError
 from bench.files import write_text
 from bench.fit.estimate import Estimate
 from bench.names import words
+from bench.packed import pack
 from bench.parameter import Parameter
 from bench.report.check import check_document, check_json
 from bench.report.diagnosis import diagnosis_json, verdict_sentence, write_diagnosis
@@ -161,5 +163,6 @@ def save(result: object, path: Path) -> None:
     """A folder of a diagnosis, a file of anything else."""
     if isinstance(result, Diagnosis):
         write_diagnosis(path, result, path.name)
+        pack(path / PACKED, result)
     else:
         write_text(path, told(result).json + "\n")

@@ -17,7 +17,13 @@ from tests.docs.pages import PAGES, bench_commands
 from tests.export.two_links import MJCF, log, write_log
 
 #: Pages that are run here, and those of them that take longer.
-RUN_HERE = ("README.md", "docs/diagnose.md", "docs/effects.md", "docs/notebooks/first_model.md", "docs/notebooks/fleet.md")
+RUN_HERE = (
+    "README.md",
+    "docs/diagnose.md",
+    "docs/effects.md",
+    "docs/notebooks/first_model.md",
+    "docs/notebooks/fleet.md",
+)
 SLOW = ("docs/index.md", "docs/lab.md")
 RECORDINGS = ("recording.csv", "monday.csv", "tuesday.csv", "wednesday.csv", "run1.csv", "run2.csv")
 RIG = asset("data", "rigs", "sh30701p.toml")

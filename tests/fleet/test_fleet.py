@@ -171,8 +171,8 @@ def test_who_needs_a_person_is_reported_gravest_first(found):
     assert told == [
         ("press 2", "failed", 1, 4),
         ("press 2", "timed_out", 1, 4),
-        ("press 0", "missing", 1, 15),
         ("press 2", "missing", 1, 4),
+        ("press 0", "missing", 1, 15),
         ("press 0", "refused", 6, 15),
     ]
 
