@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,7 +16,16 @@ import typer
 
 import bench
 from bench.cli import common
-from bench.cli.common import STDOUT, AxisOption, JsonOption, OptionalRigOption, ReportOption
+from bench.cli.common import (
+    STDOUT,
+    AtOption,
+    AxisOption,
+    JointOption,
+    JsonOption,
+    MjcfOption,
+    OptionalRigOption,
+    ReportOption,
+)
 from bench.errors import InputError
 from bench.files import sha256, write_text
 from bench.names import in_a_row, readable
@@ -23,6 +33,7 @@ from bench.names import in_a_row, readable
 if TYPE_CHECKING:
     from bench.baseline.observe import Observed
     from bench.baseline.state import State
+    from bench.cli.common import Subject
 
 #: Exit status of each result.
 STATUS = {"same": 0, "changed": 3, "undecided": 1}
@@ -59,9 +70,12 @@ def check(
         float, typer.Option("--false-alarm-rate", help="Of all comparisons together.", min=1e-6, max=0.5)
     ] = 0.01,
     axis_name: AxisOption = None,
+    mjcf: MjcfOption = None,
+    joint: JointOption = None,
+    at: AtOption = None,
 ) -> None:
     """Has this axis, or this model of one, changed? Exit status 0: the same, 3: changed, 1: undecided."""
-    asked = Asked(traces or [], rig, simulated, axis_name)
+    asked = Asked(traces or [], rig, simulated, axis_name, mjcf, joint or [], at or [])
     _require_consistent(asked, update, without_names, any((junit, json, report)))
     if update:
         _update(asked, baseline, not without_names)
@@ -84,22 +98,31 @@ class Asked:
     rig: Path | None
     simulated: Path | None
     axis_name: str | None
+    mjcf: Path | None
+    joints: list[str]
+    at: list[str]
 
     def axis(self) -> bench.Rig | None:
         """The rig, if one is given."""
         return None if self.rig is None else bench.load_rig(self.rig).on_axis(self.axis_name)
 
-    def observed(self, axis: bench.Rig | None, names: bool) -> Observed:
+    @cached_property
+    def subject(self) -> Subject:
+        """What the recordings are of."""
+        return common.subject(self.rig, self.axis_name, self.mjcf, self.joints, self.at, self.traces[0])
+
+    def observed(self, names: bool) -> Observed:
         """What recordings tell now, with where it comes from."""
         from bench.baseline.observe import observe
         from bench.report.parts import provenance
         from bench.report.terminal import progress
 
-        assert axis is not None
-        assert self.rig is not None
+        of = self.subject
         with progress(f"checking {in_a_row(self.traces)}") as done:
-            observed = observe([bench.read(trace, axis.trace) for trace in self.traces], axis, names, done)
-        basis = provenance(self.rig, self.traces, {"names": names, "axis": self.axis_name})
+            observed = observe([of.read(trace) for trace in self.traces], of.rig, names, done)
+        options = {"names": names, "axis": self.axis_name}
+        options |= {"joint": self.joints[0], "at": self.at} if of.robot else {}
+        basis = provenance(self.rig, self.traces, options, None, self.mjcf)
         return replace(observed, state=replace(observed.state, provenance=basis))
 
     def checked(self, baseline: Path, rate: float) -> bench.Checked:
@@ -108,10 +131,9 @@ class Asked:
         from bench.baseline.state import read_baseline
 
         if self.simulated is None:
-            axis, before = self.axis(), read_baseline(baseline)
+            before = read_baseline(baseline)
             before.require_source("recordings", baseline)
-            assert axis is not None
-            return compare(before, self.observed(axis, before.names), Allowed.of(axis), rate)
+            return compare(before, self.observed(before.names), Allowed.of(self.subject.rig), rate)
         from bench.baseline.model import compare_models, is_model
 
         before = _of_model(baseline) if is_model(baseline) else read_baseline(baseline)
@@ -134,8 +156,11 @@ def _require_consistent(asked: Asked, update: bool, quick: bool, written: bool) 
         raise InputError("--simulated", "found with recordings", "allowed: a model, or recordings with their rig")
     if asked.simulated is None and not asked.traces:
         raise InputError("TRACE...", "found none", "allowed: recordings with --rig RIG, or --simulated MODEL")
-    if asked.simulated is None and asked.rig is None:
-        raise InputError("--rig", "missing", "give the rig file of the axis, or the name of a shipped rig")
+    if asked.simulated is not None and (asked.mjcf or asked.joints or asked.at):
+        raise InputError("--simulated", "found with --mjcf, --joint or --at", "allowed: with recordings")
+    if asked.simulated is None and asked.rig is None and asked.mjcf is None:
+        allowed = "give the rig file of the axis, or the name of a shipped rig; or --mjcf and --joint"
+        raise InputError("--rig", "missing", allowed)
     if quick and not (update and asked.traces):
         found = "found without --update TRACE..."
         raise InputError("--without-names", found, "allowed: when the baseline is made, which says so from then on")
@@ -151,7 +176,7 @@ def _update(asked: Asked, baseline: Path, names: bool) -> None:
     from bench.comparison.difference import ENOUGH
 
     simulated = asked.simulated
-    state = asked.observed(asked.axis(), names).state if simulated is None else _of_model(simulated)
+    state = asked.observed(names).state if simulated is None else _of_model(simulated)
     write_baseline(baseline, state)
     common.list_files([baseline])
     count = len(asked.traces)

@@ -76,7 +76,7 @@ DraftOption = Annotated[
 MjcfOption = Annotated[
     Path | None, typer.Option("--mjcf", help="MJCF of the robot whose other dynamics are known, gravity among them.")
 ]
-JointOption = Annotated[str | None, typer.Option("--joint", help="Joint of the MJCF that the log is of.")]
+JointOption = Annotated[list[str] | None, typer.Option("--joint", help="Joint of the MJCF that the log is of.")]
 AtOption = Annotated[
     list[str] | None,
     typer.Option("--at", help="NAME=ANGLE of a joint that stands and that the log does not hold. Repeatable."),
@@ -266,7 +266,7 @@ def subject(
     rig: Path | None,
     axis: str | None,
     mjcf: Path | None,
-    joint: str | None,
+    joints: Sequence[str] | None,
     at: Sequence[str] | None,
     trace: Path | None,
     draft: Path | None = None,
@@ -274,13 +274,14 @@ def subject(
     """The axis of a rig file, or of one drafted from a recording, or the joint of an MJCF with or without a rig.
 
     Args:
-        rig, axis, mjcf, joint, at: as the options of these names have them.
+        rig, axis, mjcf, joints, at: as the options of these names have them.
         trace: the first recording.
         draft: where a drafted rig is written.
 
     Raises:
         InputError: neither is given, options that do not go together, or a file that cannot be read.
     """
+    joint = one_joint(joints)
     if mjcf is None:
         if joint is not None or at:
             raise InputError("--joint" if joint is not None else "--at", "found without --mjcf", "allowed: with --mjcf")
@@ -302,6 +303,19 @@ def subject(
         return trace
 
     return Subject(within, read, robot=True)
+
+
+def one_joint(joints: Sequence[str] | None) -> str | None:
+    """The joint that a command for one is given; None without.
+
+    InputError where several are given, which `bench robot` takes.
+    """
+    named = [*dict.fromkeys(joints or [])]
+    if len(named) > 1:
+        every = " ".join(f"--joint {name}" for name in named)
+        allowed = f"allowed: one here; several together: bench robot LOG --mjcf ROBOT {every} --out DIR"
+        raise InputError("--joint", f"found {', '.join(named)}", allowed)
+    return named[0] if named else None
 
 
 def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.Rig:

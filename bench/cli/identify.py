@@ -67,7 +67,7 @@ def identify(
     axis = of.rig.model_copy(update={"offset": of.rig.offset or offset})
     _require_consistent(traces, estimator, refine, bool(offset or cutoff))
     options = {"estimator": estimator.value, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
-    options |= {"joint": joint, "at": at or []} if of.robot else {}
+    options |= {"joint": common.one_joint(joint), "at": at or []} if of.robot else {}
     try:
         with common.refusal_as_json(json, SCHEMA):
             estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, cutoff)
@@ -156,7 +156,7 @@ def diagnose(
     with common.refusal_as_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
         recordings = [read(trace) for trace in traces]
         found = bench.diagnose(recordings, axis, other, excluded, done)
-    options = {"without": sorted(excluded)} | ({"joint": joint, "at": at or []} if of.robot else {})
+    options = {"without": sorted(excluded)} | ({"joint": common.one_joint(joint), "at": at or []} if of.robot else {})
     basis = provenance(rig, traces, options, holdout, mjcf)
     title, files = f"{axis.name}: {names}", []
     with nullcontext() if out is None else held(out):

@@ -114,7 +114,9 @@ def export(
     model: ModelArgument,
     out: Annotated[Path, typer.Option("--out", help="File to write.")],
     mjcf: Annotated[Path | None, typer.Option("--mjcf", help="MJCF of the robot that has the joint.")] = None,
-    joint: Annotated[str | None, typer.Option("--joint", help="Joint that the model goes onto.")] = None,
+    joint: Annotated[
+        list[str] | None, typer.Option("--joint", help="Joint that the model goes onto; of several, repeatable.")
+    ] = None,
     to: Annotated[
         str, typer.Option("--to", help="Simulator it is for: mjcf, or without --mjcf mjlab, bam, isaaclab, newton.")
     ] = "mjcf",
@@ -135,7 +137,7 @@ def export(
     if [snippet, mjcf is not None, ranges is not None, to != "mjcf"].count(True) != 1:
         found = "found none or several of --mjcf, --snippet, --ranges, --to"
         raise InputError("bench export", found, "allowed: one of them")
-    models, lines = load_models(model, joint), []
+    models, lines = load_models(model, joint or ()), []
     if mjcf is None and to == "mjcf" and len(models) > 1:
         raise InputError(model, "found several joints", f"allowed: --joint with one of {', '.join(models)}")
     if ranges is not None:
@@ -155,7 +157,7 @@ def export(
 
 
 def _mjcf(
-    models: Mapping[str, StoredModel], out: Path, mjcf: Path | None, joint: str | None, armature: str | None
+    models: Mapping[str, StoredModel], out: Path, mjcf: Path | None, joint: list[str] | None, armature: str | None
 ) -> tuple[str, list[str]]:
     """Text of an MJCF with models of joints, and what went onto them."""
     from bench.export.mjcf import ArmatureShare, armature_of, joint_alone, robot_with
@@ -164,14 +166,14 @@ def _mjcf(
         name, lone = next(iter(models.items()))
         text, carried = joint_alone(lone, name)
         return text, list(carried.lines)
-    if joint is None and list(models) == [ALONE]:  # of a lone model, whose joint nobody has named
+    if not joint and list(models) == [ALONE]:  # of a lone model, whose joint nobody has named
         models = {"": models[ALONE]}
     shares = {share.value: share for share in ArmatureShare}
     if armature is not None and armature not in shares:
         raise InputError("--armature", f"found '{armature}'", f"allowed: {', '.join(shares)}")
     share = shares.get(armature or "")
-    text, several = robot_with(mjcf, {name: (one, armature_of(one, share)) for name, one in models.items()}, out)
-    return text, [line for each in several for line in each.lines]
+    text, lines = robot_with(mjcf, {name: (one, armature_of(one, share)) for name, one in models.items()}, out)
+    return text, list(lines)
 
 
 def compensate(

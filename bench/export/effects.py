@@ -65,7 +65,9 @@ class Effects:
             model = model.model
         if isinstance(model, StoredModel):
             model = {joint or AXIS: model}
-        self.models = dict(model) if isinstance(model, Mapping) else load_models(model, joint)
+        self.models = (
+            dict(model) if isinstance(model, Mapping) else load_models(model, () if joint is None else (joint,))
+        )
         self._running: _Running | None = None
 
     def step(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:

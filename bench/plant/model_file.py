@@ -17,7 +17,7 @@ moment_of_inertia = "0.0022 kg*m**2"
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -161,17 +161,21 @@ def load_joints(path: str | Path) -> dict[str, StoredModel]:
     return {name: _model(one, f"{path}: joints.{name}") for name, one in joints.items()}
 
 
-def load_models(path: str | Path, joint: str | None = None) -> dict[str, StoredModel]:
-    """Models by joint: that of a `model.toml` as a joint's, `axis` by default; all of an `effects.toml`, or one's.
+def load_models(path: str | Path, joints: Sequence[str] = ()) -> dict[str, StoredModel]:
+    """Models by joint: that of a `model.toml` as a joint's, `axis` by default; all of an `effects.toml`, or some.
 
-    InputError as `load_model`, or where there is no model of the joint.
+    InputError as `load_model`, or where there is no model of a joint, or one for several.
     """
     if read_table(path).get("schema") != OF_JOINTS:
-        return {joint or AXIS: load_model(path)}
+        if len(joints) > 1:
+            allowed = "allowed: one joint, or the effects.toml of bench robot, which has a model for each"
+            raise InputError(path, f"found one model for {', '.join(joints)}", allowed)
+        return {joints[0] if joints else AXIS: load_model(path)}
     models = load_joints(path)
-    if joint is not None and joint not in models:
-        raise InputError(f"{path}: joints", f"found no '{joint}'", f"allowed: {', '.join(models)}")
-    return models if joint is None else {joint: models[joint]}
+    for joint in joints:
+        if joint not in models:
+            raise InputError(f"{path}: joints", f"found no '{joint}'", f"allowed: {', '.join(models)}")
+    return {name: model for name, model in models.items() if not joints or name in joints}
 
 
 def _model(table: Mapping[str, Any], path: str) -> StoredModel:

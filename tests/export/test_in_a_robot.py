@@ -3,6 +3,7 @@
 import json
 import re
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from tests.diagnosis.command import started
 from tests.export.held import followed
-from tests.export.two_links import HIDDEN, log, motion, ran
+from tests.export.two_links import HIDDEN, log, motion, ran, write_log
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "export.md").read_text(encoding="utf-8")
 COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
@@ -71,6 +72,24 @@ def test_the_pages_examples_run(folder, monkeypatch):
     np.testing.assert_allclose(names["batch"].qvel[:, 1], names["batch"].qvel[0, 1])
 
 
+def test_a_joint_is_checked_against_what_it_was(folder, monkeypatch):
+    """Of one log the baseline, of another motion's and noise's the check; then of a joint with more friction."""
+    monkeypatch.chdir(folder)
+    bench = started(folder)
+    beside = ("--mjcf", "robot.xml", "--joint", "elbow", "--baseline", "elbow.toml")
+    plain = replace(HIDDEN, cogging=0.0)
+    write_log(Path("new.csv"), log(plain))
+    write_log(Path("again.csv"), log(plain, seed=5))
+    write_log(Path("worn.csv"), log(replace(plain, coulomb=1.3 * HIDDEN.coulomb), seed=6))
+    assert bench("check", "new.csv", *beside, "--update", "--without-names") == 0
+    assert bench("check", "again.csv", *beside) == 0
+    assert bench("check", "worn.csv", *beside) == 3
+
+
+#: How several joints are refused where one is meant.
+SEVERAL = "allowed: one here; several together: bench robot LOG --mjcf ROBOT --joint shoulder --joint elbow --out DIR"
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
@@ -78,6 +97,12 @@ def test_the_pages_examples_run(folder, monkeypatch):
         ("identify log.csv --rig rig.toml --joint elbow", "--joint: found without --mjcf"),
         ("identify log.csv --mjcf robot.xml --joint elbow --at shoulder", "has no ="),
         ("identify log.csv --mjcf robot.xml --joint elbow --at wrist=0", "NAME one of shoulder"),
+        ("identify log.csv --mjcf robot.xml --joint shoulder --joint elbow", SEVERAL),
+        ("diagnose log.csv --mjcf robot.xml --joint shoulder --joint elbow", SEVERAL),
+        ("replay found/model.toml log.csv --mjcf robot.xml --joint shoulder --joint elbow --out x.csv", SEVERAL),
+        ("check log.csv --mjcf robot.xml --joint shoulder --joint elbow --baseline x.toml --update", SEVERAL),
+        ("export found/model.toml --mjcf robot.xml --joint shoulder --joint elbow --out x.xml", "found one model for"),
+        ("check --simulated found/model.toml --joint elbow --baseline x.toml", "--simulated: found with --mjcf"),
         ("export found/model.toml --out x.xml", "one of them"),
         ("export found/model.toml --mjcf robot.xml --out x.xml", "--joint: missing; allowed: shoulder, elbow"),
         ("export found/model.toml --mjcf robot.xml --joint elbow --armature some --out x.xml", "allowed: motor, all"),

@@ -165,6 +165,15 @@ def test_what_no_simulator_takes_is_one_line(tmp_path, arguments, says, monkeypa
     assert not (tmp_path / "x.py").exists()
 
 
+def test_joints_that_are_repeated_are_the_ones_that_are_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_text(tmp_path / "effects.toml", joints_toml({"shoulder": of(), "elbow": of(STRIBECK), "wrist": of()}))
+    asked = ("--joint", "elbow", "--joint", "wrist", "--out", "x.py")
+    assert started(tmp_path)("export", "effects.toml", "--to", "newton", *asked) == 0
+    text = (tmp_path / "x.py").read_text()
+    assert ("shoulder" in text, "elbow" in text, "wrist" in text) == (False, True, True)
+
+
 def test_the_command_writes_the_file_of_all_joints(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     write_text(tmp_path / "effects.toml", joints_toml({"shoulder": of(), "elbow": of(STRIBECK)}))
