@@ -177,7 +177,7 @@ def refusals(recordings: Recordings, fitted: Fit) -> dict[str, UndeterminedError
     """Why the inertia, and with it the load's, is not determined beside the effects of a fit, by name."""
     found, rig = recordings.base(uncertain(fitted)), recordings.rig
     masses = found | load_inertia(found, rig)
-    return refused_masses(masses, rig.axis_kind, clipped(recordings.trace, rig))
+    return refused_masses(masses, rig, clipped(recordings.trace, rig))
 
 
 def last_determined(recordings: Recordings, extension: Extension, policy: Policy) -> Stage | None:

@@ -11,6 +11,7 @@ from bench.fit.normal_equations import NormalEquations
 from bench.fit.rows import ONE_WAY
 from bench.names import words
 from bench.parameter import Parameter
+from bench.rig.rig import Rig
 
 #: Least number of rows for each column of the regression.
 ROWS_PER_COLUMN = 20
@@ -112,14 +113,16 @@ def _not_excited(equations: NormalEquations, kind: AxisKind) -> dict[str, Undete
 
 
 def refused_masses(
-    parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]
+    parameters: Mapping[str, Parameter], rig: Rig, suspicions: Sequence[str]
 ) -> dict[str, UndeterminedError]:
     """Why the inertia, or the load's, is none, by name, with what else is suspicious.
 
-    The interval of the inertia contains zero, or one of them is surely negative. Without an inertia there is no load's;
+    The interval of the inertia contains zero - which it may where the torque is measured behind the rotor, and links
+    are light -, or one of them is surely negative. Without an inertia there is no load's;
     and one that is less than the rotor's alone contradicts what the rig says, whichever of them is wrong.
     """
     refused: dict[str, UndeterminedError] = {}
+    kind, behind_rotor = rig.axis_kind, rig.load is not None and rig.load.behind_rotor
     for name in (kind.inertia, LOAD, ARMATURE):
         found = parameters.get(name)
         if found is None:
@@ -132,7 +135,7 @@ def refused_masses(
             reason = f"it comes out negative, {found.value:.3g} {found.unit} ({low:.3g} to {high:.3g})"
             advice = {kind.inertia: TURNED, ARMATURE: LINKS}.get(name, SMALLER)
             refused[name] = UndeterminedError(words(name), "; ".join([reason, *suspicions]), advice)
-        elif name == kind.inertia and low <= 0.0:
+        elif name == kind.inertia and low <= 0.0 and not behind_rotor:
             reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {found.unit}, holds zero", *suspicions])
             refused[name] = UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
     if LOAD in refused and kind.inertia not in refused:
@@ -158,14 +161,15 @@ def negative_friction(
     }
 
 
-def require_sound(estimate: Estimate, kind: AxisKind, suspicions: Sequence[str]) -> None:
+def require_sound(estimate: Estimate, rig: Rig, suspicions: Sequence[str]) -> None:
     """Raise UndeterminedError, with what else is suspicious about the recording, if an estimate is meaningless.
 
     Its inertia may be zero or is negative, the load's is negative, or the model explains less than half of the effort's
     variance.
     """
-    for refusal in refused_masses(estimate.parameters, kind, suspicions).values():
+    for refusal in refused_masses(estimate.parameters, rig, suspicions).values():
         raise refusal
+    kind = rig.axis_kind
     if estimate.explained < LEAST_EXPLAINED:
         share = f"the model explains {max(estimate.explained, 0.0):.0%} of the {kind.effort}'s variance"
         raise UndeterminedError(f"{kind.in_words(INERTIA)} and friction", "; ".join([share, *suspicions]), EXPLAINED)

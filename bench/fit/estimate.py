@@ -166,9 +166,12 @@ class RefusedEstimateError(UndeterminedError):
 def load_inertia(parameters: Mapping[str, Parameter], rig: Rig) -> dict[str, Parameter]:
     """J_load = J - J_motor, or (J - J_motor - J_gear)*i**2 behind a gear, if the rig gives J_motor and J is in kg*m**2.
 
-    If the links of a robot are known, the armature of the joint instead, J*i**2 - J_links.
+    If the links of a robot are known, the armature of the joint instead, J*i**2 - J_links; none of either where the
+    torque is measured behind the rotor.
     """
     inertia = parameters.get(rig.axis_kind.inertia)
+    if rig.load is not None and rig.load.behind_rotor:
+        return {}
     if inertia is not None and rig.load is not None and rig.load.link_inertia is not None:
         square, links = rig.load.gear_ratio**2, rig.load.link_inertia
         low, high = (bound * square - links for bound in inertia.ci95)

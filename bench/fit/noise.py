@@ -98,7 +98,10 @@ class Floor:
 def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array) -> Power:
     """Power of noise of effort and speed in the torque balance, over angular frequency.
 
-    s_M**2*|(1 + tau*s)*(1 + T*s)|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2
+    s_M**2*|(1 + tau*s)*(1 + T*s)|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2 + s_p**2*|s*(1 + lag*s)|**2
+
+    and twice what the known momentum p has of the speed's own noise: the joint's inertia where the arm is, less that
+    where the MJCF stands.
     """
     conditioning = rows.conditioning
     moving, _ = delays(rows, hypothesis)
@@ -114,8 +117,10 @@ def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
         late = (1.0 + shift * s) * (1.0 + effort_lag(hypothesis) * s)
         effort = conditioning.effort_noise**2 * np.abs(late) ** 2
-        known = conditioning.known_noise**2 * np.abs((1.0 + moving * s) * s) ** 2
-        return effort + known + source * np.abs(kinetic) ** 2
+        rate = (1.0 + moving * s) * s
+        both = 2.0 * conditioning.known_shared * (kinetic * rate.conj()).real
+        known = conditioning.known_noise**2 * np.abs(rate) ** 2
+        return effort + np.maximum(known + both + source * np.abs(kinetic) ** 2, 0.0)
 
     return power
 

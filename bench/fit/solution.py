@@ -225,6 +225,17 @@ class Solution:
         return reaches
 
     @cached_property
+    def shift_explains(self) -> float:
+        """Share that a shift explains of the squares that stand above the noise without one."""
+        columns, effort, place = self.laid.columns, self.laid.effort, self.names.index(MISALIGNMENT)
+        tables = np.delete(columns, place, axis=1), columns
+        without, beside = (
+            float(np.mean((effort - table @ np.linalg.lstsq(table, effort, rcond=None)[0]) ** 2)) for table in tables
+        )
+        above = without - self.floor.white**2
+        return (without - beside) / above if above > 0.0 else 0.0
+
+    @cached_property
     def _modelled(self) -> Array:
         columns = self.laid.owners.size
         offset = float(self.theta[-1]) if OFFSET in self.names else 0.0

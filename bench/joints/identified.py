@@ -16,6 +16,7 @@ from bench.fit.identify import identify
 from bench.fit.rows import Rows
 from bench.gate.check import Check
 from bench.gate.gate import passed, warnings_of
+from bench.jobs.process import Limits
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
@@ -23,6 +24,8 @@ from bench.plant.robot import AddedBody, Robot, joint_rig, read_log
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
+#: Of one joint: ten times what the longest log tried took (600 s at 500 Hz).
+LIMITS = Limits(deadline=1800.0, memory=8.0 * 1024**3)
 #: Key of a refusal that concerns no parameter: whether anything is missing.
 EFFECTS = "effects"
 
@@ -108,7 +111,8 @@ class IdentifiedJoint:
             return None
         mounting = Mounting.of(self.rig)
         links = mounting.link_inertia / mounting.gear_ratio**2
-        inertia = self.parameters[kind.inertia].value if kind.inertia in self.parameters else links
+        inertia = self.parameters[kind.inertia].value if kind.inertia in self.parameters else 0.0
+        inertia = inertia if inertia > 0.0 or ARMATURE in self.parameters else links
         viscous, coulomb = (max(self.parameters[kind.parameter(term)].value, 0.0) for term in (VISCOUS, COULOMB))
         if inertia <= 0.0:
             return None
@@ -139,7 +143,13 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
         return _without_effects(asked.joint, traces, rig, refusal, left_out)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, rig, failed=str(error), left_out=left_out)
-    return IdentifiedJoint(asked.joint, rig, found, refused=found.refused, left_out=left_out)
+    return IdentifiedJoint(asked.joint, rig, found, refused={**found.refused, **_behind(rig)}, left_out=left_out)
+
+
+def _behind(rig: Rig) -> dict[str, str]:
+    """Why there is no armature, where the torque is the joint's."""
+    behind = rig.load is not None and rig.load.behind_rotor
+    return {ARMATURE: "the torque is measured on the joint's side, where the rotor is not in it"} if behind else {}
 
 
 def _moving(asked: JointLogs, logs: Sequence[Path], rig: Rig, robot: Robot) -> tuple[list[Trace], dict[str, str]]:
@@ -161,7 +171,7 @@ def _without_effects(
     joint: str, traces: Sequence[Trace], rig: Rig, refusal: UndeterminedError, left_out: Mapping[str, str]
 ) -> IdentifiedJoint:
     """Inertia and friction alone, as far as they are determined, of logs that do not decide on effects."""
-    kind, refused, estimate = rig.axis_kind, {EFFECTS: refusal.reason}, None
+    kind, refused, estimate = rig.axis_kind, {EFFECTS: refusal.reason, **_behind(rig)}, None
     try:
         estimate = identify(traces, rig)
     except RefusedEstimateError as error:
@@ -169,8 +179,8 @@ def _without_effects(
     except UndeterminedError as error:
         refusal = error
     known = {} if estimate is None else estimate.parameters
-    refused |= {name: error.reason for name, error in refused_masses(known, kind, ()).items()}
-    for name in (*map(kind.parameter, (INERTIA, VISCOUS, COULOMB)), ARMATURE):
+    refused |= {name: error.reason for name, error in refused_masses(known, rig, ()).items()}
+    for name in (*map(kind.parameter, (INERTIA, VISCOUS, COULOMB)), *(() if _behind(rig) else (ARMATURE,))):
         if name not in known:
             refused[name] = refusal.reason
     return IdentifiedJoint(joint, rig, None, estimate, refused, refusal.record, left_out)

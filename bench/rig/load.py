@@ -29,6 +29,7 @@ class Load(RigTable):
         eccentric_mass: of a pendulum on the load's shaft, known to pull by gravity - kg; with it `eccentric_radius`,
             of its centre from the shaft - m, and `hanging_position`, the load's angle at which it hangs - rad.
         link_inertia: part of the inertia that a robot's own model has, on the load's side - kg*m**2.
+        behind_rotor: whether the torque is measured on the load's side, so that the motor's inertia is not in it.
     """
 
     outer_diameter: values.Length | None = None
@@ -43,6 +44,7 @@ class Load(RigTable):
     eccentric_radius: values.Length | None = None
     hanging_position: values.Angle = 0.0
     link_inertia: values.Inertia | None = None
+    behind_rotor: Annotated[bool, Field(exclude=True)] = False
 
     @model_validator(mode="after")
     def _one_disk(self) -> Load:

@@ -48,6 +48,7 @@ class JointNotes(RigTable):
         sign: -1 where the log counts angle, speed and torque of the joint the other way than the robot's model.
         torque_constant: of the joint's motor - N*m/A.
         gear_ratio: turns of the motor, whose angle and torque the log then has, per turn of the joint.
+        torque: where it is measured; on the joint's side of the gear the rotor is not in it, and it is the joint's.
     """
 
     axis: str | None = None
@@ -55,6 +56,7 @@ class JointNotes(RigTable):
     sign: Literal[1, -1] = 1
     torque_constant: values.TorquePerAmpere | None = None
     gear_ratio: Annotated[float, Field(gt=0.0)] | None = None
+    torque: Literal["motor side", "joint side"] = "motor side"
 
 
 class CheckTable(RigTable):
@@ -193,11 +195,14 @@ class Rig(RigTable):
         motor, load, trace = self.motor, self.load or Load(), self.trace
         if own.torque_constant is not None:
             motor = motor.model_copy(update={"torque_constant": own.torque_constant})
-        if own.gear_ratio is not None:
-            load = load.model_copy(update={"gear_ratio": own.gear_ratio})
+        load = load.model_copy(
+            update={"gear_ratio": own.gear_ratio or load.gear_ratio, "behind_rotor": own.torque == "joint side"}
+        )
         columns = {**trace.columns, **own.columns}
         trace = trace.model_copy(update={"columns": columns, "axis": own.axis or trace.axis})
-        return self.model_copy(update={"motor": motor, "load": load if own.gear_ratio else self.load, "trace": trace})
+        return self.model_copy(
+            update={"motor": motor, "load": load if name in self.joints else self.load, "trace": trace}
+        )
 
     def effort(self, trace: Trace) -> tuple[Array, str]:
         """What drives the axis in a trace, and its unit: motor torque - N*m (force - N) wherever the rig tells how.

@@ -51,6 +51,7 @@ class Conditioning:
         speed_noise: of the raw speed whose sign is taken (central difference of a position) - rad/s (m/s).
         coherence: highest coherence of effort and acceleration over frequency.
         known_noise: white noise of the momentum that is known - N*m*s (N*s); 0 where none is.
+        known_shared: covariance of that with the noise of the source - of both units.
         source_spectrum: angular frequencies (k,) - rad/s - and power that rounding leaves there (k,) - the source's
             unit squared; None where it is white.
     """
@@ -63,6 +64,7 @@ class Conditioning:
     speed_noise: float
     coherence: float
     known_noise: float = 0.0
+    known_shared: float = 0.0
     source_spectrum: tuple[Array, Array] | None = field(default=None, compare=False)
 
     def source_power(self, omega: Array) -> Array:
@@ -143,9 +145,24 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
     chosen = GaussianFilter.from_cutoff(cutoff, trace.sample_period)
     efforts = [effort[part] for part in parts]
     loud, step = white_noise(*efforts), resolution(np.concatenate(efforts))
-    known = white_noise(*(trace[KNOWN_MOMENTUM][part] for part in parts)) if KNOWN_MOMENTUM in trace else 0.0
+    known, shared = _noise_of_known(trace, parts, source, noise[source]) if KNOWN_MOMENTUM in trace else (0.0, 0.0)
     spectrum = _rounded([trace[source][part] for part in parts], chosen, noise[source])
-    return Conditioning(chosen, source, noise[source], loud, step, speed_noise, float(coherence[peak]), known, spectrum)
+    highest = float(coherence[peak])
+    return Conditioning(chosen, source, noise[source], loud, step, speed_noise, highest, known, shared, spectrum)
+
+
+def _noise_of_known(trace: Trace, parts: Sequence[slice], source: str, noise: float) -> tuple[float, float]:
+    """White noise of the known momentum, and its covariance with that of the speed where the balance is of that."""
+    momentum = [trace[KNOWN_MOMENTUM][part] for part in parts]
+    known = white_noise(*momentum)
+    if source != "velocity" or not known * noise > 0.0:
+        return known, 0.0
+    scale = known / noise
+    speeds = [scale * trace[source][part] for part in parts]
+    more, less = (
+        white_noise(*(p + side * w for p, w in zip(momentum, speeds, strict=True))) ** 2 for side in (1.0, -1.0)
+    )
+    return known, (more - less) / (4.0 * scale)
 
 
 def _rounded(stretches: Sequence[Array], smooth: GaussianFilter, noise: float) -> tuple[Array, Array] | None:
