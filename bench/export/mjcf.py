@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -28,12 +28,15 @@ from bench.effects.mjcf import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.errors import InputError
 from bench.names import nearest, plain
 from bench.plant.axis_model import NO_MASS, STICKING_IMPEDANCE, AxisModel, disk_inertia
-from bench.plant.mjcf_file import require_compiles
+from bench.plant.mjcf_file import read_spec, require_compiles
 from bench.plant.model_file import StoredModel
+from bench.plant.robot import AddedBody, add_body, link_about_centre
 from bench.plant.run import silenced
 
 #: The body of a file that holds the joint alone.
 BODY = "load"
+#: The body of what another one carries.
+PAYLOAD = "payload"
 #: What makes an actuator what it is, but for its name, its joint and its gear.
 ACTUATOR = ("gaintype", "biastype", "dyntype", "gainprm", "biasprm", "dynprm")
 ACTUATOR += ("actdim", "actearly", "actlimited", "actrange")
@@ -90,28 +93,52 @@ class Carried:
 
 
 def robot_with(
-    path: Path, models: Mapping[str, tuple[StoredModel, Armature | None]], out: Path
-) -> tuple[str, list[Carried]]:
-    """Text of a robot's MJCF with models at its joints, and what went onto each.
+    path: Path, models: Mapping[str, tuple[StoredModel, Armature | None]], out: Path, added: Sequence[AddedBody] = ()
+) -> tuple[str, tuple[str, ...]]:
+    """Text of a robot's MJCF with models at its joints, and what went onto each in sentences.
 
     Args:
         path: of the robot's MJCF.
         models: of joints by their names, each with its armature; None: that of the MJCF stays.
         out: where the text will stand, from where its meshes and textures are found.
+        added: what the robot has beside its MJCF.
 
     Raises:
         InputError: the MJCF cannot be read, or cannot have a model at its joint.
     """
-    spec, carried = read_mjcf(path), []
+    spec, notes = read_mjcf(path)
+    lines = [*notes, *(_beside(spec, one, path) for one in added)]
     for name, (stored, armature) in models.items():
         kept = Armature(float(joint_of(spec, name, stored.model).armature), "the MJCF's own")
-        carried.append(onto(spec, name, stored, armature or kept))
+        lines += onto(spec, name, stored, armature or kept).lines
     compiled(spec)
     for folder in ("meshdir", "texturedir"):
         where = path.resolve().parent / (getattr(spec, folder) or "")
         setattr(spec, folder, os.path.relpath(where, out.resolve().parent))
     spec.modelfiledir = str(out.resolve().parent)  # writing compiles once more
-    return commented(spec, tuple(line for each in carried for line in each.lines)), carried
+    return commented(spec, tuple(lines)), tuple(lines)
+
+
+def _beside(spec: mujoco.MjSpec, one: AddedBody, path: Path) -> str:
+    """Give a robot a payload, or a link's body the inertia that it has more about its joint's axis; in a sentence.
+
+    A payload is a body of its own, which can be taken off again. A link's own inertia, about its centre, becomes larger
+    in its proportions: no log of its one joint tells more, and any tensor that was one stays one.
+    """
+    if not one.joint:
+        add_body(spec, PAYLOAD, one, path)
+        return f"{one.body}: carries {one.mass:.4g} kg, the body '{PAYLOAD}'"
+    model = compiled(spec)
+    body, own = spec.joint(one.joint).parent, link_about_centre(model, one.joint)
+    share = 1.0 + one.inertia / own
+    if share <= 0.0:
+        found = f"{own:.3g} kg*m**2 are less than {-one.inertia:.3g} to take"
+        return f"{one.joint}: its link keeps the MJCF's inertia: {found}"
+    at = model.joint(one.joint).bodyid[0]
+    body.explicitinertial, body.mass, body.inertia = True, model.body_mass[at], share * model.body_inertia[at]
+    body.ipos, body.iquat = model.body_ipos[at], model.body_iquat[at]
+    body.fullinertia = [np.nan, 0.0, 0.0, 0.0, 0.0, 0.0]
+    return f"{one.joint}: its link has {share:.4g} times the MJCF's inertia about its centre"
 
 
 def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
@@ -137,11 +164,14 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
     return commented(spec, (*carried.lines, _mass_of(body, stored))), carried
 
 
-def read_mjcf(path: Path) -> mujoco.MjSpec:
-    """Editable model of an MJCF file; InputError if there is no such file, or MuJoCo makes no model of it."""
+def read_mjcf(path: Path) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
+    """Editable model of an MJCF file, and what is left out of it in sentences: meshes that are not there.
+
+    InputError if there is no such file, or MuJoCo makes no model of it.
+    """
     require_compiles(path)
     with silenced():
-        return mujoco.MjSpec.from_file(str(path))
+        return read_spec(str(path))
 
 
 def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature | None = None) -> Carried:

@@ -37,6 +37,8 @@ LOOK = 0.2
 GRACE = 10.0
 #: One numeric thread a process, since several compete for the cores (BLAS; Arrow reads the first too).
 _ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+#: Set in what a worker process sees.
+_WATCHED = "SERVOBENCH_WATCHED"
 _SERVE = "import sys; from bench.jobs.process import serve; serve(int(sys.argv[1]))"
 
 
@@ -131,9 +133,15 @@ def _process() -> tuple[subprocess.Popen[bytes], Connection]:
     calls, other = Pipe()
     with other:
         command = [sys.executable, "-c", _SERVE, str(other.fileno())]
-        own = {**_ONE_THREAD, **KEPT, **os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+        own = {**_ONE_THREAD, **KEPT, **os.environ, _WATCHED: "1"}
+        own["PYTHONPATH"] = os.pathsep.join(filter(None, sys.path))
         nowhere = subprocess.DEVNULL
         return subprocess.Popen(command, pass_fds=[other.fileno()], env=own, stdin=nowhere, stdout=nowhere), calls
+
+
+def watched() -> bool:
+    """Whether this is a worker process: its end is another's `Failure`, so nothing in it needs one of its own."""
+    return _WATCHED in os.environ
 
 
 def _memory(number: int) -> int:

@@ -1,10 +1,11 @@
 """What the MJCF does not tell of the links, over all joints together: a payload, or a link's inertia that it has wrong.
 
-What a mass more on a body asks of the joints is linear in the mass and, near a place, in the place; so is what more
-inertia of a link about its joint's axis asks. Each is a column of every joint's torque balance beside the joint's own
-inertia and friction, and its strength is common to all:
+What a point of mass on a body asks of the joints is linear in the mass and quadratic in its place; what more inertia of
+a link about its joint's axis asks is linear in that. Each is a column of every joint's torque balance beside the
+joint's own inertia and friction, and its strength is common to all:
 
-    M_j = J_j*alpha_j + K_wj*omega_j + K_0j*sgn(omega_j) + sum over k of s_k*C_jk
+    M_j = J_j*alpha_j + K_wj*omega_j + f_j*sgn(omega_j) + sum over k of s_k*C_jk
+    f_j = K_0j + mu_j*|M_j| + sum over l of a_jl*exp(-(omega_j/w_l)**2)
 
 C_jk - known torque of the robot with the change less that without, per unit of it. Joints weigh by what they leave. The
 covariance is that of scores summed over stretches of time, in which residuals hang together (K.-Y. Liang, S. L. Zeger,
@@ -21,21 +22,28 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from bench.arrays import Array, symmetric_inverse
+from bench.arrays import Array, rms, symmetric_inverse
+from bench.effects.signals import Signals
 from bench.errors import BenchError, UndeterminedError
 from bench.fit.layout import BASE, lay_out, plain
 from bench.fit.rows import Rows
 from bench.jobs.each import each
-from bench.joints.identified import JointLogs
+from bench.jobs.process import Failure
+from bench.joints.identified import LIMITS, JointLogs
 from bench.parameter import Parameter
-from bench.plant.robot import AddedBody, Robot, joint_rig, read_log
+from bench.plant.robot import AddedBody, Robot, joint_rig, log_of
+from bench.trace.filter import Column
+from bench.trace.read import read_recording
 
+#: Speeds over which friction may fall, as shares of the usual one; columns that every joint has of its own.
+SLOW = (0.1, 0.4)
+OWN = len(BASE) + 1 + len(SLOW)
 #: Stretches that the rows of a log are cut into, equally many in each.
 STRETCHES = 24
 #: Rounds in which weights of the joints, and the place of a payload, settle.
 ROUNDS = 3
-#: Step of a derivative by the place of a mass - m.
-ASIDE = 0.02
+#: By which the places of masses are apart - m.
+ASIDE = 0.1
 #: Share of the strongest column's power at which another has none.
 SILENT = 1e-9
 #: Least share of a column's power that the joints' own terms must leave.
@@ -103,11 +111,12 @@ def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
         try:
             robot = Robot.of(asked.mjcf, asked.joint, asked.added)
             rig = joint_rig(asked.rig, robot)
-            rows = Rows.of(read_log(log, rig, robot, asked.stated), rig)
-            columns = [lay_out(rows, plain(rows)).columns[:, : len(BASE)]]
+            recording = read_recording(log)
+            rows = Rows.of(log_of(recording, log, rig, robot, asked.stated), rig)
+            columns = [lay_out(rows, plain(rows)).columns[:, : len(BASE)], rows.table(_frictions)]
             for change in changes:
                 changed = Robot.of(asked.mjcf, asked.joint, (*asked.added, change))
-                trace = read_log(log, rig, changed, asked.stated)
+                trace = log_of(recording, log, rig, changed, asked.stated)
                 columns.append(rows.effort - Rows.of(trace, rig, conditioning=rows.conditioning).effort)
         except BenchError:  # told where the joint is identified
             continue
@@ -116,16 +125,31 @@ def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
     return np.array(found) if found else None
 
 
-def of_joints(work: Sequence[JointLogs], changes: Sequence[AddedBody]) -> list[Array]:
+def _frictions(signals: Signals) -> list[Column]:
+    """Friction by transmitted torque, and by speeds that are a share of the usual one.
+
+    No joint has been diagnosed yet: what its friction has beside a level would pass for weight.
+    """
+    speed = np.abs(signals.velocity)
+    slow = (np.exp(-((speed / (share * rms(speed) + 1e-300)) ** 2)) for share in SLOW)
+    return [[(signals.sign * shape, 0)] for shape in (np.abs(signals.torque), *slow)]
+
+
+def of_joints(
+    work: Sequence[JointLogs], changes: Sequence[AddedBody], progress: Callable[[float], None] = lambda share: None
+) -> list[Array]:
     """Those products of all joints that the logs tell, each on a process."""
-    found = dict(each(partial(gathered, changes=tuple(changes)), work))
+    found: dict[int, Array | Failure | None] = {}
+    for place, one in each(partial(gathered, changes=tuple(changes)), work, LIMITS):
+        found[place] = one
+        progress(len(found) / len(work))
     every = (found[place] for place in sorted(found))
     return [one for one in every if isinstance(one, np.ndarray)]
 
 
 def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Common:
     """Strengths of columns: of some of them by their number, or of combinations of all (all, k)."""
-    own, every = len(BASE), products[0].shape[1] - len(BASE) - 1
+    own, every = OWN, products[0].shape[1] - OWN - 1
     mix = np.asarray(chosen, dtype=float) if np.ndim(chosen) == 2 else np.eye(every)[:, list(chosen)]
     turn = np.zeros((products[0].shape[1], own + mix.shape[1] + 1))
     turn[:own, :own], turn[own:-1, own:-1], turn[-1, -1] = np.eye(own), mix, 1.0
@@ -178,27 +202,45 @@ def seek_payload(work: Sequence[JointLogs], body: str, progress: Callable[[float
     Raises:
         UndeterminedError: the logs do not tell a mass above zero.
     """
-    centre, turn = np.zeros(3), 0
-    places = np.concatenate([np.zeros((1, 3)), ASIDE * np.eye(3)])
-    mix = np.concatenate([[[1.0, *[-1.0 / ASIDE] * 3]], np.eye(4)[1:] / ASIDE])
-    while True:
-        products = of_joints(work, [AddedBody(body, 1.0, tuple((centre + place).tolist())) for place in places])
-        if not products:
-            raise UndeterminedError(f"the payload of '{body}'", "no joint is told by the logs", "a log of all joints")
+    products = of_joints(work, [AddedBody(body, 1.0, (x, y, z)) for x, y, z in PLACES.tolist()], progress)
+    if not products:
+        raise UndeterminedError(f"the payload of '{body}'", "no joint is told by the logs", "a log of all joints")
+    centre = np.zeros(3)
+    for _ in range(ROUNDS):
+        mix = _at(centre)
         found = shared(products, mix)
         mass = found.parameter(found.strengths[0], float(np.sqrt(found.covariance[0, 0])), "kg")
         if mass.ci95[0] <= 0.0:
             reason = f"its mass comes out as {mass.value:.3g} ± {mass.half_width:.2g} kg"
             raise UndeterminedError(f"the payload of '{body}'", reason, "a log in which the body is lifted and turned")
         centre = centre + found.strengths[1:] / mass.value
-        turn += 1
-        progress(turn / ROUNDS)
-        if turn == ROUNDS:
-            errors = np.where(found.open[1:], np.inf, np.sqrt(np.diag(found.covariance)[1:]) / mass.value)
-            moved = _without_each(products, mix, found.strengths) / np.array([1.0, *[mass.value] * 3])
-            told = zip(centre, errors, moved[1:], strict=True)
-            x, y, z = (found.parameter(value, error, "m").widened(by) for value, error, by in told)
-            return FoundPayload(body, mass.widened(moved[0]), (x, y, z))
+    errors = np.where(found.open[1:], np.inf, np.sqrt(np.diag(found.covariance)[1:]) / mass.value)
+    moved = _without_each(products, mix, found.strengths) / np.array([1.0, *[mass.value] * 3])
+    told = zip(centre, errors, moved[1:], strict=True)
+    x, y, z = (found.parameter(value, error, "m").widened(by) for value, error, by in told)
+    return FoundPayload(body, mass.widened(moved[0]), (x, y, z))
+
+
+def _monomials(x: Array, y: Array, z: Array) -> Array:
+    """Of places (n,), those of which the torque of a point of mass is a combination (n, 10)."""
+    return np.stack([x**0, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z], axis=-1)
+
+
+#: Places that together tell the torque of a point of mass at any other - m.
+PLACES = ASIDE * np.array(
+    [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0), (0, 0, -1), (1, 1, 0), (1, 0, 1), (0, 1, 1)]
+)
+
+
+def _at(centre: Array) -> Array:
+    """What a mass at a place, and its moments about it, are in masses at PLACES (10, 4)."""
+    (x, y, z), zero, one = centre, 0.0, 1.0
+    slopes = [
+        (zero, one, zero, zero, 2 * x, zero, zero, y, z, zero),
+        (zero, zero, one, zero, zero, 2 * y, zero, x, zero, z),
+        (zero, zero, zero, one, zero, zero, 2 * z, zero, x, y),
+    ]
+    return np.linalg.solve(_monomials(*PLACES.T).T, np.array([_monomials(x, y, z), *slopes]).T)
 
 
 def _without_each(products: Sequence[Array], mix: Array, strengths: Array) -> Array:
@@ -216,7 +258,7 @@ def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink]:
         return []
     told = [k for k in range(len(work)) if _tells(products, k)]
     chosen: list[int] = []
-    left = sum(float(np.log(_scores(_only(one, []), len(BASE), np.zeros(0))[1])) for one in products)
+    left = sum(float(np.log(_scores(_only(one, []), OWN, np.zeros(0))[1])) for one in products)
     while told and len(chosen) < MOST:
         tried = {k: shared(products, [*chosen, k]) for k in told if k not in chosen}
         best = min(tried, key=lambda k: tried[k].left, default=None)
@@ -242,7 +284,7 @@ def _doubted(work: Sequence[JointLogs], products: Sequence[Array], chosen: Seque
 
 def _only(product: Array, kept: Sequence[int]) -> Array:
     """Products of a joint's own columns, some of the others and the effort."""
-    own = len(BASE)
+    own = OWN
     places = [*range(own), *(own + k for k in kept), product.shape[1] - 1]
     return product[:, places][:, :, places]
 
@@ -251,7 +293,7 @@ def _tells(products: Sequence[Array], k: int) -> bool:
     """Whether any joint shows a column apart from its own terms."""
     for product in products:
         whole = _only(product, [k]).sum(axis=0)
-        if whole[-2, -2] > 0.0 and _reduced(whole, len(BASE))[0, 0] > LEAST * whole[-2, -2]:
+        if whole[-2, -2] > 0.0 and _reduced(whole, OWN)[0, 0] > LEAST * whole[-2, -2]:
             return True
     return False
 

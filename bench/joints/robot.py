@@ -8,18 +8,16 @@ from pathlib import Path
 
 from bench.axis_kind import ARMATURE
 from bench.errors import InputError, UndeterminedError
-from bench.export.mjcf import Armature, Carried, robot_with
+from bench.export.mjcf import Armature, robot_with
 from bench.jobs.each import each
-from bench.jobs.process import Failure, Limits
-from bench.joints.identified import IdentifiedJoint, JointLogs, identified
+from bench.jobs.process import Failure
+from bench.joints.identified import LIMITS, IdentifiedJoint, JointLogs, identified
 from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links, seek_payload
 from bench.names import nearest
 from bench.plant.model_file import StoredModel
 from bench.plant.robot import AddedBody, joint_units
 from bench.rig.rig import Rig
 
-#: Of one joint: ten times what the longest log tried took (600 s at 500 Hz).
-LIMITS = Limits(deadline=1800.0, memory=8.0 * 1024**3)
 #: Share of the progress in which a payload is sought.
 SEEKING = 0.3
 
@@ -34,6 +32,7 @@ class IdentifiedRobot:
         payload: what a body carried in the logs, where that was sought and is told.
         links: whose inertia is not the MJCF's; joints are told with what theirs is.
         warnings: what concerns no joint alone.
+        added: what the joints were identified with beside the MJCF.
     """
 
     mjcf: Path
@@ -41,6 +40,7 @@ class IdentifiedRobot:
     payload: FoundPayload | None = None
     links: tuple[DoubtedLink, ...] = ()
     warnings: tuple[str, ...] = ()
+    added: tuple[AddedBody, ...] = ()
 
     @property
     def answered(self) -> tuple[str, ...]:
@@ -53,8 +53,8 @@ class IdentifiedRobot:
         models = {name: joint.model for name, joint in self.joints.items()}
         return {name: model for name, model in models.items() if model is not None}
 
-    def with_joints(self, out: Path) -> tuple[str, list[Carried]]:
-        """Text of the MJCF with the models of the joints, to stand in a file, and what went onto each.
+    def with_joints(self, out: Path) -> tuple[str, tuple[str, ...]]:
+        """Text of the MJCF with the models of the joints and what it had beside, and what went onto each in sentences.
 
         InputError where MuJoCo cannot have it.
         """
@@ -63,7 +63,8 @@ class IdentifiedRobot:
             name: None if one is None else Armature(max(one.value, 0.0), "all that moved but the links")
             for name, one in told.items()
         }
-        return robot_with(self.mjcf, {name: (model, armature[name]) for name, model in self.models.items()}, out)
+        models = {name: (model, armature[name]) for name, model in self.models.items()}
+        return robot_with(self.mjcf, models, out, self.added)
 
 
 def robot(
@@ -112,10 +113,9 @@ def robot(
     open_ = [one for one in found.values() if one.diagnosis and one.diagnosis.verdict == "unexplained_remainder"]
     links = doubt_links(work) if open_ else []
     if links:
-        found = _identified(
-            carrying(work, [AddedBody(joint=one.joint, inertia=one.inertia) for one in links]), progress
-        )
-    return IdentifiedRobot(Path(mjcf), found, sought, tuple(links), tuple(warnings))
+        work = carrying(work, [AddedBody(joint=one.joint, inertia=one.inertia) for one in links])
+        found = _identified(work, progress)
+    return IdentifiedRobot(Path(mjcf), found, sought, tuple(links), tuple(warnings), work[0].added if work else ())
 
 
 def _required(mjcf: Path, joints: Sequence[str]) -> list[str]:

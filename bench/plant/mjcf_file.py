@@ -18,7 +18,7 @@ import numpy as np
 
 from bench.errors import InputError
 from bench.files import read_bytes, read_text
-from bench.jobs.process import Failure, Limits, WorkerProcess
+from bench.jobs.process import Failure, Limits, WorkerProcess, watched
 from bench.plant.run import silenced
 
 #: Within which a robot compiles; one of a hundred meshes takes seconds.
@@ -47,6 +47,8 @@ def require_compiles(path: Path) -> None:
 @lru_cache(maxsize=1)
 def _outcome(path: str, _changed: int) -> str | Failure:
     """What the process says, once of a robot of many joints."""
+    if watched():
+        return _fault(path)
     with WorkerProcess(_fault, LIMITS) as process:
         return process.do(path)
 
@@ -66,7 +68,14 @@ def _fault(path: str) -> str:
 def compiled(
     path: str, change: Callable[[mujoco.MjSpec], None] = lambda spec: None
 ) -> tuple[mujoco.MjModel, tuple[str, ...]]:
-    """The model of an MJCF or URDF, changed where that is asked, and what is left out: meshes that are not there.
+    """The model of an MJCF or URDF, changed where that is asked, and what is left out; ValueError as `read_spec`."""
+    spec, notes = read_spec(path)
+    change(spec)
+    return spec.compile(), notes
+
+
+def read_spec(path: str) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
+    """What an MJCF or URDF says, without meshes that are not there, and these in words.
 
     Raises ValueError as MuJoCo does, and where an inertia is made of such a mesh.
     """
@@ -81,9 +90,8 @@ def compiled(
         spec.delete(geom)
     for mesh in missing.values():
         spec.delete(mesh)
-    change(spec)
     told = f"meshes that are not there are left out of {Path(path).name}: {', '.join(sorted(missing))}"
-    return spec.compile(), (told,) if missing else ()
+    return spec, (told,) if missing else ()
 
 
 def _read_all(path: Path) -> None:

@@ -86,7 +86,7 @@ def _loaded(path: Path, added: Sequence[AddedBody] = ()) -> tuple[mujoco.MjModel
 
     def add(spec: mujoco.MjSpec) -> None:
         for k, one in enumerate(added):
-            _add(spec, f"added {k}", one, path)
+            add_body(spec, f"added {k}", one, path)
 
     with silenced():
         model, notes = compiled(str(path), add)
@@ -95,7 +95,7 @@ def _loaded(path: Path, added: Sequence[AddedBody] = ()) -> tuple[mujoco.MjModel
     return model, notes
 
 
-def _add(spec: mujoco.MjSpec, name: str, one: AddedBody, path: Path) -> None:
+def add_body(spec: mujoco.MjSpec, name: str, one: AddedBody, path: Path) -> None:
     """Fix a body to one of a robot, whose z axis is the axis of the joint whose link has more inertia."""
     joint = spec.joint(one.joint) if one.joint else None
     body = spec.body(one.body) if joint is None else joint.parent
@@ -182,11 +182,8 @@ class Robot:
         """Of the joint's own link about its axis - kg*m**2."""
         model, joint = self.model, self.model.joint(self.joint)
         body, axis = int(joint.bodyid[0]), np.asarray(joint.axis) / np.linalg.norm(joint.axis)
-        turn = np.empty(9)
-        mujoco.mju_quat2Mat(turn, model.body_iquat[body])
         arm = np.cross(axis, model.body_ipos[body] - joint.pos)
-        own = float(model.body_inertia[body] @ (turn.reshape(3, 3).T @ axis) ** 2)
-        return own + float(model.body_mass[body] * arm @ arm)
+        return link_about_centre(model, self.joint) + float(model.body_mass[body] * arm @ arm)
 
     @cached_property
     def inertia(self) -> float:
@@ -210,9 +207,9 @@ class Robot:
                 self._momentum(self._posed(position[part] + side * step, step)[0], w) for side in (1.0, -1.0)
             )
             turning = (ahead - behind) / (2.0 * ASIDE)
-            bias, passive = self._evaluated(q, w, "qfrc_bias", "qfrc_passive")
+            bias, passive, matrix = self._evaluated(q, w, "qfrc_bias", "qfrc_passive", "M")
             torque[part] = bias[:, dof] - passive[:, dof] - turning
-            momentum[part] = self._momentum(q, w) - self.inertia * w[:, dof]
+            momentum[part] = self._row(matrix, w) - self.inertia * w[:, dof]
         return torque, momentum
 
     def follows(self, name: str, motion: Mapping[str, tuple[Array, Array]]) -> tuple[Array, Array] | None:
@@ -235,12 +232,16 @@ class Robot:
         return q, w
 
     def _momentum(self, position: Array, velocity: Array) -> Array:
-        """Of the joint, (n,): its row of the mass matrix times the velocities; the matrix comes as its lower half."""
-        model, dof = self.model, int(self.model.joint(self.joint).dofadr[0])
+        """Of the joint, (n,): its row of the mass matrix times the velocities."""
         (matrix,) = self._evaluated(position, np.zeros_like(velocity), "M")
+        return self._row(matrix, velocity)
+
+    def _row(self, matrix: Array, velocity: Array) -> Array:
+        """The joint's row of mass matrices (n, entries), of which MuJoCo has the lower half, times velocities (n,)."""
+        model, dof = self.model, int(self.model.joint(self.joint).dofadr[0])
         row = np.repeat(np.arange(model.nv), model.M_rownnz)
         column = model.M_colind
-        found = np.zeros(len(position))
+        found = np.zeros(len(velocity))
         for k in np.flatnonzero((row == dof) | (column == dof)):
             found += matrix[:, k] * velocity[:, column[k] if row[k] == dof else row[k]]
         return found
@@ -252,6 +253,14 @@ class Robot:
         batch.bind("qpos")[:], batch.bind("qvel")[:] = position, velocity
         batch.forward()
         return [np.array(values) for values in bound]
+
+
+def link_about_centre(model: mujoco.MjModel, name: str) -> float:
+    """Inertia of a joint's own link about its centre, along the joint's axis - kg*m**2."""
+    joint = model.joint(name)
+    body, axis, turn = int(joint.bodyid[0]), np.asarray(joint.axis) / np.linalg.norm(joint.axis), np.empty(9)
+    mujoco.mju_quat2Mat(turn, model.body_iquat[body])
+    return float(model.body_inertia[body] @ (turn.reshape(3, 3).T @ axis) ** 2)
 
 
 def _bound(model: mujoco.MjModel, joint: int) -> Iterator[str]:
@@ -326,16 +335,22 @@ def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) ->
         InputError: the log cannot be read, a joint is neither in it nor stated, stands beyond what the MJCF allows by
             the unit assumed, or its effort is in A or V, which the MJCF's links are not.
     """
-    recording = named(
-        read_recording(path), list(filter(None, (robot.model.joint(k).name for k in range(robot.model.njnt))))
-    )
+    return log_of(read_recording(path), path, rig, robot, stated)
+
+
+def log_of(recording: Recording, path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Trace:
+    """The same of what a file holds."""
+    recording = named(recording, list(filter(None, (robot.model.joint(k).name for k in range(robot.model.njnt)))))
     own, names = rig.of_joint(robot.joint), [robot.model.joint(k).name for k in robot.joints]
     if any(_holds(recording, name) for name in robot.units) and not (
         _holds(recording, robot.joint) or own.trace.columns or own.trace.axis
     ):
         allowed = f"allowed: a column '{robot.joint}.position [rad]' and so on, or [trace.columns] in a rig"
         raise InputError(f"{path}: joint '{robot.joint}'", "has no column of its own", allowed)
-    trace, ratio = _joint_of(recording, robot.joint, own, robot), (own.load or Load()).gear_ratio
+    load = own.load or Load()
+    trace, ratio = _joint_of(recording, robot.joint, own, robot), load.gear_ratio
+    if load.behind_rotor and own.axis_kind.effort in trace:
+        trace = trace.with_signals({own.axis_kind.effort: trace[own.axis_kind.effort] / ratio}, {})
     position, velocity = _motion(trace, trace)
     motion = {robot.joint: (position / ratio, velocity / ratio)}
     for name in robot.units:

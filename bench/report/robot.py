@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from bench.axis_kind import ARMATURE, COULOMB, VISCOUS
-from bench.export.mjcf import Carried
 from bench.joints.identified import EFFECTS, IdentifiedJoint
 from bench.joints.robot import IdentifiedRobot
 from bench.names import in_a_row, readable, words
@@ -75,8 +74,8 @@ DROPPED = ("schema", "provenance", "model")
 
 def write_robot(out: Path, found: IdentifiedRobot, title: str, provenance: Mapping[str, Any] | None) -> list[Path]:
     """Write page, MJCF, models and JSON of a robot into a folder; the paths written."""
-    text, carried = found.with_joints(out / MJCF)
-    return write_document(out, robot(found, title, provenance, _files(found, text, provenance), carried))
+    text, lines = found.with_joints(out / MJCF)
+    return write_document(out, robot(found, title, provenance, _files(found, text, provenance), lines))
 
 
 def robot(
@@ -84,10 +83,9 @@ def robot(
     title: str,
     provenance: Mapping[str, Any] | None = None,
     files: Sequence[doc.File] = (),
-    carried: Sequence[Carried] = (),
+    took: Sequence[str] = (),
 ) -> doc.Document:
     """The document of a robot that `title` names, with files to take along and what went onto each joint."""
-    took = [line for each in carried for line in each.lines]
     model = (doc.Points(items=tuple(took)), doc.Downloads(files=tuple(files))) if files else ()
     warnings = tuple(f"{name}: {warning}" for name, joint in found.joints.items() for warning in joint.warnings)
     return doc.Document(

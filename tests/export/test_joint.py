@@ -254,6 +254,17 @@ def test_a_robot_that_is_none_is_reported_in_one_line(tmp_path, content, says):
     assert "\n" not in str(error.value)
 
 
+def test_meshes_that_are_not_there_are_left_out_with_a_word(tmp_path):
+    path = tmp_path / "robot.xml"
+    shell = '<mesh name="shell" file="shell.stl"/>'
+    body = '<body><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/><joint name="elbow"/>'
+    world = f'<worldbody>{body}<geom type="mesh" mesh="shell"/></body></worldbody>'
+    path.write_text(f"<mujoco><asset>{shell}</asset>{world}</mujoco>")
+    text, lines = robot_with(path, {"elbow": (stored(), armature_of(stored()))}, tmp_path / "out.xml")
+    assert mujoco.MjModel.from_xml_string(text).ngeom == 0
+    assert lines[0] == "meshes that are not there are left out of robot.xml: shell"
+
+
 def test_nothing_ends_the_comment():
     text = commented(mujoco.MjSpec(), ("of a joint named --><body/>",))
     assert text.count("-->") == 1

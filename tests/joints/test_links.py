@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from bench.errors import InputError, UndeterminedError
+from bench.export.mjcf import robot_with
 from bench.joints.identified import JointLogs
 from bench.joints.links import doubt_links, seek_payload
 from bench.plant.robot import AddedBody, Robot
@@ -71,6 +72,27 @@ def test_a_payload_is_found_with_its_place(tmp_path):
 def test_where_nothing_is_carried_no_payload_is_told(tmp_path):
     with pytest.raises(UndeterminedError, match="the payload of 'forearm' cannot be determined: its mass comes out as"):
         seek_payload(of_arm(tmp_path, log(replace(HIDDEN, cogging=0.0))), "forearm", lambda share: None)
+
+
+def test_what_it_carries_and_what_its_link_has_more_are_in_the_mjcf(tmp_path):
+    before = tmp_path / "arm.xml"
+    before.write_text(MJCF)
+    added = (AddedBody("forearm", MASS, (0.0, 0.0, -DOWN)), AddedBody(joint="elbow", inertia=0.003))
+    text, lines = robot_with(before, {}, tmp_path / "after.xml", added)
+    (tmp_path / "after.xml").write_text(text)
+    was, found = (Robot.of(tmp_path / name, "elbow") for name in ("arm.xml", "after.xml"))
+    assert found.inertia - was.inertia == pytest.approx(MASS * DOWN**2 + 0.003, abs=5e-6)
+    assert found.link_inertia - was.link_inertia == pytest.approx(0.003, rel=1e-6)
+    assert found.model.body_mass.sum() - was.model.body_mass.sum() == pytest.approx(MASS)
+    assert [line.split(":")[0] for line in lines] == ["forearm", "elbow"]
+
+
+def test_a_link_has_no_less_than_nothing(tmp_path):
+    (tmp_path / "arm.xml").write_text(MJCF)
+    text, (line,) = robot_with(tmp_path / "arm.xml", {}, tmp_path / "x.xml", (AddedBody(joint="elbow", inertia=-1.0),))
+    (tmp_path / "x.xml").write_text(text)
+    assert "keeps the MJCF's inertia" in line
+    assert Robot.of(tmp_path / "x.xml", "elbow").link_inertia == pytest.approx(I2 + M2 * C2**2, rel=1e-6)
 
 
 def test_a_body_that_is_not_there_is_named(tmp_path):
