@@ -1,0 +1,52 @@
+"""A UR5e whose six joints hide something each: one command tells it all, and the model that it writes moves as the arm.
+
+The log is of the Newton-Euler equations written out; `python -m tests.studies.robot --help` measures other motions.
+"""
+
+import numpy as np
+import pytest
+
+from tests.studies.robot import measured, table
+
+
+@pytest.fixture(scope="module")
+def figures(tmp_path_factory):
+    """Of the study, which run once."""
+    found = measured(tmp_path_factory.mktemp("ur5e"))
+    print(f"\n{table(found)}")
+    return found
+
+
+@pytest.mark.slow
+def test_every_joint_is_named_and_nothing_else(figures):
+    for joint, one in figures["joints"].items():
+        assert one["named"] == one["hidden"], joint
+    assert not figures["links"]
+
+
+@pytest.mark.slow
+def test_armature_and_friction_are_told(figures):
+    for joint, one in figures["joints"].items():
+        assert abs(one["off"]["armature"]) < 0.01, joint
+        assert abs(one["off"]["viscous_friction_coefficient"]) < 0.03, joint
+        assert abs(one["off"]["coulomb_friction_torque"]) < 0.03, joint
+
+
+@pytest.mark.slow
+def test_what_it_carried_is_told(figures):
+    assert abs(figures["payload"]["mass"]) < 0.02
+    assert figures["payload"]["centre"] < 5e-3
+
+
+@pytest.mark.slow
+def test_the_model_moves_as_the_true_one(figures):
+    """Free for a second, from what the sensors say; RMS over joints, as one of them sticks or slips by chance."""
+    found, true = (np.array(figures["free"][kind]) for kind in ("found", "true"))
+    assert np.median(found / true) < 1.2
+    assert np.linalg.norm(found) < 1.2 * np.linalg.norm(true)
+
+
+@pytest.mark.slow
+def test_it_takes_what_half_a_minute_on_two_cores_has(figures):
+    """Of CPU, with a margin for a machine that others use, too."""
+    assert figures["cpu"] < 120.0
