@@ -7,7 +7,7 @@ or, seldom, anywhere. Where none does, each answer is right or anything: "not kn
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -22,6 +22,8 @@ SLIPPED, HALF = 1e-3, 0.5
 WIDE = 1.5
 #: An explanation so many times likelier than the next is told alone.
 SURE = 20.0
+#: A mistake made in another task, by one and the same function, is so many times likelier made in this one too.
+CARRIED = 50.0
 NOT_KNOWN, COPY = "not known", "copied from student "
 
 #: What a way of working gives, by the names of the form.
@@ -66,7 +68,11 @@ class Explanation:
 
 
 def explanation(
-    answers: Figures, tolerances: Mapping[str, float], of_student: Mapping[str, Any], others: Mapping[str, Figures]
+    answers: Figures,
+    tolerances: Mapping[str, float],
+    of_student: Mapping[str, Any],
+    others: Mapping[str, Figures],
+    elsewhere: Collection[str] = (),
 ) -> Explanation:
     """The likeliest of how answers were made that are not all right.
 
@@ -75,6 +81,7 @@ def explanation(
         tolerances: share by which a right answer may be off, of each.
         of_student: what the truth of a class has of the student: `expected`, and `mistakes` with their figures.
         others: what is expected of each other student.
+        elsewhere: mistakes that the student's other tasks tell.
     """
     expected = of_student["expected"]
     asked = {name: value for name, value in answers.items() if expected.get(name)}
@@ -89,7 +96,8 @@ def explanation(
             likely = sum(
                 _log_density(value, name, figures, expected, tolerances, SLIPPED) for name, value in asked.items()
             )
-            weighed.append((names, figures, math.log(prior) + likely))
+            carried = CARRIED if elsewhere and {*names} <= {*elsewhere} else 1.0
+            weighed.append((names, figures, math.log(prior * carried) + likely))
     weighed.sort(key=lambda one: -one[2])
     names, figures, best = weighed[0]
     after = next((one for one in weighed[1:] if one[0] != names), weighed[0])

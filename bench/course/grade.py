@@ -7,15 +7,16 @@ import hashlib
 import io
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from itertools import groupby
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
 from bench.course.answers import MISTAKES, SLIPS
-from bench.course.explain import NOT_KNOWN, Explanation, explanation
+from bench.course.explain import NOT_KNOWN, SURE, Explanation, explanation
 from bench.course.submission import QUESTIONS, GivenAnswer, Question, Submission, find_submissions, read_submission
 from bench.errors import InputError
 from bench.files import read_text, write_text
@@ -196,10 +197,13 @@ def grade(submission: Submission, known: Mapping[str, Any]) -> GradedStudent:
         raise InputError(f"{submission.source}: student", f"found '{submission.student}'", allowed)
     of_student = known[submission.student]
     graded = [_graded(question, submission.answers.get(question.name), of_student) for question in QUESTIONS]
-    named: list[GradedAnswer] = []
-    for task in dict.fromkeys(question.task for question in QUESTIONS):
-        of_task = [answer for answer in graded if answer.question.task == task]
-        named += _explained(of_task, submission.student, known)
+    tasks = [list(of_task) for _, of_task in groupby(graded, lambda answer: answer.question.task)]
+    told = [_explanation(of_task, submission.student, known) for of_task in tasks]
+    sure = [{*one.names} - {NOT_KNOWN} if one is not None and one.odds >= SURE else set() for one in told]
+    for k, of_task in enumerate(tasks):
+        if told[k] is not None and not sure[k]:  # what a task leaves open the others may tell
+            told[k] = _explanation(of_task, submission.student, known, set().union(*sure))
+    named = [_named(answer, one) for of_task, one in zip(tasks, told, strict=True) for answer in of_task]
     return GradedStudent(submission.student, tuple(named))
 
 
@@ -234,20 +238,22 @@ def _measures(unit: str) -> str:
         return f"'{unit}' is no unit"
 
 
-def _explained(answers: list[GradedAnswer], student: str, known: Mapping[str, Any]) -> list[GradedAnswer]:
-    """Answers of a task, which is done in one way, the wrong ones with what explains most of them."""
+def _explanation(
+    answers: list[GradedAnswer], student: str, known: Mapping[str, Any], elsewhere: Collection[str] = ()
+) -> Explanation | None:
+    """What explains most answers of a task, which is done in one way; None where nothing is wrong."""
     if all(answer.verdict != "wrong" for answer in answers):
-        return answers
+        return None
     given = {answer.question.name: answer.value for answer in answers if math.isfinite(answer.value)}
     tolerances = {answer.question.name: answer.tolerance for answer in answers}
     others = {name: one["expected"] for name, one in known.items() if name != student}
-    found = explanation(given, tolerances, known[student], others)
-    return [
-        replace(answer, explained=found)
-        if answer.verdict == "wrong" and answer.question.name in found.given
-        else answer
-        for answer in answers
-    ]
+    return explanation(given, tolerances, known[student], others, elsewhere)
+
+
+def _named(answer: GradedAnswer, told: Explanation | None) -> GradedAnswer:
+    """A wrong answer with what explains its task, if that gives it."""
+    explained = told is not None and answer.verdict == "wrong" and answer.question.name in told.given
+    return replace(answer, explained=told) if explained else answer
 
 
 def write_grades(graded: GradedClass, out: Path) -> list[Path]:

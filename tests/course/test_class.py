@@ -13,6 +13,7 @@ import pytest
 from scipy.interpolate import make_interp_spline
 from scipy.signal import butter, filtfilt, savgol_filter
 
+from bench.course import record
 from bench.course.grade import SEALED, seal
 from bench.course.record import draw_rig
 from bench.course.submission import QUESTIONS
@@ -176,10 +177,23 @@ class Class:
     took: float
 
 
-def recorded(folder, count):
-    """A class that the command recorded; all of one seed, so that the first students are the same of any count."""
+#: A salt for classes that are the same in every run.
+SALT = 0x5EA1_0FA_C1A55
+
+
+def recorded(folder, count, salt=SALT):
+    """A class that the command recorded; all of one seed, so that the first students are the same of any count.
+
+    Args:
+        folder: of the class and its truth.
+        count: of students.
+        salt: in the place of a random one; the command's own without.
+    """
     start = process_time()
-    status, out, _ = bench("lab", "--record", folder / "class", "--students", count, "--seed", 7)
+    with pytest.MonkeyPatch.context() as patch:
+        if salt is not None:
+            patch.setattr(record.secrets, "randbits", lambda bits: salt)
+        status, out, _ = bench("lab", "--record", folder / "class", "--students", count, "--seed", 7)
     took = process_time() - start
     assert status == 0
     assert out.count("wrote") == count + 1
@@ -248,6 +262,12 @@ def drawn_pairs(count):
 @pytest.fixture(scope="module")
 def four(tmp_path_factory):
     return recorded(tmp_path_factory.mktemp("four"), 4)
+
+
+@pytest.fixture(scope="module")
+def salted(tmp_path_factory):
+    """A class of one, of the same seed, with the salt that the command draws."""
+    return recorded(tmp_path_factory.mktemp("salted"), 1, salt=None)
 
 
 def test_every_mistake_is_named_and_no_right_one_marked_down(four, tmp_path):
@@ -325,19 +345,19 @@ def test_two_forms_of_one_student_leave_the_others_alone(tmp_path, known):
     assert "08" in ended.out
 
 
-def test_the_seed_does_not_give_the_truth_away(four):
+def test_the_seed_does_not_give_the_truth_away(salted):
     """Who draws axes for every seed, as the course's code does, finds none like a student's public rig file."""
-    public = tomllib.loads((four.folder / "class" / "student-01" / "rig.toml").read_text(encoding="utf-8"))
+    public = tomllib.loads((salted.folder / "class" / "student-01" / "rig.toml").read_text(encoding="utf-8"))
     assert not [seed for seed in range(300) if draw_rig(np.random.default_rng([seed, 1]))["load"] == public["load"]]
-    salt = int(json.loads((four.folder / "class.truth.json").read_text())["salt"], 16)
+    salt = int(json.loads((salted.folder / "class.truth.json").read_text())["salt"], 16)
     assert salt.bit_length() > 64
     # with the salt it is found: what keeps the truth is the salt, which no student's file has
     assert draw_rig(np.random.default_rng([7, 1, salt]))["load"] == public["load"]
-    files = [path for path in (four.folder / "class").rglob("*") if path.is_file()]
+    files = [path for path in (salted.folder / "class").rglob("*") if path.is_file()]
     assert not [path for path in files if f"{salt:032x}".encode() in path.read_bytes()]
 
 
-def test_students_folders_hold_no_truth(four, tmp_path):
+def test_students_folders_hold_no_truth(four, salted):
     folders = sorted((four.folder / "class").iterdir())
     assert [folder.name for folder in folders] == [f"student-{number:02}" for number in four.students]
     assert not list((four.folder / "class").rglob("*truth*"))
@@ -353,8 +373,7 @@ def test_students_folders_hold_no_truth(four, tmp_path):
             assert known["expected"][name] == pytest.approx(true, rel=0.03), name
         disk = 19.0
         assert known["truth"]["J_load"] > 0.5 * disk
-    again = recorded(tmp_path, 1)
-    assert (again.folder / "class" / "student-01" / "rig.toml").read_text(encoding="utf-8") != texts[0]
+    assert (salted.folder / "class" / "student-01" / "rig.toml").read_text(encoding="utf-8") != texts[0]
     status, _, err = bench("lab", "--record", four.folder / "class", "--students", 2)
     assert (status, err.count("\n")) == (2, 1)
     assert "not empty" in err

@@ -178,6 +178,25 @@ def test_a_mistake_of_one_task_is_not_looked_for_in_another():
     assert math.isnan(graded_answers({}, {"J": 1.0})[1]["J"].expected)
 
 
+def test_what_a_task_leaves_open_another_task_tells():
+    """Of two mistakes M_max alone tells neither: one is on it, the other z deviations of 1.5 % off, exp(z**2/2) to 1.
+
+    J is of one alone, so that is 50 times likelier made in task 10 too: 50*exp(-z**2/2) is 20 at z = 1.354.
+    """
+    expected, given = {"J": 20.0, "M_max": 3.5}, {"J": 30.0, "M_max": 4.2}
+    open_ = ([OTHER], {"M_max": 4.2})
+    for apart in (0.1, -1.34, 1.37):
+        of_j = ([MISTAKE], {"J": 30.0, "M_max": 4.2 * math.exp(0.015 * apart)})
+        alone = told({"M_max": 3.5}, {"M_max": 4.2}, mistakes=[open_, of_j])
+        assert alone == {"M_max": f"{OTHER}, or {MISTAKE}"}
+        both = MISTAKE if abs(apart) < 1.35 else f"{MISTAKE}, or {OTHER}"
+        assert told(expected, given, mistakes=[open_, of_j]) == {"J": MISTAKE, "M_max": both}, apart
+    # what another task tells is not held against what this one tells by itself
+    far = ([MISTAKE], {"J": 30.0, "M_max": 5.0})
+    assert told(expected, given, mistakes=[open_, far]) == {"J": MISTAKE, "M_max": OTHER}
+    assert told(expected, given, mistakes=[([MISTAKE], {"J": 30.0}), open_]) == {"J": MISTAKE, "M_max": OTHER}
+
+
 def test_an_answer_that_the_mistake_does_not_give_is_not_put_down_to_it():
     """J and K_fric_w are the mistake's; K_fric_0 far from it and from right is of something else."""
     ways = [([MISTAKE], {"J": 30.0, "K_fric_w": 2e-3})]
