@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from bench.cli.common import Subject
+    from bench.diagnosis.replay import Replay
     from bench.plant.model_file import StoredModel
     from bench.view.side_by_side import SideBySide
 
@@ -30,7 +31,10 @@ ALONE = "axis"
 def replay(
     model: ModelArgument,
     trace: Annotated[Path, typer.Argument(help="Recording to run it along.")],
-    out: Annotated[Path, typer.Option("--out", help="CSV to write.")],
+    out: Annotated[
+        Path,
+        typer.Option("--out", help="File to write: CSV, or joint states for Foxglove and Rerun where it is .mcap."),
+    ],
     rig: BesideRigOption = None,
     axis_name: AxisOption = None,
     report: ReportOption = None,
@@ -41,7 +45,10 @@ def replay(
     """Run a diagnosed model along a recording; write measured and simulated signals."""
     of = common.subject(rig, axis_name, mjcf, joint, at, trace)
     replayed = bench.replay(model, of.read(trace), of.rig)
-    write_text(out, replayed.csv())
+    if out.suffix.lower() == ".mcap":
+        _joint_states(replayed, out, common.one_joint(joint) or ALONE)
+    else:
+        write_text(out, replayed.csv())
     if report is not None:
         from bench.report.simulation import replay as document_of
 
@@ -49,6 +56,19 @@ def replay(
     common.say(replayed.summary)
     common.list_files([out, report])
     common.warn(replayed.warnings)
+
+
+def _joint_states(replayed: Replay, out: Path, joint: str) -> None:
+    """Measured beside simulated; without efforts that are none, as a drive's amperes."""
+    from bench.axis_kind import KINDS
+    from bench.trace.joint_states import write_joint_states
+
+    topics = {"/measured": replayed.measured, "/simulated": replayed.simulated}
+    if replayed.effort_unit not in {kind.effort_unit for kind in KINDS}:
+        common.warn([f"{out.name} has no effort: joint states hold no {replayed.effort_unit}"])
+        for signals in topics.values():
+            del signals["effort"]
+    write_joint_states(out, joint, replayed.time, topics)
 
 
 def view(

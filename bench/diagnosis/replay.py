@@ -63,6 +63,20 @@ class Replay:
         gaps = f"{torque} {self.effort_unit}"
         return f"{gaps}, {velocity} {self.speed_unit}" if np.isfinite(self.velocity_simulated).any() else gaps
 
+    @property
+    def measured(self) -> dict[str, Array]:
+        """Of a joint's state: position, velocity, effort."""
+        return {"position": self.position, "velocity": self.velocity, "effort": self.torque}
+
+    @property
+    def simulated(self) -> dict[str, Array]:
+        """The same of the model."""
+        return {
+            "position": self.position_simulated,
+            "velocity": self.velocity_simulated,
+            "effort": self.torque_simulated,
+        }
+
     def csv(self) -> str:
         """The contract's CSV, empty cells where the model says nothing."""
         speed, effort = self.speed_unit, self.effort_unit

@@ -10,7 +10,11 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
 
+from bench.trace.choose import GivenOptions
+from bench.trace.read import read
 from bench.trace.trace import Trace
 from bench.trace.write import write
 from tests.diagnosis.command import started
@@ -119,6 +123,46 @@ def test_replay_writes_the_contracts_columns_and_the_diagnosed_gap(bench, diagno
     assert np.sqrt(np.mean((table[:, 1] - table[:, 2]) ** 2)) == pytest.approx(
         gap["velocity"]["holdout"]["after"], rel=0.1
     )
+
+
+def joint_states(path, topic):
+    """Schema, time of the log - ns - and message of each, as the format's own library reads them."""
+    with Path(path).open("rb") as file:
+        decoded = make_reader(file, decoder_factories=[DecoderFactory()]).iter_decoded_messages(topics=[topic])
+        return [(schema.name, message.log_time, state) for schema, _, message, state in decoded]
+
+
+def test_a_replay_is_joint_states_for_who_looks_at_them_elsewhere(bench, diagnosed):
+    """Each sample of the CSV beside them, under its time."""
+    model, trace = diagnosed / "found" / "model.toml", diagnosed / "run2.csv"
+    for out in ("replay.csv", "replay.mcap"):
+        assert bench("replay", model, trace, "--rig", "rig.toml", "--out", out)[::2] == (0, "")
+    with Path("replay.csv").open(encoding="utf-8") as file:
+        rows = np.array([[float(cell) if cell else np.nan for cell in row] for row in list(csv.reader(file))[1:]])
+    for topic, columns in (("/measured", (1, 3)), ("/simulated", (2, 4))):
+        schemas, logged, states = zip(*joint_states("replay.mcap", topic), strict=True)
+        assert set(schemas) == {"sensor_msgs/msg/JointState"}
+        assert {tuple(state.name) for state in states} == {("axis",)}
+        np.testing.assert_allclose(1e-9 * np.array(logged), rows[:, 0], atol=1e-9)
+        stamps = [state.header.stamp.sec + state.header.stamp.nanosec * 1e-9 for state in states]
+        np.testing.assert_allclose(stamps, rows[:, 0], atol=1e-9)
+        found = np.array([[state.velocity[0], state.effort[0]] for state in states])
+        np.testing.assert_allclose(found, rows[:, columns], rtol=1e-8, atol=1e-12)
+        turned = np.array([state.position[0] for state in states])
+        assert np.gradient(turned, 1e-3)[10:-10] == pytest.approx(found[10:-10, 0], abs=1.0)
+    trace = read("replay.mcap", GivenOptions(axis="/measured/axis"))
+    assert set(trace.signals) == {"position", "velocity", "torque"}
+
+
+def test_amperes_are_no_effort_of_a_joint_state(bench, diagnosed):
+    (diagnosed / "in_a.toml").write_text('name = "axis"\nkind = "rotary"\n')
+    run = diagnosed / "run2.csv"
+    assert bench("diagnose", run, "--rig", diagnosed / "in_a.toml", "--out", "amperes")[0] == 0
+    status, _, err = bench("replay", "amperes/model.toml", run, "--rig", diagnosed / "in_a.toml", "--out", "x.mcap")
+    assert status == 0
+    assert "x.mcap has no effort: joint states hold no A" in err
+    lengths = {(len(state.velocity), len(state.effort)) for _, _, state in joint_states("x.mcap", "/simulated")}
+    assert lengths == {(1, 0)}
 
 
 def test_nothing_hidden_is_nothing_missing(bench):
