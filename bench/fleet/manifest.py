@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import pyarrow.parquet as pq
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.files import read_bytes
+from bench.rig.rig import shipped
 
 #: Columns that a manifest must have; `axis` is the rig and `time` unknown where it has none.
 REQUIRED = ("file", "rig")
@@ -35,9 +37,12 @@ class Manifest:
         return [value or "" for value in self.table[column].cast(pa.string()).to_pylist()]
 
     def located(self, column: str) -> list[str]:
-        """Paths and URLs of `file` or `rig` (n,): a relative path begins at the manifest's folder."""
+        """Paths and URLs of `file` or `rig` (n,), which is a file of the manifest's folder or the name of a shipped
+        one.
+        """
         folder, named = self.path.parent, (one.removeprefix("file://") for one in self.text(column))
-        return [one if "://" in one else str(folder / one) for one in named]
+        known = shipped() if column == "rig" else {}
+        return [one if "://" in one else str(_beside(folder, one, known)) for one in named]
 
     @property
     def inputs(self) -> list[Path]:
@@ -58,6 +63,12 @@ class Manifest:
             microseconds = column.cast(pa.timestamp("us"), safe=False).cast(pa.int64())
             return 1e-6 * microseconds.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
         return column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+
+
+def _beside(folder: Path, named: str, shipped: Mapping[str, Path]) -> Path:
+    """The file of a folder, or where it has none the shipped one of that name."""
+    path = folder / named
+    return shipped[named] if named in shipped and not os.path.lexists(path) else path
 
 
 def read_manifest(path: Path) -> Manifest:

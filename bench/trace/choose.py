@@ -70,11 +70,13 @@ class SignalColumn:
         channel: as the reader returned it.
         scale: how its numbers become SI; in `samples` where they only count them.
         sign: +1 or -1, by which values are multiplied.
+        usual: unit that was taken where the file tells none; None where it does.
     """
 
     channel: Channel
     scale: UnitScale
     sign: float = 1.0
+    usual: str | None = None
 
 
 def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, SignalColumn], tuple[str, ...]]:
@@ -106,8 +108,10 @@ def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, SignalC
     if "time" not in chosen and how.sample_period is not None:
         index = _index(recording, how.columns)
         chosen |= {"time": SignalColumn(index, _INDEX)} if index is not None else {}
+    taken = ", ".join(f"{signal} taken as {one.usual}" for signal, one in chosen.items() if one.usual is not None)
+    told = (f"{taken}, as the file tells no unit",) if taken else ()
     left = (f"{signal} left out: {fault.where} {fault.found}" for signal, fault in faults.items() if signal != "time")
-    return chosen, (*notes, *left)
+    return chosen, (*told, *notes, *left)
 
 
 def of_axis(recording: Recording, axis: str | None) -> tuple[Channel, ...]:
@@ -176,21 +180,18 @@ def _signal(
             notes.append(f"{signal} read from '{channel.label}', as the file has no '{given}'")
     if channel.defect is not None:
         raise channel.defect
-    scale = _scale(recording, signal, channel, unit, notes)
     own = unit_of(channel.unit)
+    told = unit_of(unit or channel.unit)
+    usual = recording.usual_units.get(signal) if told is None and not channel.moments else None
+    scale = _scale(signal, channel, told or usual)
     if named and not channel.moments and None not in (unit, own) and not _means(str(own), signal, scale):
         notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
-    return SignalColumn(channel, scale, sign)
+    return SignalColumn(channel, scale, sign, usual)
 
 
-def _scale(recording: Recording, signal: str, channel: Channel, given: str | None, notes: list[str]) -> UnitScale:
+def _scale(signal: str, channel: Channel, unit: str | None) -> UnitScale:
     if channel.moments:
         return scale_in(signal, channel.unit or "s", channel.place())
-    unit = unit_of(given or channel.unit)
-    usual = recording.usual_units.get(signal)
-    if unit is None and usual is not None:
-        unit = usual
-        notes.append(f"{signal} taken as {usual}, as the file tells no unit")
     line = f'{signal} = "{channel.name} [unit]" in the rig\'s [trace.columns]'
     if unit is None:
         reason = channel.open_unit or "has no unit"

@@ -1,15 +1,17 @@
 """Whatever names and numbers a manifest carries, the fleet's table has them as they were."""
 
 import csv
+import hashlib
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from bench.fleet.evaluate import PlannedRecording
+from bench.fleet.evaluate import PlannedRecording, plan
 from bench.fleet.fleet import tabulate, write_table
 from bench.fleet.manifest import read_manifest
+from bench.rig.rig import shipped
 
 NAMES = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1)
 #: Of a CSV, whose cells have no line ends, and are numbers where they look like numbers.
@@ -47,3 +49,14 @@ def test_a_csv_manifest(tmp_path, rows):
     manifest = read_manifest(tmp_path / "m.csv")
     assert [tuple(row.values())[:4] for row in manifest.table.to_pylist()] == rows
     assert through(tmp_path, manifest)["note"] == [row[2] for row in rows]
+
+
+def test_a_rig_is_a_file_of_the_folder_or_else_a_shipped_one(tmp_path):
+    """Only the folder's own `lab` is a path: what is in it decides, not its name; nothing is made of other names."""
+    (tmp_path / "lab").touch()
+    (tmp_path / "m.csv").write_text("file,rig\nemps,emps\na.csv,lab\na.csv,epms\n")
+    manifest = read_manifest(tmp_path / "m.csv")
+    assert manifest.located("rig") == [str(shipped()["emps"]), *(str(tmp_path / name) for name in ("lab", "epms"))]
+    assert manifest.located("file")[0] == str(tmp_path / "emps")
+    (planned, *_) = plan(manifest, False, (), None, 1, lambda share: None)
+    assert planned.basis["rig_sha256"] == hashlib.sha256(shipped()["emps"].read_bytes()).hexdigest()
