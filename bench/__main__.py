@@ -3,6 +3,8 @@
 import os
 import signal
 import sys
+from contextlib import suppress
+from threading import Event, Thread
 from types import FrameType
 
 # Many small least-squares problems: BLAS threads only wait for one another (a diagnosis took 9.7 s with one thread, 14
@@ -13,6 +15,8 @@ from bench import __version__
 
 #: Bytes of addresses that NumPy, Arrow and MuJoCo load in; less by any `ulimit -v` may never end.
 LEAST_MEMORY = 1000 * 1000 * 1024
+#: Threads that Arrow, MuJoCo and numerics start on a machine of two cores, rounded up; where one is refused they abort.
+LEAST_THREADS = 24
 
 
 class Stopped(BaseException):
@@ -31,13 +35,34 @@ def _memory() -> float:
     return float("inf") if most == resource.RLIM_INFINITY else most
 
 
+def _threads() -> bool:
+    """Whether as many threads as libraries need may run beside one another (1 ms)."""
+    ended = Event()
+    try:
+        for _ in range(LEAST_THREADS):
+            Thread(target=ended.wait).start()
+        return True
+    except RuntimeError:  # of `ulimit -u`, or of the container
+        return False
+    finally:
+        ended.set()
+
+
+def _lacking() -> str | None:
+    """What libraries wait for without end, or abort the process for; None where there is enough of it."""
+    if _memory() < LEAST_MEMORY:
+        return "ulimit -v: found less than 1 GB, for which NumPy's OpenBLAS waits for ever; allow 1 GB"
+    return None if _threads() else f"ulimit -u: found room for fewer than {LEAST_THREADS} threads; allow more"
+
+
 def main() -> None:
     """Entry point of `bench`."""
-    if sys.argv[1:] == ["--version"]:
-        print(__version__)  # 0.03 s of CPU; 0.2 s with the command line's library
-        return
-    if os.name == "posix" and _memory() < LEAST_MEMORY:
-        os.write(2, b"bench: ulimit -v: found less than 1 GB, for which NumPy's OpenBLAS waits for ever; allow 1 GB\n")
+    with suppress(OSError):  # which the command line tells
+        if sys.argv[1:] == ["--version"] and sys.stdout is not None:
+            print(__version__, flush=True)  # 0.03 s of CPU; 0.2 s with the command line's library
+            return
+    if os.name == "posix" and (lacking := _lacking()):
+        os.write(2, f"bench: {lacking}\n".encode())
         os._exit(2)
     try:
         for number in (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if os.name == "posix" else [])):

@@ -3,10 +3,12 @@
 import ast
 import json
 import os
+import shutil
 import signal
 import stat
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -305,14 +307,31 @@ def test_a_folder_that_cannot_be_made(tmp_path):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no device that is full")
 def test_standard_output_that_takes_nothing_is_told(tmp_path):
-    for redirected, words in (("> /dev/full", "No space left on device"), (">&-", "is closed")):
-        line = f"{sys.executable} -m bench rigs {redirected}"
+    full, closed = ("> /dev/full", "No space left on device"), (">&-", "is closed")
+    for asked, (redirected, words) in product(("rigs", "--version"), (full, closed)):
+        line = f"{sys.executable} -m bench {asked} {redirected}"
         done = subprocess.run(["sh", "-c", line], cwd=tmp_path, capture_output=True, text=True, check=False)
         assert_one_line(done, "standard output", words)
 
 
 def test_too_little_room_for_numpy_is_told_at_once(tmp_path):
     """OpenBLAS waits for ever for memory that it does not get."""
-    line = f"ulimit -v 400000; exec {sys.executable} -m bench rigs"
-    done = subprocess.run(["bash", "-c", line], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
-    assert_one_line(done, "ulimit -v", "1 GB")
+    assert_one_line(limited("-v 400000", "rigs", tmp_path), "ulimit -v", "1 GB")
+
+
+def test_files_and_processes_that_the_system_refuses_are_told(folder):
+    (folder / "fleet.csv").write_text("file,rig\nrun.csv,rig.toml\n")
+    assert_one_line(limited("-n 8", "fleet fleet.csv --out so", folder), "Too many open files", "ulimit -n")
+
+
+@pytest.mark.skipif(shutil.which("setpriv") is None, reason="root may start as many threads as it likes")
+def test_too_few_threads_are_told_before_a_library_aborts_the_process(tmp_path):
+    rights = ("--inh-caps", "+dac_override", "--ambient-caps", "+dac_override")
+    other = ["setpriv", "--reuid", "54321", "--clear-groups", *rights] if os.geteuid() == 0 else []
+    assert_one_line(limited("-u 4", "rigs", tmp_path, other), "ulimit -u", "allow more")
+
+
+def limited(limit, line, folder, before=()):
+    line = f"ulimit {limit}; exec {sys.executable} -m bench {line}"
+    whole = [*before, "bash", "-c", line]
+    return subprocess.run(whole, cwd=folder, capture_output=True, text=True, check=False, timeout=60)

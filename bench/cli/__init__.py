@@ -82,6 +82,8 @@ GROUP = "servobench.commands"
 
 #: Errors of writing where nobody named a file.
 UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
+#: Errors of a system that has no more to give, whatever it was asked for.
+SCARCE = (errno.EMFILE, errno.ENFILE, errno.EAGAIN, errno.ENOMEM)
 #: Characters of a line that says what is wrong; a path may have 4096.
 LONGEST = 6000
 
@@ -106,6 +108,8 @@ def main() -> None:
         if isinstance(fault, OSError) and fault.filename is None and fault.errno in UNWRITABLE:
             _leave_output()
             sys.exit(_failed(f"standard output: cannot be written ({fault.strerror}); send it where there is room", 2))
+        if isinstance(fault, OSError) and fault.errno in SCARCE:
+            sys.exit(_failed(f"the system: {fault.strerror}; raise its limit (ulimit -n, -u), or run less at once", 2))
         sys.exit(_failed(_fault(fault), 70))
     sys.exit(status if isinstance(status, int) else 0)
 
