@@ -85,7 +85,10 @@ def cut(trace: Trace, chunk: int = CHUNK) -> Iterator[Trace]:
 
 def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
     keep_freed_memory()
-    with reading(path, PARQUET.format, DAMAGE), pq.ParquetFile(path, memory_map=True) as file:
+    with (
+        reading(path, PARQUET.format, DAMAGE),
+        pq.ParquetFile(path, memory_map=True, page_checksum_verification=True) as file,
+    ):
         fields = list(file.schema_arrow)
         empty = Recording(
             tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), PARQUET.format, readable(path)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import IO
 
@@ -79,6 +80,6 @@ def _csv_gz(table: pa.Table, file: IO[bytes]) -> None:
 WRITERS: dict[str, Callable[[pa.Table, IO[bytes]], object]] = {
     ".csv": _csv,
     ".csv.gz": _csv_gz,
-    ".parquet": pq.write_table,
+    ".parquet": partial(pq.write_table, write_page_checksum=True),  # by which a reader sees a bit that has flipped
     ".trace": lambda table, file: file.write(machine_expert_trace(table)),
 }

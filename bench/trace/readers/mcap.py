@@ -136,17 +136,20 @@ def _messages(source: Source, unread: dict[str, str]) -> Iterator[_Logged]:
 
 
 def _records(source: Source) -> Iterator[Any]:
-    """Records in the file's order, those of chunks too, which are unpacked one at a time within the bounds."""
+    """Records in the file's order, those of chunks too, which are unpacked one at a time within the bounds.
+
+    Checksums are compared where the file has them.
+    """
     reader = library("mcap.stream_reader", source.path, MCAP.format)
     size = 0
-    for record in reader.StreamReader(BytesIO(source.content), emit_chunks=True).records:
+    for record in reader.StreamReader(BytesIO(source.content), emit_chunks=True, validate_crcs=True).records:
         if not isinstance(record, reader.Chunk):
             yield record
             continue
         size += record.uncompressed_size
         require_expansion(source.path, size, len(source.content))
         data = unpack(record.data, record.uncompressed_size) if record.compression else record.data
-        yield from reader.breakup_chunk(replace(record, compression="", data=data))
+        yield from reader.breakup_chunk(replace(record, compression="", data=data), validate_crc=True)
 
 
 def _fields(schema: str, message: Any) -> Iterator[tuple[str, float, str | None, str | None]]:  # noqa: ANN401

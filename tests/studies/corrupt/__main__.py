@@ -44,9 +44,9 @@ def corrupted(kind: str, number: int, folder: Path) -> tuple[Path, float]:
     columns = trace.time, trace["velocity"], trace["current"]
     if kind in signals.KINDS:
         columns = signals.KINDS[kind](rng, *columns)
-    ending, change = files.KINDS.get(kind, ("csv", lambda _, content: content))
-    path = folder / f"run.{ending}"
-    path.write_bytes(change(rng, files.KEPT[ending](columns)))
+    kept, change = files.KINDS.get(kind, ("csv", lambda _, content: content))
+    path = folder / f"run.{kept.split()[0]}"
+    path.write_bytes(change(rng, {**files.KEPT, **files.SUMMED}[kept](columns)))
     return path, inertia
 
 
@@ -54,7 +54,8 @@ def outcome(kind: str, number: int, folder: Path) -> tuple[str, str]:
     """One of OUTCOMES, and the line in which it was refused or told, if any."""
     path, inertia = corrupted(kind, number, folder)
     try:
-        trace = bench.read(path, RIG.trace)
+        columns = files.COLUMNS.get(path.suffix[1:])
+        trace = bench.read(path, RIG.trace if columns is None else columns)
         found = bench.identify(trace, RIG)
     except BenchError as error:
         return "refused", str(error)

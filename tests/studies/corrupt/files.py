@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import io
+import json
 from collections.abc import Callable
+from functools import partial
 
+import h5py
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from asammdf import MDF, Signal
+from mcap.writer import CompressionType, Writer
+from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
 from tests.hostile import csv_of
@@ -19,26 +25,89 @@ def as_csv(columns: Columns) -> bytes:
     return csv_of(*columns).encode()
 
 
-def as_parquet(columns: Columns) -> bytes:
+def as_parquet(columns: Columns, checksums: bool = False) -> bytes:
     names, kept = ("time [s]", "velocity [rad/s]", "current [A]"), io.BytesIO()
-    pq.write_table(pa.table(dict(zip(names, columns, strict=True))), kept)
+    table = pa.table(dict(zip(names, columns, strict=True)))
+    pq.write_table(table, kept, use_dictionary=False, write_page_checksum=checksums)
     return kept.getvalue()
+
+
+def named(columns: Columns) -> dict[str, np.ndarray]:
+    return dict(zip(("time", "velocity", "current"), columns, strict=True))
 
 
 def as_npz(columns: Columns) -> bytes:
     kept = io.BytesIO()
-    np.savez(kept, **dict(zip(("time", "velocity", "current"), columns, strict=True)))
+    np.savez(kept, **named(columns))
+    return kept.getvalue()
+
+
+def as_npy(columns: Columns) -> bytes:
+    kept = io.BytesIO()
+    np.save(kept, np.rec.fromarrays(columns, names="time,velocity,current"))
     return kept.getvalue()
 
 
 def as_mat(columns: Columns) -> bytes:
     kept = io.BytesIO()
-    savemat(kept, dict(zip(("time", "velocity", "current"), columns, strict=True)))
+    savemat(kept, named(columns))
     return kept.getvalue()
 
 
-#: Endings of files, and how they are made.
-KEPT: dict[str, Callable[[Columns], bytes]] = {"csv": as_csv, "parquet": as_parquet, "npz": as_npz, "mat": as_mat}
+def as_hdf5(columns: Columns, checksums: bool = False) -> bytes:
+    kept = io.BytesIO()
+    with h5py.File(kept, "w") as file:
+        for name, values in named(columns).items():
+            file.create_dataset(name, data=values, chunks=values.shape, fletcher32=checksums)
+    return kept.getvalue()
+
+
+def as_mdf4(columns: Columns) -> bytes:
+    kept, units = io.BytesIO(), {"velocity": "rad/s", "current": "A"}
+    with MDF(version="4.10") as file:
+        file.append([Signal(named(columns)[name], columns[0], name=name, unit=unit) for name, unit in units.items()])
+        file.save(kept)
+    return kept.getvalue()
+
+
+def as_tdms(columns: Columns) -> bytes:
+    kept = io.BytesIO()
+    with TdmsWriter(kept) as writer:
+        writer.write_segment([ChannelObject("axis", name, values) for name, values in named(columns).items()])
+    return kept.getvalue()
+
+
+def as_mcap(columns: Columns, checksums: bool = True) -> bytes:
+    kept = io.BytesIO()
+    writer = Writer(kept, compression=CompressionType.NONE, enable_crcs=checksums, enable_data_crcs=checksums)
+    writer.start()
+    channel = writer.register_channel(topic="axis", message_encoding="json", schema_id=0)
+    for time, velocity, current in zip(*columns, strict=True):
+        message = json.dumps({"velocity": velocity, "current": current}).encode()
+        writer.add_message(channel, log_time=round(1e9 * time), publish_time=0, data=message)
+    writer.finish()
+    return kept.getvalue()
+
+
+#: Endings of files, and how they are made; some with sums by which a reader sees that a bit has flipped.
+KEPT: dict[str, Callable[[Columns], bytes]] = {
+    "csv": as_csv,
+    "parquet": as_parquet,
+    "npz": as_npz,
+    "npy": as_npy,
+    "mat": as_mat,
+    "h5": as_hdf5,
+    "mf4": as_mdf4,
+    "tdms": as_tdms,
+    "mcap": as_mcap,
+}
+SUMMED = {"parquet with sums": partial(as_parquet, checksums=True), "h5 with sums": partial(as_hdf5, checksums=True)}
+SUMMED |= {"mcap without sums": partial(as_mcap, checksums=False)}
+#: Signals of formats whose times are no column.
+COLUMNS = {
+    "mcap": {"velocity": "axis.velocity [rad/s]", "current": "axis.current [A]"},
+    "mf4": {"velocity": "velocity", "current": "current"},
+}
 
 
 def bit(rng: np.random.Generator, content: bytes) -> bytes:
@@ -101,7 +170,7 @@ def gone(rng: np.random.Generator, rows: list[bytes]) -> list[bytes]:
 
 
 KINDS: dict[str, tuple[str, Callable[[np.random.Generator, bytes], bytes]]] = {
-    **{f"{ending}: one bit flipped": (ending, bit) for ending in KEPT},
+    **{f"{kept}: one bit flipped": (kept, bit) for kept in (*KEPT, *SUMMED)},
     **{f"{ending}: cut off": (ending, cut) for ending in KEPT},
     "csv: one digit changed": ("csv", digits(1)),
     "csv: fifty digits changed": ("csv", digits(50)),

@@ -1,8 +1,11 @@
 """A small sample of corrupted recordings, with a floor: none that a check can see is wrong without a word."""
 
+import numpy as np
 import pytest
 
-from tests.studies.corrupt import signals
+import bench
+from bench.errors import InputError
+from tests.studies.corrupt import files, signals
 from tests.studies.corrupt.__main__ import KINDS, outcome
 
 #: Of each way in which one can be noticed: by sign, drop-out, range, delay, scale, time and damage to the file.
@@ -21,6 +24,19 @@ SAMPLE = (
 @pytest.mark.parametrize("kind", SAMPLE)
 def test_none_is_wrong_without_a_word(tmp_path, kind):
     assert [what for number in range(2) if (what := outcome(kind, number, tmp_path)[0]) == "wrong"] == []
+
+
+@pytest.mark.parametrize("kept", ["parquet with sums", "mcap", "h5 with sums"])
+def test_a_bit_that_flips_among_the_samples_is_seen_where_the_file_has_sums(tmp_path, kept):
+    """The number is as good as it was: of a text a digit, of an array a bit of the mantissa."""
+    time, velocity = 1e-3 * np.arange(400), np.random.default_rng(0).normal(size=400)
+    content = bytearray({**files.KEPT, **files.SUMMED}[kept]((time, velocity, velocity)))
+    text, binary = (content.find(one) for one in (repr(float(velocity[200])).encode(), velocity[200].tobytes()))
+    content[max(text + 6, binary)] ^= 1
+    path = tmp_path / f"run.{kept.split()[0]}"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match="truncated or damaged"):
+        bench.read(path, files.COLUMNS.get(kept, {"time": "time [s]", "velocity": "velocity [rad/s]"}))
 
 
 def test_what_is_sound_is_not_refused(tmp_path):
