@@ -62,16 +62,16 @@ def demo(out: Path, seed: int, progress: Callable[[float], None]) -> tuple[Docum
     for one in found.effects:
         known = {k: v for present in truth.effects if present.effect is one.effect for k, v in present.values}
         tables.append(parameters_table(words(one.name), one.parameters, known))
-    answers = {"What was hidden?": f"{_told(truth)}.", **shown.answers}
+    answers = {"What was hidden?": f"{_hidden(truth)}.", **shown.answers}
     beside = section("truth", "Found beside the truth", *tables)
     return shown.model_copy(update={"answers": answers, "sections": (beside,)}), list(dict.fromkeys(files))
 
 
-def _told(truth: Truth) -> str:
+def _hidden(truth: Truth) -> str:
     """Effects that are hidden, with their values."""
     kind = truth.parameters.kind
-    told = {
+    hidden = {
         one.name: ", ".join(f"{words(key)} {number(*value, 3)}" for key, value in effect_values(one, kind).items())
         for one in truth.effects
     }
-    return "; ".join(f"{words(name)} ({of})" if of else words(name) for name, of in told.items())
+    return "; ".join(f"{words(name)} ({of})" if of else words(name) for name, of in hidden.items())

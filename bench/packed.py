@@ -37,7 +37,7 @@ def pack(path: Path, result: object) -> None:
         TypeError: a part of it is neither a dataclass, an effect, an array, a number nor a text, nor made of those.
     """
     arrays: dict[str, Array] = {}
-    parts = json.dumps(_told(result, arrays))
+    parts = json.dumps(_pack(result, arrays))
     with whole(path) as temporary, temporary.open("wb") as file:
         np.savez_compressed(file, **arrays, **{_PARTS: np.array(parts)})
 
@@ -52,7 +52,7 @@ def unpack(path: Path, kind: type) -> Any:  # noqa: ANN401 - of this kind
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in stored.files}
-        result = _had(parse_json(str(arrays[_PARTS]), path), arrays)
+        result = _unpack(parse_json(str(arrays[_PARTS]), path), arrays)
     except (
         ValueError,
         KeyError,
@@ -70,7 +70,7 @@ def unpack(path: Path, kind: type) -> Any:  # noqa: ANN401 - of this kind
     return result
 
 
-def _told(value: object, arrays: dict[str, Array]) -> Any:  # noqa: ANN401 - what JSON can hold
+def _pack(value: object, arrays: dict[str, Array]) -> Any:  # noqa: ANN401 - what JSON can hold
     match value:
         case None | bool() | int() | float() | str():
             return value
@@ -83,31 +83,31 @@ def _told(value: object, arrays: dict[str, Array]) -> Any:  # noqa: ANN401 - wha
             arrays[name] = value
             return {"array": name}
         case Mapping():
-            return {"mapping": [[_told(key, arrays), _told(one, arrays)] for key, one in value.items()]}
+            return {"mapping": [[_pack(key, arrays), _pack(one, arrays)] for key, one in value.items()]}
         case tuple() | list() | frozenset():
             kind = next(name for name, kind in _SERIES.items() if isinstance(value, kind))
-            return {kind: [_told(one, arrays) for one in value]}
+            return {kind: [_pack(one, arrays) for one in value]}
         case _ if is_dataclass(value):
-            known = {one.name: _told(getattr(value, one.name), arrays) for one in fields(value) if one.init}
+            known = {one.name: _pack(getattr(value, one.name), arrays) for one in fields(value) if one.init}
             return {"class": f"{type(value).__module__}:{type(value).__qualname__}", "fields": known}
     raise TypeError(f"found {type(value).__name__}, which cannot be stored")
 
 
-def _had(told: Any, arrays: Mapping[str, Array]) -> Any:  # noqa: ANN401 - whatever was told
-    match told:
+def _unpack(packed: Any, arrays: Mapping[str, Array]) -> Any:  # noqa: ANN401 - whatever was told
+    match packed:
         case {"effect": name}:
             return catalogue()[name]
         case {"array": name}:
             return arrays[name]
         case {"mapping": pairs}:
-            return {_had(key, arrays): _had(one, arrays) for key, one in pairs}
+            return {_unpack(key, arrays): _unpack(one, arrays) for key, one in pairs}
         case {"class": name, "fields": known}:
             module, _, kind = name.partition(":")
             found = getattr(import_module(module), kind) if module.startswith("bench.") else None
             if not (isinstance(found, type) and is_dataclass(found)):
                 raise TypeError(f"found {name}, which is no dataclass of the bench")
-            return found(**{key: _had(one, arrays) for key, one in known.items()})
+            return found(**{key: _unpack(one, arrays) for key, one in known.items()})
         case {**one} if len(one) == 1 and (kind := next(iter(one))) in _SERIES:
-            return _SERIES[kind](_had(each, arrays) for each in one[kind])
+            return _SERIES[kind](_unpack(each, arrays) for each in one[kind])
         case _:
-            return told
+            return packed

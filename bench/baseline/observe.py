@@ -122,8 +122,8 @@ def observe(
     gap = _torque_gap(fitted, found.residual.unit)
     quantities = _parameters(rig.axis_kind.base_parameters(), found.parameters, found.recordings) | {TORQUE_GAP: gap}
     gaps = {"torque": RemainingGap(gap.value, fitted.floor, gap.unit)}
-    told = conditions(traces, rig, found.cutoff)
-    return Observed(State("recordings", False, quantities, gaps=gaps, conditions=told, rig=rig_values(rig)))
+    at = conditions(traces, rig, found.cutoff)
+    return Observed(State("recordings", False, quantities, gaps=gaps, conditions=at, rig=rig_values(rig)))
 
 
 def _diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress) -> Observed:

@@ -181,9 +181,9 @@ def _update(asked: Asked, baseline: Path, names: bool) -> None:
     common.list_files([baseline])
     count = len(asked.traces)
     if 0 < count < ENOUGH:
-        told = "1 recording tells" if count == 1 else f"{count} recordings tell"
+        counted = "1 recording tells" if count == 1 else f"{count} recordings tell"
         advice = f"make the baseline of {ENOUGH} or more, or state it in [check.between] of the rig"
-        how = f"{told} little of how recordings of this axis differ, so defaults count (docs/check.md)"
+        how = f"{counted} little of how recordings of this axis differ, so defaults count (docs/check.md)"
         common.warn([f"{how}: {advice}"])
 
 

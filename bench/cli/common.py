@@ -294,12 +294,12 @@ def subject(
     robot = Robot.of(mjcf, joint)
     within = joint_rig(None if rig is None else bench.load_rig(rig).on_axis(axis), robot)
     stands = positions(at or (), robot.units)
-    told: set[str] = set()
+    warned: set[str] = set()
 
     def read(path: Path) -> bench.Trace:
         trace = read_log(path, within, robot, stands)
-        warn(note for note in trace.notes if note not in told)
-        told.update(trace.notes)
+        warn(note for note in trace.notes if note not in warned)
+        warned.update(trace.notes)
         return trace
 
     return Subject(within, read, robot=True)

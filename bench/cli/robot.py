@@ -62,8 +62,8 @@ def _carried(text: str | None) -> AddedBody | str | None:
     from bench.effects.present import parse_value
     from bench.plant.robot import AddedBody
 
-    body, told, rest = (text or "").partition("=")
-    if not told:
+    body, equals, rest = (text or "").partition("=")
+    if not equals:
         return text
     mass, at, places = rest.partition("@")
     where = f"--payload {text}"

@@ -155,8 +155,8 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     gaps.simulate(shown)
     kept = refined(recordings, stages[-1], suspects, held_out, gaps)
     if refused:
-        told = {name: found for name, found in kept.parameters.items() if name not in refused}
-        kept = replace(kept, model=kept.model or (modelled and modelled.model), parameters=told)
+        determined = {name: found for name, found in kept.parameters.items() if name not in refused}
+        kept = replace(kept, model=kept.model or (modelled and modelled.model), parameters=determined)
     problem = [f"not added to the MuJoCo model: {stages[-1].problem}"] if stages[-1].problem else []
     return Added(
         extension=extension,

@@ -129,8 +129,8 @@ class Recordings:
 
     def base(self, numbers: Uncertain) -> dict[str, Parameter]:
         """J, K_w and K_0 of a fit by name, as wide as they move with the cut-off."""
-        told = zip((INERTIA, VISCOUS, COULOMB), numbers.base(self.base_units).items(), strict=True)
-        return {name: found.widened(self.doubt.get(term, 0.0)) for term, (name, found) in told}
+        values = zip((INERTIA, VISCOUS, COULOMB), numbers.base(self.base_units).items(), strict=True)
+        return {name: found.widened(self.doubt.get(term, 0.0)) for term, (name, found) in values}
 
     @property
     def unit(self) -> str:

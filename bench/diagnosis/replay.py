@@ -101,7 +101,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     """
     rig = rig_of(rig)
     trace = trace_of(trace, rig)
-    path, table, balance, stored = _told(model, rig)
+    path, table, balance, stored = _parts(model, rig)
     effort, unit = rig.own_effort(trace)
     peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
     try:
@@ -134,7 +134,9 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     return Replay(trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, unit, tuple(warnings))
 
 
-def _told(model: Diagnosis | str | Path, rig: Rig) -> tuple[str | Path, Mapping[str, Any], Balance, StoredModel | None]:
+def _parts(
+    model: Diagnosis | str | Path, rig: Rig
+) -> tuple[str | Path, Mapping[str, Any], Balance, StoredModel | None]:
     """Of a model of the rig's kind: where it is from, kind and name, its torque balance, what MuJoCo runs of it."""
     if isinstance(model, Diagnosis):
         stored = model.model

@@ -87,8 +87,8 @@ def remains(shown: Shown) -> str:
 
 def refused(shown: Shown) -> str:
     """A parameter is not determined beside the effects: the first, of which others follow, and why."""
-    told = (f"{words(name)} is not determined: {reason}" for name, reason in shown.added.refused.items())
-    return next(told, "")
+    reasons = (f"{words(name)} is not determined: {reason}" for name, reason in shown.added.refused.items())
+    return next(reasons, "")
 
 
 def unfinished(shown: Shown) -> str:

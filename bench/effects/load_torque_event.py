@@ -66,8 +66,8 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         first, last = first[kept], last[kept]
         count = moved[last] - moved[first]
         power = count - np.sum((spanned[last] - spanned[first]) ** 2, axis=1)
-        told = (power > 0.02 * count) & (count > 0.0)
-        gain = np.where(told, (summed[last] - summed[first]) ** 2 / np.maximum(power, 1e-9), 0.0)
+        determined = (power > 0.02 * count) & (count > 0.0)
+        gain = np.where(determined, (summed[last] - summed[first]) ** 2 / np.maximum(power, 1e-9), 0.0)
         best = int(np.argmax(gain))
         stop = min(int(edges[last[best]]), time.size - 1)
         return [Proposal((float(time[edges[first[best]]]), float(time[stop])), float(gain[best]))]

@@ -35,8 +35,8 @@ def ranges_json(stored: StoredModel, result: Path) -> str:
         found = content.get("schema") if isinstance(content, dict) else type(content).__name__
         raise InputError(f"{result}: schema", f"found {found!r}", f"allowed: {', '.join(SOURCES)}")
     try:
-        between, told = content.get("between") or {}, _with_interval(content["parameters"])
-        parameters = {name: _range(table, between.get(name)) for name, table in told.items()}
+        between, stated = content.get("between") or {}, _with_interval(content["parameters"])
+        parameters = {name: _range(table, between.get(name)) for name, table in stated.items()}
         effects = [_effect(entry) for entry in content.get("effects", [])]
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         found = f"found a damaged one ({type(error).__name__}: {error})"

@@ -267,8 +267,8 @@ def solve(rows: Rows, hypothesis: Hypothesis, laid: Layout, equations: NormalEqu
         theta, _ = informed.solve({MISALIGNMENT: (-tick, tick)})
         covariance, reach = estimated(measured.scores(theta), inverse, least)
         covariance = covariance + unknown
-    told = (shift, error) if apart else (0.0, error)
-    return Solution(rows, hypothesis, laid, equations, measured, theta, covariance, reach, told, held)
+    delay = (shift, error) if apart else (0.0, error)
+    return Solution(rows, hypothesis, laid, equations, measured, theta, covariance, reach, delay, held)
 
 
 def with_digit(equations: NormalEquations, step: float) -> tuple[NormalEquations, Array]:

@@ -11,13 +11,13 @@ from bench.gate.check import Check, Seen, absent
 
 NAME = "agrees_with_rig"
 #: Factor between what is found and what the rig says that is told, and that is refused.
-TOLD, REFUSED = 1.2, 3.0
+WARNED, REFUSED = 1.2, 3.0
 #: Share of the effort that motion explains from which on the coarse balance tells an inertia.
 EXPLAINED = 0.8
 #: Share of the samples that lie below what counts as the largest: spikes are no motion - %.
 MOST = 99.5
 
-ALLOWED = f"what the rig says, within {TOLD - 1.0:.0%}"
+ALLOWED = f"what the rig says, within {WARNED - 1.0:.0%}"
 
 
 def agrees(seen: Seen) -> Check:
@@ -26,7 +26,7 @@ def agrees(seen: Seen) -> Check:
     if not compared:
         return absent(NAME, "the rig says neither inertia, top speed nor peak current", ALLOWED)
     off, found = max((max(ratio, 1.0 / ratio), text) for ratio, text in compared)
-    if off <= TOLD:
+    if off <= WARNED:
         return Check(NAME, "pass", found, ALLOWED)
     advice = "check units, signs and scales of the columns, the time's too, and whether the rig is this axis'"
     return Check(NAME, "fail" if off > REFUSED else "warn", found, ALLOWED, advice)

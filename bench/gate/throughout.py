@@ -71,15 +71,15 @@ def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str,
     if float(demand @ demand) < EXPLAINED * float(effort @ effort):
         return
     asked = np.array([rms(demand[block]) for block in blocks])
-    told = asked > DEMANDED * rms(demand)
+    demanding = asked > DEMANDED * rms(demand)
     gains = np.array([demand[block] @ effort[block] / max(demand[block] @ demand[block], 1e-300) for block in blocks])
-    scale = np.abs(gains) / np.median(np.abs(gains[told])) + 1e-300
+    scale = np.abs(gains) / np.median(np.abs(gains[demanding])) + 1e-300
     alike = np.array([abs(_correlation(demand[block], effort[block])) for block in blocks]) > ALIKE
     quiet = np.array([rms(effort[block]) for block in blocks]) < QUIET * asked
     faults = (
-        (told & quiet, 0.0, f"{name} is nearly zero while the motion takes effort", "the signal dropped out"),
-        (told & alike & (abs(np.log(scale)) > np.log(SCALED)), 0.0, f"{name} has another scale", "a unit changed"),
-        (told & (gains < 0.0), -1.0, f"the sign of {name} is turned", "a mode of the drive turned it"),
+        (demanding & quiet, 0.0, f"{name} is nearly zero while the motion takes effort", "the signal dropped out"),
+        (demanding & alike & (abs(np.log(scale)) > np.log(SCALED)), 0.0, f"{name} has another scale", "a unit changed"),
+        (demanding & (gains < 0.0), -1.0, f"the sign of {name} is turned", "a mode of the drive turned it"),
     )
     whole = _left(fitted, np.ones(effort.size))
     for wrong, factor, found, why in faults:

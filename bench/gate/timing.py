@@ -72,27 +72,27 @@ def rate(seen: Seen) -> Check:
     """Whether the rate can be right, and follows the motion."""
     trace = seen.trace
     hertz = 1.0 / trace.sample_period
-    told = f"{hertz:.5g} Hz"
+    found = f"{hertz:.5g} Hz"
     unit = "check the unit of the time column, or the sample period"
     if not LOWEST <= hertz <= HIGHEST:
-        return Check(RATE, "fail", f"{told}, {trace.time[-1] - trace.time[0]:.4g} s in all", ALLOWED_RATE, unit)
+        return Check(RATE, "fail", f"{found}, {trace.time[-1] - trace.time[0]:.4g} s in all", ALLOWED_RATE, unit)
     parts = seen.stretches(LEAST) if seen.tells_motion else []
     speeds = [seen.speed(part) for part in parts]
     if not speeds:
-        return absent(RATE, f"{told}; no stretch of {LEAST} samples of motion", ALLOWED_RATE)
+        return absent(RATE, f"{found}; no stretch of {LEAST} samples of motion", ALLOWED_RATE)
     turned = float(np.percentile(np.abs(np.concatenate(speeds)), 95.0)) * trace.sample_period
     if hertz < SLOW and trace.axis_kind.turns and turned > TURNED:
-        found = f"{told}, at which the axis turns {turned:.3g} rad from one sample to the next"
+        found = f"{found}, at which the axis turns {turned:.3g} rad from one sample to the next"
         return Check(RATE, "fail", found, ALLOWED_RATE, f"{unit}, or record faster", unanswerable=True)
     changes = _missed(seen, parts, speeds)
     if changes is not None:
-        found = f"{told}, at which speed changes by {changes:.0%} of its spread from one sample to the next"
+        found = f"{found}, at which speed changes by {changes:.0%} of its spread from one sample to the next"
         return Check(RATE, "fail", found, ALLOWED_RATE, f"record faster, or {unit}", unanswerable=True)
     heavy = _heavy(seen)
     if heavy is not None:
-        found = f"{told}, which makes {trace.axis_kind.in_words(INERTIA)} {heavy:.3g} times the motor's own"
+        found = f"{found}, which makes {trace.axis_kind.in_words(INERTIA)} {heavy:.3g} times the motor's own"
         return Check(RATE, "fail", found, f"below {HEAVY:g} times", f"{unit}, of current and of speed")
-    return Check(RATE, "pass", told, ALLOWED_RATE)
+    return Check(RATE, "pass", found, ALLOWED_RATE)
 
 
 def _missed(seen: Seen, parts: list[slice], speeds: list[Array]) -> float | None:

@@ -24,13 +24,13 @@ NAME = "velocity_is_derivative_of_position"
 SPAN = 20
 #: Deviation of the ratio from one that is told, and that is refused. Clean recordings reach 0.06, the smallest wrong
 #: scale met is 0.4 (`python -m tests.gate`).
-TOLD, REFUSED = 0.02, 0.1
+WARNED, REFUSED = 0.02, 0.1
 #: Remainder, as share of the displacements, that is refused; clean recordings reach 0.15.
 REMAINDER = 0.4
 #: Steps of both signals, or noise of the speed, that the displacements of a span need to make the ratio.
 STEPS = 5.0
 
-ALLOWED = f"the same motion in both: 1 within {TOLD:.0%}, a lag aside"
+ALLOWED = f"the same motion in both: 1 within {WARNED:.0%}, a lag aside"
 
 
 def is_derivative(seen: Seen) -> Check:
@@ -92,7 +92,7 @@ def judged(both: SpeedAgainstPosition) -> Check:
         return Check(NAME, "fail", found, ALLOWED, f"{units}; a sensor may stand still, or the columns be two axes'")
     late = f", {lag * 1e3:.3g} ms late" if abs(lag) > 1e-5 else ""
     found = f"velocity is {ratio:.4g} times the derivative of position{late}"
-    if abs(ratio - 1.0) > TOLD:
+    if abs(ratio - 1.0) > WARNED:
         return Check(NAME, "warn", found, ALLOWED, "calibrate one of them: inertia and friction scale with it")
     return Check(NAME, "pass", found, ALLOWED)
 

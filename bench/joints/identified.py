@@ -81,8 +81,8 @@ class IdentifiedJoint:
     def parameters(self) -> dict[str, Parameter]:
         """Those that are told, by name."""
         found = self.diagnosis or self.estimate
-        told = {} if found is None else found.parameters
-        return {name: parameter for name, parameter in told.items() if name not in self.refused}
+        parameters = {} if found is None else found.parameters
+        return {name: parameter for name, parameter in parameters.items() if name not in self.refused}
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -94,8 +94,8 @@ class IdentifiedJoint:
     def warnings(self) -> list[str]:
         """What a user should know before relying on it."""
         found = self.diagnosis or self.estimate
-        told = () if found is None else (*found.warnings, *warnings_of(found.checks))
-        return [*told, *(f"{log} is not used: {why}" for log, why in self.left_out.items())]
+        warnings = () if found is None else (*found.warnings, *warnings_of(found.checks))
+        return [*warnings, *(f"{log} is not used: {why}" for log, why in self.left_out.items())]
 
     @property
     def model(self) -> StoredModel | None:

@@ -216,8 +216,8 @@ def seek_payload(work: Sequence[JointLogs], body: str, progress: Callable[[float
         centre = centre + found.strengths[1:] / mass.value
     errors = np.where(found.open[1:], np.inf, np.sqrt(np.diag(found.covariance)[1:]) / mass.value)
     moved = _without_each(products, mix, found.strengths) / np.array([1.0, *[mass.value] * 3])
-    told = zip(centre, errors, moved[1:], strict=True)
-    x, y, z = (found.parameter(value, error, "m").widened(by) for value, error, by in told)
+    coordinates = zip(centre, errors, moved[1:], strict=True)
+    x, y, z = (found.parameter(value, error, "m").widened(by) for value, error, by in coordinates)
     return FoundPayload(body, mass.widened(moved[0]), (x, y, z))
 
 
@@ -256,11 +256,11 @@ def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink]:
     products = of_joints(work, [AddedBody(joint=asked.joint, inertia=1.0) for asked in work])
     if len(products) < 2:
         return []
-    told = [k for k in range(len(work)) if _tells(products, k)]
+    determined = [k for k in range(len(work)) if _tells(products, k)]
     chosen: list[int] = []
     left = sum(float(np.log(_scores(_only(one, []), OWN, np.zeros(0))[1])) for one in products)
-    while told and len(chosen) < MOST:
-        tried = {k: shared(products, [*chosen, k]) for k in told if k not in chosen}
+    while determined and len(chosen) < MOST:
+        tried = {k: shared(products, [*chosen, k]) for k in determined if k not in chosen}
         best = min(tried, key=lambda k: tried[k].left, default=None)
         if best is None or left - tried[best].left < TAKES:
             break

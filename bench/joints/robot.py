@@ -58,10 +58,10 @@ class IdentifiedRobot:
 
         InputError where MuJoCo cannot have it.
         """
-        told = {name: self.joints[name].parameters.get(ARMATURE) for name in self.models}
+        armatures = {name: self.joints[name].parameters.get(ARMATURE) for name in self.models}
         armature = {
             name: None if one is None else Armature(max(one.value, 0.0), "all that moved but the links")
-            for name, one in told.items()
+            for name, one in armatures.items()
         }
         models = {name: (model, armature[name]) for name, model in self.models.items()}
         return robot_with(self.mjcf, models, out, self.added)

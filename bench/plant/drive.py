@@ -23,7 +23,7 @@ from bench.effects.signals import Number
 from bench.errors import InputError
 from bench.plant.axis_model import AxisParameters
 from bench.plant.closed_loop import ClosedLoop, Controller, Tick
-from bench.plant.stepped_effects import abreast, on_axes, per_axis
+from bench.plant.stepped_effects import on_axes, per_axis, stacked
 from bench.rig.rig import Rig
 
 Values = float | Array
@@ -138,11 +138,11 @@ class FollowReferences(Controller):
         drives = [each.controller for each in loops if isinstance(each.controller, cls)]
         cascades, emulation = [drive.cascade for drive in drives], None
         period = cascades[0].control_period
-        cascade = Cascade(**abreast(cascades, without="control_period"), control_period=period)
+        cascade = Cascade(**stacked(cascades, without="control_period"), control_period=period)
         if any(drive.emulation is not None for drive in drives):  # null on axes that have friction in their mechanics
             null = [FrictionEmulation.of(loop.axis.parameters.frictionless) for loop in loops]
             made = [drive.emulation or none for drive, none in zip(drives, null, strict=True)]
-            emulation = FrictionEmulation(**abreast(made))
+            emulation = FrictionEmulation(**stacked(made))
         together = CascadeDrive(cascade, side_by_side([drive.references for drive in drives]), emulation)
         encoders = on_axes([loop.axis for loop in loops], MisreadMotion)
 

@@ -90,8 +90,8 @@ def read_spec(path: str) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
         spec.delete(geom)
     for mesh in missing.values():
         spec.delete(mesh)
-    told = f"meshes that are not there are left out of {Path(path).name}: {', '.join(sorted(missing))}"
-    return spec, (told,) if missing else ()
+    note = f"meshes that are not there are left out of {Path(path).name}: {', '.join(sorted(missing))}"
+    return spec, (note,) if missing else ()
 
 
 def _read_all(path: Path) -> None:

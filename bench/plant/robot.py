@@ -377,8 +377,8 @@ def log_of(recording: Recording, path: Path, rig: Rig, robot: Robot, stated: Map
     standing = [
         name for name in robot.units if name in stated and name not in rig.joints and not _holds(recording, name)
     ]
-    told = f"{', '.join(standing)}: stated to stand; what they ask for where they move passes for {robot.joint}'s"
-    return replace(known, notes=(*robot.notes, *known.notes, *([told] if standing else [])))
+    note = f"{', '.join(standing)}: stated to stand; what they ask for where they move passes for {robot.joint}'s"
+    return replace(known, notes=(*robot.notes, *known.notes, *([note] if standing else [])))
 
 
 #: What a joint that slides has where messages tell all joints as if they turned.

@@ -99,9 +99,9 @@ class Sensors:
     @classmethod
     def from_rig(cls, rig: Rig) -> Sensors:
         """The sensors of a rig's `[simulation]`; InputError where it has none."""
-        told = rig.simulated
-        noise = told.velocity_noise, told.current_noise
-        return cls(told.sample_period, told.encoder_resolution, *noise, rig.motor.torque_per_ampere, rig.axis_kind)
+        stated = rig.simulated
+        noise = stated.velocity_noise, stated.current_noise
+        return cls(stated.sample_period, stated.encoder_resolution, *noise, rig.motor.torque_per_ampere, rig.axis_kind)
 
     def stride(self, period: float) -> int:
         """Ticks of a drive with this period - s - from a sample to the next; InputError if there is no whole number."""

@@ -301,7 +301,7 @@ def _gathered(
     assert isinstance(effect, kind)
     axes = [models[row].axis for row in index]
     windings = [axis.winding for axis in axes if axis.winding is not None]
-    winding = Winding(**abreast(windings, made=made)) if len(windings) == len(axes) else None
+    winding = Winding(**stacked(windings, made=made)) if len(windings) == len(axes) else None
     places = np.arange(len(models))
     places[index] = len(models) + np.arange(len(index))
     everywhere = len(index) == len(models)
@@ -311,11 +311,11 @@ def _gathered(
         None if everywhere else made(np.array(index)),
         None if everywhere else made(places),
         {key: made(per_axis([value[key] for value in values])) for key in values[0]},
-        Axis(**abreast(axes, without="winding", made=made), winding=winding),
+        Axis(**stacked(axes, without="winding", made=made), winding=winding),
     )
 
 
-def abreast(ones: Sequence[Any], without: str = "", made: Made = numpys) -> dict[str, Any]:
+def stacked(ones: Sequence[Any], without: str = "", made: Made = numpys) -> dict[str, Any]:
     """Fields of dataclasses of numbers, but for one, as `per_axis` has them of all."""
     names = [field.name for field in fields(ones[0]) if field.name != without]
     return {name: made(per_axis([float(getattr(one, name)) for one in ones])) for name in names}
@@ -363,12 +363,12 @@ class Joints:
 
     def take(self, acts: Acts) -> None:
         """What acts in the next step: values (simulations, joints), or (simulations*joints,), or for all."""
-        self.apply(self._abreast(acts.torque))
+        self.apply(self._on_rows(acts.torque))
         if acts.inertia is not None:
             armature, bare = self._armatures
-            armature[:, self._columns] = bare + self._abreast(acts.inertia)
+            armature[:, self._columns] = bare + self._on_rows(acts.inertia)
         if acts.friction is not None:
-            self._set_friction(self._abreast(acts.friction))
+            self._set_friction(self._on_rows(acts.friction))
 
     def apply(self, torque: Number) -> None:
         """Apply a torque beside those of actuators - N*m (N)."""
@@ -388,7 +388,7 @@ class Joints:
             parameters = self._field("actuator_biasprm")
             parameters[:, self._bristles[k], BRISTLE_LEVELS] = level[:, k : k + 1] if np.ndim(level) else level
 
-    def _abreast(self, values: Number) -> Number:
+    def _on_rows(self, values: Number) -> Number:
         return values.reshape(-1, self._count) if np.ndim(values) else values
 
     @cached_property

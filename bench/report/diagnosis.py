@@ -43,7 +43,7 @@ STEPS = 6
 #: Probability with which a set of names holds the truth.
 SURE = 0.9
 #: Alternatives that are told in a sentence at most, and the least probability of one.
-TOLD, WORTH_TELLING = 3, 1e-3
+MOST_SHOWN, LEAST_SHOWN = 3, 1e-3
 
 
 def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None) -> str:
@@ -154,8 +154,8 @@ def _experiment_json(found: Diagnosis) -> dict[str, Any] | None:
         "duration": {"value": experiment.duration, "unit": "s"},
         "repetitions": {"value": experiment.repetitions, "unit": "dimensionless"},
     }
-    told = picked(experiment, "tells_apart", "separation", "reason")
-    return {"profile": experiment.profile, "parameters": parameters, **told}
+    why = picked(experiment, "tells_apart", "separation", "reason")
+    return {"profile": experiment.profile, "parameters": parameters, **why}
 
 
 def write_diagnosis(
@@ -314,19 +314,19 @@ def _sure(found: Diagnosis) -> str:
 
 def likely_names(found: Diagnosis) -> str:
     """How likely each name is and what it may be instead: `Cogging torque 99 % (or load torque event 0.6 %).`"""
-    likely, told = found.probabilities, []
+    likely, parts = found.probabilities, []
     for name in dict.fromkeys(effect.name for effect in found.effects):
         others = {other: share for other, share in likely.instead_of(name).items() if other is not None}
-        told.append(f"{_chances({name: likely.names[name]})}{f' (or {_chances(others)})' if _chances(others) else ''}")
+        parts.append(f"{_chances({name: likely.names[name]})}{f' (or {_chances(others)})' if _chances(others) else ''}")
     beside = {} if found.effects else likely.names | {"nothing": likely.nothing}
-    told.append(_chances({**beside, "none of the catalogue": likely.none}))
-    return f"{sentence(', '.join(filter(None, told)))}."
+    parts.append(_chances({**beside, "none of the catalogue": likely.none}))
+    return f"{sentence(', '.join(filter(None, parts)))}."
 
 
 def _chances(shares: Mapping[str, float]) -> str:
     """The likeliest few of several names, with their probabilities."""
     ranked = sorted(shares.items(), key=lambda one: -one[1])
-    return ", ".join(f"{words(name)} {chance(share)}" for name, share in ranked[:TOLD] if share > WORTH_TELLING)
+    return ", ".join(f"{words(name)} {chance(share)}" for name, share in ranked[:MOST_SHOWN] if share > LEAST_SHOWN)
 
 
 def _chi(gap: Gap) -> float:

@@ -16,7 +16,7 @@ from bench.fleet.fleet import RESULTS, TABLE, Fleet
 from bench.fleet.summary import ALARM, STATUSES, AxisSummary, Changed, History, Summary
 from bench.names import short, words
 from bench.report import document as doc
-from bench.report.fleet_axis import FLEET, NAME, TOLD, FleetPages, by_how_much, drawn_values
+from bench.report.fleet_axis import FLEET, NAME, SHOWN, FleetPages, by_how_much, drawn_values
 from bench.report.numbers import brief, chance, number, sentence
 from bench.report.publish import write_html
 from bench.report.serial import as_json, picked, serialised
@@ -219,7 +219,7 @@ def _row(pages: FleetPages, axis: AxisSummary) -> tuple[tuple[str, ...], tuple[d
         "" if history is None else BRIEFLY.get(history.quantity, words(history.quantity)),
         last,
         ", ".join(noted) or "–",
-        *("–" if one is None else brief(one) for one in values or (None,) * len(TOLD)),
+        *("–" if one is None else brief(one) for one in values or (None,) * len(SHOWN)),
         ", ".join(f"{words(one.name)} ({one.recordings} of {one.of})" for one in axis.shown) or "–",
     )
     return cells, () if history is None else _sketch(pages, history, changed)

@@ -34,7 +34,7 @@ CLOCK = {"d": 86400.0, "h": 3600.0, "min": 60.0, "s": 1.0}
 #: Of these units there are at least so many from the first recording to the last.
 SEVERAL = 3.0
 #: What the table of a fleet and of an axis has of the latest values.
-TOLD = (INERTIA, VISCOUS, COULOMB)
+SHOWN = (INERTIA, VISCOUS, COULOMB)
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class FleetPages:
         return self.fleet.manifest.times
 
     @cached_property
-    def told(self) -> dict[str, list[str]]:
+    def text_of(self) -> dict[str, list[str]]:
         """Columns of the manifest as text (n,)."""
         return {column: self.fleet.manifest.text(column) for column in ("file", "time")}
 
@@ -72,22 +72,22 @@ class FleetPages:
     def parameters(self, row: int) -> list[Parameter | None]:
         """Inertia, viscous and Coulomb friction by one recording."""
         job, found = self.fleet.planned[row].job, parameters(self.fleet.results[row])
-        return [None if job is None else found.get(job.rig.axis_kind.parameter(term)) for term in TOLD]
+        return [None if job is None else found.get(job.rig.axis_kind.parameter(term)) for term in SHOWN]
 
     def axis(self, axis: AxisSummary) -> doc.Document:
         """The page of an axis."""
         changed = {(one.history.quantity, one.history.rows): one for one in axis.changed}
         drawn = [self.over_time(one, changed.get((one.quantity, one.rows))) for one in axis.histories]
-        told = [f"{words(one.history.quantity)} {by_how_much(one)} since {one.since}" for one in axis.changed]
+        news = [f"{words(one.history.quantity)} {by_how_much(one)} since {one.since}" for one in axis.changed]
         needs = {words(one.kind): f"{one.recordings} of {one.of} recordings: {one.reason}" for one in axis.concerns}
         shown = [f"{words(one.name)} ({one.recordings} of {one.of}, since {one.since})" for one in axis.shown]
         effects = {"Effects?": sentence(listed(shown))} if shown else {}
-        sure = f"{chance(max(one.chance for one in axis.changed))} that nothing changed" if told else ""
+        sure = f"{chance(max(one.chance for one in axis.changed))} that nothing changed" if news else ""
         return doc.Document(
             title=f"{short(axis.name, NAME)}: axis",
             subject=f"Axis {short(axis.name, NAME)}: {len(axis.rows)} recordings",
-            verdict=sentence(f"{listed(told)}." if told else "No change." if axis.histories else "Nothing to compare."),
-            tone="refused" if told else "open" if axis.concerns or not axis.histories else "sure",
+            verdict=sentence(f"{listed(news)}." if news else "No change." if axis.histories else "Nothing to compare."),
+            tone="refused" if news else "open" if axis.concerns or not axis.histories else "sure",
             answers={**({"How sure?": sentence(f"{sure}.")} if sure else {}), **effects}
             | {f"{sentence(kind)}?": why for kind, why in needs.items()},
             sections=(
@@ -106,7 +106,7 @@ class FleetPages:
             values = ["" if one is None else brief(one) for one in self.parameters(row)]
             names = listed(words(one["name"]) for one in found["effects"]) if found.get("effects") else ""
             noted = found["reason"] or "; ".join(words(check["name"]) for check in found["checks"])
-            when, file = self.told["time"][row], self.told["file"][row]
+            when, file = self.text_of["time"][row], self.text_of["file"][row]
             rows.append((when or file, words(found["status"]), *values, names, short(noted), short(file, NAME)))
         more = f", the latest {DOTS} of {len(axis.rows)}" if len(axis.rows) > DOTS else ""
         headings = ("recording", "status", "inertia>", "viscous>", "Coulomb>", "effects", "noted~", "file")
@@ -117,7 +117,7 @@ class FleetPages:
 
     def recording(self, row: int) -> doc.Document:
         """The page of a recording."""
-        found, file, when = self.fleet.results[row], self.told["file"][row], self.told["time"][row]
+        found, file, when = self.fleet.results[row], self.text_of["file"][row], self.text_of["time"][row]
         axis = self.fleet.manifest.table["axis"][row].as_py() or ""
         values = parameters(found)
         lacking = [
@@ -158,13 +158,13 @@ class FleetPages:
         drawn, x, values = drawn_values(times, history, near, changed)
         reach = NORMAL95 * history.errors[near]
         if changed is None:
-            told = f"The latest {number(float(history.values[-1]), history.unit)}; no change stands out."
+            trend = f"The latest {number(float(history.values[-1]), history.unit)}; no change stands out."
         else:
             step = changed.step
             until, later = np.array([x[0], times[step.place]]), np.array([times[step.place], x[-1]])
             drawn.append(doc.series("mean", "line", "model", until, np.full(2, step.before)))
             drawn.append(doc.series("", "line", "model", later, np.full(2, step.after)))
-            told = (
+            trend = (
                 f"From {number(step.before)} to {number(step.after, history.unit)}, {by_how_much(changed)}, since "
                 f"{changed.since} ({short(changed.file, NAME)})."
             )
@@ -173,7 +173,7 @@ class FleetPages:
         which = "latest" if changed is None else "nearest to it"
         return doc.Chart(
             title=f"{short(history.axis, NAME)}: {words(history.quantity)}.",
-            alternative=told + ("" if count <= x.size else f" Of {count} recordings the {x.size} {which} are drawn."),
+            alternative=trend + ("" if count <= x.size else f" Of {count} recordings the {x.size} {which} are drawn."),
             y_label=words(history.quantity),
             y_unit=unit_text(history.unit),
             panels=(doc.Panel(x_label=label, x_unit=unit, series=tuple(drawn)),),
@@ -186,7 +186,7 @@ class FleetPages:
             return times, "time", ""
         since = times - times[0]
         unit = next((unit for unit, size in CLOCK.items() if since[-1] >= SEVERAL * size), "s")
-        return since / CLOCK[unit], f"time since {self.told['time'][rows[0]]}", unit
+        return since / CLOCK[unit], f"time since {self.text_of['time'][rows[0]]}", unit
 
     def _origin(self) -> tuple[str, ...]:
         provenance = self.provenance
@@ -229,11 +229,11 @@ def _verdict(found: Plain) -> str:
 def _gaps(gaps: Mapping[str, Plain]) -> doc.Table:
     """What is left of torque (force) and velocity."""
 
-    def told(value: float | None, unit: str) -> str:
+    def shown(value: float | None, unit: str) -> str:
         return "–" if value is None else number(value, unit)
 
     keys = ("before", "after", "noise_floor")
-    rows = ((name, *(told(gap[key], gap["unit"]) for key in keys)) for name, gap in gaps.items())
+    rows = ((name, *(shown(gap[key], gap["unit"]) for key in keys)) for name, gap in gaps.items())
     return doc.table("RMS of what the model leaves", ("signal", "before any effect>", "left>", "noise alone>"), rows)
 
 

@@ -86,8 +86,8 @@ def _verdict(found: Injections) -> str:
     if found.sought:
         named = sum(case is not None for case in found.least.values())
         return f"This recording shows {named} of the {len(found.least)} effects that were put into it."
-    told = (f"{counted[RIGHT]} of {sum(counted.values())} at {s:g} times" for s, counted in _counts(found).items())
-    return sentence(f"{', '.join(told) or 'nothing'} what it leaves named rightly.")
+    rates = (f"{counted[RIGHT]} of {sum(counted.values())} at {s:g} times" for s, counted in _counts(found).items())
+    return sentence(f"{', '.join(rates) or 'nothing'} what it leaves named rightly.")
 
 
 def _answers(found: Injections) -> Iterator[tuple[str, str]]:
@@ -95,8 +95,8 @@ def _answers(found: Injections) -> Iterator[tuple[str, str]]:
     names = ", ".join(map(words, own.names)) or "no effect"
     yield "What it leaves itself?", f"{number(own.left, own.unit)} RMS, after {names} ({words(own.verdict)})."
     wrong = [case for case in found.cases if case.fate in (WRONG, PART)]
-    told = "; ".join(f"{', '.join(map(words, case.names))} of {words(case.effect)}" for case in wrong) or "none"
-    yield "False names?", f"{sentence(told)}."
+    listed_wrong = "; ".join(f"{', '.join(map(words, case.names))} of {words(case.effect)}" for case in wrong) or "none"
+    yield "False names?", f"{sentence(listed_wrong)}."
     inside = [one.inside(0.95) for case in found.cases for one in case.scored]
     if inside:
         yield "Are sizes right?", f"{sum(inside)} of {len(inside)} quantities within their interval of {share(0.95)}."

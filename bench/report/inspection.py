@@ -48,8 +48,8 @@ def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | N
     if rest:
         sections.append(doc.section("columns", "Columns that are not read", _columns(rest)))
     if checks or found.notes:
-        told = checks_section(checks, found.notes)
-        sections.append(told.model_copy(update={"detail": False}))
+        section = checks_section(checks, found.notes)
+        sections.append(section.model_copy(update={"detail": False}))
     return doc.Document(
         title=name,
         subject=f"Inspection of {name} ({found.format})",

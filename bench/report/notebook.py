@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 WIDTH, LINES = 100, 25
 
 
-class Told(NamedTuple):
+class Overview(NamedTuple):
     """What a result comes to, its numbers, and all of it as the contract's JSON."""
 
     headline: str
@@ -46,38 +46,38 @@ class Told(NamedTuple):
 
 
 @singledispatch
-def told(result: object) -> Told:
+def overview(result: object) -> Overview:
     """Of any result that is shown."""
     raise TypeError(f"nothing is known of {type(result).__name__}")
 
 
-@told.register
-def _(result: Estimate) -> Told:
+@overview.register
+def _(result: Estimate) -> Overview:
     kind = next((kind for kind in KINDS if kind.inertia in result), KINDS[0])
     if kind.inertia not in result:
         headline = f"{sentence(kind.in_words('inertia'))} is not determined."
     else:
         headline = identification("", kind, result).verdict
-    return Told(headline, [parameters_table("", result.parameters)], identification_json(result))
+    return Overview(headline, [parameters_table("", result.parameters)], identification_json(result))
 
 
-@told.register
-def _(result: Diagnosis) -> Told:
+@overview.register
+def _(result: Diagnosis) -> Overview:
     tables = [parameters_table("The axis", result.parameters)]
     tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in result.effects]
-    return Told(verdict_sentence(result), tables, diagnosis_json(result))
+    return Overview(verdict_sentence(result), tables, diagnosis_json(result))
 
 
-@told.register
-def _(result: Checked) -> Told:
+@overview.register
+def _(result: Checked) -> Overview:
     document = check_document(result, "")
     blocks = [block for section in document.sections for block in section.blocks]
-    return Told(document.verdict, [block for block in blocks if isinstance(block, Table)], check_json(result))
+    return Overview(document.verdict, [block for block in blocks if isinstance(block, Table)], check_json(result))
 
 
 def text(result: object) -> str:
     """The headline and as many tables as one screen has room for."""
-    headline, tables, _ = told(result)
+    headline, tables, _ = overview(result)
     lines = str(rendered(Paragraph(text=headline), WIDTH)).splitlines()
     for table in tables:
         more = ["", *str(rendered(table, WIDTH)).splitlines()]
@@ -87,7 +87,7 @@ def text(result: object) -> str:
 
 def small_page(result: object) -> str:
     """The headline, the picture of a diagnosis and the tables as HTML."""
-    headline, tables, _ = told(result)
+    headline, tables, _ = overview(result)
     picture = _picture(result) if isinstance(result, Diagnosis) else ""
     return f"<div><p><strong>{escape(headline)}</strong></p>{picture}{''.join(map(_html, tables))}</div>"
 
@@ -165,4 +165,4 @@ def save(result: object, path: Path) -> None:
         write_diagnosis(path, result, path.name)
         pack(path / PACKED, result)
     else:
-        write_text(path, told(result).json + "\n")
+        write_text(path, overview(result).json + "\n")

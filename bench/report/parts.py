@@ -135,13 +135,13 @@ def provenance(
         InputError: a file cannot be read.
     """
 
-    def told(path: Path) -> dict[str, str]:
+    def checksum(path: Path) -> dict[str, str]:
         return {"file": readable(path), "sha256": sha256(path)}
 
     return {
         "version": __version__,
         "rig_sha256": None if rig is None else sha256(rig),
-        "traces": [told(trace) for trace in traces],
+        "traces": [checksum(trace) for trace in traces],
         "options": dict(options),
-        **{key: told(path) for key, path in (("holdout", holdout), ("mjcf", mjcf)) if path is not None},
+        **{key: checksum(path) for key, path in (("holdout", holdout), ("mjcf", mjcf)) if path is not None},
     }

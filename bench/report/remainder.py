@@ -40,8 +40,8 @@ def remainder(found: Diagnosis) -> Iterator[str]:
     yield f"What is left: {'; '.join(shapes)}."
     parts = [(one.beside if found.effects else one.alone, one) for one in found.considered if not one.taken]
     near = sorted(((part, one) for part, one in parts if part), key=lambda pair: -pair[0])[:NEAREST]
-    told = [f"{words(one.effect.name)}, {share(part)} of it, but {one.reason}" for part, one in near]
-    yield f"Nearest of the catalogue: {'; '.join(told)}." if told else "No effect of the catalogue comes near it."
+    nearest = [f"{words(one.effect.name)}, {share(part)} of it, but {one.reason}" for part, one in near]
+    yield f"Nearest of the catalogue: {'; '.join(nearest)}." if nearest else "No effect of the catalogue comes near it."
     record, command = DECIDES.get(found.unexplained_where[0].coordinate, OTHERWISE)
     yield f"To decide, record {record}: bench {command} --rig RIG."
 

@@ -58,14 +58,14 @@ def _payload_json(found: IdentifiedRobot) -> dict[str, Any] | None:
 
 def _joint_json(joint: IdentifiedJoint) -> dict[str, Any]:
     """As `diagnose` has it; without a diagnosis what is told all the same."""
-    told: dict[str, Any] = {"verdict": None, "effects": []}
+    of_diagnosis: dict[str, Any] = {"verdict": None, "effects": []}
     if joint.diagnosis is not None:
-        told = {key: value for key, value in diagnosis_content(joint.diagnosis).items() if key not in DROPPED}
+        of_diagnosis = {key: value for key, value in diagnosis_content(joint.diagnosis).items() if key not in DROPPED}
     elif joint.estimate is not None:
-        told |= {"explained": joint.estimate.explained}
+        of_diagnosis |= {"explained": joint.estimate.explained}
     beside = {"record": joint.record or None, "failed": joint.failed or None, "left_out": joint.left_out}
     own = {"parameters": joint.parameters, "refused": joint.refused, "checks": joint.checks, "warnings": joint.warnings}
-    return {**told, **own, **beside}
+    return {**of_diagnosis, **own, **beside}
 
 
 #: What of a diagnosis' JSON belongs to the whole robot.
@@ -125,11 +125,11 @@ def _settled(found: IdentifiedRobot) -> int:
 
 
 def _verdict(found: IdentifiedRobot) -> str:
-    whole, told, settled = len(found.joints), len(found.answered), _settled(found)
-    if not told:
+    whole, answered, settled = len(found.joints), len(found.answered), _settled(found)
+    if not answered:
         return f"None of {whole} joints could be answered."
-    rest = "what is left of them is noise" if settled == told else f"{settled} of them down to noise"
-    return f"{told} of {whole} joints are identified, {rest}."
+    rest = "what is left of them is noise" if settled == answered else f"{settled} of them down to noise"
+    return f"{answered} of {whole} joints are identified, {rest}."
 
 
 def _tables(found: IdentifiedRobot) -> list[doc.Table]:
@@ -142,9 +142,9 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
         )
     ]
     if found.payload is not None:
-        told = (math.isfinite(one.half_width) for one in found.payload.centre)
+        finite = (math.isfinite(one.half_width) for one in found.payload.centre)
         x, y, z = (
-            interval(one) if known else "not told" for one, known in zip(found.payload.centre, told, strict=True)
+            interval(one) if known else "not told" for one, known in zip(found.payload.centre, finite, strict=True)
         )
         rows = [(found.payload.body, interval(found.payload.mass), f"{x}, {y}, {z}")]
         tables.append(doc.table("Payload", ("body", "mass>", "centre in the body's frame>"), rows))
@@ -187,9 +187,9 @@ def _of_joint(k: int, joint: IdentifiedJoint, found: IdentifiedRobot) -> doc.Sec
     """What is told of a joint."""
     key, heading = f"joint-{k + 1}", joint.name
     if joint.diagnosis is None:
-        told = [parameters_table("Inertia and friction", joint.parameters)] if joint.parameters else []
+        tables = [parameters_table("Inertia and friction", joint.parameters)] if joint.parameters else []
         why = doc.Points(items=tuple(what for what, _ in _open(joint)))
-        return doc.section(key, heading, why, *told, detail=True)
+        return doc.section(key, heading, why, *tables, detail=True)
     own = diagnosis(joint.diagnosis, f"{joint.name} of {readable(found.mjcf.name)}")
     blocks = [block for section in own.sections if section.key in SHOWN for block in section.blocks]
     answers = doc.Points(items=tuple(f"{question} {answer}" for question, answer in own.answers.items()))

@@ -155,9 +155,9 @@ def _stacked(table: Table, headings: list[str], rows: list[list[str]], width: in
     """A block for each row: its name, and below it each cell beside its heading."""
     found = []
     for name, *cells in rows:
-        told = [f"  {heading}: {cell}" for heading, cell in zip(headings[1:], cells, strict=True) if cell]
+        lines = [f"  {heading}: {cell}" for heading, cell in zip(headings[1:], cells, strict=True) if cell]
         found.append(Text("\n".join(wrapped(name, width)), "bold"))
-        found += [Text("\n".join(wrapped(line, width))) for line in told]
+        found += [Text("\n".join(wrapped(line, width))) for line in lines]
     return Text("\n").join(found)
 
 

@@ -68,9 +68,9 @@ def validation_json(found: Validation, provenance: Mapping[str, Any]) -> str:
 
 def _coverage_json(found: Coverage) -> dict[str, Any]:
     names = (field.name for field in fields(found) if field.name != "inside")
-    told = {name: known(each) if isinstance(each, float) else each for name, each in picked(found, *names).items()}
+    plain = {name: known(each) if isinstance(each, float) else each for name, each in picked(found, *names).items()}
     inside = [{"level": level, **as_json(each)} for level, each in zip(LEVELS, found.inside, strict=True)]
-    return {**told, "inside": inside}
+    return {**plain, "inside": inside}
 
 
 @as_json.register
@@ -192,9 +192,9 @@ def _span(one: Coverage, place: int) -> doc.Span:
 def _pictures(found: Validation) -> Iterator[doc.Picture]:
     """Coverage of each quantity at every level, and names by what is hidden."""
     rows = [tuple(_chart(found, quantity, place) for place in range(len(LEVELS))) for quantity in SYMBOLS]
-    told = tuple(row for row in rows if row[0].spans)
+    estimated = tuple(row for row in rows if row[0].spans)
     nothing = doc.table("", ("",), [("No run tells a quantity.",)])
-    yield doc.Picture(name="coverage", title="How often an interval holds the truth", rows=told or ((nothing,),))
+    yield doc.Picture(name="coverage", title="How often an interval holds the truth", rows=estimated or ((nothing,),))
     if found.naming is not None:
         matrix = confusion(found.naming.confusion)
         yield doc.Picture(name="confusion", title="Named, by what is hidden", rows=((matrix,),))

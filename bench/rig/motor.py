@@ -165,8 +165,8 @@ class Motor(RigTable):
             return self
         factors = {1.0 / math.sqrt(2.0): ("torque_constant", "force_constant")}
         factors[math.sqrt(2.0)] = ("continuous_stall_current", "peak_current")
-        told = [(name, getattr(self, name), factor) for factor, names in factors.items() for name in names]
-        converted = {name: times(value, factor) for name, value, factor in told if value is not None}
+        stated = [(name, getattr(self, name), factor) for factor, names in factors.items() for name in names]
+        converted = {name: times(value, factor) for name, value, factor in stated if value is not None}
         return self.model_copy(update={**converted, "current": "peak"})
 
     @property

@@ -334,9 +334,9 @@ def _input_error(source: str, error: ValidationError) -> InputError:
     detail = error.errors()[0]
     keys = [str(key) for key in detail["loc"]]
     where = f"{source}: {'.'.join(keys) or 'rig'}"
-    told: dict[str, Any] = detail.get("ctx", {})
+    context: dict[str, Any] = detail.get("ctx", {})
     if detail["type"] == "unit":
-        return InputError(where, told["found"], told["allowed"])
+        return InputError(where, context["found"], context["allowed"])
     if detail["type"] == "extra_forbidden":
         known = _known_keys(keys[:-1])
         return InputError(where, f"unknown key{nearest(keys[-1], known)}", f"allowed: {', '.join(known)}")

@@ -368,8 +368,8 @@ def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> 
     speaks = 1.0 if any(_FOREIGN.fullmatch(part) for part in parts) else 2.0
     is_reference = any(REFERENCE.fullmatch(part) for part in parts)
     guesses = []
-    told = (channel.signal or signal_of(channel.name) or "").removesuffix("_reference")
-    signals = [signal for signal in WORDS if signal == told] or [signal for signal in WORDS if not told]
+    named = (channel.signal or signal_of(channel.name) or "").removesuffix("_reference")
+    signals = [signal for signal in WORDS if signal == named] or [signal for signal in WORDS if not named]
     for signal in signals if rises else [signal for signal in signals if signal != "time"]:
         fits = _fits(signal, unit)
         if fits is False:

@@ -62,7 +62,7 @@ def _read(text: str) -> _Name | None:
     """What a name says; None where it tells no signal, or two, or no joint."""
     if len(text) > 200 or is_index(text):
         return None
-    told: dict[str, str] = {}
+    signal_of_word: dict[str, str] = {}
     key, said, reference, measured = list[str](), set[str](), False, False
     for part in filter(None, _PART.split(text)):
         if _PLACE.fullmatch(part):
@@ -73,14 +73,14 @@ def _read(text: str) -> _Name | None:
         signals = {word: found for word in words if (found := _signal(word, alone)) is not None}
         wanted = {word for word in words if REFERENCE.fullmatch(word)} if signals or alone else set()
         seen = {word for word in words if _MEASURED.fullmatch(word)} if signals or alone else set()
-        told |= {word.lower(): signal for word, signal in signals.items()}
+        signal_of_word |= {word.lower(): signal for word, signal in signals.items()}
         reference, measured = reference or bool(wanted), measured or bool(seen)
         gone = {*signals, *wanted, *seen}
         said |= {word.lower() for word in gone}
         left = [word for word in words if word not in gone]
         if left:
             key.append("_".join(left) if gone else part.strip("_"))
-    signals = set(told.values())
+    signals = set(signal_of_word.values())
     if signals & {"position", "velocity"}:
         signals.discard("current")  # the current one
     state = "position" if not signals and _STATE.match(text) else None
@@ -106,17 +106,17 @@ def named(recording: Recording, joints: Sequence[str]) -> Recording:
     """
     axes = axes_of(recording.channels)
     found = _by_name(axes, joints)
-    told = [f"{axis} is {joint}" for axis, joint in found.items() if axis != joint]
+    notes = [f"{axis} is {joint}" for axis, joint in found.items() if axis != joint]
     ending = {axis: int(match[0]) for axis in axes if (match := re.search(r"\d+$", axis))}
     numbers = sorted([axis for axis in ending if axis.isdigit()] or ending, key=lambda axis: ending[axis])
     if not found and len(numbers) == len(joints):
         found = dict(zip(numbers, joints, strict=True))
-        told = [f"joints {numbers[0]} to {numbers[-1]} are taken in the robot's order: {', '.join(joints)}"]
+        notes = [f"joints {numbers[0]} to {numbers[-1]} are taken in the robot's order: {', '.join(joints)}"]
     channels = tuple(
         replace(channel, axis=found.get(channel.axis, channel.axis)) if channel.axis is not None else channel
         for channel in recording.channels
     )
-    return replace(recording, channels=channels, notes=(*recording.notes, *told))
+    return replace(recording, channels=channels, notes=(*recording.notes, *notes))
 
 
 def _by_name(axes: Sequence[str], joints: Sequence[str]) -> dict[str, str]:

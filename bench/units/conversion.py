@@ -220,8 +220,8 @@ def scale_of(text: str, wanted: tuple[str, ...]) -> UnitScale:
             if turning and "angle" not in kinds:
                 if "min" not in unit.powers:
                     turns = si.replace("rad", "rev")
-                    told = f"allowed: '{si}' where it is radians, '{turns}' where it is revolutions"
-                    raise UnitError(f"found '{text}', which may mean {si} or {turns}", told)
+                    which = f"allowed: '{si}' where it is radians, '{turns}' where it is revolutions"
+                    raise UnitError(f"found '{text}', which may mean {si} or {turns}", which)
                 factor *= 2.0 * math.pi  # per minute it means revolutions
             return UnitScale(si, factor, offset)
         if si in _MASS and powers_of(parse_unit(_MASS[si])) == powers:

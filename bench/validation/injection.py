@@ -285,9 +285,9 @@ def driven(host: Host, what: str, effort: Array) -> Trace:
     trace, rig = host.trace, host.rig
     name = next(each for each in (rig.axis_kind.effort, "current", "voltage") if each in trace)
 
-    def told(values: Array) -> Array:
+    def effort_of(values: Array) -> Array:
         return rig.effort(trace.with_signals({name: values}, {}))[0]
 
     step = np.full(len(trace), 1e-6 * float(np.abs(trace[name]).max() or 1.0))
-    gain = float(np.median((told(step) - told(0.0 * step)) / step))
-    return trace.with_signals({name: _solved(lambda at: told(at / gain), effort, what) / gain}, {})
+    gain = float(np.median((effort_of(step) - effort_of(0.0 * step)) / step))
+    return trace.with_signals({name: _solved(lambda at: effort_of(at / gain), effort, what) / gain}, {})

@@ -176,8 +176,8 @@ def judged(case: Injection, own: Own, effect: Effect, found: Diagnosis) -> Injec
     fate = known or (WRONG if named.false else FLAGGED if remains else MISSED)
     new = (*[case.effect] * is_named, *named.false)
     scored = tuple(of_effects([effect], own.host.axis, found))
-    told = {"names": new, "verdict": found.verdict, "probabilities": believed(found, case.effect, own.names)}
-    return replace(case, fate=fate, scored=scored, **told)
+    answer = {"names": new, "verdict": found.verdict, "probabilities": believed(found, case.effect, own.names)}
+    return replace(case, fate=fate, scored=scored, **answer)
 
 
 def believed(found: Diagnosis, effect: str, own: Sequence[str]) -> dict[str, float]:

@@ -57,9 +57,9 @@ def _read_xml(source: Source) -> Recording:
 
 
 def _recording(
-    kind: FileFormat, source: Source, channels: list[Channel], told: Mapping[str, str], notes: tuple[str, ...] = ()
+    kind: FileFormat, source: Source, channels: list[Channel], texts: Mapping[str, str], notes: tuple[str, ...] = ()
 ) -> Recording:
-    metadata = {key: told[key] for key in ("Name", "ApplicationName", "IecTaskName", "Comment") if told.get(key)}
+    metadata = {key: texts[key] for key in ("Name", "ApplicationName", "IecTaskName", "Comment") if texts.get(key)}
     return Recording(with_shared_times(channels), kind.format, source.path, metadata, notes, LAB_UNITS)
 
 
@@ -156,8 +156,8 @@ def machine_expert_trace(table: pa.Table) -> bytes:
     root = ElementTree.Element("Trace")
     settings = ElementTree.SubElement(root, "TraceConfiguration")
     comment = _UNITS_COMMENT + ", ".join(table.column_names[1:])
-    for name, kind, told in (("Comment", "string", comment), ("MicroSeconds", "bool", str(not coarse))):
-        ElementTree.SubElement(settings, "Single", Name=name, Type=kind).text = told
+    for name, kind, value in (("Comment", "string", comment), ("MicroSeconds", "bool", str(not coarse))):
+        ElementTree.SubElement(settings, "Single", Name=name, Type=kind).text = value
     data = ElementTree.SubElement(root, "TraceData", Version="1.0.0.0")
     record = ElementTree.SubElement(data, "TraceRecord")
     for index, label in enumerate(table.column_names[1:]):

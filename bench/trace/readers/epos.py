@@ -15,7 +15,7 @@ from bench.trace.readers.table import read_timed
 from bench.trace.source import FileFormat, Source, no_samples, shows
 
 _HEAD = re.compile(r"^(EPOS Studio Version|Sampling period|Recorded samples):;", re.MULTILINE)
-_TOLD = ("Date", "Firmware Version", "EPOS Studio Version", "Sampling period")
+_KEPT = ("Date", "Firmware Version", "EPOS Studio Version", "Sampling period")
 
 
 def _read(source: Source) -> Recording:
@@ -32,8 +32,8 @@ def _read(source: Source) -> Recording:
         raise no_samples(source)
     labels = [f"{name or 'time'} [{unit}]" for name, unit in zip(names, units, strict=True)]
     channels = read_timed(samples, head + 3, labels, ";", source.path)
-    told = (line.rstrip(",").strip('"').split(":;", 1) for line in lines[:head] if ":;" in line)
-    metadata = {key: value for key, value in told if key in _TOLD}
+    settings = (line.rstrip(",").strip('"').split(":;", 1) for line in lines[:head] if ":;" in line)
+    metadata = {key: value for key, value in settings if key in _KEPT}
     return Recording(tuple(channels), EPOS.format, source.path, metadata, tuple(notes))
 
 
