@@ -1,6 +1,8 @@
-"""How the pages are built: `python -m sphinx -W -b html docs docs/_build/html`."""
+"""How the pages are built: `python -m sphinx -W -j auto -b html docs docs/_build/html`."""
 
+import hashlib
 import logging
+import shutil
 import sys
 from pathlib import Path
 
@@ -35,7 +37,16 @@ html_math_renderer = "mathml"
 nb_ipywidgets_js = {}
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
-nb_execution_mode = "force"
+# a notebook runs again once it or anything that it runs has changed
+made_from = (path for name in ("bench", "data/rigs", "data/motors", "mjcf") for path in (HERE.parent / name).rglob("*"))
+digest = hashlib.sha256(
+    b"".join(path.read_bytes() for path in sorted(made_from) if path.suffix in (".py", ".toml", ".xml"))
+)
+nb_execution_mode = "cache"
+nb_execution_cache_path = str(HERE / "_build" / "notebooks" / digest.hexdigest()[:16])
+for earlier in (HERE / "_build" / "notebooks").glob("*"):
+    if str(earlier) != nb_execution_cache_path:
+        shutil.rmtree(earlier)
 nb_execution_raise_on_error = True
 nb_execution_timeout = 120
 autodoc_typehints = "description"

@@ -23,10 +23,21 @@ def site(tmp_path_factory):
     shutil.copytree(DOCS, home / "docs", ignore=shutil.ignore_patterns("_build", "reference", "jupyter_execute"))
     for path in ROOT.glob("*.md"):
         shutil.copy(path, home)
-    line = [sys.executable, "-m", "sphinx", "-q", "-W", "-b", "html", "docs", "site/html"]
+    built(home)
+    return home / "site" / "html"
+
+
+def built(home, *options):
+    """Builds it without a word."""
+    line = [sys.executable, "-m", "sphinx", "-q", "-W", "-j", "auto", "-b", "html", *options, "docs", "site/html"]
     done = subprocess.run(line, cwd=home, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    return home / "site" / "html"
+
+
+@pytest.mark.slow
+def test_a_notebook_that_ran_does_not_run_again(site):
+    """Read anew, none would get far in the time that it has."""
+    built(site.parents[1], "-D", "nb_execution_timeout=1", "-E")
 
 
 @pytest.mark.slow
