@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 
-from bench.course import catapult, difference, examples, friction, inertia, peak_torque, torque_constants, winding
+from bench.course import catapult, corner, difference, examples, friction, inertia, peak_torque, torque_constants
 from bench.course.recordings import LabRecordings
 from bench.course.result import EXAMPLE, TaskResult
 from bench.course.tracking import tracking
@@ -53,7 +53,7 @@ TASKS = (
     Task("8", "Filtered acceleration, slow samples removed", friction.samples_that_remain),
     Task("9", "Moment of inertia and friction by least squares", friction.inertia_and_friction),
     Task("10", "Peak torque over speed", peak_torque.over_speed),
-    Task("11", "Why the measured corner lies higher", winding.why_the_corner_lies_higher, recorded=False),
+    Task("11", "Why the measured corner lies higher", corner.why_the_corner_lies_higher, recorded=False),
     Task("estimators", "The course's estimators and the bench's", examples.estimators, recorded=False, example=True),
     Task("range", "Operating range", peak_torque.operating_range),
     Task("tracking", "Tracking with three load inertias in the feed-forward", tracking),

@@ -1,0 +1,109 @@
+"""Task 11: why the measured corner lies at higher speed than the datasheet's, by simulating the motor's winding."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bench.course.axis import MAINS, RPM, joined
+from bench.course.peak_torque import datasheet_curve, fall
+from bench.course.power import of_circuits
+from bench.course.recordings import LabRecordings
+from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, panel
+from bench.course.winding import TIME_CONSTANTS, Split, identified_axis, split
+from bench.errors import BenchError
+from bench.report.document import Chart
+from bench.rig.limits import COLD, HOT, peak_curve
+from bench.rig.rig import Rig
+
+
+def why_the_corner_lies_higher(recordings: LabRecordings) -> TaskResult:
+    """State how many rpm of the corner's shift each of the two causes is, and what inductance does instead."""
+    rig = recordings.rig
+    axis = identified_axis(recordings)
+    found = split(rig, axis)
+    assumed = recordings.sources("motor", "electrical_time_constant")
+    faster = ", ".join(f"{speed * RPM:.0f} rpm at {share:.0%}" for share, speed in found.faster.items())
+    sheet = peak_curve(rig.motor, MAINS, rig.source).corner_speed
+    power = of_circuits(rig, axis, found)
+    findings = (
+        "The corner is the speed at which the torque starts to decline, as full voltage no longer drives peak current: "
+        "U = R·Imax + Ke·ω. The current is still constant there, dIq/dt = 0, so no inductance can move it.",
+        f"Simulated, it lies at {found.hot.corner * RPM:.0f} rpm hot, at {found.cold.corner * RPM:.0f} rpm cold and at "
+        f"{found.inductive.corner * RPM:.0f} rpm cold with inductance (L/R, {assumed}): the cold winding moves it by "
+        f"{found.by_temperature * RPM:+.0f} rpm, as it takes less voltage and leaves more to the back-EMF, the "
+        f"inductance by {found.by_inductance * RPM:+.1f} rpm, and for L/R from 1 to 8 ms alike.",
+        "What inductance does is to flatten the fall: beyond the corner it keeps the current up for about L/R, in "
+        f"which speed rises by α·L/R. The same torque is there at a higher speed, by {faster} of the "
+        "peak. Whoever reads the corner from the line through the fall, or at a few percent below the peak, counts "
+        "this as a shift.",
+        *_measured_findings(recordings, found),
+        f"The winding warms by {found.hot.warming[-1]:.1f} K (hot) and {found.cold.warming[-1]:.1f} K (cold) during "
+        f"the run-up, which keeps the hot corner {(found.hot.corner - sheet) * RPM:+.0f} rpm from the datasheet's "
+        f"{sheet * RPM:.0f} rpm.",
+        *power.findings,
+    )
+    numbers = (*_numbers(found, joined(SIMULATED, f"L/R: {assumed}")), *power.numbers)
+    charts = (_torque_chart(rig, found), _dependence_chart(found), *power.charts)
+    return TaskResult(findings, numbers, charts, tables=power.tables)
+
+
+def _numbers(found: Split, with_inductance: str) -> tuple[Number, ...]:
+    speeds = {
+        "corner, hot, quasi-static": (found.hot.corner, SIMULATED),
+        "corner, cold, quasi-static": (found.cold.corner, SIMULATED),
+        "corner, cold, with inductance": (found.inductive.corner, with_inductance),
+        "shift by temperature": (found.by_temperature, SIMULATED),
+        "shift by inductance": (found.by_inductance, with_inductance),
+    }
+    for share, faster in found.faster.items():
+        speeds[f"with inductance faster at {share:.0%} of the torque by"] = faster, with_inductance
+    others = {f"L/R = {tau * 1e3:g} ms": other for tau, other in zip(TIME_CONSTANTS, found.others, strict=True)}
+    speeds |= {f"corner, {words}": (other.corner, SIMULATED) for words, other in others.items()}
+    speeds |= {f"fall later by, {words}": (other.line - found.cold.line, SIMULATED) for words, other in others.items()}
+    return tuple(Number(name, speed * RPM, "rpm", source=source) for name, (speed, source) in speeds.items())
+
+
+def _measured_findings(recordings: LabRecordings, found: Split) -> tuple[str, ...]:
+    """What task 10 measured beside the simulation; nothing where that could not be done, which it says itself."""
+    try:
+        measured = fall(recordings.fastest, recordings.rig)
+    except BenchError:
+        return ()
+    text = (
+        f"Measured in task 10: {measured.corner * RPM:.0f} rpm, "
+        f"{(measured.corner - found.inductive.corner) * RPM:+.1f} rpm from the simulation, and a fall that comes "
+        f"{measured.lag * 1e3:.1f} ms late (L/R as it acts)."
+    )
+    same = (
+        " This recording was made by the same equations: that they agree shows that corner and lag can be read from "
+        "noisy samples at 1 ms, and nothing about a motor."
+    )
+    return (text + same if recordings.fastest.truth else text,)
+
+
+def _torque_chart(rig: Rig, found: Split) -> Chart:
+    speed, torque = datasheet_curve(rig)
+    every = slice(None, None, 40)
+    simulated = {
+        f"{HOT:g} °C, quasi-static": found.hot,
+        f"{COLD:g} °C, quasi-static": found.cold,
+        f"{COLD:g} °C, with inductance": found.inductive,
+    }
+    curves = (curve(run.velocity[every] * RPM, run.torque[every], name) for name, run in simulated.items())
+    datasheet = curve(speed * RPM, torque, f"datasheet, {MAINS:g} V", "dashes")
+    return chart("Task 11: simulated peak torque", panel("speed n / rpm", "torque M / (N·m)", datasheet, *curves))
+
+
+def _dependence_chart(found: Split) -> Chart:
+    tau = np.array(TIME_CONSTANTS)
+    from_zero = np.append(0.0, tau)
+    corners = (np.array([one.corner for one in found.others]) - found.cold.corner) * RPM
+    lines = (np.array([one.line for one in found.others]) - found.cold.line) * RPM
+    axes = panel(
+        "electrical time constant L/R / ms",
+        "shift by inductance / rpm",
+        curve(tau * 1e3, corners, "corner", "large dots"),
+        curve(tau * 1e3, lines, "line through the fall", "large dots"),
+        curve(from_zero * 1e3, from_zero * found.acceleration * RPM, "α·L/R at full torque", "dashes"),
+    )
+    return chart("Task 11: inductance moves the fall, not the corner", axes)
