@@ -39,7 +39,8 @@ def pack(path: Path, result: object) -> None:
     arrays: dict[str, Array] = {}
     parts = json.dumps(_pack(result, arrays))
     with whole(path) as temporary, temporary.open("wb") as file:
-        np.savez_compressed(file, **arrays, **{_PARTS: np.array(parts)})
+        arrays[_PARTS] = np.array(parts)
+        np.savez_compressed(file, allow_pickle=False, **arrays)
 
 
 def unpack(path: Path, kind: type) -> Any:  # noqa: ANN401 - of this kind

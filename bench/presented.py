@@ -34,7 +34,7 @@ class Presented:
 
     def to_dict(self) -> dict[str, Any]:
         """All of it as numbers and texts, as `--json` writes it."""
-        return json.loads(_notebook().told(self).json)
+        return json.loads(_notebook().overview(self).json)
 
     def to_frame(self) -> Any:  # noqa: ANN401 - of whichever of the two is there
         """Quantities with intervals, a row each, as a data frame of pandas or, without it, of polars.

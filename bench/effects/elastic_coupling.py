@@ -66,7 +66,7 @@ class ElasticCoupling(Coupling, FiltersMotion, Native):
 
         The own column of that in the balance is one of an effect on the motor, so only the difference enters here.
         """
-        return [_column(signals, *shape, loads) for shape in shapes]
+        return [_column(signals, antiresonance, damping, loads) for antiresonance, damping in shapes]
 
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> NDArray[np.complex128]:
         """Load's acceleration over the motor's, less one: (1 + 2*D*s/w_a)/(1 + 2*D*s/w_a + (s/w_a)**2) - 1."""

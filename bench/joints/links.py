@@ -205,20 +205,25 @@ def seek_payload(work: Sequence[JointLogs], body: str, progress: Callable[[float
     products = of_joints(work, [AddedBody(body, 1.0, (x, y, z)) for x, y, z in PLACES.tolist()], progress)
     if not products:
         raise UndeterminedError(f"the payload of '{body}'", "no joint is told by the logs", "a log of all joints")
-    centre = np.zeros(3)
-    for _ in range(ROUNDS):
-        mix = _at(centre)
-        found = shared(products, mix)
-        mass = found.parameter(found.strengths[0], float(np.sqrt(found.covariance[0, 0])), "kg")
-        if mass.ci95[0] <= 0.0:
-            reason = f"its mass comes out as {mass.value:.3g} ± {mass.half_width:.2g} kg"
-            raise UndeterminedError(f"the payload of '{body}'", reason, "a log in which the body is lifted and turned")
-        centre = centre + found.strengths[1:] / mass.value
+    mix, found, mass, centre = _carried(products, body, np.zeros(3))
+    for _ in range(ROUNDS - 1):
+        mix, found, mass, centre = _carried(products, body, centre)
     errors = np.where(found.open[1:], np.inf, np.sqrt(np.diag(found.covariance)[1:]) / mass.value)
     moved = _without_each(products, mix, found.strengths) / np.array([1.0, *[mass.value] * 3])
     coordinates = zip(centre, errors, moved[1:], strict=True)
     x, y, z = (found.parameter(value, error, "m").widened(by) for value, error, by in coordinates)
     return FoundPayload(body, mass.widened(moved[0]), (x, y, z))
+
+
+def _carried(products: Sequence[Array], body: str, near: Array) -> tuple[Array, Common, Parameter, Array]:
+    """What a body carries, sought near a place (3,): how that is mixed of PLACES, strengths, mass and centre (3,)."""
+    mix = _at(near)
+    found = shared(products, mix)
+    mass = found.parameter(found.strengths[0], float(np.sqrt(found.covariance[0, 0])), "kg")
+    if mass.ci95[0] <= 0.0:
+        reason = f"its mass comes out as {mass.value:.3g} ± {mass.half_width:.2g} kg"
+        raise UndeterminedError(f"the payload of '{body}'", reason, "a log in which the body is lifted and turned")
+    return mix, found, mass, near + found.strengths[1:] / mass.value
 
 
 def _monomials(x: Array, y: Array, z: Array) -> Array:
@@ -240,7 +245,8 @@ def _at(centre: Array) -> Array:
         (zero, zero, one, zero, zero, 2 * y, zero, x, zero, z),
         (zero, zero, zero, one, zero, zero, 2 * z, zero, x, y),
     ]
-    return np.linalg.solve(_monomials(*PLACES.T).T, np.array([_monomials(x, y, z), *slopes]).T)
+    own = np.array([_monomials(x, y, z), *slopes])
+    return np.linalg.inv(_monomials(*PLACES.T).T) @ own.T
 
 
 def _without_each(products: Sequence[Array], mix: Array, strengths: Array) -> Array:
