@@ -1,13 +1,15 @@
 """A notebook for each task: its text, cells to fill in, and checks of what a result must fulfil, without telling it.
 
 Each is written from a text in `data/lab/notebooks`, Markdown with three kinds of code: `python given` is there,
-`python check` checks, and `python yours NAME` is to be filled in.
+`python check` checks, and `python yours NAME` is to be filled in. `python yours NAME FILE` writes the
+student's function into a file, which later tasks take it from.
 """
 
 from __future__ import annotations
 
 import json
 import re
+import runpy
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -17,7 +19,7 @@ from bench.errors import InputError
 from bench.files import write_text
 
 TEXTS = asset("data", "lab", "notebooks")
-_CELL = re.compile(r"```python (given|check|yours)(?: (\w+))?\n(.*?)```\n?", re.DOTALL)
+_CELL = re.compile(r"```python (given|check|yours)(?: (\w+)(?: ([\w.]+))?)?\n(.*?)```\n?", re.DOTALL)
 HINT = "# your turn\n"
 
 
@@ -54,8 +56,9 @@ def _cells(text: str, filled: Mapping[str, str]) -> Iterator[dict[str, Any]]:
     start = 0
     for match in _CELL.finditer(text):
         yield from _markdown(text[start : match.start()])
-        kind, name, code = match.groups()
+        kind, name, file, code = match.groups()
         source = filled.get(name, HINT + code) if kind == "yours" else code
+        source = f"%%writefile {file}\n{source}" if file else source
         yield {"cell_type": "code", "execution_count": None, "outputs": [], "source": source.rstrip("\n")}
         start = match.end()
     yield from _markdown(text[start:])
@@ -64,6 +67,28 @@ def _cells(text: str, filled: Mapping[str, str]) -> Iterator[dict[str, Any]]:
 def _markdown(text: str) -> Iterator[dict[str, Any]]:
     if text.strip():
         yield {"cell_type": "markdown", "source": text.strip()}
+
+
+class NotYetError(Exception):
+    """A function that is not written yet."""
+
+
+def own(name: str, function: str = "") -> Callable[..., Any]:
+    """The student's own function of a file `NAME.py` here, as it is whenever it is called.
+
+    Args:
+        name: of the file.
+        function: of the function in it; the file's name without.
+    """
+
+    def called(*arguments: object) -> Any:  # noqa: ANN401, a student's function gives anything
+        path = Path(f"{name}.py")
+        found = runpy.run_path(str(path))[function or name](*arguments) if path.exists() else ...
+        if found is ...:
+            raise NotYetError(f"{path} is not written yet")
+        return found
+
+    return called
 
 
 def check(what: str, holds: Callable[..., object], *values: object) -> bool | None:
@@ -75,15 +100,17 @@ def check(what: str, holds: Callable[..., object], *values: object) -> bool | No
         values: of the student; `...` where a cell is not filled in yet.
 
     Returns:
-        Whether it holds; None while a value is open.
+        Whether it holds; None while a value or a function is open.
     """
     if any(value is ... for value in values):
         print(f"open: {what}")
         return None
     try:
         found = bool(holds(*values))
-    except (TypeError, ValueError, IndexError, AttributeError) as error:
-        # a value of another kind or shape than was asked for: the condition does not hold, and why is said
+    except NotYetError as missing:
+        print(f"open: {what} ({missing})")
+        return None
+    except Exception as error:  # a student's code may raise anything: the condition does not hold, and why is said
         print(f"not yet: {what} ({type(error).__name__}: {error})")
         return False
     print(f"{'ok' if found else 'not yet'}: {what}")
