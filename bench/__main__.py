@@ -1,5 +1,6 @@
 """Command line, and `python -m bench`."""
 
+import atexit
 import os
 import signal
 import sys
@@ -64,6 +65,15 @@ def main() -> None:
     if os.name == "posix" and (lacking := _lacking()):
         os.write(2, f"bench: {lacking}\n".encode())
         os._exit(2)
+    status = 70
+
+    def leave() -> None:
+        """End before Python is taken down: a thread of Arrow that lets go of an object by then aborts the process."""
+        with suppress(OSError, ValueError):  # what came before an error that is told already
+            sys.stdout.flush()
+        os._exit(status)
+
+    atexit.register(leave)  # the first that is registered is the last that is called
     try:
         for number in (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if os.name == "posix" else [])):
             if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup leaves it
@@ -76,6 +86,9 @@ def main() -> None:
     except Stopped as stop:
         os.write(2, b"bench: interrupted\n")
         os._exit(stop.args[0])  # what is half imported cannot be taken down in order
+    except SystemExit as end:  # as the command line always ends
+        status = end.code if isinstance(end.code, int) else 0
+        raise
 
 
 if __name__ == "__main__":
