@@ -70,7 +70,8 @@ def main() -> None:
     def leave() -> None:
         """End before Python is taken down: a thread of Arrow that lets go of an object by then aborts the process."""
         with suppress(OSError, ValueError):  # what came before an error that is told already
-            sys.stdout.flush()
+            if sys.stdout is not None:
+                sys.stdout.flush()
         os._exit(status)
 
     atexit.register(leave)  # the first that is registered is the last that is called
