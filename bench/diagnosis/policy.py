@@ -52,6 +52,7 @@ class Policy:
         explains: factor on the share of what is above noise that each effect states as needed of itself.
         needed: of what is above noise without it: what a name takes beside those that came after it.
         as_good: of what a name takes: what a candidate takes in its place, even at a grid's shape.
+        odds: of a likelihood to that of what is nearly as good, beyond which that is no more weighed.
         exchanges: candidates at most whose shapes are searched in the place of a name.
         replaces: of what is above noise, on the rows that are determined: what an effect takes that is tried in the
             place of others.
@@ -73,6 +74,7 @@ class Policy:
     explains: float = 1.0
     needed: float = 0.02
     as_good: float = 0.9
+    odds: float = 100.0
     exchanges: int = 2
     replaces: float = 0.5
     determined: float = 0.5
@@ -142,6 +144,11 @@ class Policy:
         """Whether `after`, with another effect in the place of a name, leaves less by more than chance."""
         numbers = max(freedom(after) - freedom(before), 1)
         return worth(before, after) > self.by_chance(before, numbers) and self.physical(after)
+
+    def undecided(self, one: Fit, other: Fit) -> bool:
+        """Whether the likelihood of `other`, of independent rows over the noise, is within the odds of that of `one`."""
+        rows = one.count / one.rows.correlation
+        return rows * float(np.log(over_noise(other) / over_noise(one))) < np.log(self.odds)
 
     def replaces_by(self, before: Fit, after: Fit) -> bool:
         """Whether `after`, with its last term in the place of others, leaves clearly less where it is determined.

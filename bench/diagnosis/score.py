@@ -98,7 +98,8 @@ def _instead_of_the_last(searched: Searched, policy: Policy) -> Iterator[Fit]:
     as_good = [each for each in rivals if each.gain > policy.as_good * rivals[0].gain]
     others = [each for each in as_good if each.term.effect not in taken]
     if others:
-        yield from _promising(searched.steps[-2].fitted, others[:NEXT], policy)
+        found = _promising(searched.steps[-2].fitted, others[:NEXT], policy)
+        yield from (each for each in found if policy.undecided(searched.steps[-1].fitted, each))
 
 
 def _of_other_form(last: Fit, policy: Policy) -> Iterator[Fit]:

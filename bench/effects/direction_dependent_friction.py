@@ -14,7 +14,7 @@ import numpy as np
 from bench.effects.acting import DirectedFriction, Native, ResistingTorque
 from bench.effects.effect import OfSpeed
 from bench.effects.mjcf import AXIS, Spec, add_resisting_torque
-from bench.effects.signals import Axis, Moment, Number, Scope, Signals, Values
+from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -33,6 +33,10 @@ class DirectionDependentFriction(OfSpeed, DirectedFriction, Native, ResistingTor
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """1/2 and |omega|/2."""
         return [[(np.full_like(signals.time, 0.5), 0)], [(0.5 * signals.velocity * signals.sign, 0)]]
+
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+        """Dry friction resists in both directions: more of a difference is a torque that drives."""
+        return abs(strengths[0]) <= 2.0 * base.coulomb
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """A constant torque, wherever the axis moves."""

@@ -23,6 +23,8 @@ EDGES = 240
 LONGEST = 0.6
 #: Speed, as share of its RMS, below which an axis creeps.
 CREEPS = 0.05
+#: Of the most that a window takes, what others take that differ in rows alone where nothing moves: the shortest is it.
+ALIKE = 1.0 - 1e-9
 #: Widths of the filter that an event lasts at least: the full width at half maximum of its impulse response.
 RESOLVED = 2.355
 
@@ -68,7 +70,8 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         power = count - np.sum((spanned[last] - spanned[first]) ** 2, axis=1)
         determined = (power > 0.02 * count) & (count > 0.0)
         gain = np.where(determined, (summed[last] - summed[first]) ** 2 / np.maximum(power, 1e-9), 0.0)
-        best = int(np.argmax(gain))
+        most = np.flatnonzero(gain >= ALIKE * gain.max())
+        best = int(most[np.argmin(last[most] - first[most])])
         stop = min(int(edges[last[best]]), time.size - 1)
         return [Proposal((float(time[edges[first[best]]]), float(time[stop])), float(gain[best]))]
 

@@ -1,0 +1,44 @@
+"""What acts while the axis hardly moves: where an event begins, and what no friction is."""
+
+import numpy as np
+import pytest
+
+from bench.diagnosis.policy import Policy
+from bench.diagnosis.search import search
+from bench.effects.catalogue import catalogue
+from bench.effects.rivals import Notch
+from bench.effects.signals import Base
+from tests.diagnosis.constructed import COULOMB, VISCOUS, Motion, bare, moved, names, only_during, recorded
+
+CREEP = 0.4  # rad/s, a hundredth of the other speeds
+
+
+def held(start: float, stop: float) -> Motion:
+    """A swing that creeps forward from one instant to another - s."""
+    whole = moved(6.0)
+    pace = np.where((whole.time >= start) & (whole.time < stop), 0.0, whole.velocity)
+    smooth = np.hanning(201) / np.hanning(201).sum()
+    velocity = np.convolve(np.pad(pace, 100, mode="edge"), smooth, mode="valid") + CREEP
+    acceleration = np.gradient(velocity, whole.time)
+    return Motion(whole.time, np.cumsum(velocity) * 1e-3, velocity, acceleration, np.sign(velocity))
+
+
+def test_an_event_begins_where_it_begins_however_long_the_axis_crept_before():
+    """Rows where it creeps speak for no window: of those that differ there alone a search starts at the shortest."""
+    trace = recorded(held(1.5, 3.2), only_during(0.06, 3.1, 3.9))
+    found = search(bare(trace), [catalogue()["load_torque_event"]], Policy()).last
+    assert found.terms[0].shape == pytest.approx((3.1, 3.9), abs=5e-3)
+    assert found.strengths(0)[0] == pytest.approx(0.06, rel=0.03)
+
+
+@pytest.mark.parametrize(("level", "name"), [(1.5, "torque_offset"), (0.5, "direction_dependent_friction")])
+def test_friction_never_drives(level, name):
+    """What is beyond friction is a load: with it as a difference one direction would have none left."""
+    trace = recorded(moved(), lambda motion: level * COULOMB + 0.3 * VISCOUS * np.abs(motion.velocity))
+    assert names(Policy(), trace, ["direction_dependent_friction", "torque_offset"])[0] == name
+
+
+def test_a_bump_is_narrower_than_a_turn():
+    base = Base(1e-3, 0.0, 0.1)
+    assert Notch().physical((0.1, 0.1), (0.0, 0.4), base)
+    assert not Notch().physical((0.1, 0.1), (0.0, 801.9), base)
