@@ -146,7 +146,7 @@ class Policy:
         return worth(before, after) > self.by_chance(before, numbers) and self.physical(after)
 
     def undecided(self, one: Fit, other: Fit) -> bool:
-        """Whether the likelihood of `other`, of independent rows over the noise, is within the odds of that of `one`."""
+        """Whether the likelihood of `other`, of independent rows over noise, is within the odds of that of `one`."""
         rows = one.count / one.rows.correlation
         return rows * float(np.log(over_noise(other) / over_noise(one))) < np.log(self.odds)
 

@@ -44,7 +44,7 @@ def test_what_was_nearly_as_good_as_the_only_name_is_weighed_too():
 
 
 def test_what_the_rows_decide_is_not_weighed_any_more():
-    """By likelihood of independent rows, N*ln(chi'/chi): a name that leaves more than the true one is beyond any odds."""
+    """By likelihood of independent rows, N*ln(chi'/chi): a name that leaves more is beyond any odds."""
     rows = bare(recorded(moved(), drag)).rows
     right, wrong = (fit(rows, Hypothesis((Term(catalogue()[name]),))) for name in ("quadratic_drag", "torque_offset"))
     assert wrong.chi > 1.3 * right.chi
