@@ -27,12 +27,17 @@ def lab(
     notebooks: Annotated[
         Path | None, typer.Option("--notebooks", help="Only write a notebook for each task, into this folder.")
     ] = None,
+    asked: Annotated[
+        Path | None, typer.Option("--questions", help="Three questions for each student of this class' folder.")
+    ] = None,
 ) -> None:
     """Do all tasks of the lab course; write one report as HTML, PDF and JSON. Or prepare and grade a class."""
     if synthetic is not None:
         _record(synthetic, students, seed)
     elif submissions is not None:
         _grade(submissions, truth, out)
+    elif asked is not None:
+        _ask(asked, out)
     elif notebooks is not None:
         from bench.course.notebooks import write_notebooks
 
@@ -63,6 +68,17 @@ def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
         say(f"not graded: {error}", err=True)
     list_files(files[:2])
     if graded.unread:
+        raise typer.Exit(1)
+
+
+def _ask(folder: Path, out: Path) -> None:
+    from bench.course.colloquium import write_questions
+
+    files, missing = write_questions(folder, out)
+    for reason in missing:
+        say(str(reason), err=True)
+    list_files(files[-1:])
+    if missing:
         raise typer.Exit(1)
 
 

@@ -53,6 +53,11 @@ class CircuitTold:
         drop, voltage = share * self.drop, voltages * self.voltage
         return _positive_root(self.ke**2 + self.across**2, 2.0 * self.ke * drop, drop**2 - voltage**2)
 
+    def resistance_share(self, corner: float) -> float:
+        """Share of the hot resistance that puts the corner at a speed - rad/s."""
+        left = max(self.voltage**2 - (self.across * corner) ** 2, 0.0)
+        return (math.sqrt(left) - self.ke * corner) / self.drop
+
     @property
     def shift(self) -> float:
         """Of the corner from hot to cold - rad/s."""

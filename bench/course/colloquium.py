@@ -1,0 +1,249 @@
+"""Three questions for each student, whose figures are of the own recordings, and the examiner's answers."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from bench.arrays import rms
+from bench.assets import asset
+from bench.course.answers import Way, Worked
+from bench.course.axis import KG_CM2, MAINS, RPM, circuit, torque_constant
+from bench.course.friction import WIDTH, in_step
+from bench.course.power import circuits
+from bench.course.recordings import LabRecordings
+from bench.course.run import LabRun
+from bench.errors import BenchError, InputError
+from bench.files import read_text, write_text
+from bench.fit.lab import LEAST_SPEED
+from bench.report.document import Document, Neighbour, Neighbours, Paragraph, Section
+from bench.report.html import html
+from bench.rig.limits import HOT, Circuit, peak_curve
+from bench.rig.rig import Rig
+
+TITLE = "Industrial Drives, Part 2: colloquium"
+TEXTS = asset("data", "lab", "questions.md")
+_QUESTION = re.compile(r"^## (\w+): (.+)\n((?:[^>#].*\n)+)((?:> .*\n)+)", re.MULTILINE)
+GROUPS = ("filter", "torque", "axis")
+#: Gravity - m/s**2, radius of the ring in the question of the hub - m, and the other threshold - rad/s.
+GRAVITY, RING, FASTER = 9.81, 0.02, 60.0
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a student is asked, with the own figures, and what the examiner expects."""
+
+    name: str
+    text: str
+    answer: str
+
+
+def questions(recordings: LabRecordings, number: int) -> list[Question]:
+    """One of each group; the next number has other ones, and 36 numbers in a row no three in common.
+
+    Raises:
+        BenchError: a recording is missing or cannot be of the axis.
+    """
+    own, texts = figures(recordings), _QUESTION.findall(read_text(TEXTS, "questions"))
+    asked = []
+    for group, turn in zip(GROUPS, (number, number + number // 3, number), strict=True):
+        of_group = [found for found in texts if found[0] == group]
+        _, name, text, answer = of_group[turn % len(of_group)]
+        filled = (" ".join(part.split()).format(**own) for part in (text, re.sub("^> ", "", answer, flags=re.M)))
+        asked.append(Question(name, *filled))
+    return asked
+
+
+def figures(recordings: LabRecordings) -> dict[str, float]:
+    """Every figure that a question or an answer holds, by its name there, in its unit there."""
+    worked = Worked.of(recordings)
+    right, rig = worked.answers(), recordings.rig
+    return {
+        "J": right["J"],
+        "K_w": right["K_fric_w"],
+        "K_0": right["K_fric_0"],
+        "M_max": right["M_max"],
+        "kT_stall": right["kT_stall"],
+        **_of_ways(worked, right),
+        **_of_filter(recordings.with_friction, right),
+        **_of_torque(recordings, right),
+        **_of_corner(rig, circuit(rig), worked.corner),
+        **_of_axis(recordings, right),
+        **_of_throw(right, sum(len(flight) for flight in recordings.flights.points)),
+    }
+
+
+def _of_ways(worked: Worked, right: dict[str, float]) -> dict[str, float]:
+    """What other ways make of the answers: shares off."""
+    ways = {
+        "late": Way(width=WIDTH - 1, set_back=WIDTH // 2 - 1),
+        "bare": Way(width=1, set_back=0),
+        "slow": Way(least=FASTER),
+        "constant": Way(constant="stall"),
+        "rms": Way(current=math.sqrt(2.0)),
+    }
+    names = {"J": "J", "w": "K_fric_w", "0": "K_fric_0", "M": "M_max"}
+    found = {way: worked.answers(how) for way, how in ways.items()}
+    off = {f"{way}_{short}": of[name] / right[name] - 1.0 for way, of in found.items() for short, name in names.items()}
+    return {**off, "rms_peak": found["rms"]["M_max"]}
+
+
+def _of_filter(run: LabRun, right: dict[str, float]) -> dict[str, float]:
+    """Half a sample and noise by what they are, and which samples remain."""
+    fast, whole = np.abs(run.velocity) >= LEAST_SPEED, in_step(run)
+    sign = np.sign(run.velocity)
+    columns = np.stack([whole.acceleration, run.velocity, sign], axis=1)[fast]
+    bend = np.gradient(whole.acceleration, run.sample_period)[fast]
+    inertia = right["J"] / KG_CM2
+    moved = np.linalg.lstsq(columns, 0.5 * run.sample_period * inertia * bend, rcond=None)[0].tolist()
+    # third differences of a smooth speed are noise, 1 + 9 + 9 + 1 times its variance
+    noise = rms(np.diff(run.velocity, 3)) / math.sqrt(20.0)
+    noise_alpha = math.sqrt(2.0) * noise / run.sample_period
+    attenuation = -((noise_alpha / rms(whole.acceleration[fast])) ** 2)
+
+    def alike(least: float) -> float:
+        speeds = np.abs(run.velocity[np.abs(run.velocity) >= least])
+        return float(np.mean(speeds)) / rms(speeds)
+
+    return {
+        "project_J": moved[0] / inertia,
+        "project_w": moved[1] / right["K_fric_w"],
+        "project_0": moved[2] / right["K_fric_0"],
+        "share": rms(right["K_fric_w"] * run.velocity + right["K_fric_0"] * sign) / rms(run.torque),
+        "noise": noise,
+        "noise_alpha": noise_alpha,
+        "alpha_rms": rms(whole.acceleration[fast]),
+        "attenuation": attenuation,
+        "attenuation_half": 4.0 * attenuation,
+        "kept": float(np.mean(np.abs(run.velocity) >= FASTER)),
+        "alike_20": alike(LEAST_SPEED),
+        "alike_60": alike(FASTER),
+        "top": float(np.abs(run.velocity).max()),
+    }
+
+
+def _of_torque(recordings: LabRecordings, right: dict[str, float]) -> dict[str, float]:
+    constant, current = torque_constant(recordings.rig), rms(recordings.with_friction.current)
+    largest = float(recordings.fastest.current.max())
+    more = math.sqrt(2.0) * current
+    at = {name: float(constant(np.asarray(value))) for name, value in (("", current), ("2", more), ("max", largest))}
+    return {
+        "I_rms": current,
+        "I_rms2": more,
+        "I_max": largest,
+        "kT_rms": at[""],
+        "kT_rms2": at["2"],
+        "kT_max": at["max"],
+        "ratio_rms": right["kT_stall"] / at[""] - 1.0,
+        "ratio_2": math.sqrt(2.0) * at["2"] / at[""] - 1.0,
+        "I_turn": math.sqrt(-constant.constant / (3.0 * constant.curvature)) if constant.curvature else math.inf,
+    }
+
+
+def _of_corner(rig: Rig, motor: Circuit, corner: float) -> dict[str, float]:
+    """What a corner - rad/s - says of the winding, by the course's circuit and by one that balances."""
+    sheet = peak_curve(rig.motor, MAINS, rig.source)
+    share = (sheet.no_load_speed - corner) / (sheet.no_load_speed - sheet.corner_speed)
+    other = next((curve for curve in rig.motor.peak_curves if curve is not sheet), None)
+    both = circuits(rig, other)[-1].resistance_share(corner) if other is not None else math.nan
+    kelvin = motor.temperature_coefficient
+    return {
+        "corner": corner * RPM,
+        "sheet": sheet.corner_speed * RPM,
+        "share_R": share,
+        "per_kelvin": 100.0 * kelvin,
+        "temperature": HOT - (1.0 - share) / kelvin,
+        "share_both": both,
+        "room": motor.cold_share,
+    }
+
+
+def _of_axis(recordings: LabRecordings, right: dict[str, float]) -> dict[str, float]:
+    """Coasting, the hub, and friction by speed."""
+    inertia, viscous, coulomb = right["J"] / KG_CM2, right["K_fric_w"], right["K_fric_0"]
+    top = float(np.abs(recordings.with_friction.velocity).max())
+    load, disk = right["J_load"] / KG_CM2, recordings.rig.load
+    theory = (disk.disk_inertia if disk else None) or math.nan
+    diameter = (load / theory) ** 0.25 - 1.0
+    rotor = inertia - load
+    return {
+        "coast": inertia / viscous * math.log1p(viscous * top / coulomb),
+        "coast_0": inertia * top / coulomb,
+        "hub": load / theory - 1.0,
+        "extra": (load - theory) * KG_CM2,
+        "ring": 1e3 * (load - theory) / RING**2,
+        "diameter": diameter,
+        "millimetres": 1e3 * diameter * ((disk.outer_diameter if disk else None) or math.nan),
+        "rotor": rotor * KG_CM2,
+        "rotor_share": rotor / load,
+        "equal": coulomb / viscous,
+        "equal_rpm": coulomb / viscous * RPM,
+        "equal_power": 2.0 * coulomb**2 / viscous,
+    }
+
+
+def _of_throw(right: dict[str, float], points: int) -> dict[str, float]:
+    a, b, c = (right[f"catapult_{name}"] for name in "abc")
+    forward = math.sqrt(-GRAVITY / (2.0 * a))
+    return {
+        "v_y": forward,
+        "angle": math.degrees(math.atan(b)),
+        "v": forward * math.hypot(1.0, b),
+        "apex": c - b**2 / (4.0 * a),
+        "points": points,
+        "per_point": 1e3 * math.sqrt(right["catapult_E"] / points),
+    }
+
+
+def write_questions(folder: Path, out: Path) -> tuple[list[Path], list[BenchError]]:
+    """Write `questions.html` with the answers, and a page without them for each student of a class.
+
+    Args:
+        folder: with a folder of recordings for each student, or one student's.
+        out: folder to write to.
+
+    Returns:
+        The paths, and why a student has none.
+
+    Raises:
+        InputError: no such folder.
+    """
+    if not folder.is_dir():
+        raise InputError(folder, "no such folder", "give the folder of the class, with a folder for each student")
+    students = sorted(path for path in folder.iterdir() if path.is_dir() and path.name != "catapult") or [folder]
+    students = [folder] if (folder / "catapult").exists() else students
+    sections, pages, missing = [], {}, []
+    for number, student in enumerate(students):
+        try:
+            asked = questions(LabRecordings.in_folder(student), number)
+        except BenchError as reason:
+            missing.append(InputError(student, f"has no questions ({reason})", "give recordings of all tasks"))
+            continue
+        name = re.sub(r"[^\w.-]", "-", student.resolve().name)
+        sections.append(_section(student.name, [(one.name, one.text, one.answer) for one in asked], name))
+        alone = _section(student.name, [(one.name, one.text, "") for one in asked], name)
+        pages[f"questions/{name}.html"] = _page(f"{student.name}: three questions", (alone,))
+    if sections:
+        near = Neighbours(files=tuple(Neighbour(name=name, about=name[10:-5]) for name in pages))
+        pages["questions.html"] = _page(
+            f"Three questions for each of {len(sections)}, with answers",
+            (*sections, Section(key="pages", heading="Without answers", blocks=(near,))),
+        )
+    for name, page in pages.items():
+        write_text(out / name, page)
+    return [out / name for name in pages], missing
+
+
+def _section(student: str, asked: list[tuple[str, str, str]], key: str) -> Section:
+    blocks = [Paragraph(text=f"{name[0].upper()}{name[1:]}. {text}") for name, text, _ in asked]
+    answers = [Paragraph(text=f"Answer: {answer}") for _, _, answer in asked if answer]
+    both = [part for pair in zip(blocks, answers, strict=True) for part in pair] if answers else blocks
+    return Section(key=f"of-{key}", heading=student, blocks=tuple(both))
+
+
+def _page(verdict: str, sections: tuple[Section, ...]) -> str:
+    return html(Document(title=TITLE, subject=TITLE, verdict=verdict, tone="sure", answers={}, sections=sections))
