@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -76,6 +77,7 @@ def _endured(folder: Path, recordings: int, deadline: float, hostile: float) -> 
     began = time.monotonic()
     _run(folder, manifest, "whole", deadline).communicate()
     seconds = time.monotonic() - began
+    most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     table = (folder / "whole" / "fleet.parquet").read_bytes()
     rows = pq.read_table(folder / "whole" / "fleet.parquet").to_pylist()
     statuses = Counter(row["status"] for row in rows)
@@ -101,7 +103,7 @@ def _endured(folder: Path, recordings: int, deadline: float, hostile: float) -> 
             "axes whose friction rose by 15 %",
             f"{named} named of {risen}; of others {len(called) - named}",
         ),
-        _row("whole run, two workers", f"{seconds:.0f} s"),
+        _row("whole run, two workers", f"{seconds:.0f} s; {most:.0f} MB its largest process"),
         _row("killed half-way (SIGKILL to all its processes)", f"{kept} results kept, {left} processes left"),
         _row("run again", f"{evaluated} evaluated, {distinct - kept} were missing; same table: {same}"),
     ]
