@@ -6,14 +6,17 @@ worker has one process beside it (`process.py`), so that no piece of work can ho
 
 from __future__ import annotations
 
+import asyncio
 import threading
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any, TypeVar, cast
 from uuid import uuid4
 
-from distributed import Client, Future, KilledWorker, Worker, WorkerPlugin, as_completed, get_worker
+from distributed import Client, Future, KilledWorker, Security, Worker, WorkerPlugin, as_completed, get_worker
+from distributed.comm.core import connect
 
 from bench import __version__
 from bench.errors import InputError
@@ -51,14 +54,22 @@ def on_dask(
 @contextmanager
 def _client(scheduler: str) -> Iterator[Client]:
     try:
+        with ThreadPoolExecutor(1) as thread:  # a notebook's own runs a loop already
+            thread.submit(asyncio.run, asyncio.wait_for(_answered(scheduler), ANSWERS)).result()
         client = Client(scheduler, timeout=ANSWERS)
     except (OSError, ValueError, TypeError) as error:
-        found = f"no Dask scheduler answers ({' '.join(str(error).split())})"
+        found = f"no Dask scheduler answers ({' '.join(str(error).split()) or f'nothing within {ANSWERS} s'})"
         raise InputError(
             f"--scheduler {scheduler}", found, "allowed: the address of one, e.g. tcp://host:8786"
         ) from error
     with client:
         yield client
+
+
+async def _answered(scheduler: str) -> None:
+    """Return once a scheduler has said what it is, for which a client would wait without end."""
+    comm = await connect(scheduler, **Security().get_connection_args("client"))
+    await comm.close()
 
 
 @contextmanager

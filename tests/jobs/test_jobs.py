@@ -1,6 +1,7 @@
 """Whatever one item does, it gets its row and the others theirs: beside this process and on Dask alike."""
 
 import os
+import socket
 import time
 
 import pytest
@@ -101,7 +102,7 @@ def test_one_process_does_all_items_that_go_well():
 
 
 def test_what_is_stopped_is_gone():
-    with WorkerProcess(work, Limits(deadline=0.3)) as beside:
+    with WorkerProcess(work, Limits(deadline=1.5)) as beside:
         process = beside.do(("process", 0))
         assert beside.do(("sleep", 0)).status == "timed_out"
     with pytest.raises(ProcessLookupError):
@@ -122,6 +123,14 @@ def test_a_scheduler_that_is_not_there_is_named(monkeypatch):
     monkeypatch.setattr("bench.jobs.on_dask.ANSWERS", 0.5)
     with pytest.raises(InputError, match=r"--scheduler tcp://127.0.0.1:9: no Dask scheduler answers"):
         list(each(work, ITEMS, LIMITS, scheduler="tcp://127.0.0.1:9"))
+
+
+def test_a_scheduler_that_accepts_and_says_nothing_is_named(monkeypatch):
+    monkeypatch.setattr("bench.jobs.on_dask.ANSWERS", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(InputError, match=r"no Dask scheduler answers \(nothing within 0.5 s\)"):
+            list(each(work, ITEMS, LIMITS, scheduler=address))
 
 
 def test_no_item_is_no_work():
