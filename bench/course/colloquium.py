@@ -34,7 +34,7 @@ GRAVITY, RING, FASTER = 9.81, 0.02, 60.0
 
 
 @dataclass(frozen=True)
-class Question:
+class AskedQuestion:
     """What a student is asked, with the own figures, and what the examiner expects."""
 
     name: str
@@ -42,7 +42,7 @@ class Question:
     answer: str
 
 
-def questions(recordings: LabRecordings, number: int) -> list[Question]:
+def questions(recordings: LabRecordings, number: int) -> list[AskedQuestion]:
     """One of each group; the next number has other ones, and 36 numbers in a row no three in common.
 
     Raises:
@@ -54,7 +54,7 @@ def questions(recordings: LabRecordings, number: int) -> list[Question]:
         of_group = [found for found in texts if found[0] == group]
         _, name, text, answer = of_group[turn % len(of_group)]
         filled = (" ".join(part.split()).format(**own) for part in (text, re.sub("^> ", "", answer, flags=re.M)))
-        asked.append(Question(name, *filled))
+        asked.append(AskedQuestion(name, *filled))
     return asked
 
 
