@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array, recursive_filter
 from bench.effects.effect import Columns, CopiesTorque, Effect
 from bench.effects.shape import DURATION, FREQUENCY, SPEED, Shape, Shapes
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -46,7 +46,10 @@ class Vibration(Outside):
 
 
 class Notch(Outside):
-    """A bump of torque or friction at one angle of the revolution, of Gaussian shape."""
+    """A bump of torque or friction at one angle of the revolution, of Gaussian shape.
+
+    However wide: one wider than a turn is what speaks for a constant torque that the catalogue does not have.
+    """
 
     name = "outside_notch"
     summary = "a bump at one angle"
@@ -59,10 +62,6 @@ class Notch(Outside):
     def sought(self, scope: Scope) -> bool:
         """Where something turns."""
         return scope.kind.turns
-
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
-        """A bump: one as wide as a turn is a constant torque and friction, which the catalogue and the axis have."""
-        return shape[1] < 0.5 * np.pi
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """The bump, and the bump of friction."""

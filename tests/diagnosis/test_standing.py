@@ -6,8 +6,6 @@ import pytest
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
-from bench.effects.rivals import Notch
-from bench.effects.signals import Base
 from tests.diagnosis.constructed import COULOMB, VISCOUS, Motion, bare, moved, names, only_during, recorded
 
 CREEP = 0.4  # rad/s, a hundredth of the other speeds
@@ -36,9 +34,3 @@ def test_friction_never_drives(level, name):
     """What is beyond friction is a load: with it as a difference one direction would have none left."""
     trace = recorded(moved(), lambda motion: level * COULOMB + 0.3 * VISCOUS * np.abs(motion.velocity))
     assert names(Policy(), trace, ["direction_dependent_friction", "torque_offset"])[0] == name
-
-
-def test_a_bump_is_narrower_than_a_turn():
-    base = Base(1e-3, 0.0, 0.1)
-    assert Notch().physical((0.1, 0.1), (0.0, 0.4), base)
-    assert not Notch().physical((0.1, 0.1), (0.0, 801.9), base)
