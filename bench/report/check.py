@@ -93,13 +93,13 @@ def _gaps(checked: Checked) -> Iterator[tuple[str, str, RemainingGap | None, Rem
         yield name, (now.get(name) or before[name]).unit, before.get(name), now.get(name)
 
 
-def headline(checked: Checked) -> str:
-    """What changed, in one line; or that nothing did, or why it is undecided."""
+def headline(checked: Checked, brief: bool = False) -> str:
+    """What changed, in one line; or that nothing did, or why it is undecided; `brief`: of effects their names alone."""
     if checked.result == CHANGED:  # names, then parameters; gaps only if nothing else did
         changed = [one for one in checked.comparisons if one.result == CHANGED]
         changed.sort(key=lambda one: not one.effect)
         *first, last = (
-            described(one, checked) for one in [one for one in changed if one.name not in FOLLOWING] or changed
+            described(one, checked, brief) for one in [one for one in changed if one.name not in FOLLOWING] or changed
         )
         return sentence(f"{', '.join(first)}, and {last}" if first else last)
     if checked.result == SAME:
@@ -114,14 +114,16 @@ def headline(checked: Checked) -> str:
     return f"Undecided: {'; '.join([*motion, *open_])}"
 
 
-def described(one: Comparison, checked: Checked) -> str:
-    """One comparison in words."""
+def described(one: Comparison, checked: Checked, brief: bool = False) -> str:
+    """One comparison in words; `brief`: of an effect its name alone."""
     label = words(one.name).replace(".", " ")
     effect = next((effect for effect, found in (*checked.appeared, *checked.gone) if found is one), None)
     if effect is not None:
         came, went = ("appeared", "is gone, which had")
         if one.result != CHANGED:
             came, went = ("is named now", "is named no more, which had")
+        if brief:
+            return f"{label} {came if one.effect == 'appeared' else went.removesuffix(', which had')}"
         return f"{label} {came if one.effect == 'appeared' else went}: {_values(effect)}{_why(one)}"
     if one.baseline is None or one.now is None:
         return f"{label} cannot be compared{_why(one)}"
@@ -179,7 +181,7 @@ def findings(checked: Checked) -> list[Finding]:
 
 def check_document(checked: Checked, title: str) -> doc.Document:
     """The document of a check of what `title` names."""
-    alike, line = not (checked.rig or checked.conditions), unit_text(headline(checked))
+    alike, line = not (checked.rig or checked.conditions), unit_text(headline(checked, brief=True))
     sections = [
         doc.section("comparisons", "What was compared", *_compared(checked)),
         doc.section("conditions", "Like with like", _unlike(checked), detail=alike),

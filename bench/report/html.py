@@ -101,7 +101,7 @@ def _policy(inside: str | None) -> str:
 
 #: Size of a panel, and of its margins left, right, top, bottom - units of the drawing; one panel alone is wider.
 WIDTH, ALONE, HEIGHT = 380.0, 760.0, 230.0
-LEFT, RIGHT, TOP, BOTTOM = 58.0, 12.0, 12.0, 42.0
+LEFT, RIGHT, TOP, BOTTOM = 58.0, 12.0, 24.0, 42.0
 #: Size of a sketch in a row, and what its largest dot takes of each side.
 SKETCH, DOT = (150.0, 30.0), 4.0
 #: Share of the span that is left free around the points.

@@ -14,10 +14,11 @@ from bench.axis_kind import ARMATURE, COULOMB, VISCOUS
 from bench.joints.identified import EFFECTS, IdentifiedJoint
 from bench.joints.robot import IdentifiedRobot
 from bench.names import in_a_row, readable, words
+from bench.parameter import Parameter
 from bench.plant.model_file import joints_toml
 from bench.report import document as doc
 from bench.report.diagnosis import diagnosis, diagnosis_content, following, likely_names
-from bench.report.numbers import interval, sentence
+from bench.report.numbers import interval, sentence, unit_text
 from bench.report.parts import origin, parameters_table
 from bench.report.publish import write_document
 from bench.report.serial import as_json, serialised
@@ -134,13 +135,13 @@ def _verdict(found: IdentifiedRobot) -> str:
 
 def _tables(found: IdentifiedRobot) -> list[doc.Table]:
     """A row for each joint; and what is open, where anything is."""
-    rows = [(name, *_row(joint)) for name, joint in found.joints.items()]
-    headings = ("joint", "armature>", "viscous>", "Coulomb>", "what was missing~", "how sure~")
-    tables = [
-        doc.table(
-            "Values ± half of their intervals of 95 %, in SI, on the motor's side but the armature", headings, rows
-        )
-    ]
+    columns = zip(*(_values(joint) for joint in found.joints.values()), strict=True)
+    told = [_column(name, column) for name, column in zip(("armature", "viscous", "Coulomb"), columns, strict=True)]
+    values = zip(*(cells for _, cells in told), strict=True)
+    rows = [(name, *cells, _missing(joint)) for (name, joint), cells in zip(found.joints.items(), values, strict=True)]
+    headings = ("joint", *(heading for heading, _ in told), "what was missing, and how sure~")
+    caption = "Values ± half of their intervals of 95 %, in SI, on the motor's side but the armature"
+    tables = [doc.table(caption, headings, rows)]
     if found.payload is not None:
         finite = (math.isfinite(one.half_width) for one in found.payload.centre)
         x, y, z = (
@@ -159,15 +160,26 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
     return tables
 
 
-def _row(joint: IdentifiedJoint) -> tuple[str, ...]:
+def _values(joint: IdentifiedJoint) -> tuple[Parameter | None, ...]:
+    """Armature, viscous and Coulomb friction; None for one that is not told."""
     kind = None if joint.rig is None else joint.rig.axis_kind
     names = (ARMATURE, "", "") if kind is None else (ARMATURE, kind.parameter(VISCOUS), kind.parameter(COULOMB))
-    values = [interval(joint.parameters[name]) if name in joint.parameters else "–" for name in names]
+    return tuple(joint.parameters.get(name) for name in names)
+
+
+def _column(name: str, values: Sequence[Parameter | None]) -> tuple[str, list[str]]:
+    """Heading and cells of a quantity of all joints: its unit stands in the heading where all have the same."""
+    units = {value.unit for value in values if value is not None}
+    heading = f"{name} / {unit_text(units.pop())}>" if (alike := len(units) == 1) else f"{name}>"
+    return heading, ["–" if value is None else interval(value, unit=not alike) for value in values]
+
+
+def _missing(joint: IdentifiedJoint) -> str:
+    """What was missing, and how sure that is."""
     if joint.diagnosis is None:
-        return (*values, "not told", "–")
-    effects = "; ".join(words(effect.name) for effect in joint.diagnosis.effects)
+        return "not told"
     left = f" {'; '.join(map(words, joint.diagnosis.because))}" if joint.diagnosis.because else ""
-    return (*values, effects or "nothing", f"{likely_names(joint.diagnosis)}{sentence(left)}")
+    return f"{'' if joint.diagnosis.effects else 'None named: '}{likely_names(joint.diagnosis)}{sentence(left)}"
 
 
 def _open(joint: IdentifiedJoint) -> list[tuple[str, str]]:

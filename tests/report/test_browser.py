@@ -155,6 +155,19 @@ def test_every_picture_has_words_and_headings_are_in_order(opened, found):
     assert page.locator("table").count() == page.locator("table > caption").count()
 
 
+def test_graphs_are_as_high_as_on_paper_before_its_pages_are_counted(opened, found):
+    """Else as much as they shrink by comes out as empty pages."""
+    page = opened(found / "report.html")
+    heights = "[...document.querySelectorAll('.uplot')].map(one => one.offsetHeight)"
+    tall = page.evaluate(heights)
+    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    low = page.evaluate(heights)
+    page.emulate_media(media="print")
+    page.wait_for_timeout(200)
+    assert page.evaluate(heights) == low
+    assert sum(low) < 0.8 * sum(tall)
+
+
 def test_a_printed_page_is_light_with_its_graphs_on_paper(opened, found):
     page = opened(found / "report.html", color_scheme="dark")
     page.emulate_media(media="print", color_scheme="dark")

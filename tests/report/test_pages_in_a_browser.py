@@ -39,3 +39,12 @@ def test_a_page_opens(opened, tmp_path, name, width, scheme):
     assert "alert(1)" in page.locator("body").inner_text()
     violations = axe.Axe().run(page).response["violations"]
     assert [(one["id"], [node["html"] for node in one["nodes"]][:3]) for one in violations] == []
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_no_table_is_cut_on_paper(opened, tmp_path, name):
+    """On A4 within its margins."""
+    write_html(tmp_path / "page.html", PAGES[name]())
+    page = opened(tmp_path / "page.html", 688)
+    page.emulate_media(media="print")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 688

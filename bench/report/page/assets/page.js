@@ -101,6 +101,7 @@
       new ResizeObserver(() => this.fit()).observe(this.place);
       for (const query of ["(prefers-color-scheme: dark)", "print"])
         window.matchMedia(query).addEventListener("change", () => this.build());
+      window.addEventListener("beforeprint", () => this.build(true)); // before pages are counted, whose heights are these
     }
 
     point(time) { // the cursor of all panels, for whoever tells a time; beyond what is in sight it is gone
@@ -116,8 +117,8 @@
       return [...first, ...chosen];
     }
 
-    build() {
-      this.paper = window.matchMedia("print").matches;
+    build(paper = window.matchMedia("print").matches) {
+      this.paper = paper;
       this.place.replaceChildren();
       const key = uPlot.sync(Math.random().toString(36));
       this.plots = this.data.panels.map((panel, k) => this.plot(panel, k, key));
