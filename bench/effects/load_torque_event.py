@@ -8,6 +8,7 @@ M_e - N*m (N); t - time since the recording's start (that of the first, of sever
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.acting import ResistingTorque
@@ -23,7 +24,7 @@ EDGES = 240
 LONGEST = 0.6
 #: Speed, as share of its RMS, below which an axis creeps.
 CREEPS = 0.05
-#: Of the most that a window takes, what others take that differ in rows alone where nothing moves: the shortest is it.
+#: Of the most that a window takes, what others take that differ in rows alone where nothing moves: those decide then.
 ALIKE = 1.0 - 1e-9
 #: Widths of the filter that an event lasts at least: the full width at half maximum of its impulse response.
 RESOLVED = 2.355
@@ -56,22 +57,17 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
             return []
         speed = fitted.seen(lambda signals: [[(signals.velocity, 0)]], of_motion=True)[:, 0]
         moves = (np.abs(speed) > CREEPS * fitted.scope.rms_speed).astype(np.float64)
-        time, basis = fitted.time, fitted.span * moves[:, None]
+        time = fitted.time
         edges = np.unique(np.linspace(0, time.size, EDGES + 1).astype(int))
-        summed, moved = (np.concatenate([[0.0], np.cumsum(of)])[edges] for of in (fitted.residual * moves, moves))
-        spanned = np.concatenate([np.zeros((1, basis.shape[1])), np.cumsum(basis, axis=0)])[edges]
         first, last = np.triu_indices(edges.size, 1)
         kept = (edges[last] - edges[first]) < LONGEST * time.size
         if time[-1] - time[0] > fitted.scope.duration:  # through all of one of several recordings: that is how they are
             instants = time[np.minimum(edges, time.size - 1)]
             kept &= instants[last] - instants[first] <= LONGEST * fitted.scope.duration
         first, last = first[kept], last[kept]
-        count = moved[last] - moved[first]
-        power = count - np.sum((spanned[last] - spanned[first]) ** 2, axis=1)
-        determined = (power > 0.02 * count) & (count > 0.0)
-        gain = np.where(determined, (summed[last] - summed[first]) ** 2 / np.maximum(power, 1e-9), 0.0)
+        gain = _gains(fitted, moves, edges, first, last)
         most = np.flatnonzero(gain >= ALIKE * gain.max())
-        best = int(most[np.argmin(last[most] - first[most])])
+        best = int(most[np.argmax(_gains(fitted, np.ones(time.size), edges, first[most], last[most]))])
         stop = min(int(edges[last[best]]), time.size - 1)
         return [Proposal((float(time[edges[first[best]]]), float(time[stop])), float(gain[best]))]
 
@@ -94,6 +90,19 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         time, torque = at.began + at.time, values["torque"]
         xp = namespace(torque)
         return xp.where((time >= values["start"]) & (time < values["end"]), torque, xp.zeros_like(torque))
+
+
+def _gains(
+    fitted: Fitted, weight: Array, edges: NDArray[np.intp], first: NDArray[np.intp], last: NDArray[np.intp]
+) -> Array:
+    """Squares that a torque takes from the residual in windows from one edge to another, by weighted rows (w,)."""
+    residual, basis = fitted.residual * weight, fitted.span * weight[:, None]
+    summed, counted = (np.concatenate([[0.0], np.cumsum(of)])[edges] for of in (residual, weight))
+    spanned = np.concatenate([np.zeros((1, basis.shape[1])), np.cumsum(basis, axis=0)])[edges]
+    count = counted[last] - counted[first]
+    power = count - np.sum((spanned[last] - spanned[first]) ** 2, axis=1)
+    determined = (power > 0.02 * count) & (count > 0.0)
+    return np.where(determined, (summed[last] - summed[first]) ** 2 / np.maximum(power, 1e-9), 0.0)
 
 
 EFFECT = LoadTorqueEvent()

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
 from bench.effects.effect import Columns, CopiesTorque, Effect
-from bench.effects.shape import DURATION, FREQUENCY, SPEED, Shape, Shapes
+from bench.effects.shape import DURATION, FREQUENCY, SPEED, TRAVEL, Shape, Shapes
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -75,6 +75,20 @@ class Notch(Outside):
             bumps = [np.exp(-0.5 * (away / width) ** 2) for _, width in alike]
             columns += [column for bump in bumps for column in ([(bump, 0)], [(bump * signals.sign, 0)])]
         return columns
+
+
+class Course(Outside):
+    """A torque that runs smoothly over the travel as a part of a wave does: a cable, a spring that is not Hooke's."""
+
+    name = "outside_course"
+    summary = "a torque that runs smoothly over the travel"
+    quantities = (Quantity("wave_number", "k", "dimensionless", lower=0.0, linear_unit="rad/m"),)
+    shapes = (Shape(quantities[0], (0.5 * np.pi, np.pi), reach=0.0, measure=TRAVEL),)
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """One, sine and cosine."""
+        angle = shape[0] * signals.position
+        return [[(np.ones_like(angle), 0)], [(np.sin(angle), 0)], [(np.cos(angle), 0)]]
 
 
 class SlowMemory(Outside):
@@ -145,6 +159,6 @@ def _lowpass(values: Array, keep: float) -> Array:
     return recursive_filter([1.0 - keep], [1.0, -keep], values)
 
 
-RIVALS: tuple[Effect, ...] = (Vibration(), Notch(), SlowMemory(), FrictionalMemory())
+RIVALS: tuple[Effect, ...] = (Vibration(), Notch(), Course(), SlowMemory(), FrictionalMemory())
 #: Waves of another form: of any first, then of one each.
 WAVES = (OtherWave(tuple(FACTORS)), *(OtherWave((name,)) for name in FACTORS))

@@ -57,13 +57,14 @@ class Shape:
 #: Shapes of several terms or candidates, or strengths of several terms.
 Shapes = Sequence[Sequence[float]]
 #: What quantities scale with: a speed with the top speed - rad/s -, a rate over angle with its inverse, a lag with the
-#: width of the filter - s -, a frequency with its inverse, a slow change with the duration - s. `usual`: of the axes
-#: for which effects state their grids.
+#: width of the filter - s -, a frequency with its inverse, a slow change with the duration - s -, a wave that is longer
+#: than the travel with its inverse - 1/rad. `usual`: of the axes for which effects state their grids.
 SPEED = Measure(lambda scope: scope.top_speed, usual=100.0, angular=True)
 ANGLE = Measure(lambda scope: scope.top_speed, usual=100.0, power=-1, angular=True)
 LAG = Measure(lambda scope: scope.width, usual=1.5e-3)
 FREQUENCY = Measure(lambda scope: scope.width, usual=1.5e-3, power=-1)
 DURATION = Measure(lambda scope: scope.duration, usual=8.0)
+TRAVEL = Measure(lambda scope: scope.travel, usual=1.0, power=-1, angular=True)
 #: Angle of a cycle that the motion must cover - rad: over less, a wave is a mere curve, and a wave of torque copies it.
 PERIOD = 2.0 * np.pi
 #: Cycles over the travel of a linear axis between which pitches are sought: fewer than two are no repetition.

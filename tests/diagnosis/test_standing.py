@@ -1,4 +1,4 @@
-"""What acts while the axis hardly moves: where an event begins, and what no friction is."""
+"""What acts while the axis hardly moves: where an event begins, what no friction is, and what nobody knows."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
-from tests.diagnosis.constructed import COULOMB, VISCOUS, Motion, bare, moved, names, only_during, recorded
+from tests.diagnosis.constructed import COULOMB, VISCOUS, Motion, bare, likely, moved, names, only_during, recorded
 
 CREEP = 0.4  # rad/s, a hundredth of the other speeds
 
@@ -22,7 +22,7 @@ def held(start: float, stop: float) -> Motion:
 
 
 def test_an_event_begins_where_it_begins_however_long_the_axis_crept_before():
-    """Rows where it creeps speak for no window: of those that differ there alone a search starts at the shortest."""
+    """Rows where it creeps speak for no event, but where several windows differ there alone they decide."""
     trace = recorded(held(1.5, 3.2), only_during(0.06, 3.1, 3.9))
     found = search(bare(trace), [catalogue()["load_torque_event"]], Policy()).last
     assert found.terms[0].shape == pytest.approx((3.1, 3.9), abs=5e-3)
@@ -34,3 +34,10 @@ def test_friction_never_drives(level, name):
     """What is beyond friction is a load: with it as a difference one direction would have none left."""
     trace = recorded(moved(), lambda motion: level * COULOMB + 0.3 * VISCOUS * np.abs(motion.velocity))
     assert names(Policy(), trace, ["direction_dependent_friction", "torque_offset"])[0] == name
+
+
+def test_a_spring_that_is_not_hookes_gets_no_name():
+    """A torque that bends over the travel, as of a cable: nearest is friction by direction, or an event."""
+    trace = recorded(moved(), lambda motion: 0.06 * np.cos(0.16 * motion.position))
+    found = likely(Policy(), trace, ["direction_dependent_friction", "current_offset_drift", "load_torque_event"])
+    assert found.none > 0.9
