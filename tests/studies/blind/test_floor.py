@@ -7,6 +7,8 @@ from tests.studies.blind.__main__ import scored
 from tests.studies.blind.draw import STRENGTHS, one
 from tests.studies.blind.table import false_names, headline, wrong
 
+pytestmark = pytest.mark.slow
+
 SEED, SECONDS, CONTROL_PERIOD = 2, 5.0, 250e-6
 #: Singles are drawn in rounds over the catalogue, one strength after the other: this is the middle one.
 MIDDLE = len(CATALOGUE) * list(STRENGTHS).index("middle")
