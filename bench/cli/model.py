@@ -10,7 +10,7 @@ import typer
 import bench
 from bench.cli import common
 from bench.cli.common import AtOption, AxisOption, BesideRigOption, JointOption, MjcfOption, ReportOption, RigOption
-from bench.errors import InputError
+from bench.errors import InputError, SimulationError
 from bench.files import held, write_text
 from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from bench.cli.common import Subject
     from bench.diagnosis.replay import Replay
     from bench.plant.model_file import StoredModel
+    from bench.view.let_free import FreeRun
     from bench.view.side_by_side import SideBySide
 
 ModelArgument = Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")]
@@ -102,7 +103,7 @@ def view(
 
         prepare(video)
     of = common.subject(rig, axis_name, mjcf, joint, at, trace)
-    shown, warnings = _shown(model, trace, of, profile)
+    shown, free, warnings = _shown(model, trace, of, profile)
     shown = shown.between(start, stop)
     if video is not None:
         from bench.report.terminal import progress
@@ -113,21 +114,32 @@ def view(
             write_video(video, shown, Scene.of(shown, of.rig.load), slowed, done)
     from bench.report.simulation import view as document_of
 
-    common.write_page(out, document_of(shown, model, readable(profile if trace is None else trace.name), warnings))
+    common.write_page(
+        out, document_of(shown, model, readable(profile if trace is None else trace.name), warnings, free)
+    )
     common.list_files([out, video])
     common.warn(warnings)
 
 
-def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, list[str]]:
-    """Model and ghost, and what the user should know before believing them."""
+def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, FreeRun | None, list[str]]:
+    """Model and ghost, how far off the model runs by itself, and what the user should know before believing them."""
+    from bench.view.let_free import let_free
     from bench.view.side_by_side import along_profile, along_recording
 
     if trace is None:
-        return along_profile(model, of.rig, profile), []
+        return along_profile(model, of.rig, profile), None, []
     recording = of.read(trace)
     replayed = bench.replay(model, recording, of.rig)
-    no_position = f"{trace.name} holds no position: shown is the integral of its speed, from zero after each hole"
-    return along_recording(model, replayed), [*replayed.warnings, *([] if "position" in recording else [no_position])]
+    shown, free, warnings = along_recording(model, replayed), None, list(replayed.warnings)
+    try:
+        free = let_free(model, recording, of.rig)
+    except SimulationError as error:
+        warnings.append(f"let free, the model is not told: {error}")
+    if "position" not in recording:
+        warnings.append(
+            f"{trace.name} holds no position: shown is the integral of its speed, from zero after each hole"
+        )
+    return shown, free, warnings
 
 
 def export(

@@ -22,7 +22,7 @@ from bench.plant.model_file import StoredModel, load_model, read_table
 from bench.plant.tracking import SoftTracking, track
 from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
-from bench.trace.trace import less_known
+from bench.trace.trace import Trace, less_known
 
 #: Share of a recording's torque that the model of its axis does not leave unexplained.
 LEFT = 0.2
@@ -101,7 +101,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     """
     rig = rig_of(rig)
     trace = trace_of(trace, rig)
-    path, table, balance, stored = _parts(model, rig)
+    path, table, balance, stored = parts_of(model, rig)
     effort, unit = rig.own_effort(trace)
     peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
     try:
@@ -118,11 +118,8 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     position, velocity = np.full((2, len(trace)), np.nan)
     measured = measured_position(trace), measured_velocity(trace)
     if stored is not None:
-        happening = balance.recording in (EVERY, trace.origin)
-        moving = stored.model if happening else without_events(stored.model)
-        bandwidth = holding_bandwidth(moving, float(np.abs(measured[1]).max()))
-        known = effort - less_known(trace, effort)
-        tracked = track(SoftTracking(moving, trace, effort, stored.misalignment, known=known), bandwidth)
+        held = driven(stored, balance, trace, effort)
+        tracked = track(held, holding_bandwidth(held.model, float(np.abs(measured[1]).max())))
         position, velocity = tracked.position, tracked.velocity
     warnings = []
     if str(table.get("name", rig.name)) != rig.name:
@@ -134,7 +131,14 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     return Replay(trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, unit, tuple(warnings))
 
 
-def _parts(
+def driven(stored: StoredModel, balance: Balance, trace: Trace, effort: Array) -> SoftTracking:
+    """The model, and what drives it along a recording: an event is of the recording that it happened in."""
+    happening = balance.recording in (EVERY, trace.origin)
+    moving = stored.model if happening else without_events(stored.model)
+    return SoftTracking(moving, trace, effort, stored.misalignment, known=effort - less_known(trace, effort))
+
+
+def parts_of(
     model: Diagnosis | str | Path, rig: Rig
 ) -> tuple[str | Path, Mapping[str, Any], Balance, StoredModel | None]:
     """Of a model of the rig's kind: where it is from, kind and name, its torque balance, what MuJoCo runs of it."""

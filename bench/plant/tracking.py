@@ -45,6 +45,8 @@ from bench.trace.trace import Trace
 
 #: Bandwidth of the cascade that holds the model - rad/s.
 BANDWIDTH = 10.0
+#: Bandwidth that holds nothing: in an hour it moves no model - rad/s.
+FREE = 1e-9
 #: Longest step of the integration - s.
 LONGEST_STEP = 0.5e-3
 
@@ -107,6 +109,22 @@ def track_all(held: Sequence[SoftTracking], bandwidth: float = BANDWIDTH) -> lis
     return found
 
 
+def run_free(held: SoftTracking, windows: Sequence[slice]) -> list[Tracked]:
+    """Motion that a model reports in windows of its recording, each begun as the recording has it and held by nothing.
+
+    SimulationError where the model diverged.
+    """
+    loops = [*_loops(held, FREE, windows)]
+    motions, found = run_loops([loop for _, loop, _ in loops]), []
+    for (_, loop, substeps), states in zip(loops, motions, strict=True):
+        if states.diverged:
+            raise SimulationError(DIVERGED)
+        step, skip = loop.compiled.opt.timestep, substeps // loop.every
+        motion = reported(held.model, states.position[:, 0], states.velocity[:, 0], step)
+        found.append(Tracked(*(signal[::skip] for signal in motion)))
+    return found
+
+
 def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDTH) -> Cascade:
     """Cascade of a bandwidth w - rad/s - for an inertia J - kg*m**2 (kg): K_v = J*w, K_i = J*w**2/6, K_p = w/5.
 
@@ -115,8 +133,13 @@ def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDT
     return Cascade(bandwidth / 5.0, inertia * bandwidth, inertia * bandwidth**2 / 6.0, 0.0, math.inf, timestep)
 
 
-def _loops(held: SoftTracking, bandwidth: float) -> Iterator[tuple[slice, ClosedLoop, int]]:
-    """Samples of each stretch of a recording, the loop that holds the model along it, and steps per sample."""
+def _loops(
+    held: SoftTracking, bandwidth: float, parts: Sequence[slice] | None = None
+) -> Iterator[tuple[slice, ClosedLoop, int]]:
+    """Samples of parts of a recording, the loop that holds the model along each, and steps per sample.
+
+    The parts are all stretches without holes unless others are given.
+    """
     model, trace = held.model, held.trace
     substeps = math.ceil(trace.sample_period / LONGEST_STEP * (1.0 - 1e-9))
     timestep, velocity = trace.sample_period / substeps, measured_velocity(trace)
@@ -126,7 +149,7 @@ def _loops(held: SoftTracking, bandwidth: float) -> Iterator[tuple[slice, Closed
         compiled = spec.compile()
     except ValueError as error:
         raise SimulationError(f"MuJoCo refuses the model: {str(error).splitlines()[0]}") from error
-    for part in stretches_of(trace):
+    for part in stretches_of(trace) if parts is None else parts:
         inputs = _HoldingInputs(held, part, velocity[part], timestep, substeps)
         start = trace.start_of(part)
         loop = ClosedLoop(

@@ -11,7 +11,7 @@ from typing import get_args
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.axis_kind import INERTIA
+from bench.axis_kind import INERTIA, AxisKind
 from bench.diagnosis.add import NULL
 from bench.diagnosis.replay import LEFT, Replay
 from bench.effects.present import Present
@@ -19,27 +19,33 @@ from bench.names import readable, words
 from bench.plant.axis_model import parameter_quantities
 from bench.plant.simulate import Simulated, Truth
 from bench.report.document import (
+    Chart,
     Document,
     Downloads,
     File,
     Moving,
+    Panel,
     Paragraph,
     Slowed,
     Table,
     TimeGraph,
     section,
+    series,
     table,
 )
 from bench.report.numbers import effort_word, number, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import model_section, origin, values_table, warnings_sections
 from bench.trace.noise import white_noise
+from bench.view.let_free import FreeRun
 from bench.view.side_by_side import SideBySide
 
 #: Instants that a page holds of a motion, 8 bytes each and a third more as text: 0.4 MB.
 MOST = 40_000
 #: Part of what a page may hold of graphs over time that is left beside them.
 PART = 0.8
+#: Times since a model was let free at which it is told how far off it is - s -, and points that are drawn of the curve.
+HORIZONS, DRAWN = (0.5, 1.0, 2.0, 5.0), 300
 #: How much slower a page plays; what turns plays at first so that it goes round at most once a second.
 SLOWED: tuple[Slowed, ...] = get_args(Slowed)
 
@@ -162,8 +168,12 @@ def _left(measured: Array, simulated: Array) -> tuple[float, float]:
     return left / max(rms(measured[known]), 1e-300), left
 
 
-def view(shown: SideBySide, model: Path, along: str, warnings: Sequence[str] = ()) -> Document:
+def view(
+    shown: SideBySide, model: Path, along: str, warnings: Sequence[str] = (), free: FreeRun | None = None
+) -> Document:
     """The document of a model's file in motion beside its ghost, along a recording or profile of a name.
+
+    `free` is how far off it runs by itself.
 
     Raises:
         InputError: the model cannot be read.
@@ -189,6 +199,9 @@ def view(shown: SideBySide, model: Path, along: str, warnings: Sequence[str] = (
         section("moving", "Moving", motion_of(shown)),
         section("motion", "Over time", graph),
     ]
+    if free is not None:
+        sections.append(section("free", "Let free", *_let_free(free, shown.kind)))
+        answers["And let free?"] = _after(free, shown.kind)
     return Document(
         title=title,
         subject=f"View: {title}",
@@ -197,6 +210,37 @@ def view(shown: SideBySide, model: Path, along: str, warnings: Sequence[str] = (
         answers=answers,
         sections=(*sections, *warnings_sections(warnings), model_section(model)),
         origin=origin(None),
+    )
+
+
+def _after(free: FreeRun, kind: AxisKind) -> str:
+    """How far off it is a while after it was let free."""
+    at = [(horizon, int(np.searchsorted(free.time, horizon * (1.0 - 1e-6)))) for horizon in HORIZONS]
+    told = [
+        f"after {number(horizon, 's')} {number(float(free.position[k]), kind.length_unit, 3)}"
+        for horizon, k in at
+        if k < free.time.size
+    ]
+    last = f"after {number(float(free.time[-1]), 's', 3)} {number(float(free.position[-1]), kind.length_unit, 3)}"
+    return f"{', '.join(told or [last])} RMS, of {free.windows} windows"
+
+
+def _let_free(free: FreeRun, kind: AxisKind) -> tuple[Chart, Chart]:
+    """How far off position and speed are over the time since it was let free."""
+    every = max(free.time.size // DRAWN, 1)
+    alternative = (
+        f"RMS of simulated less measured over the time since the model was let free: {free.windows} windows begin "
+        "with what the sensors say, the recorded effort drives the model, and nothing holds it."
+    )
+
+    def chart(title: str, label: str, unit: str, values: Array) -> Chart:
+        drawn = series(label, "line", "model", free.time[::every], values[::every])
+        panel = Panel(x_label="time since it was let free", x_unit="s", series=(drawn,))
+        return Chart(title=title, alternative=alternative, y_label=label, y_unit=unit_text(unit), panels=(panel,))
+
+    return (
+        chart("Position.", "position off (RMS)", kind.length_unit, free.position),
+        chart("Speed.", "speed off (RMS)", kind.speed_unit, free.velocity),
     )
 
 

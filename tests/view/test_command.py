@@ -21,7 +21,10 @@ def test_a_page_is_written_and_said(bench, diagnosed, tmp_path):
     model, trace = diagnosed / "found" / "model.toml", diagnosed / "run2.csv"
     status, out, err = bench("view", model, trace, "--rig", "rig.toml")
     assert (status, out, err) == (0, "wrote view.html\n", "")
-    assert "The simulated axis stays within" in (tmp_path / "view.html").read_text(encoding="utf-8")
+    page = (tmp_path / "view.html").read_text(encoding="utf-8")
+    assert "The simulated axis stays within" in page
+    assert "And let free?" in page
+    assert "5 windows begin with what the sensors say" in page
 
 
 def test_a_recording_without_position_is_shown_with_a_warning(bench, diagnosed, tmp_path):

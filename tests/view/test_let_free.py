@@ -1,0 +1,69 @@
+"""A model let free runs as the equation of motion says that is integrated here: SciPy's, nothing of MuJoCo in it."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from bench.plant.axis_model import AxisModel, AxisParameters
+from bench.plant.model_file import StoredModel, model_toml
+from bench.view.let_free import let_free
+from tests.diagnosis.test_commands import moving, only
+from tests.fit.motions import RIG
+
+#: A tenth more inertia than `moving` has, its friction, and the rig's torque constant.
+INERTIA, VISCOUS, COULOMB, K_T = 1.65e-3, 8e-4, 0.06, 0.8
+#: Of a model's file, which has one; none of the motion.
+BALANCE = '[torque_balance]\nrecording = "closed form"\nfilter_width = 1e-3\ncoefficients = [1e-3, 1e-3, 0.06]\n'
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory):
+    """A file with these."""
+    path = tmp_path_factory.mktemp("free") / "model.toml"
+    text = model_toml(StoredModel("axis", AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB))))
+    path.write_text(f"{text}\n{BALANCE}", encoding="utf-8")
+    return path
+
+
+def one_way(seconds):
+    """Never standing, so that friction has one sign."""
+    return moving(lambda time: 40.0 + 20.0 * np.sin(4.4 * time) + 6.0 * np.sin(14.0 * time), seconds)
+
+
+def integrated(trace, start, length):
+    """Speed and way from a sample on - rad/s, rad - (length,)."""
+    time, effort = trace.time, K_T * trace["current"]
+    until = time[start : start + length]
+
+    def slope(at, state):
+        return [(np.interp(at, time, effort) - VISCOUS * state[0] - COULOMB) / INERTIA, state[0]]
+
+    first = [trace["velocity"][start], 0.0]
+    return solve_ivp(slope, (until[0], until[-1]), first, "RK45", until, rtol=1e-8, max_step=trace.sample_period).y
+
+
+def test_it_is_as_far_off_as_the_equation_of_motion_says(model):
+    trace = one_way(4.0)
+    found = let_free(model, trace, RIG)
+    assert (found.windows, found.time.size) == (5, 2000)
+    off = []
+    for start in range(0, 2001, 500):
+        speed, way = integrated(trace, start, 2000)
+        measured = trace["velocity"][start : start + 2000]
+        gone = trace.sample_period * (np.cumsum(measured) - 0.5 * (measured + measured[0]))
+        off.append((way - gone, speed - measured))
+    position, velocity = np.sqrt(np.mean(np.square(off), axis=0))
+    np.testing.assert_allclose(found.velocity, velocity, atol=0.03 * velocity.max())
+    np.testing.assert_allclose(found.position, position, atol=0.03 * position.max())
+    assert position[-1] > 0.5  # a tenth of the inertia is seen
+
+
+def test_it_is_let_free_for_five_seconds_at_most(model):
+    found = let_free(model, one_way(12.0), RIG)
+    assert found.time[-1] == pytest.approx(5.0)
+    assert found.windows == 6
+
+
+def test_a_model_without_motion_is_not_let_free(tmp_path):
+    (tmp_path / "model.toml").write_text(BALANCE, encoding="utf-8")
+    assert let_free(tmp_path / "model.toml", only(one_way(4.0), "velocity", "current"), RIG) is None
