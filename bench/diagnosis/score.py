@@ -66,7 +66,7 @@ class Contender:
 
 
 def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) -> Iterator[Fit]:
-    """The steps of a search, its result less each of its effects, the next best beside it and in its place, and rivals.
+    """The steps of a search, its result less each effect, the next best beside it and in place of each, and rivals.
 
     Rivals are simpler forms of an effect, a wave of another form in the place of waves, and the best effect from
     outside the catalogue beside the result and in the place of each of its names, and of all that it leaves nothing to;
@@ -77,6 +77,9 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
     less = [fit(last.rows, last.hypothesis.without(index)) for index in range(len(last.terms))]
     if len(less) > 1:
         yield from less
+    for instead in searched.instead:
+        if policy.undecided(last, instead):
+            yield from (instead, backward_elimination(instead, policy))
     yield from _instead_of_the_last(searched, policy)
     if searched.ended is not None:
         yield from _promising(searched.ended.fitted, searched.ended.rivals[:NEXT], policy)

@@ -52,11 +52,13 @@ class Searched:
         steps: the first without an effect.
         stopped: what ended it before it was done; None if nothing did.
         ended: the fit to which nothing more was added, and what was tried beside it; None without a search.
+        instead: that fit with one of its earlier names exchanged for what was nearly as good.
     """
 
     steps: tuple[Step, ...]
     stopped: str | None = None
     ended: Step | None = None
+    instead: tuple[Fit, ...] = ()
 
     @property
     def last(self) -> Fit:
@@ -80,8 +82,10 @@ def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
     """Effects in the order in which they are taken up beside the fit without one."""
     found = forward_selection(Searched((Step(bare),)), effects, policy)
     for _ in range(policy.most):  # each leaves less, so it ends before; what is let go in between could turn it round
-        better = exchanged(found.last, effects, policy)
+        instead = instead_of_each(found.last, effects, policy)
+        better = exchanged(found.last, instead, policy)
         if better is None:
+            found = replace(found, instead=tuple(instead))
             break
         found = forward_selection(Searched((*found.steps, Step(better))), effects, policy)
     if policy.remains(found.last):
@@ -168,20 +172,25 @@ def _repeats_a_step(fitted: Fit, steps: Sequence[Step], policy: Policy) -> bool:
     return any(worth(earlier, fitted) <= policy.by_chance(fitted, 1) for earlier in same)
 
 
-def exchanged(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit | None:
-    """The hypothesis with an earlier name exchanged for one that leaves less by more than chance; else None.
+def instead_of_each(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> list[Fit]:
+    """The hypothesis with each of its earlier names exchanged for what saves nearly as much in its place.
 
     What was nearest when nothing stood beside it need not be so among the others (sequential replacement: A. J. Miller,
     Journal of the Royal Statistical Society A 147, 1984, 389-425).
     """
-    found = []
+    instead = []
     for index, term in enumerate(fitted.terms[:-1]):
         less = fit(fitted.rows, fitted.hypothesis.without(index))
         least = policy.as_good * worth(less, fitted)
         tried = candidates(less, [effect for effect in effects if effect is not term.effect])
         as_good = [candidate for candidate in tried if candidate.gain > least]
-        instead = [refined(less, candidate.term) for candidate in as_good[: policy.exchanges]]
-        found += [after for after in instead if policy.exchanges_for(fitted, after)]
+        instead += [refined(less, candidate.term) for candidate in as_good[: policy.exchanges]]
+    return instead
+
+
+def exchanged(fitted: Fit, instead: Sequence[Fit], policy: Policy) -> Fit | None:
+    """The one of these hypotheses that leaves least, if that is less by more than chance; else None."""
+    found = [after for after in instead if policy.exchanges_for(fitted, after)]
     if not found:
         return None
     return with_hum(backward_elimination(polished(min(found, key=lambda after: after.squares), policy), policy))

@@ -78,17 +78,18 @@ class Notch(Outside):
 
 
 class Course(Outside):
-    """A torque that runs smoothly over the travel as a part of a wave does: a cable, a spring that is not Hooke's."""
+    """A torque that runs smoothly over the travel, as parts of waves do: a cable, a spring that is not Hooke's."""
 
     name = "outside_course"
     summary = "a torque that runs smoothly over the travel"
     quantities = (Quantity("wave_number", "k", "dimensionless", lower=0.0, linear_unit="rad/m"),)
-    shapes = (Shape(quantities[0], (0.5 * np.pi, np.pi), reach=0.0, measure=TRAVEL),)
+    shapes = (Shape(quantities[0], (0.5 * np.pi,), reach=0.0, measure=TRAVEL),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """One, sine and cosine."""
+        """One, and sines and cosines of a quarter and half a cycle."""
         angle = shape[0] * signals.position
-        return [[(np.ones_like(angle), 0)], [(np.sin(angle), 0)], [(np.cos(angle), 0)]]
+        waves = (wave(times * angle) for times in (1.0, 2.0) for wave in (np.sin, np.cos))
+        return [[(values, 0)] for values in (np.ones_like(angle), *waves)]
 
 
 class SlowMemory(Outside):

@@ -1,10 +1,13 @@
 """Names that were nearest when nothing stood beside them are exchanged for those that leave less."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.search import exchanged
+from bench.diagnosis.score import neighbourhood
+from bench.diagnosis.search import Step, exchanged, instead_of_each, search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
@@ -21,7 +24,8 @@ def drag(motion):
 @pytest.mark.parametrize("wrong", [Term(catalogue()["stribeck_friction"], (8.0,)), Term(catalogue()["torque_offset"])])
 def test_a_name_is_exchanged_for_the_one_that_leaves_less(wrong):
     without = bare(recorded(moved(), drag, wave(0.02, 7.0)))
-    found = exchanged(fit(without.rows, Hypothesis((wrong, COGGING))), EFFECTS, Policy())
+    nearest = fit(without.rows, Hypothesis((wrong, COGGING)))
+    found = exchanged(nearest, instead_of_each(nearest, EFFECTS, Policy()), Policy())
     assert found is not None
     assert sorted(found.hypothesis.names) == ["cogging_torque", "quadratic_drag"]
     assert found.chi < 1.1
@@ -30,10 +34,10 @@ def test_a_name_is_exchanged_for_the_one_that_leaves_less(wrong):
 def test_names_that_leave_noise_alone_stay():
     without = bare(recorded(moved(), drag, wave(0.02, 7.0)))
     right = fit(without.rows, Hypothesis((Term(catalogue()["quadratic_drag"]), COGGING)))
-    assert exchanged(right, EFFECTS, Policy()) is None
+    assert exchanged(right, instead_of_each(right, EFFECTS, Policy()), Policy()) is None
 
 
-def test_what_was_nearly_as_good_as_the_only_name_is_weighed_too():
+def test_what_was_instead_of_each_as_the_only_name_is_weighed_too():
     """A slow axis' torque is friction: a wave of it is hardly told from a wave of torque, and a search takes one."""
     trace = recorded(
         moved(20.0, ((6.0, 0.1, 0.3),)), lambda motion: 0.2 * COULOMB * np.sin(motion.position) * motion.sign
@@ -51,3 +55,16 @@ def test_what_the_rows_decide_is_not_weighed_any_more():
     assert not Policy().undecided(right, wrong)
     assert Policy().undecided(right, right)
     assert Policy().undecided(wrong, right)
+
+
+def test_what_was_as_good_as_an_earlier_name_is_weighed_with_what_it_needs_beside_it():
+    """A name that came first, and a wave that is there only because of it, against the true one alone."""
+    trace = recorded(moved(), wave(0.03, 3.0))
+    rows = bare(trace).rows
+    true, extra = (Term(catalogue()["cogging_torque"], (number,)) for number in (3.0, 11.0))
+    wrong = fit(rows, Hypothesis((Term(catalogue()["unbalance"]), extra)))
+    searched = replace(search(bare(trace), [], Policy()), instead=(fit(rows, Hypothesis((true, extra))),))
+    ended = replace(searched, steps=(*searched.steps, Step(wrong)))
+    tried = [sorted(each.hypothesis.names) for each in neighbourhood(ended, frozenset(), Policy())]
+    assert ["cogging_torque", "cogging_torque"] in tried
+    assert ["cogging_torque"] in tried

@@ -110,7 +110,8 @@ def test_what_takes_nine_tenths_may_stand_in_another_s_place(monkeypatch, gains,
     monkeypatch.setattr(search, "fit", lambda rows, hypothesis: made(level(1100.0), OFFSET))
     monkeypatch.setattr(search, "candidates", lambda less, effects: tried(*gains))
     monkeypatch.setattr(search, "refined", lambda less, wave: searched.append(wave) or made(level(1000.0), OFFSET))
-    assert search.exchanged(made(level(1000.0), SPRING, OFFSET), [], POLICY) is None
+    fitted = made(level(1000.0), SPRING, OFFSET)
+    assert search.exchanged(fitted, search.instead_of_each(fitted, [], POLICY), POLICY) is None
     assert len(searched) == asked
 
 
