@@ -77,10 +77,10 @@ class Notch(Outside):
         return columns
 
 
-class Course(Outside):
+class Smooth(Outside):
     """A torque that runs smoothly over the travel, as parts of waves do: a cable, a spring that is not Hooke's."""
 
-    name = "outside_course"
+    name = "outside_smooth"
     summary = "a torque that runs smoothly over the travel"
     quantities = (Quantity("wave_number", "k", "dimensionless", lower=0.0, linear_unit="rad/m"),)
     shapes = (Shape(quantities[0], (0.5 * np.pi,), reach=0.0, measure=TRAVEL),)
@@ -160,6 +160,6 @@ def _lowpass(values: Array, keep: float) -> Array:
     return recursive_filter([1.0 - keep], [1.0, -keep], values)
 
 
-RIVALS: tuple[Effect, ...] = (Vibration(), Notch(), Course(), SlowMemory(), FrictionalMemory())
+RIVALS: tuple[Effect, ...] = (Vibration(), Notch(), Smooth(), SlowMemory(), FrictionalMemory())
 #: Waves of another form: of any first, then of one each.
 WAVES = (OtherWave(tuple(FACTORS)), *(OtherWave((name,)) for name in FACTORS))
