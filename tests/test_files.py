@@ -127,8 +127,8 @@ def test_a_script_replaces_nothing_else(tmp_path, monkeypatch, script):
 #: Calls that open a file, and the modules that may: they open what is shipped with the bench, what they write, bytes
 #: that were read, or what `bench.files` has read before.
 OPENING = {"open", "read_text", "read_bytes", "from_xml_path", "from_file", "ParquetFile", "read_schema", "ZipFile"}
-SHIPPED = {"course/axis.py", "course/notebooks.py", "course/report.py", "course/catapult.py", "plant/axis_model.py"}
-SHIPPED |= {"report/html.py", "rig/motor.py"}
+SHIPPED = {"course/axis.py", "course/notebooks.py", "course/report.py", "course/pdf.py", "course/catapult.py"}
+SHIPPED |= {"plant/axis_model.py", "report/html.py", "rig/motor.py"}
 WRITES = {"cli/__init__.py", "cli/check.py", "jobs/process.py", "packed.py", "trace/write.py", "view/video.py"}
 WRITES |= {"validation/independent/case.py", "trace/joint_states.py"}
 BYTES = {"trace/readers/arrow.py", "trace/readers/measurement.py", "trace/readers/named_arrays.py"}

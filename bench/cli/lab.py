@@ -27,7 +27,7 @@ def lab(
     notebooks: Annotated[
         Path | None, typer.Option("--notebooks", help="Only write a notebook for each task, into this folder.")
     ] = None,
-    asked: Annotated[
+    folders: Annotated[
         Path | None, typer.Option("--questions", help="Three questions for each student of this class' folder.")
     ] = None,
 ) -> None:
@@ -36,8 +36,8 @@ def lab(
         _record(synthetic, students, seed)
     elif submissions is not None:
         _grade(submissions, truth, out)
-    elif asked is not None:
-        _ask(asked, out)
+    elif folders is not None:
+        _ask(folders, out)
     elif notebooks is not None:
         from bench.course.notebooks import write_notebooks
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,6 +39,8 @@ OF_TASK_9 = {"J": 1.0 / KG_CM2, "K_fric_w": 1.0, "K_fric_0": 1.0}
 OF_THE_WINDING = ("rotor_inertia", "cold_resistance_share", "electrical_time_constant", "thermal_time_constant")
 #: So many of a task's numbers stand on the first table.
 FIRST = 3
+#: An equation is a paragraph that ends in this space and its number.
+EQUATION = "\u2003"
 #: File of who hands a report in, and rows of a sheet that is filled in by hand.
 FILE, BLANK_ROWS = "group.toml", 3
 EXAMPLE = 'group = "7", and for each member [[student]] with name = "..." and number = "..."'
@@ -152,7 +154,7 @@ def lab_document(results: Sequence[TaskResult], recordings: LabRecordings, cover
         f"{missing} not done.",
         tone="open" if missing else "sure",
         answers=answers,
-        sections=(cover.sheet, summary(results), *numbered(map(task_section, results))),
+        sections=(cover.sheet, *numbered((summary(results), *map(task_section, results)))),
         origin=(f"servobench {__version__}",),
     )
 
@@ -171,16 +173,21 @@ def summary(results: Sequence[TaskResult]) -> Section:
 
 
 def numbered(sections: Iterable[Section]) -> Iterator[Section]:
-    """Sections with their diagrams numbered through."""
-    count = itertools.count(1)
+    """Sections with their diagrams, tables and equations numbered through."""
+    counts = {kind: itertools.count(1) for kind in (Chart, Table, Paragraph)}
     for section in sections:
-        yield section.model_copy(update={"blocks": tuple(_numbered(block, count) for block in section.blocks)})
+        yield section.model_copy(update={"blocks": tuple(_numbered(block, counts) for block in section.blocks)})
 
 
-def _numbered(block: AnyPart, count: Iterator[int]) -> AnyPart:
-    if not isinstance(block, Chart):
-        return block
-    return block.model_copy(update={"title": f"Figure {next(count)}: {block.title}"})
+def _numbered(block: AnyPart, counts: Mapping[type, Iterator[int]]) -> AnyPart:
+    match block:
+        case Chart():
+            return block.model_copy(update={"title": f"Figure {next(counts[Chart])}: {block.title}"})
+        case Table():
+            return block.model_copy(update={"caption": f"Table {next(counts[Table])}: {block.caption}"})
+        case Paragraph() if block.text.endswith(EQUATION):
+            return block.model_copy(update={"text": f"{block.text}({next(counts[Paragraph])})"})
+    return block
 
 
 def task_section(result: TaskResult) -> Section:
@@ -191,8 +198,9 @@ def task_section(result: TaskResult) -> Section:
         return Section(key=key, heading=heading, blocks=(Paragraph(text=f"Not done: {result.reason}"), *result.charts))
     if result.example:
         heading = f"{heading} (embedded example)"
+    solved = [Paragraph(text=f"{result.equation}{EQUATION}")] if result.equation else []
     findings = (Paragraph(text=finding) for finding in result.findings)
-    blocks = (*findings, *result.tables, _numbers_table(result.numbers), *result.charts)
+    blocks = (*solved, *findings, *result.tables, _numbers_table(result.numbers), *result.charts)
     return Section(key=key, heading=heading, blocks=blocks)
 
 

@@ -35,7 +35,7 @@ class Number:
 
 @dataclass(frozen=True)
 class TaskResult:
-    """What a task comes to; what it leaves out of the last four, the course fills in.
+    """What a task comes to; what it leaves out of what follows `charts`, the course fills in.
 
     Attributes:
         findings: a paragraph each.
@@ -45,6 +45,7 @@ class TaskResult:
         example: whether it is about the embedded example, whatever was recorded.
         reason: why it could not be done; None where it was.
         tables: beside that of the numbers, and the numbers that stand in them.
+        equation: that the task solves.
     """
 
     findings: tuple[str, ...] = ()
@@ -56,6 +57,7 @@ class TaskResult:
     reason: BenchError | None = None
     tables: tuple[Table, ...] = ()
     tabled: tuple[Number, ...] = ()
+    equation: str = ""
 
     def __getitem__(self, name: str) -> Number:
         return next(number for number in (*self.numbers, *self.tabled) if number.name == name)

@@ -5,172 +5,23 @@ Mistakes and their strengths are drawn at random; the truth is that of the simul
 
 import json
 import shutil
-from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
 
 from bench.assets import asset
-from bench.course.flights import read_flights
-from bench.trace.read import read
-from tests.command import bench
+from tests.course.mistakes import (
+    BARE,
+    FASTEST,
+    MISTAKES,
+    Folder,
+    done_by_the_command,
+    recorded_in,
+    wrong_numbers,
+)
 
 TRACES = asset("data", "traces")
-BARE, FRICTION, FASTEST = NAMES = ("JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc")
-SI = "time [s];velocity [rad/s];current [A]"
 COUNT = 20
-
-
-@dataclass
-class Folder:
-    """What a student hands in: a table (n, 3) of time, speed, current and its head for each name, and flights."""
-
-    tables: dict
-    flights: list
-    heads: dict = field(default_factory=lambda: dict.fromkeys(NAMES, SI))
-
-    def scale(self, names, *factors):
-        for name in names:
-            self.tables[name] = self.tables[name] * factors
-
-    def write(self, folder):
-        (folder / "catapult").mkdir(parents=True)
-        for name, rows in self.tables.items():
-            text = "".join(f"{t:.7g};{w:.7g};{i:.7g}\n" for t, w, i in rows)
-            (folder / f"{name}.csv").write_text(f"{self.heads[name]}\n{text}", encoding="utf-8")
-        for k, flight in enumerate(self.flights):
-            text = "".join(f"{y:.4f};{z:.4f}\n" for y, z in flight)
-            (folder / "catapult" / f"{k}.csv").write_text(f"y [m];z [m]\n{text}")
-
-
-def some(random):
-    """All recordings, or one of them."""
-    return NAMES if random.random() < 0.5 else (str(random.choice(NAMES)),)
-
-
-def degrees_as_radians(of, random):
-    of.scale(some(random), 1.0, 180.0 / np.pi, 1.0)
-
-
-def radians_as_degrees(of, random):
-    of.scale(some(random), 1.0, np.pi / 180.0, 1.0)
-
-
-def rpm_as_radians(of, random):
-    of.scale(some(random), 1.0, 30.0 / np.pi, 1.0)
-
-
-def turns_as_radians(of, random):
-    of.scale(some(random), 1.0, 0.5 / np.pi, 1.0)
-
-
-def seconds_as_ms(of, random):
-    of.scale(some(random), 1e-3, 1.0, 1.0)
-
-
-def ms_as_seconds(of, random):
-    of.scale(some(random), 1e3, 1.0, 1.0)
-
-
-def milliamperes_as_amperes(of, random):
-    of.scale(some(random), 1.0, 1.0, 1e3)
-
-
-def amperes_as_milliamperes(of, random):
-    of.scale(some(random), 1.0, 1.0, 1e-3)
-
-
-def peak_for_rms(of, random):
-    of.scale(some(random), 1.0, 1.0, np.sqrt(2.0))
-
-
-def scale_of_the_current(of, random):
-    of.scale(NAMES, 1.0, 1.0, random.choice([random.uniform(1.06, 1.3), random.uniform(0.8, 0.93)]))
-
-
-def sign(of, random):
-    of.scale(some(random), 1.0, 1.0, -1.0)
-
-
-def late(of, random):
-    for name in some(random):
-        rows, by = of.tables[name], int(random.integers(1, 8))
-        moved = (rows[:-by, 2], rows[by:, 1]) if random.random() < 0.5 else (rows[by:, 2], rows[:-by, 1])
-        of.tables[name] = np.column_stack([rows[: len(rows) - by, 0], moved[1], moved[0]])
-
-
-def files_swapped(of, random):
-    one, other = random.choice(NAMES, 2, replace=False)
-    of.tables[one], of.tables[other] = of.tables[other], of.tables[one]
-
-
-def the_same_file_twice(of, random):
-    of.tables[BARE] = of.tables[FRICTION]
-
-
-def columns_swapped(of, random):
-    for name in NAMES:
-        of.tables[name] = of.tables[name][:, [0, 2, 1]]
-
-
-def glitch(of, random):
-    name, column = str(random.choice(NAMES)), int(random.integers(1, 3))
-    rows = of.tables[name].copy()
-    place = int(random.integers(50, len(rows) - 50))
-    rows[place, column] += random.choice([-1.0, 1.0]) * random.uniform(0.3, 1.0) * np.ptp(rows[:, column])
-    of.tables[name] = rows
-
-
-def one_sample_at_zero(of, random):
-    rows = of.tables[FRICTION].copy()
-    rows[np.argmax(rows[:, 1]) + int(random.integers(-20, 20)), 1] = 0.0
-    of.tables[FRICTION] = rows
-
-
-def hole(of, random):
-    rows, start = of.tables[FASTEST], int(random.integers(60, 300))
-    of.tables[FASTEST] = np.delete(rows, slice(start, start + int(random.integers(20, 80))), axis=0)
-
-
-def flight_swapped(of, random):
-    k = int(random.integers(len(of.flights)))
-    of.flights[k] = of.flights[k][:, ::-1]
-
-
-def flight_with_an_outlier(of, random):
-    k = int(random.integers(len(of.flights)))
-    of.flights[k] = of.flights[k].copy()
-    of.flights[k][int(random.integers(20)), 1] += random.uniform(0.1, 1.0)
-
-
-def two_at_once(of, random):
-    of.scale(NAMES, 1.0, 180.0 / np.pi, 1e3)
-
-
-#: Each mistake, and words that name it.
-MISTAKES = {
-    degrees_as_radians: "deg/s that is labelled rad/s",
-    radians_as_degrees: "rad/s that is labelled deg/s",
-    rpm_as_radians: "rpm that is labelled rad/s",
-    turns_as_radians: "turns/s that is labelled rad/s",
-    seconds_as_ms: "s that are labelled ms",
-    ms_as_seconds: "ms that are labelled s",
-    milliamperes_as_amperes: "mA that is labelled A",
-    amperes_as_milliamperes: "A that is labelled mA",
-    peak_for_rms: "√2 times too large",
-    scale_of_the_current: "correct its scale",
-    sign: "opposite directions",
-    late: "not of the same instants",
-    files_swapped: "files look exchanged",
-    the_same_file_twice: "one and the same recording",
-    columns_swapped: "columns of speed and current look exchanged",
-    glitch: "a glitch",
-    one_sample_at_zero: "a glitch",
-    hole: "has a hole",
-    flight_swapped: "its y and z are exchanged",
-    flight_with_an_outlier: "is an outlier",
-    two_at_once: "labelled A",
-}
 #: Rows of the table of mistakes that once passed for done, and more that are drawn.
 DRAWN = np.random.default_rng(25).choice(list(MISTAKES), COUNT)
 CASES = [*((mistake, 0) for mistake in MISTAKES), *((mistake, seed) for seed, mistake in enumerate(DRAWN, 1))]
@@ -178,11 +29,7 @@ CASES = [*((mistake, 0) for mistake in MISTAKES), *((mistake, seed) for seed, mi
 
 @pytest.fixture(scope="module")
 def recorded():
-    traces = {name: read(TRACES / f"{name}.trace") for name in NAMES}
-    tables = {
-        name: np.column_stack([trace.time, trace["velocity"], trace["current"]]) for name, trace in traces.items()
-    }
-    return tables, read_flights(TRACES / "catapult").points
+    return recorded_in(TRACES)
 
 
 @pytest.fixture(scope="module")
@@ -195,22 +42,6 @@ def truth():
         known |= {(task, "J"): 22.5, (task, "J_load"): 22.25}
     known |= {("9", "K_fric_w"): 1.1e-3, ("9", "K_fric_0"): 0.085}
     return known | {("10", "measured corner"): axis["corner_speed"]["value"] * 30.0 / np.pi}
-
-
-def done_by_the_command(folder, out):
-    ended = bench("lab", "--data", folder, "--out", out)
-    assert "Traceback" not in ended.out + ended.err
-    return json.loads((out / "lab.json").read_text(encoding="utf-8"))["tasks"]
-
-
-def wrong_numbers(tasks, truth):
-    """Numbers of tasks that are done and further from the truth than they say."""
-    found = {(task["key"], n["name"]): n for task in tasks if task["status"] == "done" for n in task["numbers"]}
-    return {key: found[key] for key, true in truth.items() if key in found and wrong(found[key], true)}
-
-
-def wrong(number, true):
-    return abs(number["value"] - true) > number["half"]
 
 
 @pytest.mark.parametrize(("mistake", "seed"), CASES, ids=lambda value: getattr(value, "__name__", str(value)))

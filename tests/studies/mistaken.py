@@ -1,0 +1,124 @@
+"""Recordings with mistakes drawn at random, of random strengths, on random axes, end to end by `bench lab --data`.
+
+    python -m tests.studies.mistaken --count 300 --seed 25 --out docs/mistaken.md
+    python -m tests.studies.mistaken --count 20 --seed 3 --pairs 20
+
+Each is a recorded axis of a class, the mistake is put into what its student would hand in, and the report is asked
+which numbers are done. A wrong number is one that is done, further from the truth than its 95 %, and not so without the
+mistake. Tasks that only simulate, and diagrams, are left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+from collections import defaultdict
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bench.course import course as course_module
+from bench.course import record
+from bench.course import report as course_report
+from bench.course.catapult import fly
+from tests.command import bench
+from tests.course.conftest import SLOW
+from tests.course.mistakes import MISTAKES, Folder, done_by_the_command, recorded_in, wrong_numbers
+
+#: Axes that mistakes are spread over.
+AXES = 10
+
+
+def axes(folder, seed):
+    """Folders of a class' students with the truth of each, by task and name in the report's units."""
+    bench("lab", "--record", folder / "class", "--students", AXES, "--seed", seed)
+    known = json.loads((folder / "class.truth.json").read_text(encoding="utf-8"))["students"]
+    throw = dict(zip("abc", fly().coefficients.tolist(), strict=True))
+    found = []
+    for name, student in known.items():
+        true = student["truth"]
+        values = {("1", coefficient): value for coefficient, value in throw.items()}
+        values |= {(task, key): true[key] for task in "69" for key in ("J", "J_load")}
+        values |= {("9", key): true[key] for key in ("K_fric_w", "K_fric_0")} | {
+            ("10", "measured corner"): true["corner"]
+        }
+        found.append((folder / "class" / f"student-{name}", values))
+    return found
+
+
+def tasks_of(folder, mistakes, random, place):
+    """Tasks of the report on a student's recordings with mistakes in them."""
+    tables, flights = recorded_in(folder)
+    of = Folder(dict(tables), list(flights))
+    for mistake in mistakes:
+        mistake(of, random)
+    of.write(place / "data")
+    (place / "data" / "rig.toml").write_bytes((folder / "rig.toml").read_bytes())
+    return done_by_the_command(place / "data", place / "out")
+
+
+def measured(count, pairs, seed, say=print):
+    """Rows of the study: names of the mistakes, wrong numbers, and whether each cause is told."""
+    rows = []
+    whole = course_report.task_section
+    with tempfile.TemporaryDirectory() as place, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(record.secrets, "randbits", lambda bits: seed)
+        students = axes(Path(place), seed)
+        patch.setattr(course_module, "TASKS", [task for task in course_module.TASKS if task.key not in SLOW])
+        patch.setattr(course_report, "task_section", lambda result: whole(replace(result, charts=())))
+        sound = [
+            set(wrong_numbers(tasks_of(one, (), None, Path(place) / f"sound {k}"), true))
+            for k, (one, true) in enumerate(students)
+        ]
+        outside, numbers = sum(map(len, sound)), sum(len(true) for _, true in students)
+        say(f"{outside} of {numbers} numbers of sound recordings outside their 95 %")
+        for number in range(count + pairs):
+            random = np.random.default_rng([seed, number])
+            mistakes = random.choice([*MISTAKES], 1 if number < count else 2, replace=False)
+            which = int(random.integers(len(students)))
+            tasks = tasks_of(students[which][0], mistakes, random, Path(place) / str(number))
+            wrong = set(wrong_numbers(tasks, students[which][1])) - sound[which]
+            reasons = " ".join(task["reason"] for task in tasks if task["status"] == "not_done")
+            told = [MISTAKES[mistake] in reasons for mistake in mistakes]
+            rows.append(([mistake.__name__ for mistake in mistakes], sorted(wrong), told))
+            if wrong or not all(told):
+                say(number, *rows[-1], reasons[:600])
+    return rows
+
+
+def table(rows):
+    """Markdown: of each mistake alone how many, how many with a wrong number, how many named; of pairs in all."""
+    found = defaultdict(list)
+    for names, wrong, told in rows:
+        found[names[0] if len(names) == 1 else "two at random"].append((bool(wrong), all(told), any(told)))
+    lines = ["| mistake | recordings | wrong number done | named | one of them named |", "|---|---|---|---|---|"]
+    for name, results in sorted(found.items(), key=lambda item: (item[0] == "two at random", item[0])):
+        wrong, every, one = (sum(column) for column in zip(*results, strict=True))
+        last = one if name == "two at random" else ""
+        lines.append(f"| {name.replace('_', ' ')} | {len(results)} | {wrong} | {every} | {last} |")
+    single = [(bool(wrong), all(told)) for names, wrong, told in rows if len(names) == 1]
+    lines.append(f"| **all single** | {len(single)} | {sum(w for w, _ in single)} | {sum(t for _, t in single)} | |")
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    """Run it, print what goes wrong, and write the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=300, help="recordings with one mistake")
+    parser.add_argument("--pairs", type=int, default=0, help="and with two")
+    parser.add_argument("--seed", type=int, default=25, help="of axes, mistakes and strengths")
+    parser.add_argument("--out", type=Path, help="file for the table")
+    given = parser.parse_args()
+    text = table(measured(given.count, given.pairs, given.seed))
+    print(text)
+    if given.out:
+        command = f"python -m tests.studies.mistaken --count {given.count} --pairs {given.pairs} --seed {given.seed}"
+        head = f"# Mistaken recordings of the lab course\n\n`{command}`, on {AXES} axes ([the course](lab.md)):\n\n"
+        given.out.write_text(head + text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
