@@ -84,7 +84,8 @@ def fleet(
         for count, (place, result) in enumerate(each(evaluate, missing.values(), limits, workers, scheduler), 1):
             store.put(keys[place], asdict(result) if isinstance(result, Failure) else result)
             progress(PLANNING + (1.0 - PLANNING) * count / len(keys))
-        results = [one.refusal or store.get(one.key) or dict(LOST) for one in planned]
+        stored = {key: store.get(key) for key in dict.fromkeys(one.key for one in planned if one.job is not None)}
+        results = [one.refusal or stored[one.key] or dict(LOST) for one in planned]
         write_table(out / TABLE, tabulate(manifest, planned, results))
         found = Fleet(manifest, planned, results, summarise(manifest, planned, results), len(keys))
         finish(found)
