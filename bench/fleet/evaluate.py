@@ -14,9 +14,10 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Annotated, Any, Literal
 
 from fsspec.core import url_to_fs
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from bench import __version__
 from bench.bounds import Bounds, bounds, require_size, within
@@ -43,6 +44,8 @@ SCHEMA = "bench.fleet.recording/1"
 STORAGES = ("https", "http", "s3", "gs", "gcs", "az", "abfs", "sftp", "ssh")
 #: What a recording is called in what is said of it: the same whatever its path is, and wherever it was copied to.
 CALLED = "recording"
+#: A number as JSON has it, whose square is one too; None where it is not known.
+_Finite = Annotated[float, Field(ge=-1e150, le=1e150)] | None
 #: Bytes copied from a storage at a time.
 _PIECE = 1 << 22
 #: One number with its unit, or what was found: as JSON has it.
@@ -273,6 +276,65 @@ def _digest(content: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
+class _Part(BaseModel):
+    model_config = ConfigDict(strict=True)
+
+
+class _Number(_Part):
+    value: _Finite
+    unit: str
+    std_error: _Finite
+    ci95: Annotated[list[_Finite], Field(min_length=2, max_length=2)]
+
+
+class _OfCheck(_Part):
+    name: str
+    status: str
+    found: str
+    advice: str
+
+
+class _OfEffect(_Part):
+    name: str
+    parameters: dict[str, _Number]
+
+
+class _OfGap(_Part):
+    unit: str
+    noise_floor: _Finite
+    before: _Finite
+    after: _Finite
+
+
+class _Result(_Part):
+    """What a result has to be for a table to be made of it; one that is not is as one that is not there."""
+
+    warnings: list[str] = []
+    verdict: str | None = None
+    effects: list[_OfEffect] = []
+    gap: dict[Literal["torque", "velocity"], _OfGap] = {}
+    trace_sha256: str | None = None
+
+
+class _Done(_Result):
+    status: Literal["done"]
+    reason: None
+    parameters: dict[str, _Number]
+    checks: list[_OfCheck]
+    explained: _Finite
+
+
+class _NotDone(_Result):
+    status: Literal["missing", "refused", "failed", "timed_out"]
+    reason: str
+    parameters: dict[str, _Number] = {}
+    checks: list[_OfCheck] = []
+    explained: _Finite = None
+
+
+_KEPT = TypeAdapter(_Done | _NotDone)
+
+
 @dataclass(frozen=True)
 class Store:
     """A folder of results, one file each, whole or not there."""
@@ -293,7 +355,12 @@ class Store:
         except InputError:
             return None
         sound = isinstance(found, dict) and found.pop("sha256", None) == _digest(found)
-        return found if sound and found.get("schema") == SCHEMA else None
+        if not sound or found.get("schema") != SCHEMA:
+            return None
+        try:
+            return _KEPT.validate_python(found).model_dump(exclude_unset=True)
+        except ValidationError:
+            return None
 
     def put(self, key: str, result: Mapping[str, Any]) -> None:
         """Keep a result; InputError where the folder cannot be written to."""

@@ -112,12 +112,12 @@ def _of_csv(content: bytes) -> pa.Table:
     header = content.partition(b"\n")[0]
     layout = csv.ParseOptions(delimiter=";" if header.count(b";") > header.count(b",") else ",")
 
-    def read(names: Iterable[str]) -> pa.Table:
-        texts = csv.ConvertOptions(column_types={name: pa.string() for name in names})
+    def read(names: Iterable[str], empty: bool = False) -> pa.Table:
+        texts = csv.ConvertOptions(column_types={name: pa.string() for name in names}, strings_can_be_null=empty)
         return csv.read_csv(io.BytesIO(content), parse_options=layout, convert_options=texts)
 
     table = read(("file", "rig", "axis"))
-    text = read(table.column_names)
+    text = read(table.column_names, empty=True)
     for place, field in enumerate(table.schema):
         column = text.column(place)
         if pa.types.is_integer(field.type) and not table.column(place).cast(pa.string()).equals(column):

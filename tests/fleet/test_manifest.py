@@ -3,6 +3,7 @@
 import csv
 import hashlib
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 from hypothesis import HealthCheck, given, settings
@@ -60,3 +61,11 @@ def test_a_rig_is_a_file_of_the_folder_or_else_a_shipped_one(tmp_path):
     assert manifest.located("file")[0] == str(tmp_path / "emps")
     (planned, *_) = plan(manifest, False, (), None, 1, lambda share: None)
     assert planned.basis["rig_sha256"] == hashlib.sha256(shipped()["emps"].read_bytes()).hexdigest()
+
+
+def test_a_time_that_is_not_known_leaves_the_others_numbers(tmp_path):
+    """Without it the column was text, and refused; a shift 007 stays text beside an empty one."""
+    (tmp_path / "m.csv").write_text("file,rig,time,shift\na,r,1,007\nb,r,,\nc,r,3,008\n")
+    manifest = read_manifest(tmp_path / "m.csv")
+    np.testing.assert_array_equal(manifest.times, [1.0, np.nan, 3.0])
+    assert manifest.text("shift") == ["007", "", "008"]

@@ -1,13 +1,16 @@
 """Short fuzzing runs of each target, with a deadline that sees hangs; the long ones are commands (CONTRIBUTING)."""
 
 import os
+import random
 import subprocess
 import sys
+import tomllib
 from importlib.util import find_spec
 
 import pytest
 
 from tests.hostile import ROOT
+from tests.studies.fuzz.grammar import as_toml, changed
 
 TARGETS = ("units", "rig", "model", "readers")
 
@@ -23,6 +26,21 @@ def ran(cwd, *arguments):
 def test_nothing_is_found_without_coverage(tmp_path):
     done = ran(tmp_path, "-m", "tests.studies.fuzz.plain", *TARGETS, "--runs", "1500")
     assert done.returncode == 0, done.stderr[-3000:]
+
+
+def test_nothing_is_found_by_structure(tmp_path):
+    grammars = ("rig", "model", "mjcf", "manifest", "store")
+    done = ran(tmp_path, "-m", "tests.studies.fuzz.grammar", *grammars, "--runs", "25", "--seconds", "20")
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert [line.split(":")[0] for line in done.stdout.splitlines()] == list(grammars)
+
+
+def test_a_tree_is_changed_and_the_good_one_stays(tmp_path):
+    """Of a hundred trees most parse again as what they are written as, and hardly two are the same."""
+    rng, good = random.Random(0), {"a": {"b": [1.0, "2 kg"]}, "c": "text"}
+    made = [as_toml(changed(rng, good, [good])) for _ in range(100)]
+    assert good == {"a": {"b": [1.0, "2 kg"]}, "c": "text"}
+    assert len(set(made)) > 60 and all(isinstance(tomllib.loads(one.decode()), dict) for one in made)
 
 
 @pytest.mark.parametrize(
