@@ -19,6 +19,7 @@ from bench.cli.common import REPLACED, WRITTEN
 from bench.course.grade import SEALED, seal
 from bench.course.submission import find_submissions, read_submission
 from bench.errors import InputError
+from bench.export.mjcf import link_inertia, read_mjcf
 from bench.files import held, keeping, read_bytes, sha256, whole, write_text
 from bench.plant.robot import Robot
 from tests.command import bench
@@ -113,6 +114,17 @@ def test_the_table_of_grades_of_an_earlier_run_is_no_form_and_what_cannot_be_rea
     for path in find_submissions(folder):
         with pytest.raises(InputError, match=r"found a folder|levels of symbolic links|a pipe or a device"):
             read_submission(path)
+
+
+def test_what_mujoco_warns_of_leaves_no_log_behind(folder, monkeypatch, capfd):
+    """Two hinges about one axis: their inertia matrix is singular, in any pose."""
+    monkeypatch.chdir(folder)
+    two = '<joint name="el" type="hinge"/><joint name="again" type="hinge"/>'
+    (folder / "arm.xml").write_text(ARM.replace('<joint name="el" type="hinge"/>', two))
+    before = set(folder.iterdir())
+    Robot.of(Path("arm.xml"), "el")
+    assert link_inertia(read_mjcf(Path("arm.xml"))[0], "el") == pytest.approx(0.4 * 0.1**2)
+    assert capfd.readouterr() == ("", "") and set(folder.iterdir()) == before
 
 
 @pytest.mark.parametrize("script", ["page/report.json", "page/model.toml"])

@@ -271,7 +271,8 @@ def link_inertia(spec: mujoco.MjSpec, name: str) -> float:
     """Inertia about a joint of all that it carries, its armature aside, where the MJCF stands - kg*m**2 (kg)."""
     model = compiled(spec)
     data, whole = mujoco.MjData(model), np.zeros((model.nv, model.nv))
-    mujoco.mj_forward(model, data)
+    with silenced():
+        mujoco.mj_forward(model, data)
     mujoco.mj_fullM(model, data, whole)
     dof = model.joint(name).dofadr[0]
     return float(whole[dof, dof] - model.dof_armature[dof])
@@ -280,7 +281,8 @@ def link_inertia(spec: mujoco.MjSpec, name: str) -> float:
 def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
     """The compiled model; InputError with MuJoCo's reason where it refuses it."""
     try:
-        return spec.compile()
+        with silenced():
+            return spec.compile()
     except ValueError as error:
         reason = " ".join(str(error).split())
         raise InputError("the MJCF", f"MuJoCo refuses it: {reason}", "allowed: what MuJoCo compiles") from error

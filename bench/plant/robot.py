@@ -299,7 +299,8 @@ def _moved_tendons(model: mujoco.MjModel, joint: int) -> Sequence[int]:
     for aside in (0.1, 0.1 + 1e-3):
         data.qpos[model.jnt_qposadr] = model.qpos0[model.jnt_qposadr] + 0.1
         data.qpos[model.jnt_qposadr[joint]] = model.qpos0[model.jnt_qposadr[joint]] + aside
-        mujoco.mj_fwdPosition(model, data)
+        with silenced():
+            mujoco.mj_fwdPosition(model, data)
         lengths.append(data.ten_length.copy())
     return np.flatnonzero(np.abs(lengths[1] - lengths[0]) > 1e-9).tolist()
 

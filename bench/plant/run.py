@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -89,7 +90,8 @@ def silenced() -> Iterator[None]:
     silent.logto_console = silent.logto_file = False
     silent.set()
     try:
-        yield
+        with warnings.catch_warnings(action="ignore", category=UserWarning):  # a compiler's, of a singular inertia
+            yield
     finally:
         before.set()
 

@@ -31,7 +31,7 @@ import psutil
 import tomli_w
 
 from bench.errors import BenchError
-from bench.export.mjcf import joint_alone, read_mjcf
+from bench.export.mjcf import joint_alone, link_inertia, read_mjcf
 from bench.files import write_text
 from bench.fleet.evaluate import PlannedRecording, Store
 from bench.fleet.fleet import tabulate
@@ -181,7 +181,8 @@ def model(data: bytes) -> None:
 def mjcf(data: bytes) -> None:
     path = written("robot.xml", data)
     Robot.of(path, "elbow")
-    read_mjcf(path)
+    link_inertia(read_mjcf(path)[0], "elbow")
+    assert not Path("MUJOCO_LOG.TXT").exists()
 
 
 def manifest(data: bytes) -> None:
