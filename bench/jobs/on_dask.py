@@ -110,10 +110,15 @@ def _done(name: str, item: object) -> object:
 
 
 def _outcome(future: Future) -> Any:  # noqa: ANN401
-    """What a task returned, or that its worker was lost as often as Dask allows."""
-    if future.status == "finished":
+    """What a task returned, or that its worker was lost as often as Dask allows.
+
+    A result that was lost with its worker is made anew while it is asked for, which may fail as the first time.
+    """
+    try:
         return future.result()
-    error = future.exception() if future.status == "error" else None
-    if isinstance(error, KilledWorker):
+    except KilledWorker:
         return Failure("failed", "its worker was killed (Dask tried it as often as it is allowed to)")
-    return raised(error) if isinstance(error, Exception) else Failure("failed", "the cluster gave it up")
+    except asyncio.CancelledError:
+        return Failure("failed", "the cluster gave it up")
+    except Exception as error:
+        return raised(error)
