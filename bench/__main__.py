@@ -24,8 +24,15 @@ class Stopped(BaseException):
     """A signal to stop; no KeyboardInterrupt, which the command line's library turns into an exit without a word."""
 
 
+#: Statuses that a shell gives the signals that came.
+_STOPPED: list[int] = []
+
+
 def _stop(number: int, _frame: FrameType | None) -> None:
-    raise Stopped(128 + number)  # the status a shell gives it
+    os.write(2, b"bench: interrupted\n")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # a library that is being loaded makes a fault of its own of it
+    _STOPPED.append(128 + number)
+    raise Stopped
 
 
 def _memory() -> float:
@@ -72,7 +79,7 @@ def main() -> None:
         with suppress(OSError, ValueError):  # what came before an error that is told already
             if sys.stdout is not None:
                 sys.stdout.flush()
-        os._exit(status)
+        os._exit(_STOPPED[0] if _STOPPED else status)
 
     atexit.register(leave)  # the first that is registered is the last that is called
     try:
@@ -84,9 +91,8 @@ def main() -> None:
 
         keep_freed_memory()
         run()
-    except Stopped as stop:
-        os.write(2, b"bench: interrupted\n")
-        os._exit(stop.args[0])  # what is half imported cannot be taken down in order
+    except Stopped:
+        os._exit(_STOPPED[0])  # what is half imported cannot be taken down in order
     except SystemExit as end:  # as the command line always ends
         status = end.code if isinstance(end.code, int) else 0
         raise

@@ -51,9 +51,16 @@ def start(code, folder):
     return subprocess.Popen(command, cwd=folder, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+#: What compiled libraries do that are being imported.
+SWALLOWING = IMPORTING.replace("            os.kill", "            try: os.kill").replace(
+    "{number})\n", "{number})\n            except BaseException: raise RuntimeError('swallowed') from None\n", 1
+)
+
+
+@pytest.mark.parametrize("code", [IMPORTING, SWALLOWING], ids=["as it is", "swallowed"])
 @pytest.mark.parametrize("number", STATUS, ids=lambda number: number.name)
-def test_while_importing(tmp_path, number):
-    process = start(IMPORTING.format(number=int(number)), tmp_path)
+def test_while_importing(tmp_path, number, code):
+    process = start(code.format(number=int(number)), tmp_path)
     _, err = process.communicate(timeout=120)
     assert (process.returncode, err) == (STATUS[number], "bench: interrupted\n")
 

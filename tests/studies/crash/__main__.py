@@ -13,6 +13,7 @@ printed, and ends it with 1.
 import argparse
 import os
 import shutil
+import signal
 import tempfile
 import time
 from pathlib import Path
@@ -27,6 +28,7 @@ def options() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m tests.studies.crash")
     parser.add_argument("--kills", type=int, default=300, help="of all commands together")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="after which no further kill begins")
+    parser.add_argument("--signal", default="KILL", choices=["KILL", "TERM", "INT", "HUP"])
     parser.add_argument("--faults", action="store_true", help="in the place of kills")
     parser.add_argument("--commands", nargs="*", default=list(COMMANDS), choices=list(COMMANDS))
     return parser
@@ -41,7 +43,7 @@ def main() -> None:
         until = time.monotonic() + asked.seconds / len(asked.commands)
         above = Path(tempfile.mkdtemp(prefix="crash-"))
         try:
-            found = _faulty(name, above) if asked.faults else _killed(name, kills, until, above)
+            found = _faulty(name, above) if asked.faults else _killed(name, kills, until, above, asked.signal)
         finally:
             shutil.rmtree(above)
         faults += [f"{name}: {one}" for one in found]
@@ -49,9 +51,9 @@ def main() -> None:
         raise SystemExit("\n".join(faults))
 
 
-def _killed(name: str, kills: int, until: float, above: Path) -> list[str]:
+def _killed(name: str, kills: int, until: float, above: Path, number: str) -> list[str]:
     (above / "trial").mkdir()
-    trial = Trial(COMMANDS[name], above / "trial")
+    trial = Trial(COMMANDS[name], above / "trial", signal.Signals[f"SIG{number}"])
     tally = trial.killed(kills, until)
     moments = ", ".join(f"{moment} {count}" for moment, count in sorted(tally.kills.items()))
     strays = sorted({path.name for path in trial.temporary.iterdir()} - {"steps"})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -46,7 +47,8 @@ class Pace:
 class Trial:
     """One command in a folder of its own."""
 
-    def __init__(self, command: Command, folder: Path) -> None:
+    def __init__(self, command: Command, folder: Path, number: signal.Signals = signal.SIGKILL) -> None:
+        self.number = number
         self.command, self.folder, self.out, self.tally = command, folder, folder / "out", Tally()
         self.temporary = folder.with_name(f"{folder.name}-temporary")
         self.temporary.mkdir()
@@ -62,7 +64,7 @@ class Trial:
         """Kill it so often, or until a time is reached; every few kills it runs to its end."""
         number = 0
         while self.tally.kills.total() < asked and number < 2 * asked and time.monotonic() < until:
-            moment, share = MOMENTS[number % len(MOMENTS)], (number + 1) * GOLDEN % 1.0
+            moment, share = self._moment(number), (number + 1) * GOLDEN % 1.0
             if self.kill(moment, share):
                 self.tally.kills[moment] += 1
             else:
@@ -73,6 +75,11 @@ class Trial:
                 self.end(clear=self.command.resumes or number % (2 * EACH) == 0)
         self.end(clear=False)
         return self.tally
+
+    def _moment(self, number: int) -> str:
+        """Only SIGKILL comes before a step: another is seen once Python goes on."""
+        moment = MOMENTS[number % len(MOMENTS)]
+        return "writing" if moment == "step" and self.number != signal.SIGKILL else moment
 
     def kill(self, moment: str, share: float) -> bool:
         """Kill it at a share of its run, of its writing or of the steps of it; whether it was still running."""
@@ -87,8 +94,14 @@ class Trial:
             _wait(process, share * (self.pace.lasted - self.pace.first))
         else:
             process.wait()
-        process.kill()
-        hit = process.wait() < 0
+        process.send_signal(self.number)
+        status = process.wait()
+        told = self.number != signal.SIGKILL and status == 128 + self.number
+        hit = told or (status < 0 and moment == "step") or status == -self.number
+        if status and not hit:
+            self.tally.faults.append(f"{moment} {share:.3f}: ended with {status}")
+        if told and (strays := left(self.out)):
+            self.tally.faults.append(f"{moment} {share:.3f}: left {sorted(strays)}")
         for one in lingering(process.pid):
             self.tally.faults.append(f"{moment} {share:.3f}: process {one.name()} lives on")
             one.kill()
