@@ -141,7 +141,15 @@ def test_a_script_replaces_nothing_else(tmp_path, monkeypatch, script):
 OPENING = {"open", "read_text", "read_bytes", "from_xml_path", "from_file", "ParquetFile", "read_schema", "ZipFile"}
 SHIPPED = {"course/axis.py", "course/notebooks.py", "course/report.py", "course/pdf.py", "course/catapult.py"}
 SHIPPED |= {"plant/axis_model.py", "report/html.py", "rig/motor.py"}
-WRITES = {"cli/__init__.py", "cli/check.py", "jobs/process.py", "packed.py", "trace/write.py", "view/video.py"}
+WRITES = {
+    "__main__.py",
+    "cli/__init__.py",
+    "cli/check.py",
+    "jobs/process.py",
+    "packed.py",
+    "trace/write.py",
+    "view/video.py",
+}
 WRITES |= {"validation/independent/case.py", "trace/joint_states.py"}
 BYTES = {"trace/readers/arrow.py", "trace/readers/measurement.py", "trace/readers/named_arrays.py"}
 READ_BEFORE = {"course/flights.py", "plant/mjcf_file.py", "trace/stream.py"}
