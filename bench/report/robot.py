@@ -179,7 +179,7 @@ def _missing(joint: IdentifiedJoint) -> str:
     if joint.diagnosis is None:
         return "not told"
     left = f" {'; '.join(map(words, joint.diagnosis.because))}" if joint.diagnosis.because else ""
-    return f"{'' if joint.diagnosis.effects else 'None named: '}{likely_names(joint.diagnosis)}{sentence(left)}"
+    return f"{'' if joint.diagnosis.effects else 'None named. '}{likely_names(joint.diagnosis)}{sentence(left)}"
 
 
 def _open(joint: IdentifiedJoint) -> list[tuple[str, str]]:
