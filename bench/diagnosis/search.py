@@ -90,7 +90,7 @@ def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
         found = forward_selection(Searched((*found.steps, Step(better))), effects, policy)
     if policy.remains(found.last):
         for effect in effects:
-            replaced = replacement(found.last, effect, policy) if isinstance(effect, Replacing) else None
+            replaced = replacement(found.last, effect, effects, policy) if isinstance(effect, Replacing) else None
             if replaced is not None:
                 steps = found.steps[:-1] if len(found.steps) > 1 else found.steps
                 found = forward_selection(Searched((*steps, Step(replaced))), effects, policy)
@@ -105,6 +105,7 @@ def forward_selection(found: Searched, effects: Sequence[Effect], policy: Policy
         tried = candidates(current, effects)
         promising = [candidate for candidate in tried if policy.promises(current, candidate.gain)]
         finalists = [refined(current, candidate.term) for candidate in promising[: policy.finalists]]
+        finalists = [physical_form(after, effects, policy) for after in finalists]
         better = [after for after in finalists if policy.accepts(current, after)]
         if not better:
             return Searched(steps, ended=Step(current, tuple(tried)))
@@ -134,6 +135,22 @@ def candidates(current: Fit, effects: Iterable[Effect]) -> list[Candidate]:
 def refined(current: Fit, term: Term) -> Fit:
     """A term added, its shape searched around where the grid found it."""
     return shaped(current.rows, current.hypothesis.plus(term), len(current.terms))
+
+
+def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit:
+    """With an earlier name in the form that no recording tells from it, where beside the last only that is physical.
+
+    Friction that differs by direction was taken up beside too much friction: beside a backlash the same is an offset.
+    """
+    if policy.physical(fitted):
+        return fitted
+    for index, term in enumerate(fitted.terms[:-1]):
+        alike = term.effect.ambiguous(fitted.scope)
+        for effect in (each for each in effects if each.name in alike and len(each.shapes) == len(term.shape)):
+            tried = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, term.shape)))
+            if policy.physical(tried):
+                return tried
+    return fitted
 
 
 def polished(fitted: Fit, policy: Policy) -> Fit:
@@ -196,7 +213,7 @@ def exchanged(fitted: Fit, instead: Sequence[Fit], policy: Policy) -> Fit | None
     return with_hum(backward_elimination(polished(min(found, key=lambda after: after.squares), policy), policy))
 
 
-def replacement(fitted: Fit, effect: Replacing, policy: Policy) -> Fit | None:
+def replacement(fitted: Fit, effect: Replacing, effects: Sequence[Effect], policy: Policy) -> Fit | None:
     """The hypothesis with an effect in the place of those it replaces, if that explains clearly more."""
     kept = [term for term in fitted.terms if term.effect.name not in effect.replaces]
     current = fit(fitted.rows, fitted.hypothesis.with_terms(kept))
@@ -206,4 +223,5 @@ def replacement(fitted: Fit, effect: Replacing, policy: Policy) -> Fit | None:
         return None
     first = fit(fitted.rows, current.hypothesis.plus(Term(effect, shape)))
     after = shaped(first.rows, first.hypothesis, len(current.terms))  # from where levels and loads have settled
+    after = physical_form(after, effects, policy)
     return backward_elimination(after, policy) if policy.replaces_by(fitted, after) else None

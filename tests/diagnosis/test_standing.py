@@ -4,9 +4,23 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.search import search
+from bench.diagnosis.search import physical_form, search
 from bench.effects.catalogue import catalogue
-from tests.diagnosis.constructed import COULOMB, VISCOUS, Motion, bare, likely, moved, names, only_during, recorded
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Hypothesis, Term
+from tests.diagnosis.constructed import (
+    COULOMB,
+    VISCOUS,
+    Motion,
+    bare,
+    likely,
+    moved,
+    names,
+    offset,
+    only_during,
+    recorded,
+    wave,
+)
 
 CREEP = 0.4  # rad/s, a hundredth of the other speeds
 
@@ -41,3 +55,14 @@ def test_a_spring_that_is_not_hookes_gets_no_name():
     trace = recorded(moved(), lambda motion: 0.06 * np.cos(0.16 * motion.position))
     found = likely(Policy(), trace, ["direction_dependent_friction", "current_offset_drift", "load_torque_event"])
     assert found.none > 0.9
+
+
+def test_an_offset_that_passed_for_friction_stays_an_offset_beside_a_later_name():
+    """Beside much friction a constant torque is friction by direction; where a later name takes it, a load."""
+    trace = recorded(moved(), offset(1.2 * COULOMB), wave(0.02, 7.0))
+    effects = [catalogue()[name] for name in ("torque_offset", "direction_dependent_friction", "cogging_torque")]
+    by_direction, cogging = Term(effects[1]), Term(effects[2], (7.0,))
+    wrong = fit(bare(trace).rows, Hypothesis((by_direction, cogging)))
+    assert not Policy().physical(wrong)
+    assert physical_form(wrong, effects, Policy()).hypothesis.names == ("torque_offset", "cogging_torque")
+    assert physical_form(wrong, effects[1:], Policy()) is wrong
