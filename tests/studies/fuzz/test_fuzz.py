@@ -23,8 +23,9 @@ def ran(cwd, *arguments):
     )  # fmt: skip
 
 
-def test_nothing_is_found_without_coverage(tmp_path):
-    done = ran(tmp_path, "-m", "tests.studies.fuzz.plain", *TARGETS, "--runs", "1500")
+@pytest.mark.parametrize("runs", [300, pytest.param(1500, marks=pytest.mark.slow)])
+def test_nothing_is_found_without_coverage(tmp_path, runs):
+    done = ran(tmp_path, "-m", "tests.studies.fuzz.plain", *TARGETS, "--runs", str(runs))
     assert done.returncode == 0, done.stderr[-3000:]
 
 
