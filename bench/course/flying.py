@@ -11,8 +11,9 @@ import numpy as np
 
 from bench.arrays import Array, rms
 
-#: A point is off by so many times the usual distance from its path, a flight's path by so many from the others'.
-POINT, PATH = 7.0, 8.0
+#: A point is off by so many times the usual distance from its path, a flight's path by so many from the others'. Of
+#: 200,000 tens of simulated flights, each with its scatter of the launch, the furthest were 6.9 and 15.3 times.
+POINT, PATH = 7.0, 16.0
 #: A flight has at least so many points more than its parabola has coefficients.
 SPARE = 3
 MISTAKES: dict[str, Callable[[Array], Array]] = {

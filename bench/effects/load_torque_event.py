@@ -95,7 +95,7 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
 def _gains(
     fitted: Fitted, weight: Array, edges: NDArray[np.intp], first: NDArray[np.intp], last: NDArray[np.intp]
 ) -> Array:
-    """Squares that a torque takes from the residual in windows from one edge to another, by weighted rows (w,)."""
+    """Squares (w,) - (N*m)**2 (N**2) - that a torque takes from residual in windows between edges, of weighted rows."""
     residual, basis = fitted.residual * weight, fitted.span * weight[:, None]
     summed, counted = (np.concatenate([[0.0], np.cumsum(of)])[edges] for of in (residual, weight))
     spanned = np.concatenate([np.zeros((1, basis.shape[1])), np.cumsum(basis, axis=0)])[edges]

@@ -37,9 +37,7 @@ class Manifest:
         return [value or "" for value in self.table[column].cast(pa.string()).to_pylist()]
 
     def located(self, column: str) -> list[str]:
-        """Paths and URLs of `file` or `rig` (n,), which is a file of the manifest's folder or the name of a shipped
-        one.
-        """
+        """Paths and URLs of `file` or `rig` (n,): a file of the manifest's folder, or a shipped rig by its name."""
         folder, named = self.path.parent, (one.removeprefix("file://") for one in self.text(column))
         known = shipped() if column == "rig" else {}
         return [one if "://" in one else str(_beside(folder, one, known)) for one in named]

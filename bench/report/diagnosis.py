@@ -319,7 +319,8 @@ def likely_names(found: Diagnosis) -> str:
         others = {other: share for other, share in likely.instead_of(name).items() if other is not None}
         parts.append(f"{_chances({name: likely.names[name]})}{f' (or {_chances(others)})' if _chances(others) else ''}")
     beside = {} if found.effects else likely.names | {"nothing": likely.nothing}
-    parts.append(_chances({**beside, "none of the catalogue": likely.none}))
+    none = "something beside it that none of the catalogue is" if likely.detected else "none of the catalogue"
+    parts.append(_chances({**beside, none: likely.none}))
     return f"{sentence(', '.join(filter(None, parts)))}."
 
 

@@ -216,13 +216,13 @@ def view(
 def _after(free: FreeRun, kind: AxisKind) -> str:
     """How far off it is a while after it was let free."""
     at = [(horizon, int(np.searchsorted(free.time, horizon * (1.0 - 1e-6)))) for horizon in HORIZONS]
-    told = [
+    off = [
         f"after {number(horizon, 's')} {number(float(free.position[k]), kind.length_unit, 3)}"
         for horizon, k in at
         if k < free.time.size
     ]
     last = f"after {number(float(free.time[-1]), 's', 3)} {number(float(free.position[-1]), kind.length_unit, 3)}"
-    return f"{', '.join(told or [last])} RMS, of {free.windows} windows"
+    return f"{', '.join(off or [last])} RMS, of {free.windows} windows"
 
 
 def _let_free(free: FreeRun, kind: AxisKind) -> tuple[Chart, Chart]:

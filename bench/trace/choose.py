@@ -109,9 +109,9 @@ def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, SignalC
         index = _index(recording, how.columns)
         chosen |= {"time": SignalColumn(index, _INDEX)} if index is not None else {}
     taken = ", ".join(f"{signal} taken as {one.usual}" for signal, one in chosen.items() if one.usual is not None)
-    told = (f"{taken}, as the file tells no unit",) if taken else ()
+    assumed = (f"{taken}, as the file tells no unit",) if taken else ()
     left = (f"{signal} left out: {fault.where} {fault.found}" for signal, fault in faults.items() if signal != "time")
-    return chosen, (*told, *notes, *left)
+    return chosen, (*assumed, *notes, *left)
 
 
 def of_axis(recording: Recording, axis: str | None) -> tuple[Channel, ...]:
@@ -181,9 +181,9 @@ def _signal(
     if channel.defect is not None:
         raise channel.defect
     own = unit_of(channel.unit)
-    told = unit_of(unit or channel.unit)
-    usual = recording.usual_units.get(signal) if told is None and not channel.moments else None
-    scale = _scale(signal, channel, told or usual)
+    stated = unit_of(unit or channel.unit)
+    usual = recording.usual_units.get(signal) if stated is None and not channel.moments else None
+    scale = _scale(signal, channel, stated or usual)
     if named and not channel.moments and None not in (unit, own) and not _means(str(own), signal, scale):
         notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
     return SignalColumn(channel, scale, sign, usual)

@@ -54,9 +54,7 @@ def let_free(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> FreeRun |
     windows = [slice(k, k + length) for part in stretches for k in range(part.start, part.stop - length + 1, every)]
     runs = run_free(driven(stored, balance, trace, rig.own_effort(trace)[0]), windows)
     position, velocity = measured_position(trace), measured_velocity(trace)
-    begun = [
-        0.0 if "position" in trace else position[part.start] for part in windows
-    ]  # an integral from zero elsewhere
+    begun = [0.0 if "position" in trace else position[part.start] for part in windows]  # else an integral from zero
     off = [one.position + at - position[part] for one, at, part in zip(runs, begun, windows, strict=True)]
     late = [one.velocity - velocity[part] for one, part in zip(runs, windows, strict=True)]
     time = trace.sample_period * np.arange(length, dtype=np.float64)
