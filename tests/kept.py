@@ -17,7 +17,10 @@ from bench.validation import independent
 
 T = TypeVar("T")
 #: Files that decide on what the integrator makes of a case.
-INTEGRATOR = tuple(sorted(Path(independent.__file__).parent.rglob("*.py")))
+INTEGRATOR = (
+    *sorted(Path(independent.__file__).parent.rglob("*.py")),
+    *(Path(__file__).with_name(name) for name in ("cases.py", "outside.py")),
+)
 
 
 def kept(make: Callable[[], T], *made_by: str) -> T:

@@ -147,10 +147,11 @@ WRITES = {
     "cli/check.py",
     "jobs/process.py",
     "packed.py",
+    "trace/joint_states.py",
     "trace/write.py",
     "view/video.py",
 }
-WRITES |= {"validation/independent/case.py", "trace/joint_states.py"}
+
 BYTES = {"trace/readers/arrow.py", "trace/readers/measurement.py", "trace/readers/named_arrays.py"}
 READ_BEFORE = {"course/flights.py", "plant/mjcf_file.py", "trace/stream.py"}
 COPIED = {"fleet/evaluate.py"}  # from a storage

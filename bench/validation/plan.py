@@ -14,8 +14,7 @@ from bench.effects.catalogue import catalogue
 from bench.errors import InputError
 from bench.names import nearest
 from bench.rig.rig import Rig
-from bench.validation.independent.case import any_effects
-from bench.validation.independent.effects import KINDS, Effect
+from bench.validation.independent.effects import KINDS, Effect, any_effects
 from bench.validation.independent.references import MOTIONS, Motion
 from bench.validation.independent.rig import Axis, random_rig, rig_text
 from bench.validation.independent.sensors import Sensors, random_sensors

@@ -20,6 +20,7 @@ from tests.diagnosis.constructed import recorded as made_up
 from tests.diagnosis.hand_made import term
 from tests.diagnosis.test_add import AXIS, SENSORS, STEP, added
 from tests.kept import kept
+from tests.outside import SlowMemoryFriction
 
 OFFSET, COGGING, HARMONIC = 0.1, 0.15, 60.0
 STANDS, JERK = 5.0, 0.02
@@ -51,7 +52,7 @@ def recorded(tmp_path_factory):
         ),
     ]
     effects = [
-        (KINDS["torque_offset"](OFFSET), KINDS["slow_memory_friction"](0.8, 0.5, 40.0)),
+        (KINDS["torque_offset"](OFFSET), SlowMemoryFriction(0.8, 0.5, 40.0)),
         (KINDS["cogging_torque"](COGGING, HARMONIC, 0.4),),
     ]
     together = [AXIS] * 2, motions, effects, [SENSORS] * 2

@@ -9,8 +9,9 @@ import numpy as np
 from bench.rig.rig import Rig, load_rig
 from bench.trace.read import read
 from bench.trace.trace import Trace
-from bench.validation.independent.case import any_effects, hidden, record
+from bench.validation.independent.effects import any_effects
 from bench.validation.independent.rig import write_rig
+from tests.cases import hidden, record
 from tests.diagnosis.public_axes import EMPS, LAAS, XL330, emps
 from tests.shared import SHARED
 

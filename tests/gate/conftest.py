@@ -1,9 +1,9 @@
 import pytest
 
 from bench.rig.rig import load_rig
-from bench.validation.independent.case import Hidden, record
 from bench.validation.independent.rig import write_rig
 from bench.validation.independent.sensors import Noise, Sensors
+from tests.cases import Hidden, record
 from tests.independent.axes import PLAIN
 
 

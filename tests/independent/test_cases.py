@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from bench.rig.rig import load_rig
-from bench.validation.independent.case import any_effects, hidden, record, residual_ratio, truth, write_case
-from bench.validation.independent.effects import CATALOGUE, OUTSIDE
+from bench.validation.independent.effects import CATALOGUE, any_effects
 from bench.validation.independent.sensors import Noise, Sensors
+from tests.cases import hidden, record, residual_ratio, truth, write_case
+from tests.outside import OUTSIDE
 
 SHARED = Path(__file__).parents[3] / "shared" / "cases"
 

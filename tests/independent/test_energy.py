@@ -14,14 +14,13 @@ from bench.validation.independent.effects import (
     PositionDependentInertia,
     PreslidingFriction,
     QuadraticDrag,
-    RestHardening,
-    SlowMemoryFriction,
     StribeckFriction,
     TorsionSpring,
     Unbalance,
 )
 from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
+from tests.outside import RestHardening, SlowMemoryFriction
 
 
 def test_a_spring_swings_for_ever_at_its_frequency():

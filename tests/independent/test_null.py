@@ -17,10 +17,7 @@ from bench.validation.independent.effects import (
     LoadTorqueEvent,
     PositionDependentFriction,
     PositionDependentInertia,
-    PositionNotch,
     QuadraticDrag,
-    RestHardening,
-    SlowMemoryFriction,
     StribeckFriction,
     TorqueConstantDrift,
     TorqueConstantSaturation,
@@ -29,11 +26,11 @@ from bench.validation.independent.effects import (
     TorsionSpring,
     Unbalance,
     VelocityFilterLag,
-    Vibration,
     VoltageLimit,
 )
 from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
+from tests.outside import OUTSIDE, PositionNotch, RestHardening, SlowMemoryFriction, Vibration
 
 NULL = [
     StribeckFriction(PLAIN.coulomb, 1.0),
@@ -69,7 +66,7 @@ LIMITS = {"presliding_friction", "elastic_coupling", "backlash"}
 
 
 def test_every_effect_is_listed_here():
-    assert {effect.name for effect in NULL} | LIMITS == set(KINDS)
+    assert {effect.name for effect in NULL} | LIMITS == {*KINDS, *OUTSIDE}
 
 
 def test_null_is_the_bare_axis():
@@ -90,7 +87,7 @@ def _push(time):
 
 
 def test_effects_act_alike_alone_and_among_neighbours_whom_they_leave_alone():
-    strong = [kind.draw(PLAIN, 0.6, np.random.default_rng(4), 0.03) for kind in KINDS.values()]
+    strong = [kind.draw(PLAIN, 0.6, np.random.default_rng(4), 0.03) for kind in (KINDS | OUTSIDE).values()]
     bare = run(Plant([PLAIN], [[]]), _push, 0.03)
     side_by_side = [effects for effect in strong for effects in ([], [effect])]
     both = run(Plant([PLAIN] * len(side_by_side), side_by_side), _push, 0.03)

@@ -11,7 +11,6 @@ from bench.validation.independent.effects import (
     LoadTorqueEvent,
     PositionDependentFriction,
     PositionDependentInertia,
-    PositionNotch,
     QuadraticDrag,
     StribeckFriction,
     TorqueConstantSaturation,
@@ -19,10 +18,10 @@ from bench.validation.independent.effects import (
     TorqueRipple,
     TorsionSpring,
     Unbalance,
-    Vibration,
 )
 from bench.validation.independent.plant import Plant
 from tests.independent.axes import PLAIN, run
+from tests.outside import PositionNotch, Vibration
 
 J, KW, K0, KT = PLAIN.inertia, PLAIN.viscous, PLAIN.coulomb, PLAIN.torque_constant
 STEP = 20e-6

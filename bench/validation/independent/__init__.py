@@ -4,7 +4,7 @@ Friction sticks and slips exactly (`stick_slip`), everything else is second orde
 test that identifies or diagnoses takes its truth from here, so that a model never confirms itself.
 """
 
-from bench.validation.independent.effects import CATALOGUE, KINDS, OUTSIDE, Effect
+from bench.validation.independent.effects import CATALOGUE, KINDS, Effect
 from bench.validation.independent.references import Motion, random_motion
 from bench.validation.independent.rig import Axis, random_rig, write_rig
 from bench.validation.independent.sensors import Noise, Sensors, random_sensors
@@ -13,7 +13,6 @@ from bench.validation.independent.simulate import Recorded, simulate
 __all__ = [
     "CATALOGUE",
     "KINDS",
-    "OUTSIDE",
     "Axis",
     "Effect",
     "Motion",

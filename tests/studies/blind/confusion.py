@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from bench.validation.independent.effects import CATALOGUE, LATER, OUTSIDE
+from bench.validation.independent.effects import CATALOGUE, LATER
+from tests.outside import OUTSIDE
 from tests.studies.blind.score import Score, twins
 
 NOTHING, REMAINDER, REFUSED = "nothing", "remainder only", "refused"

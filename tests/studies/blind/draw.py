@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.validation.independent.case import Hidden, any_effects, hidden
-from bench.validation.independent.effects import CATALOGUE, OUTSIDE
+from bench.validation.independent.effects import CATALOGUE, any_effects
+from tests.cases import Hidden, hidden
+from tests.outside import OUTSIDE
 
 #: Severity of an effect by strength; 1 is drastic.
 STRENGTHS = {"weak": (0.15, 0.3), "middle": (0.3, 0.5), "strong": (0.5, 0.8)}

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, as_completed
 from pathlib import Path
 
-from bench.validation.independent.case import record, write_case
+from tests.cases import record, write_case
 from tests.kept import INTEGRATOR
 from tests.studies.blind.draw import Drawn, noise_of, strength_of
 

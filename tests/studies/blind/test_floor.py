@@ -2,7 +2,8 @@
 
 import pytest
 
-from bench.validation.independent.effects import CATALOGUE, OUTSIDE
+from bench.validation.independent.effects import CATALOGUE
+from tests.outside import OUTSIDE
 from tests.studies.blind.__main__ import scored
 from tests.studies.blind.draw import STRENGTHS, one
 from tests.studies.blind.table import false_names, headline, wrong

@@ -22,9 +22,9 @@ from bench.validation.independent import (
     random_sensors,
     simulate,
 )
-from bench.validation.independent.case import residual_ratio
 from bench.validation.independent.references import Phase
 from bench.validation.independent.rig import write_rig
+from tests.cases import residual_ratio
 
 #: Tick of all drives, so that many run side by side, and step of the integration - s.
 TICK, LONGEST_STEP = 250e-6, 62.5e-6

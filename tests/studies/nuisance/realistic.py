@@ -19,10 +19,10 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress
 
-from bench.validation.independent.case import Hidden, any_effects, record, write_case
-from bench.validation.independent.effects import CATALOGUE
+from bench.validation.independent.effects import CATALOGUE, any_effects
 from bench.validation.independent.rig import random_rig
 from bench.validation.independent.sensors import random_sensors
+from tests.cases import Hidden, record, write_case
 from tests.studies.blind.__main__ import workers
 from tests.studies.blind.draw import Drawn
 from tests.studies.blind.score import same, twins

@@ -1,4 +1,6 @@
-"""Effects of the independent axis: the contract's catalogue and some physics outside it."""
+"""Effects of the independent axis: those of the bench's catalogue."""
+
+import numpy as np
 
 from bench.validation.independent.effects.effect import Effect
 from bench.validation.independent.effects.electronics import (
@@ -33,7 +35,6 @@ from bench.validation.independent.effects.load import (
     TorsionSpring,
     Unbalance,
 )
-from bench.validation.independent.effects.outside import PositionNotch, RestHardening, SlowMemoryFriction, Vibration
 
 
 def _by_name(*kinds: type[Effect]) -> dict[str, type[Effect]]:
@@ -63,9 +64,19 @@ CATALOGUE = _by_name(
     VelocityFilterLag,
     EncoderEccentricity,
 )
-OUTSIDE = _by_name(SlowMemoryFriction, PositionNotch, Vibration, RestHardening)
 #: Drawn as a group of their own, so that a case of another group stays what it is.
 LATER = _by_name(
     CurrentFilterLag, CurrentGainAsymmetry, CurrentOffsetDrift, TorqueConstantDrift, DirectionalLoadFriction
 )
-KINDS = CATALOGUE | OUTSIDE | LATER
+KINDS = CATALOGUE | LATER
+
+
+def any_effects(
+    count: int, rng: np.random.Generator, *, linear: bool = False, without: frozenset[str] = frozenset()
+) -> tuple[str, ...]:
+    """Names of `count` effects of the catalogue that can be hidden together, on a linear axis or without some."""
+    allowed = [name for name, kind in CATALOGUE.items() if (kind.on_linear_axis or not linear) and name not in without]
+    while True:
+        names = tuple(str(name) for name in rng.choice(allowed, count, replace=False))
+        if not any(KINDS[name].never_beside in names for name in names):
+            return names

@@ -93,3 +93,8 @@ class RestHardening(Effect):
     def remember(self, rows: Rows, memory: np.ndarray, step: float) -> np.ndarray:
         sliding = (np.abs(rows.velocity) > self.speed).astype(float)
         return sliding + (memory - sliding) * np.exp(-step / self.time_constant)
+
+
+OUTSIDE: dict[str, type[Effect]] = {
+    kind.name: kind for kind in (SlowMemoryFriction, PositionNotch, Vibration, RestHardening)
+}

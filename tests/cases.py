@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from bench.validation.independent.effects import CATALOGUE, KINDS, OUTSIDE, Effect
+from bench.validation.independent.effects import KINDS, Effect
 from bench.validation.independent.references import random_motion
 from bench.validation.independent.rig import Axis, random_rig, write_rig
 from bench.validation.independent.sensors import Sensors, random_sensors
 from bench.validation.independent.simulate import LONGEST_STEP, Recorded, simulate
+from tests.outside import OUTSIDE
 
 #: Decimals of a column: finer than any sensor here, so that a file does not round what the sensor did not.
 DECIMALS = {"time": 4, "position": 5, "velocity": 4, "current": 3, "position_reference": 5, "velocity_reference": 4}
@@ -147,19 +148,8 @@ def hidden(
     axis = random_rig(rng, name, linear=linear)
     strength = float(rng.uniform(*severity)) if effects else 0.02
     sensors = random_sensors(axis, rng, noise)
-    drawn = tuple(KINDS[effect].draw(axis, strength, rng, duration) for effect in effects)
+    drawn = tuple((KINDS | OUTSIDE)[effect].draw(axis, strength, rng, duration) for effect in effects)
     outside = any(effect in OUTSIDE for effect in effects)
     return Hidden(
         name, axis, drawn, sensors, "outside" if outside else GROUPS.get(len(effects), "crowd"), strength, duration
     )
-
-
-def any_effects(
-    count: int, rng: np.random.Generator, *, linear: bool = False, without: frozenset[str] = frozenset()
-) -> tuple[str, ...]:
-    """Names of `count` effects of the catalogue that can be hidden together, on a linear axis or without some."""
-    allowed = [name for name, kind in CATALOGUE.items() if (kind.on_linear_axis or not linear) and name not in without]
-    while True:
-        names = tuple(str(name) for name in rng.choice(allowed, count, replace=False))
-        if not any(KINDS[name].never_beside in names for name in names):
-            return names
