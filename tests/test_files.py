@@ -139,7 +139,14 @@ def test_a_script_replaces_nothing_else(tmp_path, monkeypatch, script):
 #: Calls that open a file, and the modules that may: they open what is shipped with the bench, what they write, bytes
 #: that were read, or what `bench.files` has read before.
 OPENING = {"open", "read_text", "read_bytes", "from_xml_path", "from_file", "ParquetFile", "read_schema", "ZipFile"}
-SHIPPED = {"course/axis.py", "course/notebooks.py", "course/report.py", "course/pdf.py", "course/catapult.py"}
+SHIPPED = {
+    "course/axis.py",
+    "course/notebooks.py",
+    "course/report.py",
+    "course/pdf.py",
+    "course/catapult.py",
+    "course/sliders.py",
+}
 SHIPPED |= {"plant/axis_model.py", "report/html.py", "rig/motor.py"}
 WRITES = {
     "__main__.py",

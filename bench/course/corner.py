@@ -6,7 +6,7 @@ import numpy as np
 
 from bench.course.axis import MAINS, RPM, joined
 from bench.course.peak_torque import datasheet_curve, fall
-from bench.course.power import of_circuits
+from bench.course.power import EVERY, of_circuits
 from bench.course.recordings import LabRecordings
 from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, panel
 from bench.course.winding import TIME_CONSTANTS, Split, identified_axis, split
@@ -83,7 +83,7 @@ def _measured_findings(recordings: LabRecordings, found: Split) -> tuple[str, ..
 
 def _torque_chart(rig: Rig, found: Split) -> Chart:
     speed, torque = datasheet_curve(rig)
-    every = slice(None, None, 40)
+    every = slice(None, None, EVERY)
     simulated = {
         f"{HOT:g} °C, quasi-static": found.hot,
         f"{COLD:g} °C, quasi-static": found.cold,

@@ -126,11 +126,16 @@ def _remaining_chart(run: LabRun, kept: LabRun) -> Chart:
     return chart("Task 8: remaining samples over the original ones", *panels)
 
 
+def steepest(run: LabRun) -> int:
+    """Sample at the steepest change of alpha_filt."""
+    return int(np.argmax(np.abs(np.diff(filtered_acceleration(run)[0])))) + DELAY
+
+
 def _edge_chart(run: LabRun) -> Chart:
     """alpha and alpha_filt, all of them, and around the steepest change of the torque."""
     mean, synchronous = filtered_acceleration(run)
     t_sync = run.time[synchronous]
-    edge = int(np.argmax(np.abs(np.diff(mean)))) + DELAY
+    edge = steepest(run)
     near = slice(max(edge - EDGE, DELAY), min(edge + EDGE, run.time.size - DELAY))
     within = slice(near.start - DELAY, near.stop - DELAY)
     late = t_sync + DELAY * run.sample_period

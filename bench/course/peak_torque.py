@@ -12,6 +12,7 @@ alpha*tau.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,13 +21,13 @@ from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
 from bench.arrays import NORMAL95, Array
-from bench.course.axis import MAINS, RPM
+from bench.course.axis import MAINS, RPM, circuit, joined, motor_value, torque_constant
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import Number, TaskResult, chart, curve, panel
-from bench.errors import UndeterminedError
+from bench.errors import InputError, UndeterminedError
 from bench.report.document import Table, table
 from bench.report.drive import in_range
-from bench.rig.limits import peak_curve
+from bench.rig.limits import COLD, peak_curve
 from bench.rig.rig import Rig
 
 #: Stretch of the falling current, in shares of its top, that the line is fitted to.
@@ -44,6 +45,8 @@ FINER = 8
 LEAST_TORQUE, FULL_SHARE = 0.2, 3.0 / 3.5
 #: Speeds of the course's table - rpm, and samples that belong to one: within this of it - rad/s.
 SPEEDS, HALF_BIN = (0.0, 1000.0, 2000.0, 2100.0, 3000.0, 4000.0, 5000.0), 5.0
+#: Currents that a peak curve is drawn for.
+POINTS = 200
 
 
 @dataclass(frozen=True)
@@ -159,6 +162,13 @@ def datasheet_curve(rig: Rig) -> tuple[Array, Array]:
     return speed, (rig.motor.peak_torque or 0.0) * curve.share(speed)
 
 
+def cold_curve(rig: Rig) -> tuple[Array, Array]:
+    """The same of the winding at COLD, U = R*Iq + Ke*omega, from its corner on; raises InputError as `circuit`."""
+    own, current = circuit(rig), np.linspace(motor_value(rig, "peak_current"), 0.0, POINTS)
+    speed = (own.voltage - own.resistance_at(COLD) * current) / own.back_emf_constant
+    return speed, torque_constant(rig).torque(current)
+
+
 def measured_at_speeds(velocity: Array, torque: Array) -> Array:
     """M_max of a run-up (n,) at SPEEDS - N*m: median within HALF_BIN on the way up.
 
@@ -202,13 +212,19 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
         *_tail_findings(kept, found),
         *_missing_findings(measured),
     )
-    axes = panel(
-        "speed n / rpm",
-        "torque M / (N·m)",
+    curves = [
         curve(speed, torque, "measured", "dots"),
         curve(limit * RPM, allowed, f"datasheet, {MAINS:g} V", "dashes"),
         curve(np.array([corner]), np.interp([corner], speed, torque), "corner", "large dots"),
-    )
+    ]
+    with suppress(InputError):  # a rig without a winding's values has no such curve
+        reached, driven = cold_curve(rig)
+        curves.append(
+            curve(np.append(0.0, reached) * RPM, np.append(driven[0], driven), f"its circuit at {COLD:g} °C", "dotted")
+        )
+        source = joined(*(sources("motor", name) for name in ("peak_curves", "cold_resistance_share")))
+        numbers.append(Number("corner of the cold circuit", float(reached[0]) * RPM, "rpm", source=source))
+    axes = panel("speed n / rpm", "torque M / (N·m)", *curves)
     shown = (chart("Task 10: peak torque", axes),)
     return TaskResult(findings, tuple(numbers), shown, tables=(_at_speeds(sheet, measured),), tabled=tuple(read))
 

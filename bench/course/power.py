@@ -12,6 +12,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.course.axis import MAINS, RPM, circuit, motor_value, torque_constant
+from bench.course.peak_torque import POINTS
 from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, panel
 from bench.course.winding import STEP, Split, WindingModel, WindingRun, full_speed, run_winding
 from bench.errors import InputError
@@ -22,8 +23,8 @@ from bench.rig.motor import PeakCurve, TorqueConstant
 from bench.rig.rig import Rig
 
 COURSES, BALANCED = "Ke constant, as the course's", "Ke = kT(Iq)"
-#: Currents that a peak curve is drawn for, and one of so many steps of a run.
-POINTS, EVERY = 200, 40
+#: One of so many steps of a run is drawn.
+EVERY = 40
 
 
 @dataclass(frozen=True)

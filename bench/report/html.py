@@ -9,7 +9,7 @@ import base64
 import hashlib
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -25,17 +25,27 @@ if TYPE_CHECKING:  # 0.05 s, which only a page has to pay
     from jinja2 import Environment
 
 
-def html(document: Document, script: str | None = None) -> str:
+@dataclass(frozen=True)
+class Program:
+    """What a page runs beside what all pages have: a script, and what it reads from the element `live`."""
+
+    script: str
+    data: Mapping[str, Any]
+
+
+def html(document: Document, script: str | None = None, own: Program | None = None) -> str:
     """The page of a document.
 
     Args:
         document: what it says.
         script: address, as seen from the page, of the script file that it shares with others; inside of it without.
+        own: program of this page.
     """
     blocks = [block for section in document.sections for block in section.blocks]
     moving = any(isinstance(block, TimeGraph | Moving) for block in blocks)
     lively = moving or any(isinstance(block, Table) and block.sought for block in blocks)
     inside = (program() if moving else _asset("assets", "seek.js")) if lively and script is None else None
+    inside = inside if own is None else "\n".join(filter(None, (inside, own.script)))
     return (
         _environment()
         .get_template("page.html.j2")
@@ -44,6 +54,7 @@ def html(document: Document, script: str | None = None) -> str:
             style=Markup(f"{_asset('uplot', 'uPlot.min.css')}\n{_asset('assets', 'page.css')}"),
             script=None if inside is None else Markup(inside),
             shared=script if lively else None,
+            live=None if own is None else _json(own.data),
             policy=_policy(inside),
         )
     )
@@ -78,8 +89,13 @@ def _shown(value: Any) -> Any:  # noqa: ANN401 - whatever a template prints
 
 
 def _data(graph: TimeGraph | Moving) -> Markup:
-    """A graph or a motion as JSON inside of a script element, which no text in it can end."""
-    text = json.dumps(graph.model_dump(), ensure_ascii=True, separators=(",", ":"))
+    """A graph or a motion as JSON inside of a script element."""
+    return _json(graph.model_dump())
+
+
+def _json(content: Mapping[str, Any]) -> Markup:
+    """As JSON inside of a script element, which no text in it can end."""
+    text = json.dumps(content, ensure_ascii=True, separators=(",", ":"))
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)
