@@ -22,8 +22,7 @@ from bench.report.publish import write_document
 from bench.rig.rig import load_rig
 from bench.trace.read import read
 from bench.trace.write import write
-from bench.validation.own import own_axis
-from bench.validation.plan import Hiding, Plan
+from bench.validation.plan import Hiding, Plan, own_axis
 
 #: Of the shipped rigs.
 RIG = "sh30701p"

@@ -154,7 +154,6 @@ WRITES = {
     "cli/check.py",
     "jobs/process.py",
     "packed.py",
-    "trace/joint_states.py",
     "trace/write.py",
     "view/video.py",
 }

@@ -25,10 +25,10 @@ from bench.fit.rows import WIDEST, Rows
 from bench.fit.shapes import shaped
 from bench.gate.gate import passed
 from bench.parameter import Parameter
-from bench.plant.measured_motion import measured_velocity
 from bench.rig.rig import Rig
 from bench.rig.values import tolerance_of
 from bench.trace.join import join
+from bench.trace.motion import measured_velocity
 from bench.trace.trace import Trace
 
 Progress = Callable[[float], None]

@@ -17,7 +17,7 @@ from bench.names import readable
 from bench.plant.profile_names import DEFAULT, NAMES
 
 if TYPE_CHECKING:
-    from bench.validation.own import OwnAxis
+    from bench.validation.plan import OwnAxis
 
 
 Effects = Annotated[
@@ -126,7 +126,7 @@ def _into(
 def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis, dict[str, Any]]:
     """The axis of a rig along a named motion, or the one of a file, and what it rests on."""
     from bench.report.parts import provenance
-    from bench.validation.own import own_axis
+    from bench.validation.plan import own_axis
 
     known = bench.load_rig(rig)
     if str(profile) in NAMES:

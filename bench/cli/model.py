@@ -62,7 +62,7 @@ def replay(
 def _joint_states(replayed: Replay, out: Path, joint: str) -> None:
     """Measured beside simulated; without efforts that are none, as a drive's amperes."""
     from bench.axis_kind import KINDS
-    from bench.trace.joint_states import write_joint_states
+    from bench.trace.write import write_joint_states
 
     topics = {"/measured": replayed.measured, "/simulated": replayed.simulated}
     if replayed.effort_unit not in {kind.effort_unit for kind in KINDS}:
@@ -173,7 +173,7 @@ def export(
     if mjcf is None and to == "mjcf" and len(models) > 1:
         raise InputError(model, "found several joints", f"allowed: --joint with one of {', '.join(models)}")
     if ranges is not None:
-        from bench.export.ranges import ranges_json
+        from bench.export.mjcf import ranges_json
 
         text = ranges_json(next(iter(models.values())), ranges)
     elif to != "mjcf":

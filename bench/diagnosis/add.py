@@ -48,9 +48,9 @@ from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.parameter import Parameter
-from bench.plant.measured_motion import measured_velocity
 from bench.plant.model_file import StoredModel
 from bench.plant.tracking import follow_references
+from bench.trace.motion import measured_velocity
 from bench.trace.noise import white_noise
 
 #: Largest velocity gap of a complete model on the shared cases, over the white noise of the recorded speed

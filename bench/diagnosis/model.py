@@ -28,10 +28,10 @@ from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.rows import Rows
 from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
-from bench.plant.measured_motion import in_stretches, measured_position, measured_velocity
 from bench.plant.model_file import Mounting, StoredModel
 from bench.plant.tracking import SoftTracking, Tracked, track_all
 from bench.rig.rig import Rig
+from bench.trace.motion import in_stretches, measured_position, measured_velocity
 from bench.trace.trace import Trace, less_known
 
 #: Bandwidth of the cascade by which a model tracks a recording - rad/s -, and the largest that a model may need. On the

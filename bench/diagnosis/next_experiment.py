@@ -32,12 +32,12 @@ from bench.fit.fit import fit
 from bench.fit.rows import SIGN_WIDTHS
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade, References
-from bench.plant.measured_motion import measured_velocity
 from bench.plant.plant import Plant
 from bench.plant.profiles import PROFILES, MotionLimits, plan
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from bench.trace.filter import GaussianFilter
+from bench.trace.motion import measured_velocity
 
 #: Least duration of a recording - s: a shorter profile is repeated.
 LONG_ENOUGH = 4.0

@@ -17,11 +17,11 @@ from bench.errors import InputError, UndeterminedError
 from bench.fit.layout import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
-from bench.plant.measured_motion import measured_position, measured_velocity
 from bench.plant.model_file import StoredModel, load_model, read_table
 from bench.plant.tracking import SoftTracking, track
 from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
+from bench.trace.motion import measured_position, measured_velocity
 from bench.trace.trace import Trace, less_known
 
 #: Share of a recording's torque that the model of its axis does not leave unexplained.

@@ -32,9 +32,9 @@ from bench.gate.check import Check
 from bench.names import nearest
 from bench.packed import unpack
 from bench.parameter import Parameter
-from bench.plant.measured_motion import measured_velocity
 from bench.plant.model_file import StoredModel, model_xml
 from bench.presented import Presented
+from bench.trace.motion import measured_velocity
 from bench.trace.noise import white_noise
 
 #: File of a saved diagnosis that holds all of it.

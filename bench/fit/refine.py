@@ -18,9 +18,9 @@ from bench.errors import InputError
 from bench.fit.estimate import Estimate, load_inertia
 from bench.fit.identify import identify
 from bench.plant.axis_model import AxisModel, AxisParameters
-from bench.plant.measured_motion import measured_velocity
 from bench.plant.tracking import BANDWIDTH, SoftTracking, track
 from bench.rig.rig import Rig
+from bench.trace.motion import measured_velocity
 from bench.trace.trace import Trace
 
 #: Share of the recording, at its end, that is held out to judge the refinement.

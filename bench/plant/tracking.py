@@ -28,7 +28,6 @@ from bench.errors import InputError, SimulationError
 from bench.plant.axis_model import AxisModel
 from bench.plant.closed_loop import DIVERGED, ClosedLoop, PlannedInputs
 from bench.plant.drive import Cascade, References, add_pid
-from bench.plant.measured_motion import integrated, measured_velocity, stretches_of
 from bench.plant.plant import Plant
 from bench.plant.run import run, run_loops
 from bench.plant.sensing import (
@@ -41,6 +40,7 @@ from bench.plant.sensing import (
     true_velocity,
 )
 from bench.rig.rig import Rig
+from bench.trace.motion import integrated, measured_velocity, stretches_of
 from bench.trace.trace import Trace
 
 #: Bandwidth of the cascade that holds the model - rad/s.

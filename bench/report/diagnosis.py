@@ -24,13 +24,12 @@ from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report import document as doc
-from bench.report.gap import at_a_glance, gap_chart, rms_gaps, states, where_picture
+from bench.report.gap import at_a_glance, gap_chart, remainder, rms_gaps, states, where_picture
 from bench.report.identification import recordings_json
 from bench.report.numbers import brief, chance, coordinate_word, effort_word, listed, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, origin, parameters_table, recordings_table
 from bench.report.publish import write_document
-from bench.report.remainder import remainder
 from bench.report.serial import as_json, known, picked, serialised
 
 SCHEMA = "bench.diagnose/1"

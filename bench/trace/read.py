@@ -20,10 +20,9 @@ from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions
 from bench.trace.joints import by_joints
 from bench.trace.readers.arrow import PARQUET
-from bench.trace.readers.bam import BAM
 from bench.trace.readers.codesys import CODESYS_CSV, CODESYS_TEXT, CODESYS_XML
 from bench.trace.readers.epos import EPOS
-from bench.trace.readers.json_log import JSON_LOG
+from bench.trace.readers.json_log import BAM, JSON_LOG
 from bench.trace.readers.lerobot import LEROBOT
 from bench.trace.readers.mcap import BAG, MCAP
 from bench.trace.readers.measurement import MDF, TDMS

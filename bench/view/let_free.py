@@ -10,9 +10,9 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.replay import driven, parts_of
-from bench.plant.measured_motion import measured_position, measured_velocity, stretches_of
 from bench.plant.tracking import run_free
 from bench.rig.rig import Rig
+from bench.trace.motion import measured_position, measured_velocity, stretches_of
 from bench.trace.trace import Trace
 
 #: Longest that it is let free - s -, and how many windows begin within the length of one.

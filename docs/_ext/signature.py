@@ -30,7 +30,7 @@ from bench.report.numbers import coordinate_word, share, unit_text
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from bench.validation.independent.effects import KINDS
-from bench.validation.own import own_axis
+from bench.validation.plan import own_axis
 
 RIG = Path(__file__).resolve().parents[1] / "axis.toml"
 #: Strength of every effect, where 1 is drastic, and seed of what is drawn beside it: phases, instants, harmonics.

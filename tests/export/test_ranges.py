@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from bench.errors import InputError
-from bench.export.ranges import ranges_json
+from bench.export.mjcf import ranges_json
 from tests.export.arms import PARAMETERS, stored
 
 FOUND = {

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bench.validation.independent.plant import Plant
-from bench.validation.independent.stick_slip import distance_weight, move, speed_weight
+from bench.validation.independent.plant import Plant, distance_weight, move, speed_weight
 from tests.independent.axes import PLAIN, run
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.where import Where
-from bench.report.remainder import shape
+from bench.report.gap import shape
 
 ANGLE = np.linspace(0.0, 6.2, 48)
 AXIS = np.linspace(0.0, 0.02, 48)

@@ -7,7 +7,7 @@ from bench.assets import asset
 from bench.errors import InputError
 from bench.rig.rig import Rig, load_rig
 from bench.trace.trace import Trace
-from bench.validation.own import Sampled, motion_of, own_axis
+from bench.validation.plan import Sampled, motion_of, own_axis
 from tests.fit.motions import Truth, recording
 
 DRIVE = {"position_gain": "30 1/s", "velocity_gain": "0.15 N*m*s/rad", "integral_gain": "3 N*m/rad"}
