@@ -27,9 +27,8 @@ from bench.gate.gate import passed
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.rig.values import tolerance_of
-from bench.trace.join import join
 from bench.trace.motion import measured_velocity
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, join
 
 Progress = Callable[[float], None]
 #: Effects of another state, each with its match in this one.

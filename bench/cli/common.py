@@ -322,7 +322,7 @@ def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.
     """The rig that a recording drafts, after saying what it assumes."""
     if trace is None:
         raise InputError("--rig", "missing", "allowed: a rig file, or --mjcf and --joint")
-    from bench.rig.draft import drafted
+    from bench.rig.given import drafted
 
     rig, text, assumed = drafted(trace, axis)
     if draft is not None:

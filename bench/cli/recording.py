@@ -40,7 +40,7 @@ def inspect(
     checks = () if trace is None else gate(trace, axis).checks
     document = inspection(found, checks, trace)
     if draft is not None:
-        from bench.rig.draft import draft as drafted
+        from bench.rig.given import draft as drafted
 
         write_text(draft, drafted(found, motor, axis_name))
     if out is not None:

@@ -20,8 +20,7 @@ from bench.fit.lab import identify_as_in_the_lab, mean_inertia
 from bench.plant.axis_model import AxisParameters
 from bench.plant.sensing import Sensors
 from bench.plant.simulate import simulate
-from bench.rig.load import Load
-from bench.rig.rig import Rig
+from bench.rig.rig import Load, Rig
 from bench.trace.trace import Trace
 
 #: Quantities of the equation of motion as the bench names them, and the course.

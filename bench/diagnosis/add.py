@@ -20,7 +20,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.arrays import NORMAL95, Array, rms
-from bench.diagnosis.clipped import clipped
 from bench.diagnosis.held_out import HeldOut
 from bench.diagnosis.model import (
     BANDWIDTH,
@@ -36,7 +35,7 @@ from bench.diagnosis.model import (
 )
 from bench.diagnosis.name import NamedEffect, Suspects, named
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.recordings import Recordings, clipped
 from bench.diagnosis.same_axis import SameAxis, same_axis
 from bench.effects.acting import DriveLimit
 from bench.effects.effect import Occasional

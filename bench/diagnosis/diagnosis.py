@@ -32,7 +32,7 @@ def diagnose(
 
     Args:
         trace: the recording, or its file, arrays by their names or a data frame; or a list of several of one axis,
-            which are joined (`bench.trace.join`).
+            which are joined (`bench.trace.trace.join`).
         rig: of the axis, or its file, or a shipped rig's name.
         holdout: another recording of it, not used to fit.
         excluded: names of effects that are not tried, or of one.

@@ -14,9 +14,8 @@ import numpy as np
 from bench.arrays import rms
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS, AxisKind
 from bench.diagnosis.add import Added
-from bench.diagnosis.clipped import clipped
 from bench.diagnosis.name import NamedEffect, Suspects
-from bench.diagnosis.recordings import Recordings
+from bench.diagnosis.recordings import Recordings, clipped
 from bench.fit.fit import Fit
 from bench.fit.rows import Rows
 from bench.names import words

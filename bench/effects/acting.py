@@ -1,4 +1,4 @@
-"""How effects act on a simulated axis, by where: on its mechanics, in drive and motor, in the sensors.
+"""How effects act on a simulated axis, by where: in its MJCF, on its mechanics, in drive and motor, in the sensors.
 
 Methods take values and states as numbers, or as arrays of k axes (k,).
 """
@@ -9,16 +9,18 @@ import math
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
 
 from bench.arrays import Array
 from bench.effects.effect import Columns, Detectable, Effect, lagged, unlagged
-from bench.effects.mjcf import Spec
 from bench.effects.signals import Axis, Moment, Number, Scope, Signals, Values
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
+
+if TYPE_CHECKING:  # 0.2 s, needed only to simulate
+    import mujoco
 
 # Of the mechanics.
 
@@ -252,3 +254,50 @@ class FilteredSignal(Sensing):
         for part in trace.segments:
             samples[part] = self.unrecorded(values, samples[part], trace.sample_period)
         return trace.with_signals({self.signal: samples}, {})
+
+
+#: The model that effects are added to, as MuJoCo lets it be edited.
+Spec: TypeAlias = "mujoco.MjSpec"
+AXIS, MOTOR, LOAD, DRIVE, LOAD_TORQUE = "axis", "motor", "load", "drive", "load torque"
+#: The actuator whose bristles are the axis' friction, where it has some.
+BRISTLES = "bristles"
+
+#: A passive DC motor brakes by K**2/R times speed; its constant is chosen so small that this vanishes in rounding.
+PASSIVE_MOTOR_CONSTANT = 1e-12
+
+
+def add_resisting_torque(spec: Spec, torque: float) -> None:
+    """Add a constant torque against positive motion - N*m (N)."""
+    spec.actuator(LOAD_TORQUE).biasprm[0] -= torque
+
+
+def passive_motor(
+    spec: Spec,
+    name: str,
+    cogging: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    lugre: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0),
+) -> None:
+    """A DC motor without input on the axis, of which only cogging or bristle friction is left.
+
+    Args:
+        spec: to be added to.
+        name: of the actuator.
+        cogging: amplitude - N*m (N) -, harmonic - 1 (1/m) - and phase - rad - of a driving torque A*sin(n*q + phi).
+        lugre: stiffness, damping and levels of bristles, as MuJoCo has them.
+    """
+    import mujoco
+
+    actuator = spec.add_actuator(name=name, target=AXIS, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+    actuator.set_to_dcmotor(
+        motorconst=[PASSIVE_MOTOR_CONSTANT, PASSIVE_MOTOR_CONSTANT],
+        resistance=1.0,
+        cogging=list(cogging),
+        lugre=list(lugre),
+        ctrlspec=int(mujoco.mjtCtrlInput.mjINPUT_NONE),
+    )
+
+
+def add_coupling_joint(spec: Spec, name: str) -> mujoco.MjsJoint:
+    """A joint between motor and load along the axis; its position is load less motor - rad (m)."""
+    axis = spec.joint(AXIS)
+    return spec.body(LOAD).add_joint(name=name, type=axis.type, axis=axis.axis)

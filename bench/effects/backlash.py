@@ -29,9 +29,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, splined, symmetric_inverse
-from bench.effects.acting import Native, Spring
+from bench.effects.acting import Native, Spec, Spring, add_coupling_joint
 from bench.effects.effect import Contact, Coupling, Fitted, Load, Replacing
-from bench.effects.mjcf import Spec, add_coupling_joint
 from bench.effects.shape import FREQUENCY, Shape, Shapes, extended
 from bench.effects.signals import Axis, Base, Number, Scope, Signals
 from bench.trace.filter import Column

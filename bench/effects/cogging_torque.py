@@ -9,9 +9,8 @@ Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003,
 from collections.abc import Mapping
 
 from bench.arrays import Array
-from bench.effects.acting import Native
+from bench.effects.acting import Native, Spec, passive_motor
 from bench.effects.effect import Repeatable
-from bench.effects.mjcf import Spec, passive_motor
 from bench.effects.signals import Axis, Signals
 from bench.effects.waves import PHASE, Harmonic, followed, harmonics
 from bench.trace.filter import Column

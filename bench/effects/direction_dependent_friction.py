@@ -11,9 +11,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.acting import DirectedFriction, Native, ResistingTorque
+from bench.effects.acting import AXIS, DirectedFriction, Native, ResistingTorque, Spec, add_resisting_torque
 from bench.effects.effect import OfSpeed
-from bench.effects.mjcf import AXIS, Spec, add_resisting_torque
 from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity

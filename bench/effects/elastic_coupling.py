@@ -22,9 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
-from bench.effects.acting import Native
+from bench.effects.acting import Native, Spec, add_coupling_joint
 from bench.effects.effect import Coupling, FiltersMotion, Load
-from bench.effects.mjcf import Spec, add_coupling_joint
 from bench.effects.shape import FREQUENCY, Shape, Shapes
 from bench.effects.signals import Axis, Base, Signals
 from bench.trace.filter import Column

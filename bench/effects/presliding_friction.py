@@ -16,8 +16,7 @@ from typing import ClassVar
 import numpy as np
 
 from bench.arrays import Array, recurrence
-from bench.effects.acting import CarriesFriction, Native
-from bench.effects.mjcf import AXIS, BRISTLES, Spec, passive_motor
+from bench.effects.acting import AXIS, BRISTLES, CarriesFriction, Native, Spec, passive_motor
 from bench.effects.shape import ANGLE, Shape, Shapes
 from bench.effects.signals import Axis, Base, Scope, Signals
 from bench.trace.filter import Column

@@ -9,9 +9,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.acting import Native
+from bench.effects.acting import AXIS, Native, Spec
 from bench.effects.effect import OfSpeed, OuterTorque
-from bench.effects.mjcf import AXIS, Spec
 from bench.effects.signals import Axis, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -9,8 +9,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.acting import ConstantTorque, Native
-from bench.effects.mjcf import Spec, add_resisting_torque
+from bench.effects.acting import ConstantTorque, Native, Spec, add_resisting_torque
 from bench.effects.signals import Axis, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity

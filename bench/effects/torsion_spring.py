@@ -7,9 +7,8 @@ c - stiffness - N*m/rad (N/m), not negative; q - position - rad (m). A rest posi
 
 from collections.abc import Mapping, Sequence
 
-from bench.effects.acting import Native, Spring
+from bench.effects.acting import AXIS, Native, Spec, Spring
 from bench.effects.effect import OuterTorque
-from bench.effects.mjcf import AXIS, Spec
 from bench.effects.signals import Axis, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity

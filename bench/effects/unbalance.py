@@ -7,9 +7,8 @@ A - N*m; q - angle - rad.
 
 from collections.abc import Mapping, Sequence
 
-from bench.effects.acting import LoadTorque, Native
+from bench.effects.acting import LoadTorque, Native, Spec, passive_motor
 from bench.effects.effect import OuterTorque
-from bench.effects.mjcf import Spec, passive_motor
 from bench.effects.signals import Axis, Moment, Number, Signals, Values
 from bench.effects.waves import PHASE, OncePerRevolution, sine_and_cosine, wave
 from bench.trace.filter import Column

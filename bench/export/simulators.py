@@ -15,8 +15,7 @@ from typing import Any
 
 import mujoco
 
-from bench.effects.acting import FrictionLaw, RaisesFriction
-from bench.effects.mjcf import AXIS, DRIVE, LOAD_TORQUE
+from bench.effects.acting import AXIS, DRIVE, LOAD_TORQUE, FrictionLaw, RaisesFriction
 from bench.errors import InputError
 from bench.export.mjcf import SEEN, STEPPED, armature_of
 from bench.names import plain

@@ -29,6 +29,10 @@ import mujoco
 from bench.assets import asset
 from bench.axis_kind import COULOMB, ROTARY, VISCOUS, AxisKind
 from bench.effects.acting import (
+    AXIS,
+    LOAD,
+    LOAD_TORQUE,
+    MOTOR,
     CarriesFriction,
     Electronics,
     Mechanism,
@@ -38,14 +42,12 @@ from bench.effects.acting import (
     RaisesFriction,
     ScalesFriction,
 )
+from bench.effects.acting import DRIVE as DRIVE
 from bench.effects.effect import Coupling, Effect
-from bench.effects.mjcf import AXIS, LOAD, LOAD_TORQUE, MOTOR
-from bench.effects.mjcf import DRIVE as DRIVE
 from bench.effects.present import Present
 from bench.effects.signals import Axis, Winding
 from bench.errors import InputError
-from bench.rig.load import Load
-from bench.rig.rig import Rig
+from bench.rig.rig import Load, Rig
 from bench.units import Quantity
 
 Kind = TypeVar("Kind", bound=Effect)

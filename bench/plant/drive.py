@@ -17,8 +17,7 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.acting import MisreadMotion
-from bench.effects.mjcf import DRIVE
+from bench.effects.acting import DRIVE, MisreadMotion
 from bench.effects.signals import Number
 from bench.errors import InputError
 from bench.plant.axis_model import AxisParameters

@@ -26,14 +26,13 @@ import mujoco
 import tomli_w
 
 from bench.axis_kind import AxisKind, axis_kind
-from bench.effects.mjcf import AXIS, LOAD, MOTOR
+from bench.effects.acting import AXIS, LOAD, MOTOR
 from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.effects.signals import Winding
 from bench.errors import InputError
 from bench.names import nearest
 from bench.plant.axis_model import FLOOR, NO_MASS, AxisModel, AxisParameters, effect_values, parameter_quantities
-from bench.rig.load import Load
-from bench.rig.rig import Rig
+from bench.rig.rig import Load, Rig
 from bench.structured import read_toml
 
 SCHEMA, OF_JOINTS = "bench.model/1", "bench.effects/1"

@@ -28,8 +28,7 @@ from bench.names import nearest
 from bench.plant.axis_model import NO_MASS
 from bench.plant.mjcf_file import compiled, require_compiles
 from bench.plant.run import silenced
-from bench.rig.load import Load
-from bench.rig.rig import JointNotes, Rig
+from bench.rig.rig import JointNotes, Load, Rig
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import GivenOptions, axes_of
 from bench.trace.inspect import time_unit

@@ -27,6 +27,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, namespace
 from bench.effects.acting import (
+    AXIS,
+    BRISTLES,
     DirectedFriction,
     DriveLimit,
     FollowsLoad,
@@ -41,7 +43,6 @@ from bench.effects.acting import (
     VaryingInertia,
 )
 from bench.effects.effect import Effect
-from bench.effects.mjcf import AXIS, BRISTLES
 from bench.effects.present import Present
 from bench.effects.signals import Axis, Moment, Number, Winding
 from bench.plant.axis_model import AxisModel

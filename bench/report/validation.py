@@ -24,8 +24,7 @@ from bench.report.numbers import number, sentence, share, unit_text
 from bench.report.parts import origin
 from bench.report.publish import markdown, write_document
 from bench.report.serial import as_json, known, picked, serialised
-from bench.validation.coverage import LEVELS, NOTHING, NOTHING_MISSING, Coverage, Naming, Share
-from bench.validation.score import Run
+from bench.validation.coverage import LEVELS, NOTHING, NOTHING_MISSING, Coverage, Naming, Run, Share
 from bench.validation.validate import Validation
 
 SCHEMA = "bench.validate/1"

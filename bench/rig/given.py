@@ -1,17 +1,26 @@
-"""What a person may give for a rig or a recording: the object, a file's path, arrays by name or a data frame."""
+"""What a person may give for a rig or a recording: the object, a file's path, arrays by name or a data frame.
+
+Where no rig is given, one is drafted from the recording: it works as far as the file tells, and asks for what only the
+user knows.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
+import tomllib
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TypeAlias, cast
 
 from bench.errors import InputError
 from bench.names import short
-from bench.rig.rig import Rig, load_rig
+from bench.rig.motor import catalogue_motor
+from bench.rig.rig import Rig, load_rig, without_constant
+from bench.trace.choose import GivenOptions
 from bench.trace.from_arrays import Arrays
-from bench.trace.read import read
-from bench.trace.trace import Trace
+from bench.trace.inspect import ColumnSummary, Inspection, inspect_recording
+from bench.trace.read import read, read_recording
+from bench.trace.trace import Trace, assemble
 
 Given: TypeAlias = Trace | str | Path | Arrays
 
@@ -38,3 +47,105 @@ def recordings_of(given: Given | Sequence[Given], rig: Rig) -> list[Trace]:
     """One recording or a list (tuple) of several."""
     every = given if isinstance(given, list | tuple) else [cast(Given, given)]
     return [trace_of(one, rig) for one in every]
+
+
+_EFFORTS = ("torque", "force", "current", "voltage")
+
+
+def draft(inspection: Inspection, motor: str | None = None, axis: str | None = None) -> str:
+    """Text of a rig file; InputError where the catalogue has no such motor.
+
+    Args:
+        inspection: of the recording.
+        motor: name in the motor catalogue.
+        axis: picked of several.
+    """
+    if motor is not None:
+        catalogue_motor(motor, "--motor")
+    linear = any(signal.unit in ("m", "m/s", "N") for signal in inspection.signals)
+    lines = [
+        f"# Drafted from {Path(inspection.origin).name} ({inspection.format}). Check it; ? is what only you know.",
+        f"name = {json.dumps(Path(inspection.origin).name.split('.')[0])}",
+        f'kind = "{"linear" if linear else "rotary"}"{"" if linear else "                      # or linear"}',
+        "",
+        "[motor]",
+        *_motor(inspection, motor, linear),
+        "",
+        *_trace(inspection, axis),
+    ]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def drafted(path: Path, axis: str | None = None) -> tuple[Rig, str, str]:
+    """The rig that a recording drafts, where none is given: its text too, and what it assumes, in a line.
+
+    Args:
+        path: of the recording.
+        axis: to read where it holds several.
+
+    Raises:
+        InputError: the file leaves open what only the user knows.
+    """
+    recording = read_recording(path)
+    found = inspect_recording(recording, GivenOptions(axis=axis))
+    text = draft(found, axis=axis)
+    rig = Rig.of(tomllib.loads(text), f"rig drafted from {path.name}")
+    try:
+        assemble(recording, rig.trace)
+    except InputError as error:
+        how = f"bench inspect {path} --draft rig.toml writes a rig file to complete, for --rig"
+        raise InputError(error.where, error.found, f"{error.allowed}; {how}") from error
+    mapped = [f"{signal} = {column}" for signal, column in rig.trace.columns.items()]
+    assumed = "; ".join(filter(None, (f"a {rig.kind} axis", ", ".join(mapped), without_constant(rig))))
+    return rig, text, f"no rig was given, so one was drafted from {path.name}: {assumed}"
+
+
+def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]:
+    if motor is not None:
+        return [f"model = {json.dumps(motor)}"]
+    efforts = {column.signal for column in inspection.columns}
+    units = [f"{one.unit or ''}{one.suggestion or ''}" for one in inspection.columns if one.signal == "torque"]
+    constant, unit = ("force_constant", "N/A") if linear else ("torque_constant", "N*m/A")
+    lines = [
+        f'# {"moving_mass" if linear else "rotor_inertia"} = "? {"kg" if linear else "kg*cm**2"}"'
+        "     # of the motor alone, datasheet: tells the load apart",
+    ]
+    if "current" in efforts:
+        lines.append(f'# {constant} = "? {unit}"     # datasheet; without it results stand in A instead of {unit[:-2]}')
+        lines.append('# current = "effective"     # where the datasheet tells its values for Arms')
+    if any("%" in text or "permille" in text for text in units):
+        lines.append('# rated_torque = "? N*m"     # what 100 % of the recorded torque means, datasheet')
+    if not efforts & set(_EFFORTS):
+        lines.append("# no torque, force or current was found in the file: identification needs one of them")
+    return lines
+
+
+def _trace(inspection: Inspection, axis: str | None) -> list[str]:
+    """`[trace]` and its columns: those that are plain, and as comments those whose unit only the user knows."""
+    settings = [f"axis = {json.dumps(axis)}"] if axis is not None else []
+    timed = inspection.rate is not None
+    if not (timed or any(one.signal == "time" or one.rate is not None for one in inspection.columns)):
+        settings.append('# sample_period = "? ms"     # the file holds no time: how often was it sampled?')
+    lines = ["[trace]", *settings, ""] if settings else []
+    several = axis is None and len(inspection.axes) > 1
+    columns = _columns(one for one in inspection.columns if not several or one.axis is None)
+    lines += ["[trace.columns]", *columns] if columns else []
+    for joint in inspection.axes if several else ():
+        own = _columns(one for one in inspection.columns if one.axis == joint)
+        lines += [
+            "",
+            f"[joints.{json.dumps(joint)}.columns]     # the name that the joint has in its MJCF; without unit SI",
+        ]
+        lines += [line.removeprefix("# ").replace(" [?]", "").removesuffix("; its unit?") for line in own]
+    return lines
+
+
+def _columns(columns: Iterable[ColumnSummary]) -> list[str]:
+    """Lines of what columns are likely to be, as comments where only the user knows the unit."""
+    lines = []
+    for column in columns:
+        if column.suggestion is not None:
+            why = f"     # {', '.join(column.why)}" if column.why else ""
+            open_unit = "[?]" in column.suggestion
+            lines.append(("# " if open_unit else "") + column.suggestion + why + ("; its unit?" if open_unit else ""))
+    return lines

@@ -19,12 +19,11 @@ from bench.jobs.process import Failure, Limits
 from bench.names import nearest
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-from bench.validation.coverage import UNEXPLAINED
+from bench.validation.coverage import UNEXPLAINED, Named, Scored, of_effects
 from bench.validation.independent.effects import KINDS, Effect
 from bench.validation.independent.effects.effect import Rows
 from bench.validation.independent.rig import Axis
 from bench.validation.injection import INJECTABLE, Host, injected, stand_in
-from bench.validation.score import Named, Scored, of_effects
 from bench.validation.severity import disturbance, drawn
 
 #: What becomes of an effect. Right: named, and nothing else is that was not before; part: something else, too; flagged:

@@ -21,7 +21,7 @@ from bench.names import nearest
 from bench.plant.axis_model import AxisParameters, winding_of
 from bench.plant.drive import Cascade
 from bench.plant.profiles import MotionLimits, plan
-from bench.plant.sampled import Sampled, motion_of
+from bench.plant.simulate import Sampled, motion_of
 from bench.rig.rig import Rig, Simulation, require
 from bench.trace.noise import resolution, white_noise
 from bench.trace.trace import Trace

@@ -21,11 +21,10 @@ from bench.plant.drive import References
 from bench.plant.simulate import simulate
 from bench.rig.rig import Rig, Simulation
 from bench.trace.trace import Trace
-from bench.validation.coverage import Coverage, Naming, coverage, naming
+from bench.validation.coverage import Coverage, Named, Naming, Run, base, coverage, naming, of_effects
 from bench.validation.independent.sensors import NoiseStream, rounded
 from bench.validation.independent.simulate import simulate as integrate
 from bench.validation.plan import Case, Plan
-from bench.validation.score import Named, Run, base, of_effects
 
 #: Of the independent integrator, as the blind set has it - s.
 LONGEST_STEP = 31.25e-6

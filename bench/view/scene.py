@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from bench.effects.mjcf import AXIS, MOTOR
+from bench.effects.acting import AXIS, MOTOR
 from bench.plant.axis_model import AxisParameters, build_spec
-from bench.rig.load import Load
+from bench.rig.rig import Load
 from bench.view.side_by_side import SideBySide
 
 #: Names of the ghost's parts begin with it.

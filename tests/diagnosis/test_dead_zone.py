@@ -7,7 +7,7 @@ from bench.diagnosis.recordings import fit_bare
 from bench.effects.backlash import likeliest_shape
 from bench.fit.rows import Rows
 from bench.rig.rig import load_rig
-from bench.validation.independent.effects.load import Backlash
+from bench.validation.independent.effects.mechanics import Backlash
 from bench.validation.independent.references import random_motion
 from bench.validation.independent.rig import Axis, write_rig
 from bench.validation.independent.sensors import Noise, Sensors

@@ -6,6 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+from bench.effects.acting import AXIS as AXIS_JOINT
 from bench.effects.acting import (
     Friction,
     MisreadEffort,
@@ -18,7 +19,6 @@ from bench.effects.acting import (
 )
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Columns, Coupling, Effect
-from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.present import Present
 from bench.effects.signals import Base, Moment, Signals
 from bench.plant.axis_model import build_spec

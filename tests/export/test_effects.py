@@ -6,9 +6,8 @@ import pytest
 from mujoco.batch import Batch
 
 import bench
-from bench.effects.acting import MisreadMotion
+from bench.effects.acting import AXIS, DRIVE, MisreadMotion
 from bench.effects.catalogue import catalogue
-from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
 from bench.export.mjcf import ArmatureShare, armature_of, onto
 from bench.plant.drive import CascadeDrive, References, side_by_side

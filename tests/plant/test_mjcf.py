@@ -7,7 +7,7 @@ import pytest
 from bench.assets import asset
 from bench.axis_kind import axis_kind
 from bench.plant.axis_model import AxisParameters, build_spec
-from bench.rig.load import Load
+from bench.rig.rig import Load
 
 KINDS = ("rotary", "linear")
 

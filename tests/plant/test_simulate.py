@@ -9,8 +9,7 @@ from bench.errors import InputError
 from bench.plant.axis_model import AxisParameters
 from bench.plant.profiles import PROFILES
 from bench.plant.simulate import simulate, truth_path, write_truth
-from bench.rig.load import Load
-from bench.rig.rig import load_rig
+from bench.rig.rig import Load, load_rig
 
 
 def torque_error(simulated):

@@ -8,8 +8,7 @@ from bench.effects.present import Present
 from bench.errors import SimulationError
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.tracking import SoftTracking, track, track_all
-from bench.trace.join import join
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, join
 
 INERTIA, VISCOUS, PERIOD, BANDWIDTH = 2e-3, 3e-3, 1e-3, 12.0
 TIME = PERIOD * np.arange(2000)

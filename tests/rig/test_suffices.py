@@ -5,7 +5,7 @@ import pytest
 from bench.assets import asset
 from bench.cli import app
 from bench.errors import InputError
-from bench.rig.draft import draft
+from bench.rig.given import draft
 from bench.rig.rig import Rig, lacking, load_rig, require
 from bench.trace.inspect import inspect
 

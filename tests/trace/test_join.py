@@ -9,8 +9,7 @@ from bench.errors import InputError
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.layout import lay_out
 from bench.fit.rows import Rows
-from bench.trace.join import join
-from bench.trace.trace import Trace
+from bench.trace.trace import Trace, join
 from tests.fit.motions import RIG, UNITS, recording
 
 

@@ -19,7 +19,7 @@ from rosbags.typesys import Stores, get_typestore
 import bench
 from bench.errors import InputError
 from bench.plant.robot import Robot, joint_rig, read_log, rig_within
-from bench.rig.draft import draft
+from bench.rig.given import draft
 from bench.rig.rig import Rig
 from bench.trace.inspect import inspect
 from bench.trace.read import read_recording

@@ -15,12 +15,13 @@ from bench.validation.coverage import (
     NOTHING_MISSING,
     REFUSED,
     Coverage,
+    Named,
+    Scored,
     Share,
     coverage,
     naming,
 )
 from bench.validation.plan import Plan
-from bench.validation.score import Named, Scored
 from bench.validation.validate import drawn
 from tests.validation.population import short
 

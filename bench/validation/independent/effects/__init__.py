@@ -16,21 +16,19 @@ from bench.validation.independent.effects.electronics import (
     VelocityFilterLag,
     VoltageLimit,
 )
-from bench.validation.independent.effects.friction import (
+from bench.validation.independent.effects.mechanics import (
+    Backlash,
     DirectionalLoadFriction,
     DirectionDependentFriction,
+    ElasticCoupling,
     FrictionWarmup,
     LoadDependentFriction,
+    LoadTorqueEvent,
     PositionDependentFriction,
+    PositionDependentInertia,
     PreslidingFriction,
     QuadraticDrag,
     StribeckFriction,
-)
-from bench.validation.independent.effects.load import (
-    Backlash,
-    ElasticCoupling,
-    LoadTorqueEvent,
-    PositionDependentInertia,
     TorqueOffset,
     TorsionSpring,
     Unbalance,
