@@ -14,6 +14,7 @@ from bench.diagnosis.probability import Probabilities, probabilities
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import Searched, search
+from bench.diagnosis.standing_out import with_events
 from bench.effects.acting import MisreadEffort
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect
@@ -90,7 +91,10 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     hypotheses = scored([*neighbourhood(searched, excluded, policy)], recordings.holdout_rows, policy)
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
     likely = probabilities(hypotheses, frozenset(effect.name for effect in kept), policy)
-    ending = searched.ending(likely.fits[likely.chosen.names])
+    chosen = likely.fits[likely.chosen.names]
+    last = with_events(chosen, effects, policy)
+    standing = {term.effect.name for term in last.terms[len(chosen.terms) :]}
+    likely, ending = likely.showing(standing), searched.ending(last)
     return Suspects(ending, likely, kept, len(kept) < len(recordings.detected), policy, excluded)
 
 

@@ -60,6 +60,7 @@ class Policy:
         determined: share of rows whose torque the recording determines beside such an effect, at least.
         holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave. Of
             the blind set's cases that are explained 2.5 at most, nine in ten 1.6.
+        beside_event: of the squares that an event takes which stands out of a remainder: what may be left around it.
         left, over, each, number, event, outside, none: weights of a probability (`bench.diagnosis.probability`): of
             what is left, over what the bare axis leaves and over noise, of an effect more, of a number fitted more, of
             an event beside a remainder, of an effect from outside the catalogue, and of what was not tried.
@@ -80,6 +81,7 @@ class Policy:
     replaces: float = 0.5
     determined: float = 0.5
     holdout_gap: float = 3.0
+    beside_event: float = 0.25
     left: float = 4.6
     over: float = 1.7
     each: float = 2.5

@@ -11,8 +11,8 @@ of the recording itself adds nothing to U and V: its weight beside them came out
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -91,6 +91,10 @@ class Probabilities:
         ranked.sort(key=lambda one: -one[0])
         before = np.cumsum([0.0, *(share for share, _ in ranked)])[:-1]
         return [names for (_, names), sure in zip(ranked, before, strict=True) if sure < level]
+
+    def showing(self, names: Collection[str]) -> Probabilities:
+        """Given that what is left shows some names directly."""
+        return replace(self, detected=self.detected | frozenset(names)) if names else self
 
     def without(self, names: frozenset[str]) -> Probabilities:
         """Given that some names are wrong: what held-out motion spoke against."""

@@ -213,8 +213,25 @@ class Repeatable(Columns):
     """An axis may have several, each of another shape (harmonics, events)."""
 
 
+@dataclass(frozen=True)
+class Standout:
+    """What stands out of all that is left.
+
+    Attributes:
+        shape: of an effect.
+        around: begin and end of the stretch of time that tells it from what else is left - s.
+    """
+
+    shape: tuple[float, ...]
+    around: tuple[float, float]
+
+
 class Occasional(Repeatable):
     """It may occur in one recording and not in another."""
+
+    @abstractmethod
+    def apart(self, fitted: Fitted) -> list[Standout]:
+        """Those that what is left shows by themselves, whatever else it holds."""
 
 
 #: An effect on the load behind a coupling: the effect, its shape, its strengths divided by the load inertia.

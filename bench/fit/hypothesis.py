@@ -37,6 +37,7 @@ class Term:
         load: strengths over load inertia by which it acts on the load behind a coupling, () until a fit has found them;
             None where it acts on the motor.
         pull: strengths by which it loads what transmits the torque, if others follow that and a fit has found them.
+        around: from when to when what else is left is taken for a parabola, a nuisance - s -; () for nowhere.
     """
 
     effect: Effect
@@ -44,6 +45,7 @@ class Term:
     level: tuple[float, ...] = ()
     load: tuple[float, ...] | None = None
     pull: tuple[float, ...] = ()
+    around: tuple[float, ...] = ()
 
     @property
     def key(self) -> tuple[str, tuple[float, ...]]:

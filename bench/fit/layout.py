@@ -28,14 +28,14 @@ from bench.effects.effect import Columns, CopiesTorque, Coupling, Distortion, Ef
 from bench.effects.signals import Signals
 from bench.fit.hypothesis import Hypothesis, loads_of, with_friction, with_load
 from bench.fit.normal_equations import Name
-from bench.fit.rows import Rows, known_of
+from bench.fit.rows import SIGN_REACH, Rows, known_of
 from bench.trace.filter import Column
 
 #: Names of columns that belong to no effect: of the axis and the shift of torque against speed, and what else a
-#: recording has - sines and cosines of the mains, what the last digit of the effort cuts off. Those of an effect are
-#: named by the index of its term.
+#: recording has - sines and cosines of the mains, what the last digit of the effort cuts off, what varies slowly around
+#: a short event. Those of an effect are named by the index of its term.
 BASE = (INERTIA, VISCOUS, COULOMB, MISALIGNMENT)
-HUM, DIGIT = "hum", "last digit"
+HUM, DIGIT, AROUND = "hum", "last digit", "around"
 #: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
 FREQUENCIES, REACH = 400, 4.0
 #: Share of the filtered white noise below which half a step is not seen.
@@ -48,8 +48,8 @@ class Layout:
 
     Attributes:
         columns: (m, p): J, K_w, K_0, misalignment, the effort's last digit where it matters, sines and cosines of hum,
-            then the effects' in order.
-        owners: (p,) index of the term a column belongs to, or one of the names of BASE, DIGIT or HUM.
+            then the effects' in order, each followed by what varies around it.
+        owners: (p,) index of the term a column belongs to, or one of the names of BASE, DIGIT, HUM or AROUND.
         effort: (m,) what they are to explain - N*m (N).
         noise: (p, p) covariance of what the sensors' noise makes of the columns in a row.
         bounds: lowest and highest value of strengths that are not free, by their places.
@@ -133,6 +133,9 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, left: Array | None = None) -> La
         if isinstance(term.effect, Columns):
             bounds |= {len(owners) + place: most for place, most in term.effect.bounded.items()}
         owners += [index] * parts[-1].shape[1]
+        if term.around:
+            parts.append(_around(seen, term.around))
+            owners += [AROUND] * parts[-1].shape[1]
     columns = np.concatenate(parts, axis=1) if len(parts) > 1 else parts[0]
     held_by = np.array(owners, dtype=object)
     effort = seen.kept(_of_effort, _of_effort, late)[:, 0] if late else seen.effort
@@ -197,6 +200,17 @@ def _axis(seen: Rows, lags: tuple[float, ...]) -> Array:
     table = seen.table(columns, lags)
     table[:, BASE.index(MISALIGNMENT)] *= -1.0
     return table
+
+
+def _around(seen: Rows, around: tuple[float, ...]) -> Array:
+    """A constant, a ramp and a parabola over a stretch of time and what the filter reaches beside it, else 0 (m, 3).
+
+    Not filtered: what is smooth all the way passes the filter as such, and only its stretch has edges.
+    """
+    first, last = around
+    half = 0.5 * (last - first) + SIGN_REACH * seen.conditioning.filter.width
+    at = (seen.time - 0.5 * (first + last)) / half
+    return np.where(np.abs(at) <= 1.0, at ** np.arange(3)[:, None], 0.0).T
 
 
 def _of_effort(signals: Signals) -> list[Column]:

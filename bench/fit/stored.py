@@ -13,7 +13,7 @@ from bench.effects.effect import CopiesTorque, Occasional
 from bench.effects.present import named
 from bench.fit.fit import ROUNDS, Fit
 from bench.fit.hypothesis import Hypothesis, Term
-from bench.fit.layout import HUM, lay_out
+from bench.fit.layout import AROUND, HUM, lay_out
 from bench.fit.rows import Rows
 
 #: Stands for a recording where an event comes at the same time of every one.
@@ -53,7 +53,7 @@ class Balance:
         layout = lay_out(rows, self.hypothesis)
         theta = self.theta.copy()
         if self.recording != rows.origin:
-            theta[layout.owners == HUM] = 0.0
+            theta[np.isin(layout.owners, (AROUND, HUM))] = 0.0
         if self.recording not in (EVERY, rows.origin):
             terms = enumerate(self.hypothesis.terms)
             occasional = [index for index, term in terms if isinstance(term.effect, Occasional)]
@@ -73,7 +73,7 @@ class Balance:
         effects = [
             {"name": term.effect.name, "shape": list(term.shape), "level": list(term.level)}
             | ({} if term.load is None else {"load": list(term.load)})
-            | ({"pull": list(term.pull)} if term.pull else {})
+            | {name: list(held) for name, held in (("pull", term.pull), ("around", term.around)) if held}
             for term in self.hypothesis.terms
         ]
         return {
@@ -100,6 +100,7 @@ class Balance:
                 _floats(entry["level"]),
                 _floats(entry["load"]) if "load" in entry else None,
                 _floats(entry.get("pull", [])),
+                _floats(entry.get("around", [])),
             )
             for entry in table.get("effects", [])
         )

@@ -1,11 +1,16 @@
-"""A short push is found beside a misfit as large as the noise floor, and none where none was."""
+"""A short push is found beside a misfit as large as the noise floor or five times it, and none where none was."""
 
 import pytest
 
 from tests.studies.pulses import told_of
 
 
+def test_a_push_is_told_in_size_and_time_beside_another_misfit(tmp_path):
+    assert told_of(5, True, tmp_path, 5.0).right
+
+
 @pytest.mark.slow
-def test_a_push_is_told_in_size_and_time_and_none_without_one(tmp_path):
-    assert told_of(2, True, tmp_path, 1.0).right
-    assert not told_of(2, False, tmp_path, 1.0).found
+@pytest.mark.parametrize("floors", [1.0, 5.0])
+def test_none_without_one(tmp_path, floors):
+    assert told_of(2, True, tmp_path, floors).right
+    assert not told_of(2, False, tmp_path, floors).found

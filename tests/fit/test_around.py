@@ -1,0 +1,53 @@
+"""What else is left around a short event is a nuisance: its torque hangs on its edges, through any filter."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bench.arrays import rms
+from bench.effects.catalogue import catalogue
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.layout import AROUND
+from bench.fit.rows import Rows
+from bench.fit.stored import Balance
+from bench.trace.filter import GaussianFilter
+from tests.diagnosis.constructed import RIG, moved, recorded
+
+TORQUE, START, STOP = 0.06, 1.7, 1.76
+EVENT = Term(catalogue()["load_torque_event"], (START, STOP))
+BESIDE = replace(EVENT, around=(START - 0.03, STOP + 0.03))
+
+
+@pytest.fixture(scope="module")
+def trace():
+    """A push on the axis beside a slow torque that no effect is."""
+    return recorded(
+        moved(),
+        lambda m: TORQUE * ((m.time >= START) & (m.time < STOP)),
+        lambda m: 0.03 * np.cos(2.0 * np.pi * 0.9 * (m.time - START)),
+        noise=0.2,
+    )
+
+
+@pytest.mark.parametrize("width", [2e-3, 8e-3])
+def test_the_torque_of_a_push_beside_what_runs_slowly(trace, width):
+    rows = Rows.of(trace, RIG).through(GaussianFilter(width, trace.sample_period))
+    plain, beside = (fit(rows, Hypothesis((term,))) for term in (EVENT, BESIDE))
+    assert abs(plain.strengths(0)[0] / TORQUE - 1.0) > 0.2
+    assert beside.strengths(0) == pytest.approx([TORQUE], rel=0.04)
+    assert beside.layout.of_effects.sum() == 1
+    far = np.abs(rows.time - 0.5 * (START + STOP)) > 0.1
+    assert not beside.columns[far][:, beside.owners == AROUND].any()
+
+
+def test_it_belongs_to_one_recording_and_is_kept_with_it(trace):
+    rows, other = (Rows.of(each, RIG) for each in (trace, replace(trace, origin="another")))
+    fitted = fit(rows, Hypothesis((BESIDE,)))
+    balance = Balance.from_table(Balance.of(fitted).table(), "model.toml")
+    assert balance.hypothesis.terms[0].around == BESIDE.around
+    np.testing.assert_allclose(balance.left(rows), fitted.residual, atol=1e-12)
+    effectless = fitted.effort - fitted.columns[:, :4] @ fitted.theta[:4]
+    np.testing.assert_allclose(balance.left(other), effectless, atol=1e-12)
+    assert rms(balance.left(other)) > rms(fitted.residual)
