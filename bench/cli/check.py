@@ -202,8 +202,7 @@ def _write(
     xml, json, report = files
     if xml is not None:
         write_text(xml, junit(found, says, title))
-    if json is not None:
-        common.write_json(json, check_json(checked))
+    common.write_json(json, lambda: check_json(checked))
     common.write_page(report, document)
     if form is Format.GITLAB:
         typer.echo(gitlab_report(found, baseline))

@@ -154,16 +154,16 @@ def _require_places(given: Mapping[str, object]) -> None:
         raise InputError(json, f"found no folder '{json.parent}'", "allowed: a file in a folder that is there")
 
 
-def write_json(path: Path, text: str) -> None:
-    """Write JSON to a file in an existing folder, or to standard output.
+def write_json(path: Path | None, text: Callable[[], str]) -> None:
+    """Write JSON to a file in an existing folder, or to standard output, where it is asked for: only then it is made.
 
     Raises:
         InputError: a place that cannot be written to.
     """
     if path == STDOUT:
-        typer.echo(text)
-    else:
-        write_text(path, text + "\n")
+        typer.echo(text())
+    elif path is not None:
+        write_text(path, text() + "\n")
 
 
 def write_page(path: Path | None, document: Document) -> None:
@@ -198,10 +198,10 @@ def refusal_as_json(path: Path | None, schema: str) -> Iterator[None]:
     try:
         yield
     except UnanswerableError as error:
-        if path is not None:
-            from bench.report.serial import serialised
+        from bench.report.serial import serialised
 
-            write_json(path, serialised({"schema": schema, "refused": str(error), "checks": error.checks}))
+        refused = {"schema": schema, "refused": str(error), "checks": error.checks}
+        write_json(path, lambda: serialised(refused))
         raise
 
 

@@ -76,10 +76,9 @@ def identify(
         with common.refusal_as_json(json, SCHEMA):
             estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, cutoff)
     except RefusedEstimateError as error:
-        basis = provenance(rig, traces, options, None, mjcf)
-        if json is not None:
-            common.write_json(json, identification_json(error.estimate, None, str(error), basis))
-        common.warn(error.estimate.warnings)
+        known, why, basis = error.estimate, str(error), provenance(rig, traces, options, None, mjcf)
+        common.write_json(json, lambda: identification_json(known, None, why, basis))
+        common.warn(known.warnings)
         raise
     basis = provenance(rig, traces, options, None, mjcf)
     with nullcontext() if out is None else held(out):
@@ -90,8 +89,7 @@ def identify(
             from bench.report.publish import write_document  # jinja2 and matplotlib: 0.5 s
 
             files = write_document(out, found, figures.ending)
-        if json is not None:
-            common.write_json(json, identification_json(estimate, refinement, None, basis))
+        common.write_json(json, lambda: identification_json(estimate, refinement, None, basis))
     common.tell(found, files, json)
 
 
@@ -166,8 +164,7 @@ def diagnose(
     with nullcontext() if out is None else held(out):
         if out is not None:
             files = write_diagnosis(out, found, title, basis, figures.ending)
-        if json is not None:
-            common.write_json(json, diagnosis_json(found, basis))
+        common.write_json(json, lambda: diagnosis_json(found, basis))
     common.tell(diagnosis(found, title, basis), files, json)
 
 
@@ -206,8 +203,7 @@ def robot(
     if found.answered:
         with held(out):
             files = write_robot(out, found, title, basis)
-    if json is not None:
-        common.write_json(json, robot_json(found, basis))
+    common.write_json(json, lambda: robot_json(found, basis))
     common.tell(document_of(found, title, basis), files, json)
     _require_answers(found)
 

@@ -85,8 +85,7 @@ def validate(
     command += "" if rig is None else f" --rig {rig} --profile {profile}"
     document = validation(found, basis, command, rig is not None)
     written = [] if out is None else write_validation(out, found, basis, command, rig is not None)
-    if json is not None:
-        common.write_json(json, validation_json(found, basis))
+    common.write_json(json, lambda: validation_json(found, basis))
     common.tell(document, written, json)
 
 
@@ -118,8 +117,7 @@ def _into(
     basis = provenance(rig, [into], options)
     text, document = injections_json(found, basis), injections(found, basis, readable(into.name))
     written = [] if out is None else write_document(out, document, beside={"injections.json": text + "\n"})
-    if json is not None:
-        common.write_json(json, text)
+    common.write_json(json, lambda: text)
     common.tell(document, written, json)
 
 
@@ -172,8 +170,7 @@ def fleet(
             lambda found: write_fleet(out, found, basis),
             storage or (),
         )
-    if json is not None:
-        common.write_json(json, fleet_json(found, basis))
+    common.write_json(json, lambda: fleet_json(found, basis))
     common.tell(fleet_document(found, basis), (out / TABLE, out / SUMMARY, out / FLEET), json)
     if json != STDOUT:
         common.say(f"{found.evaluated} evaluated now")

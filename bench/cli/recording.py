@@ -46,8 +46,7 @@ def inspect(
     if out is not None:
         common.write_picture(out, signals_picture(recording, how))
     common.write_page(report, document)
-    if json is not None:
-        common.write_json(json, to_json(found, {"checks": as_json(checks)}))
+    common.write_json(json, lambda: to_json(found, {"checks": as_json(checks)}))
     common.tell(document, [out, draft, report], json)
 
 
@@ -70,8 +69,7 @@ def friction(
     document = document_of(found, axis.name)
     common.write_picture(out, document.pictures[0])
     common.write_page(report, document)
-    if json is not None:
-        common.write_json(json, friction_json(found))
+    common.write_json(json, lambda: friction_json(found))
     common.tell(document, [out, report], json)
 
 

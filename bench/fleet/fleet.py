@@ -13,8 +13,9 @@ import pyarrow.parquet as pq
 
 from bench.errors import InputError
 from bench.files import held, keeping, require_writable, whole
-from bench.fleet.evaluate import Job, Plain, PlannedRecording, Store, evaluate, plan
+from bench.fleet.evaluate import Job, PlannedRecording, evaluate, plan
 from bench.fleet.manifest import Manifest, read_manifest
+from bench.fleet.store import Plain, Store
 from bench.fleet.summary import Summary, summarise
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits

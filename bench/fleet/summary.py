@@ -17,8 +17,9 @@ from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
 from bench.comparison.difference import holm
 from bench.comparison.spread import ChangePoint, change_point
-from bench.fleet.evaluate import Plain, PlannedRecording
+from bench.fleet.evaluate import PlannedRecording
 from bench.fleet.manifest import Manifest
+from bench.fleet.store import Plain
 
 #: Chance of being told that any axis changed of a fleet in which none did.
 ALARM = 0.01

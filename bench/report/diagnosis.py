@@ -225,15 +225,10 @@ def _files(found: Diagnosis, provenance: Mapping[str, Any] | None) -> list[doc.F
     tables = {"torque_balance": found.balance.table()}
     toml = tables_toml(_kind(found), tables) if found.model is None else model_toml(found.model, tables)
     about = "the model with all that was found, for bench replay"
-    files = [doc.File(name="model.toml", about=about, media="application/toml", content=toml)]
+    files = [doc.file("model.toml", about, toml)]
     if found.model is not None:
-        about, xml = "what MuJoCo has of it natively; opens alone", model_xml(found.model)
-        files.append(doc.File(name="model.xml", about=about, media="application/xml", content=xml))
-    text = diagnosis_json(found, provenance) + "\n"
-    return [
-        *files,
-        doc.File(name="diagnosis.json", about="all of it as numbers", media="application/json", content=text),
-    ]
+        files.append(doc.file("model.xml", "what MuJoCo has of it natively; opens alone", model_xml(found.model)))
+    return [*files, doc.file("diagnosis.json", "all of it as numbers", diagnosis_json(found, provenance) + "\n")]
 
 
 def verdict_sentence(found: Diagnosis) -> str:

@@ -331,11 +331,20 @@ class File(Part):
     content: str
 
 
+#: Media types of files to take along, by the endings of their names.
+MEDIA = {"json": "application/json", "toml": "application/toml", "xml": "application/xml"}
+
+
 class Downloads(Part):
     """Files to take along."""
 
     kind: Literal["downloads"] = "downloads"
     files: tuple[File, ...]
+
+
+def file(name: str, about: str, content: str) -> File:
+    """A file to take along, whose name's ending is one of `MEDIA`."""
+    return File(name=name, about=about, media=MEDIA[name.rpartition(".")[2]], content=content)
 
 
 class Neighbour(Part):

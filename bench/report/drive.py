@@ -14,19 +14,7 @@ from bench.errors import InputError
 from bench.export.feedforward import Tracking
 from bench.export.plan import PlannedMotion
 from bench.names import readable, words
-from bench.report.document import (
-    COLOURS,
-    Chart,
-    Document,
-    Panel,
-    Picture,
-    Points,
-    Series,
-    Table,
-    section,
-    series,
-    table,
-)
+from bench.report import document as doc
 from bench.report.numbers import number, unit_text
 from bench.report.parts import origin, values_table
 from bench.rig.limits import OperatingRange, Reserve, reserve
@@ -34,14 +22,14 @@ from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
 
-def plan_table(best: PlannedMotion) -> Table:
+def plan_table(best: PlannedMotion) -> doc.Table:
     """What a motion will tell, and how well."""
     title = f"{best.profile}, {best.motion.time[-1]:.3g} s: what it will tell, and how well"
     rows = (
         (words(name), number(found.value), number(found.std_error, digits=2), unit_text(found.unit))
         for name, found in best.expected.items()
     )
-    return table(title, ("quantity", "expected>", "standard error>", "unit"), rows)
+    return doc.table(title, ("quantity", "expected>", "standard error>", "unit"), rows)
 
 
 def others_line(found: list[PlannedMotion]) -> str:
@@ -50,7 +38,7 @@ def others_line(found: list[PlannedMotion]) -> str:
     return f"largest standard error over its value: {', '.join(others)}"
 
 
-def tracking_table(title: str, before: Tracking, after: Tracking, kind: AxisKind) -> Table:
+def tracking_table(title: str, before: Tracking, after: Tracking, kind: AxisKind) -> doc.Table:
     """RMS tracking errors before, without what is fed forward, and after, with it; `title`: axis and motion."""
     rows = []
     for name, unit in (("position", kind.length_unit), ("velocity", kind.speed_unit)):
@@ -58,7 +46,7 @@ def tracking_table(title: str, before: Tracking, after: Tracking, kind: AxisKind
         less = number(was / now, digits=3) if now > 0.0 else ""
         rows.append((name, number(was), number(now), less, unit_text(unit)))
     headings = ("RMS tracking error", "as the rig's drive is>", "with the tables>", "times less>", "unit")
-    return table(title, headings, rows)
+    return doc.table(title, headings, rows)
 
 
 #: Mains voltage that a motor is held to which states no curve - V - and revolutions per minute of 1 rad/s.
@@ -77,10 +65,10 @@ class InRange:
 
     findings: tuple[str, ...]
     numbers: dict[str, tuple[float, str]]
-    chart: Chart
+    chart: doc.Chart
 
 
-def limits(trace: Trace, rig: Rig) -> Document:
+def limits(trace: Trace, rig: Rig) -> doc.Document:
     """The document of a recording's reserve to the motor's limits, at every mains voltage the rig has a curve for.
 
     Raises:
@@ -96,18 +84,18 @@ def limits(trace: Trace, rig: Rig) -> Document:
     least = min(value for key, (value, _) in found.numbers.items() if "reserve" in key)
     values = ((name, value, unit) for name, (value, unit) in found.numbers.items())
     blocks = (values_table("Reserves and effective values", values, 4), found.chart)
-    return Document(
+    return doc.Document(
         title=name,
         subject=f"Operating range of {rig.name}: {name}",
         verdict=f"The motion {'stays within' if least >= 0.0 else 'exceeds'} the motor's limits.",
         tone="sure" if least >= 0.0 else "refused",
         answers={},
         sections=(
-            section("findings", "What it leaves", Points(items=found.findings)),
-            section("range", "Operating range", *blocks),
+            doc.section("findings", "What it leaves", doc.Points(items=found.findings)),
+            doc.section("range", "Operating range", *blocks),
         ),
         origin=origin(None),
-        pictures=(Picture(name="limits", title="", rows=((found.chart,),)),),
+        pictures=(doc.Picture(name="limits", title="", rows=((found.chart,),)),),
     )
 
 
@@ -132,7 +120,7 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
             numbers[f"peak reserve, {volts}, cold"] = reserve(cold, speed, torque).peak, "N·m"
             at = np.linspace(0.0, cold.curve.no_load_speed, 300)
             label = f"peak, {volts}, winding at 20 °C"
-            curves.append(series(label, "dotted", "ink", at * RPM, cold.peak(at)))
+            curves.append(doc.series(label, "dotted", "ink", at * RPM, cold.peak(at)))
     left = reserve(ranges[0], speed, torque)
     findings.append(_heat_finding(left, ranges[0]))
     if any(name.endswith("cold") for name in numbers):
@@ -142,10 +130,10 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
         )
     numbers |= {"RMS torque": (left.rms_torque, "N·m"), "RMS current": (left.rms_current, "A")}
     every = enumerate([*_motion(speed, torque, left, ranges[0]), *curves])
-    coloured = tuple(one.model_copy(update={"colour": COLOURS[k % len(COLOURS)]}) for k, one in every)
-    axes = Panel(x_label="speed |n| / rpm", y_label="torque M in the direction of motion / (N·m)", series=coloured)
+    coloured = tuple(one.model_copy(update={"colour": doc.COLOURS[k % len(doc.COLOURS)]}) for k, one in every)
+    axes = doc.Panel(x_label="speed |n| / rpm", y_label="torque M in the direction of motion / (N·m)", series=coloured)
     title, alternative = f"Operating range: {what}", "Torque over speed, and the limits."
-    return InRange(tuple(findings), numbers, Chart(title=title, alternative=alternative, panels=(axes,)))
+    return InRange(tuple(findings), numbers, doc.Chart(title=title, alternative=alternative, panels=(axes,)))
 
 
 def _peak_finding(left: Reserve, speed: Array, torque: Array) -> str:
@@ -175,26 +163,26 @@ def _heat_finding(left: Reserve, limit: OperatingRange) -> str:
     )
 
 
-def _motion(speed: Array, torque: Array, left: Reserve, limit: OperatingRange) -> list[Series]:
+def _motion(speed: Array, torque: Array, left: Reserve, limit: OperatingRange) -> list[doc.Series]:
     """The samples, those that brake below the axis; the point that heats as all; the least reserve to the limit."""
     effective = np.atleast_1d(limit.torque_constant.torque(np.asarray(left.rms_current)))
     least = np.abs([speed[left.at], torque[left.at]])
     side = -1.0 if speed[left.at] * torque[left.at] < 0.0 else 1.0
     label = f"least reserve to the peak, {left.peak:.3g} N·m"
     ends = side * (least[1] + np.array([0.0, left.peak]))
-    heat = np.array([left.mean_speed * RPM])
+    heat, signed = np.array([left.mean_speed * RPM]), np.sign(speed * torque) * np.abs(torque)
     return [
-        series("motion, braking below 0", "dots", "ink", np.abs(speed) * RPM, np.sign(speed * torque) * np.abs(torque)),
-        series("RMS current at mean speed", "large dots", "ink", heat, effective),
-        series(label, "large dots", "ink", least[:1] * RPM, ends[:1], (ends[:1], ends[1:])),
+        doc.series("motion, braking below 0", "dots", "ink", np.abs(speed) * RPM, signed),
+        doc.series("RMS current at mean speed", "large dots", "ink", heat, effective),
+        doc.series(label, "large dots", "ink", least[:1] * RPM, ends[:1], (ends[:1], ends[1:])),
     ]
 
 
-def _limit_curves(limit: OperatingRange, volts: str) -> list[Series]:
+def _limit_curves(limit: OperatingRange, volts: str) -> list[doc.Series]:
     speed = np.linspace(0.0, limit.curve.no_load_speed, 300)
     braking = limit.available(speed, np.full_like(speed, -1.0))
     return [
-        series(f"peak, {volts}", "line", "ink", speed * RPM, limit.peak(speed)),
-        series(f"continuous, {volts}", "dashes", "ink", speed * RPM, limit.continuous(speed)),
-        series(f"peak braking, {volts}", "dotted", "ink", speed * RPM, -braking),
+        doc.series(f"peak, {volts}", "line", "ink", speed * RPM, limit.peak(speed)),
+        doc.series(f"continuous, {volts}", "dashes", "ink", speed * RPM, limit.continuous(speed)),
+        doc.series(f"peak braking, {volts}", "dotted", "ink", speed * RPM, -braking),
     ]

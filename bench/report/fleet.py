@@ -11,8 +11,8 @@ from typing import Any
 
 from bench.axis_kind import COULOMB, INERTIA, KINDS, VISCOUS
 from bench.files import write_text
-from bench.fleet.evaluate import Store
 from bench.fleet.fleet import RESULTS, TABLE, Fleet
+from bench.fleet.store import Store
 from bench.fleet.summary import ALARM, STATUSES, AxisSummary, Changed, History, Summary
 from bench.names import short, words
 from bench.report import document as doc

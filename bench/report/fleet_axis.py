@@ -15,14 +15,14 @@ import numpy as np
 from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.comparison.spread import FEWEST, expected
-from bench.fleet.evaluate import Plain
 from bench.fleet.fleet import Fleet
+from bench.fleet.store import Plain
 from bench.fleet.summary import AxisSummary, Changed, History
 from bench.names import short, words
 from bench.parameter import Parameter
 from bench.report import document as doc
-from bench.report.numbers import SPACE, brief, chance, listed, number, sentence, share, unit_text
-from bench.report.parts import parameters_table
+from bench.report.numbers import SPACE, brief, chance, listed, number, sentence, share
+from bench.report.parts import one_panel, parameters_table
 
 FLEET = "fleet.html"
 #: Recordings in a chart and in a table: those around a change, and the latest.
@@ -171,13 +171,9 @@ class FleetPages:
         each = "recordings, each with its own interval"
         drawn.append(doc.series(each, "dots", "ink", x, values, (values - reach, values + reach)))
         which = "latest" if changed is None else "nearest to it"
-        return doc.Chart(
-            title=f"{short(history.axis, NAME)}: {words(history.quantity)}.",
-            alternative=trend + ("" if count <= x.size else f" Of {count} recordings the {x.size} {which} are drawn."),
-            y_label=words(history.quantity),
-            y_unit=unit_text(history.unit),
-            panels=(doc.Panel(x_label=label, x_unit=unit, series=tuple(drawn)),),
-        )
+        alternative = trend + ("" if count <= x.size else f" Of {count} recordings the {x.size} {which} are drawn.")
+        title = f"{short(history.axis, NAME)}: {words(history.quantity)}."
+        return one_panel(title, alternative, (label, unit), (words(history.quantity), history.unit), drawn)
 
     def _clock(self, rows: Sequence[int]) -> tuple[Array, str, str]:
         """Times of recordings, what they are called, and their unit: of moments, since the first of them."""

@@ -15,9 +15,9 @@ from bench.effects.catalogue import catalogue
 from bench.friction_map import CHANCE, FrictionCurve, FrictionMap
 from bench.gate.gate import warnings_of
 from bench.names import words
-from bench.report.document import Chart, Document, Panel, Picture, section, series
-from bench.report.numbers import effort_word, number, sentence, share, unit_text
-from bench.report.parts import checks_section, origin, values_table
+from bench.report import document as doc
+from bench.report.numbers import effort_word, number, sentence, share
+from bench.report.parts import checks_section, one_panel, origin, values_table
 from bench.report.serial import serialised
 
 SCHEMA = "bench.friction/1"
@@ -49,24 +49,24 @@ def _values_json(values: Values) -> dict[str, Any]:
     return {name: {"value": value, "unit": unit} for name, (value, unit) in values.items()}
 
 
-def friction(found: FrictionMap, title: str) -> Document:
+def friction(found: FrictionMap, title: str) -> doc.Document:
     """The document of a friction map of the axis that `title` names."""
     axes = {"The axis": _base(found), **({} if found.name is None else {sentence(words(found.name)): _effect(found)})}
     tables = [values_table(of, ((name, *value) for name, value in values.items())) for of, values in axes.items()]
     curves, left = _over_speed(found), _left(found)
-    return Document(
+    return doc.Document(
         title=f"{title}: friction",
         subject=f"Friction of {title} over {found.velocity.size} steady speeds",
         verdict=_verdict(found),
         tone="sure",
         answers=_answers(found),
         sections=(
-            section("curve", "Friction over speed", curves, left),
-            section("parameters", "Parameters", *tables),
+            doc.section("curve", "Friction over speed", curves, left),
+            doc.section("parameters", "Parameters", *tables),
             checks_section(found.checks, ()),
         ),
         origin=origin(None),
-        pictures=(Picture(name="friction", title=title, rows=((curves,), (left,))),),
+        pictures=(doc.Picture(name="friction", title=title, rows=((curves,), (left,))),),
         warnings=tuple(warnings_of(found.checks)),
     )
 
@@ -127,7 +127,7 @@ def _curves(found: FrictionMap) -> list[tuple[FrictionCurve, str, bool]]:
     return plain if found.name is None else [*plain, (found.best, words(found.name), True)]
 
 
-def _over_speed(found: FrictionMap) -> Chart:
+def _over_speed(found: FrictionMap) -> doc.Chart:
     effort, drawn = effort_word(found.effort_unit), []
     for curve, label, bent in _curves(found):
         for direction in (-1.0, 1.0):
@@ -135,27 +135,18 @@ def _over_speed(found: FrictionMap) -> Chart:
             if speeds.size:
                 x = np.sort(direction * np.geomspace(np.abs(speeds).min(), np.abs(speeds).max(), DRAWN))
                 name = "" if any(one.name == label for one in drawn) else label
-                drawn.append(series(name, "line", "model" if bent else "left", x, curve.effort(x)))
-    drawn.append(series("recordings", "dots", "ink", found.velocity, found.effort))
-    return Chart(
-        title="Friction.",
-        alternative=f"{sentence(effort)} of each recording at its steady speed, and the curves fitted to them.",
-        y_label=effort,
-        y_unit=unit_text(found.effort_unit),
-        panels=(Panel(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=tuple(drawn)),),
-    )
+                drawn.append(doc.series(name, "line", "model" if bent else "left", x, curve.effort(x)))
+    drawn.append(doc.series("recordings", "dots", "ink", found.velocity, found.effort))
+    alternative = f"{sentence(effort)} of each recording at its steady speed, and the curves fitted to them."
+    axes = ("speed", found.kind.speed_unit), (effort, found.effort_unit)
+    return one_panel("Friction.", alternative, *axes, drawn)
 
 
-def _left(found: FrictionMap) -> Chart:
+def _left(found: FrictionMap) -> doc.Chart:
     """What each curve leaves of the recordings."""
     drawn = []
     for curve, label, bent in _curves(found):
         style, colour = ("dots", "model") if bent else ("rings", "left")
-        drawn.append(series(label, style, colour, found.velocity, found.effort - curve.effort(found.velocity)))
-    return Chart(
-        title="What is left.",
-        alternative="What each curve leaves of the recordings.",
-        y_label="left",
-        y_unit=unit_text(found.effort_unit),
-        panels=(Panel(x_label="speed", x_unit=unit_text(found.kind.speed_unit), series=tuple(drawn)),),
-    )
+        drawn.append(doc.series(label, style, colour, found.velocity, found.effort - curve.effort(found.velocity)))
+    axes = ("speed", found.kind.speed_unit), ("left", found.effort_unit)
+    return one_panel("What is left.", "What each curve leaves of the recordings.", *axes, drawn)

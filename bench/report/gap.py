@@ -20,7 +20,7 @@ from bench.diagnosis.where import Profile, Where
 from bench.names import words
 from bench.report import document as doc
 from bench.report.numbers import coordinate_word, effort_word, listed, number, sentence, share, unit_text
-from bench.report.parts import noise_band
+from bench.report.parts import noise_band, one_panel
 
 #: Empty space beside the outermost gaps - factor on a logarithmic axis.
 BESIDE = 1.5
@@ -91,13 +91,7 @@ def _curves_chart(what: str, unit: str, course: Course, samples: NDArray[np.int6
     drawn.append(doc.series("inertia and friction alone", "dashes", "blue", time, before))
     if (before != after).any():
         drawn.append(doc.series("with what was found", "line", "model", time, after))
-    return doc.Chart(
-        title=f"{sentence(what)} over a stretch that shows it.",
-        alternative="",
-        y_label=what,
-        y_unit=unit_text(unit),
-        panels=(doc.Panel(x_label="time", x_unit="s", series=tuple(drawn)),),
-    )
+    return one_panel(f"{sentence(what)} over a stretch that shows it.", "", ("time", "s"), (what, unit), drawn)
 
 
 def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:

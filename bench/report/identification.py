@@ -21,7 +21,7 @@ from bench.fit.estimate import Alone, Estimate, modelled_effort
 from bench.fit.solution import NOISE_ALONE
 from bench.gate.gate import gate, warnings_of
 from bench.names import readable, words
-from bench.report.document import Chart, Document, Downloads, File, Panel, Picture, TimeGraph, section, series
+from bench.report import document as doc
 from bench.report.numbers import effort_word, interval, number, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
@@ -137,7 +137,7 @@ def identification(
     motions: Sequence[Moved] = (),
     provenance: Mapping[str, Any] | None = None,
     truth: Mapping[str, float] | None = None,
-) -> Document:
+) -> doc.Document:
     """The document of an identification.
 
     Args:
@@ -149,19 +149,19 @@ def identification(
     """
     alone = recordings_table(estimate.recordings, estimate.between, estimate.parameters)
     tables = (parameters_table("The axis", estimate.parameters, truth), *alone)
-    sections = [section("parameters", "Parameters", *tables)]
+    sections = [doc.section("parameters", "Parameters", *tables)]
     if motions:
         graphs = tuple(_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])
         sections += [
-            section("motion", "Measured and modelled", *graphs),
-            section("where", "Where the rest sits", _rest(estimate, motions)),
+            doc.section("motion", "Measured and modelled", *graphs),
+            doc.section("where", "Where the rest sits", _rest(estimate, motions)),
         ]
     sections.append(checks_section(estimate.checks, estimate.warnings))
     if motions:
         text = identification_json(estimate, refinement, None, provenance) + "\n"
-        file = File(name="identify.json", about="all of it as numbers", media="application/json", content=text)
-        sections.append(section("files", "The numbers", Downloads(files=(file,))))
-    return Document(
+        file = doc.file("identify.json", "all of it as numbers", text)
+        sections.append(doc.section("files", "The numbers", doc.Downloads(files=(file,))))
+    return doc.Document(
         title=title,
         subject=f"Identification of {title}",
         verdict=_verdict(estimate, kind),
@@ -229,7 +229,7 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
     return answers
 
 
-def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> TimeGraph:
+def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> doc.TimeGraph:
     """Speed, and torque beside the model's; one of so many graphs."""
     moved, unit = one.motion, one.along.residual.unit
     effort = effort_word(unit)
@@ -243,7 +243,7 @@ def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> TimeGraph
     return time_graph("Over time.", alternative, moved.time, signals, (), 1.0 / graphs)
 
 
-def _rest(estimate: Estimate, motions: Sequence[Moved]) -> Chart:
+def _rest(estimate: Estimate, motions: Sequence[Moved]) -> doc.Chart:
     """What is left of the torque over speed, acceleration, torque and time."""
     unit, kind = estimate.residual.unit, motions[0].kind
     left = np.concatenate([one.left for one in motions])
@@ -257,7 +257,7 @@ def _rest(estimate: Estimate, motions: Sequence[Moved]) -> Chart:
         _over(name, of, np.concatenate(values), left, estimate.residual.noise_floor)
         for (name, of), values in over.items()
     )
-    return Chart(
+    return doc.Chart(
         title="What is left.",
         alternative=f"Mean of measured less modelled {effort_word(unit)} in bins; what stands out of the noise floor "
         "has a cause beside inertia and friction.",
@@ -267,22 +267,22 @@ def _rest(estimate: Estimate, motions: Sequence[Moved]) -> Chart:
     )
 
 
-def _over(name: str, unit: str, values: Array, left: Array, floor: float) -> Panel:
+def _over(name: str, unit: str, values: Array, left: Array, floor: float) -> doc.Panel:
     from bench.diagnosis.where import LEAST, bins_of, means_in
 
     known = np.isfinite(left)
     index = bins_of(values[known])
     kept = np.bincount(index) >= LEAST
-    dots = series("left", "dots", "left", means_in(index, values[known])[kept], means_in(index, left[known])[kept])
+    dots = doc.series("left", "dots", "left", means_in(index, values[known])[kept], means_in(index, left[known])[kept])
     band = [noise_band(dots.x, floor)] if math.isfinite(floor) else []
-    return Panel(x_label=name, x_unit=unit_text(unit), series=(*band, dots))
+    return doc.Panel(x_label=name, x_unit=unit_text(unit), series=(*band, dots))
 
 
-def _picture(title: str, number: int, one: Moved) -> Picture:
+def _picture(title: str, number: int, one: Moved) -> doc.Picture:
     """Motion and torque of a recording, the estimates, and what is left."""
     name = "identification" if number == 1 else f"identification-{number}"
     estimates = parameters_table("", one.along.parameters)
-    return Picture(
+    return doc.Picture(
         name=name,
         title=f"{title.partition(': ')[0]}: {one.name}",
         rows=((_over_time(one, 1, acceleration=True), estimates), (_rest(one.along, [one]),)),

@@ -13,7 +13,7 @@ from bench.fit.estimate import Alone
 from bench.gate.check import Check
 from bench.names import readable, words
 from bench.parameter import Parameter
-from bench.report.document import Downloads, File, Points, Section, Series, Table, section, table
+from bench.report.document import MEDIA, Chart, Downloads, File, Panel, Points, Section, Series, Table, section, table
 from bench.report.numbers import interval, number, unit_text
 
 
@@ -63,6 +63,12 @@ def recordings_table(
     return [table("Each recording alone", ("recording", *headings), rows)]
 
 
+def one_panel(title: str, alternative: str, x: tuple[str, str], y: tuple[str, str], drawn: Iterable[Series]) -> Chart:
+    """A chart of one panel, of series over `x`; each axis by its label and unit."""
+    panel = Panel(x_label=x[0], x_unit=unit_text(x[1]), series=tuple(drawn))
+    return Chart(title=title, alternative=alternative, y_label=y[0], y_unit=unit_text(y[1]), panels=(panel,))
+
+
 def noise_band(x: Sequence[float], floor: float) -> Series:
     """Noise of a single row around zero, over the width of a panel."""
     ends = (min(x, default=0.0), max(x, default=1.0))
@@ -92,9 +98,8 @@ def model_section(model: Path) -> Section:
     Raises:
         InputError: it cannot be read.
     """
-    content = read_text(model, "a model")
-    file = File(name=readable(model.name), about="the model", media="application/toml", content=content)
-    return section("model", "The model", Downloads(files=(file,)))
+    held = File(name=readable(model.name), about="the model", media=MEDIA["toml"], content=read_text(model, "a model"))
+    return section("model", "The model", Downloads(files=(held,)))
 
 
 def warnings_sections(warnings: Sequence[str]) -> list[Section]:

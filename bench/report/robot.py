@@ -106,16 +106,10 @@ def robot(
 
 
 def _files(found: IdentifiedRobot, text: str, provenance: Mapping[str, Any] | None) -> list[doc.File]:
-    effects = "models of all joints, for bench.Effects"
     return [
-        doc.File(name=MJCF, about="the MJCF with the joints as found", media="application/xml", content=text),
-        doc.File(name=EFFECTS_FILE, about=effects, media="application/toml", content=joints_toml(found.models)),
-        doc.File(
-            name=JSON,
-            about="all of it as numbers",
-            media="application/json",
-            content=robot_json(found, provenance) + "\n",
-        ),
+        doc.file(MJCF, "the MJCF with the joints as found", text),
+        doc.file(EFFECTS_FILE, "models of all joints, for bench.Effects", joints_toml(found.models)),
+        doc.file(JSON, "all of it as numbers", robot_json(found, provenance) + "\n"),
     ]
 
 

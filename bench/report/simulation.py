@@ -18,24 +18,10 @@ from bench.effects.present import Present
 from bench.names import readable, words
 from bench.plant.axis_model import parameter_quantities
 from bench.plant.simulate import Simulated, Truth
-from bench.report.document import (
-    Chart,
-    Document,
-    Downloads,
-    File,
-    Moving,
-    Panel,
-    Paragraph,
-    Slowed,
-    Table,
-    TimeGraph,
-    section,
-    series,
-    table,
-)
+from bench.report import document as doc
 from bench.report.numbers import effort_word, number, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import model_section, origin, values_table, warnings_sections
+from bench.report.parts import model_section, one_panel, origin, values_table, warnings_sections
 from bench.trace.noise import white_noise
 from bench.view.let_free import FreeRun
 from bench.view.side_by_side import SideBySide
@@ -47,10 +33,10 @@ PART = 0.8
 #: Times since a model was let free at which it is told how far off it is - s -, and points that are drawn of the curve.
 HORIZONS, DRAWN = (0.5, 1.0, 2.0, 5.0), 300
 #: How much slower a page plays; what turns plays at first so that it goes round at most once a second.
-SLOWED: tuple[Slowed, ...] = get_args(Slowed)
+SLOWED: tuple[doc.Slowed, ...] = get_args(doc.Slowed)
 
 
-def simulation(simulated: Simulated, name: str) -> Document:
+def simulation(simulated: Simulated, name: str) -> doc.Document:
     """The document of a simulated recording of a name."""
     truth, trace = simulated.truth, simulated.trace
     kind, values = truth.parameters.kind, {present.name: _values(present, truth) for present in truth.effects}
@@ -69,26 +55,26 @@ def simulation(simulated: Simulated, name: str) -> Document:
         (quantity.name, getattr(truth.parameters, field), quantity.unit)
         for field, quantity in parameter_quantities(kind).items()
     )
-    added: Table | Paragraph = Paragraph(text="No effect was added.")
+    added: doc.Table | doc.Paragraph = doc.Paragraph(text="No effect was added.")
     if values:
         rows = (
             (words(effect), name, number(value, digits=5), unit_text(unit))
             for effect, found in values.items()
             for name, value, unit in found
         )
-        added = table("Effects", ("effect", "quantity", "value>", "unit"), rows)
+        added = doc.table("Effects", ("effect", "quantity", "value>", "unit"), rows)
     true = (values_table("The axis, on the motor's side", axis), added)
-    file = File(name="truth.json", about="the truth", media="application/json", content=truth.as_json())
-    return Document(
+    file = doc.file("truth.json", "the truth", truth.as_json())
+    return doc.Document(
         title=name,
         subject=f"Simulation of {truth.rig}: {name}",
         verdict=f"{seconds} of the profile {words(truth.profile)} were simulated{hidden}.",
         tone="sure",
         answers=answers,
         sections=(
-            section("motion", "Recorded and true", _recorded(simulated)),
-            section("truth", "The truth", *true),
-            section("files", "The numbers", Downloads(files=(file,))),
+            doc.section("motion", "Recorded and true", _recorded(simulated)),
+            doc.section("truth", "The truth", *true),
+            doc.section("files", "The numbers", doc.Downloads(files=(file,))),
         ),
         origin=(*origin(None), f"seed {truth.seed}"),
     )
@@ -99,7 +85,7 @@ def _values(present: Present, truth: Truth) -> list[tuple[str, float, str]]:
     return [(words(name), value, units[name]) for name, value in present.values]
 
 
-def _recorded(simulated: Simulated) -> TimeGraph:
+def _recorded(simulated: Simulated) -> doc.TimeGraph:
     """Speed and position as recorded and as they were, and the recorded effort."""
     trace, states = simulated.trace, simulated.states
     period = float(states.time[1] - states.time[0])
@@ -118,7 +104,7 @@ def _recorded(simulated: Simulated) -> TimeGraph:
     return time_graph("Over time.", alternative, trace.time, signals)
 
 
-def replay(replayed: Replay, model: Path, along: str) -> Document:
+def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
     """The document of a model's file that was run along a recording of a name.
 
     Raises:
@@ -147,8 +133,8 @@ def replay(replayed: Replay, model: Path, along: str) -> Document:
     ]
     shown = f"Speed and {effort} of the recording as measured and as the model has them, and what is left of each."
     graph = time_graph("Over time.", shown, replayed.time, signals)
-    motion = section("motion", "Measured and simulated", graph)
-    return Document(
+    motion = doc.section("motion", "Measured and simulated", graph)
+    return doc.Document(
         title=title,
         subject=f"Replay: {title}",
         verdict=f"{line}.",
@@ -170,7 +156,7 @@ def _left(measured: Array, simulated: Array) -> tuple[float, float]:
 
 def view(
     shown: SideBySide, model: Path, along: str, warnings: Sequence[str] = (), free: FreeRun | None = None
-) -> Document:
+) -> doc.Document:
     """The document of a model's file in motion beside its ghost, along a recording or profile of a name.
 
     `free` is how far off it runs by itself.
@@ -196,13 +182,13 @@ def view(
     alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
     graph = time_graph("Over time.", alternative, shown.time, signals, part=PART)
     sections = [
-        section("moving", "Moving", motion_of(shown)),
-        section("motion", "Over time", graph),
+        doc.section("moving", "Moving", motion_of(shown)),
+        doc.section("motion", "Over time", graph),
     ]
     if free is not None:
-        sections.append(section("free", "Let free", *_let_free(free, shown.kind)))
+        sections.append(doc.section("free", "Let free", *_let_free(free, shown.kind)))
         answers["And let free?"] = _after(free, shown.kind)
-    return Document(
+    return doc.Document(
         title=title,
         subject=f"View: {title}",
         verdict=f"The simulated axis stays within {furthest} of the motion {shown.ghost_is}, over {seconds}.",
@@ -225,7 +211,7 @@ def _after(free: FreeRun, kind: AxisKind) -> str:
     return f"{', '.join(off or [last])} RMS, of {free.windows} windows"
 
 
-def _let_free(free: FreeRun, kind: AxisKind) -> tuple[Chart, Chart]:
+def _let_free(free: FreeRun, kind: AxisKind) -> tuple[doc.Chart, doc.Chart]:
     """How far off position and speed are over the time since it was let free."""
     every = max(free.time.size // DRAWN, 1)
     alternative = (
@@ -233,10 +219,9 @@ def _let_free(free: FreeRun, kind: AxisKind) -> tuple[Chart, Chart]:
         "with what the sensors say, the recorded effort drives the model, and nothing holds it."
     )
 
-    def chart(title: str, label: str, unit: str, values: Array) -> Chart:
-        drawn = series(label, "line", "model", free.time[::every], values[::every])
-        panel = Panel(x_label="time since it was let free", x_unit="s", series=(drawn,))
-        return Chart(title=title, alternative=alternative, y_label=label, y_unit=unit_text(unit), panels=(panel,))
+    def chart(title: str, label: str, unit: str, values: Array) -> doc.Chart:
+        drawn = doc.series(label, "line", "model", free.time[::every], values[::every])
+        return one_panel(title, alternative, ("time since it was let free", "s"), (label, unit), [drawn])
 
     return (
         chart("Position.", "position off (RMS)", kind.length_unit, free.position),
@@ -244,7 +229,7 @@ def _let_free(free: FreeRun, kind: AxisKind) -> tuple[Chart, Chart]:
     )
 
 
-def motion_of(shown: SideBySide) -> Moving:
+def motion_of(shown: SideBySide) -> doc.Moving:
     """The motion at instants of equal distance, each as of the sample next to it; nan in holes."""
     time = shown.time
     period = float(np.median(np.diff(time)))
@@ -257,11 +242,11 @@ def motion_of(shown: SideBySide) -> Moving:
     both = np.concatenate([shown.ghost, shown.position])
     low, high = float(np.nanmin(both)), float(np.nanmax(both))
     low, high = (low, high) if high > low else (low - 0.5, low + 0.5)
-    slowed: Slowed = 1
+    slowed: doc.Slowed = 1
     if shown.kind.turns:
         turns = float(np.nanmax(np.abs(shown.ghost_velocity))) / (2.0 * np.pi)
         slowed = SLOWED[min(int(np.searchsorted(SLOWED, turns)), len(SLOWED) - 1)]
-    return Moving(
+    return doc.Moving(
         title="The axis.",
         alternative=f"{shown.simulated_is} The ghost is the motion {shown.ghost_is}.",
         turns=shown.kind.turns,

@@ -5,7 +5,8 @@ import json
 import pytest
 
 from bench.errors import InputError
-from bench.fleet.evaluate import Store, marked
+from bench.fleet.evaluate import marked
+from bench.fleet.store import Store
 
 KEY = "ab" * 32
 INERTIA = {"value": 1e-3, "unit": "kg*m**2", "std_error": 1e-6, "ci95": [9.98e-4, 1.002e-3]}

@@ -10,9 +10,10 @@ import pyarrow as pa
 import pytest
 
 from bench.comparison.spread import expected
-from bench.fleet.evaluate import PlannedRecording, Store
+from bench.fleet.evaluate import PlannedRecording
 from bench.fleet.fleet import Fleet
 from bench.fleet.manifest import Manifest
+from bench.fleet.store import Store
 from bench.fleet.summary import summarise
 from bench.report.document import Chart, Table
 from bench.report.fleet import AXES, CHARTS, ROWS, SKETCHED, fleet_document, write_fleet

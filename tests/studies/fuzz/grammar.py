@@ -33,9 +33,10 @@ import tomli_w
 from bench.errors import BenchError
 from bench.export.mjcf import joint_alone, link_inertia, read_mjcf
 from bench.files import write_text
-from bench.fleet.evaluate import PlannedRecording, Store
+from bench.fleet.evaluate import PlannedRecording
 from bench.fleet.fleet import tabulate
 from bench.fleet.manifest import read_manifest
+from bench.fleet.store import Store
 from bench.fleet.summary import summarise
 from bench.plant.model_file import load_model
 from bench.plant.robot import Robot
