@@ -7,14 +7,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from itertools import combinations, permutations, product
 
 import numpy as np
 
 from bench.arrays import Array
 from bench.course.axis import RPM
-from bench.course.plausible import FASTEST, FULL_CURRENT, LARGEST_CURRENT, LATE, balance, between, fault, glitches
+from bench.course.plausible import (
+    FASTEST,
+    FULL_CURRENT,
+    LARGEST_CURRENT,
+    LATE,
+    balance,
+    between,
+    fault,
+    glitches,
+    holes,
+)
 from bench.course.run import LabRun, made_run
 from bench.rig.rig import Rig
 
@@ -97,6 +108,12 @@ def _columns_swapped(run: LabRun, rig: Rig, speed: float = 1.0, ampere: float = 
 
 
 MISTAKES = (
+    KnownMistake("columns", "the columns of speed and current look exchanged", _columns_swapped),
+    KnownMistake(
+        "columns",
+        "the columns of speed (deg/s) and current (mA) look exchanged",
+        lambda run, rig: _columns_swapped(run, rig, DEG, 1e-3),
+    ),
     _speed("deg/s", "rad/s", DEG),
     _speed("rad/s", "deg/s", 1.0 / DEG),
     _speed("rpm", "rad/s", 1.0 / RPM),
@@ -120,12 +137,6 @@ MISTAKES = (
         "delay", "current and speed are not of the same instants: record both in one task of the drive", _in_time
     ),
     KnownMistake("glitch", "a glitch: take these samples out, or record again", _without_glitches),
-    KnownMistake("columns", "the columns of speed and current look exchanged", _columns_swapped),
-    KnownMistake(
-        "columns",
-        "the columns of speed (deg/s) and current (mA) look exchanged",
-        lambda run, rig: _columns_swapped(run, rig, DEG, 1e-3),
-    ),
 )
 
 
@@ -135,32 +146,40 @@ def refusals(runs: Mapping[str, LabRun], rig: Rig) -> dict[str, str]:
     contradicted = own or between(runs)
     if not contradicted:
         return {}
-    causes = _causes(runs, rig)
-    alike = [pair for pair in combinations(runs, 2) if np.array_equal(runs[pair[0]].current, runs[pair[1]].current)]
+    twins = next((pair for pair in combinations(runs, 2) if _alike(*(runs[name] for name in pair))), ())
+    cut = frozenset(name for name, run in runs.items() if holes(name, run))
+    longest = {name: replace(run, missing=(0.0, 0.0)) for name, run in runs.items()}
+    left_out = [{left, *without} for without in dict.fromkeys((frozenset(), cut)) for left in twins or ("",)]
+    causes = _causes(longest, [tuple(name for name in runs if name not in left) for left in left_out], rig)
     told = {}
     for name in {**contradicted, **{name: "" for cause in causes for name in cause}}:
-        words = list(dict.fromkeys(_told(cause[name]) for cause in causes if cause.get(name)))
-        twins = next((pair for pair in alike if name in pair), None)
-        why = f"{' and '.join(twins)} are one and the same recording" if twins else " - or ".join(words)
+        same = twins if name in twins else (name,)
+        words = list(dict.fromkeys(_told(cause[one]) for cause in causes for one in same if cause.get(one)))
+        why = [f"{' and '.join(twins)} are one and the same recording"] if name in twins else []
+        why += [" - or ".join(words)] if 0 < len(words) <= TOLD else []
         found = contradicted.get(name) or f"its J contradicts that of {', '.join(contradicted)}"
-        known = why if why and len(words) <= TOLD else "no known mistake explains it: look at its signals"
-        told[name] = f"{found}; {known}"
+        known = "record it again" if name in cut else "no known mistake explains it: look at its signals"
+        told[name] = f"{found}; {', and '.join(why) or known}"
     return told
+
+
+def _alike(one: LabRun, other: LabRun) -> bool:
+    return np.array_equal(one.current, other.current)
 
 
 def _told(undone: Sequence[KnownMistake]) -> str:
     return ", and ".join(mistake.words for mistake in undone)
 
 
-def _causes(runs: Mapping[str, LabRun], rig: Rig) -> list[Undone]:
-    """The smallest sets of mistakes without which nothing contradicts the recordings."""
-    names, mistakes = tuple(runs), (*MISTAKES, *_scale(runs, rig))
-    for most, mixed in ((1, False), (1, True), (2, False)):
+def _causes(runs: Mapping[str, LabRun], choices: Sequence[Sequence[str]], rig: Rig) -> list[Undone]:
+    """The smallest sets of mistakes without which nothing contradicts the first choice of recordings that has any."""
+    mistakes = (*MISTAKES, *_scale(runs, rig))
+    possible = cache(lambda name, other, most: [*_options(name, runs[other], rig, most, mistakes)])
+    for (most, mixed), names in product(((1, False), (1, True), (2, False), (2, True)), choices):
         found: list[tuple[int, Undone]] = []
         for order in permutations(names) if mixed else [names]:
             exchanged = _exchanged(names, order)
-            moved = {name: runs[other] for name, other in zip(names, order, strict=True)}
-            options = [list(_options(name, moved[name], rig, most, mistakes)) for name in names]
+            options = [possible(name, other, most) for name, other in zip(names, order, strict=True)]
             for chosen in product(*options):
                 if between({name: run for name, (_, run) in zip(names, chosen, strict=True)}):
                     continue
@@ -201,14 +220,18 @@ def _options(
     """Mistakes, at most so many, without which a recording is sound by itself, and it without them."""
     sound = False
     for count in range(most + 1):
-        for made in combinations(mistakes, count):
-            if len({mistake.kind for mistake in made}) < count:
+        for chosen in combinations(mistakes, count):
+            kinds = {mistake.kind for mistake in chosen}
+            if len(kinds) < count:
                 continue
-            undone: LabRun | None = run
-            for mistake in made:
-                undone = mistake.undo(undone, rig) if undone is not None else None
-            if undone is not None and not fault(name, undone, rig):
-                sound = True
-                yield made, undone
+            # which was made first makes a difference to exchanged columns alone
+            for made in (chosen, chosen[::-1])[: 1 + (count > 1 and "columns" in kinds)]:
+                undone: LabRun | None = run
+                for mistake in made:
+                    undone = mistake.undo(undone, rig) if undone is not None else None
+                if undone is not None and not fault(name, undone, rig):
+                    sound = True
+                    yield made, undone
+                    break
         if sound and count:  # more mistakes than needed explain anything
             return

@@ -89,14 +89,20 @@ def glitches(values: Array, smooth: bool) -> NDArray[np.int64]:
     return found[[off[k] == off[max(k - 2, 0) : k + 3].max() for k in found]] if found.size else found
 
 
+def holes(name: str, run: LabRun) -> str:
+    """What holes cut off, where that is too much; empty where it is not."""
+    share, since = run.missing
+    found = f"it has a hole after {since:.4g} s, and {share:.0%} of it are cut off by holes"
+    return found if share > (0.0 if name == FASTEST else CUT) else ""
+
+
 def fault(name: str, run: LabRun, rig: Rig) -> str:
     """What cannot be so in one recording, in words; empty where nothing is."""
     found = balance(run)
     speed, current = (float(np.abs(signal).max()) for signal in (run.velocity, run.current))
     limit, peak = peak_curve(rig.motor, MAINS, rig.source) if rig.motor.peak_curves else None, rig.motor.peak_current
-    share, since = run.missing
-    if share > (0.0 if name == FASTEST else CUT):
-        return f"it has a hole after {since:.4g} s, and {share:.0%} of it are cut off by holes"
+    if cut := holes(name, run):
+        return cut
     if limit is not None and speed > FASTEST_SPEED * limit.no_load_speed:
         top = limit.no_load_speed * RPM
         return f"its highest speed is {speed * RPM:,.0f} rpm, and the motor has {top:,.0f} rpm at {MAINS:g} V at most"

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from bench.assets import asset
+from tests.course import mistakes
 from tests.course.mistakes import (
     BARE,
     FASTEST,
@@ -54,6 +55,29 @@ def test_no_wrong_number_is_done(mistake, seed, recorded, truth, quick, tmp_path
     reasons = [task["reason"] for task in tasks if task["status"] == "not_done"]
     assert reasons
     assert any(MISTAKES[mistake] in reason for reason in reasons), reasons
+
+
+@pytest.mark.parametrize(
+    ("pair", "seed"),
+    [
+        ((mistakes.the_same_file_twice, mistakes.scale_of_the_current), 1),
+        ((mistakes.hole, mistakes.milliamperes_as_amperes), 1),
+        ((mistakes.late, mistakes.columns_swapped), 1),
+        ((mistakes.columns_swapped, mistakes.amperes_as_milliamperes), 1),
+        ((mistakes.files_swapped, mistakes.two_at_once), 1),
+    ],
+    ids=lambda value: " and ".join(one.__name__ for one in value) if isinstance(value, tuple) else "",
+)
+def test_two_mistakes_are_both_told(pair, seed, recorded, truth, quick, tmp_path):
+    """One in what the other hides: a file that stands twice, a hole, exchanged columns, exchanged files."""
+    of, random = Folder(dict(recorded[0]), list(recorded[1])), np.random.default_rng(seed)
+    for mistake in pair:
+        mistake(of, random)
+    of.write(tmp_path / "data")
+    tasks = done_by_the_command(tmp_path / "data", tmp_path / "out")
+    assert wrong_numbers(tasks, truth) == {}
+    reasons = " ".join(task["reason"] for task in tasks if task["status"] == "not_done")
+    assert [mistake.__name__ for mistake in pair if MISTAKES[mistake] not in reasons] == [], reasons
 
 
 def test_what_is_right_is_done_in_the_courses_words(recorded, truth, quick, tmp_path):
