@@ -39,6 +39,7 @@ class CircuitTold:
         voltage: U_max - V.
         cold_share: R cold over R hot.
         into_shaft: share of the back-EMF's power that comes out at the shaft, at the corner.
+        idle: voltage per speed without current - V*s/rad.
     """
 
     name: str
@@ -48,6 +49,7 @@ class CircuitTold:
     voltage: float
     cold_share: float
     into_shaft: float
+    idle: float
 
     def corner(self, share: float = 1.0, voltages: float = 1.0) -> float:
         """Corner with a share of the hot resistance, at so many times the voltage - rad/s."""
@@ -69,9 +71,15 @@ class CircuitTold:
         """From hot to the middle of both temperatures - rad/s."""
         return self.corner(0.5 * (1.0 + self.cold_share)) - self.corner()
 
+    def no_load(self, voltages: float = 1.0) -> float:
+        """Speed without current at so many times the voltage - rad/s."""
+        return voltages * self.voltage / self.idle
+
 
 def circuits(rig: Rig, other: PeakCurve) -> list[CircuitTold]:
     """The course's circuit, one whose power balances, Ke = kT(Iq), and both with the voltage across that w*p*L*Iq is.
+
+    The last again, with the voltage that the datasheet's no-load speed asks of it, 4.6 % more in the lab's motor.
 
     Args:
         rig: whose motor's peak curve at MAINS each meets.
@@ -81,13 +89,15 @@ def circuits(rig: Rig, other: PeakCurve) -> list[CircuitTold]:
         InputError: the rig lacks something, or no such circuit meets both curves.
     """
     motor, low, peak = circuit(rig), peak_curve(rig.motor, MAINS, rig.source), motor_value(rig, "peak_current")
-    saturated = float(torque_constant(rig)(np.asarray(peak)))
+    idle, saturated = (float(torque_constant(rig)(np.asarray(current))) for current in (0.0, peak))
+    course, balanced = (COURSES, motor.back_emf_constant, motor.back_emf_constant), (BALANCED, saturated, idle)
+    usual, enough = motor.voltage, idle * low.no_load_speed
+    cases = [(one, usual, crossed) for one in (course, balanced) for crossed in (False, True)]
     told = []
-    for name, ke in ((COURSES, motor.back_emf_constant), (BALANCED, saturated)):
-        alone = motor.voltage - ke * low.corner_speed, 0.0
-        for words, (drop, across) in (("", alone), (", with ω·p·L·Iq", _of_both(ke, motor.voltage, low, other))):
-            own = CircuitTold(f"{name}{words}", ke, drop, across, motor.voltage, motor.cold_share, saturated / ke)
-            told.append(own)
+    for (name, ke, of_none), given, crossed in (*cases, (balanced, enough, True)):
+        drop, across = _of_both(ke, given, low, other) if crossed else (given - ke * low.corner_speed, 0.0)
+        words = f"{name}{', with ω·p·L·Iq' * crossed}{f', {given:.0f} V' * (given != usual)}"
+        told.append(CircuitTold(words, ke, drop, across, given, motor.cold_share, saturated / ke, of_none))
     return told
 
 
@@ -170,7 +180,7 @@ def of_circuits(rig: Rig, axis: AxisParameters, found: Split) -> TaskResult:
     if other is None:
         return TaskResult(("The datasheet has one mains voltage only, so what the circuit leaves out does not show.",))
     told = circuits(rig, other)
-    course, both = told[0], told[3]
+    course, both, fed = told[0], told[3], told[-1]
     _, demand = full_speed(rig, axis)
     windings = {start: balanced_winding(rig, both, start) for start in (HOT, COLD, 0.5 * (HOT + COLD))}
     hot, cold, half_way = (run_winding(winding, axis, demand) for winding in windings.values())
@@ -190,6 +200,11 @@ def of_circuits(rig: Rig, axis: AxisParameters, found: Split) -> TaskResult:
         f"at {hot.corner * RPM:.0f} rpm hot and {cold.corner * RPM:.0f} rpm cold: the cold winding moves it by "
         f"{(cold.corner - hot.corner) * RPM:+.0f} rpm, about so much of what is measured, if the datasheet's curves "
         "are the motor's.",
+        f"Without current that winding reaches {both.no_load() * RPM:.0f} rpm, "
+        f"{both.no_load() / course.no_load() - 1.0:+.1%} from the datasheet's, as kT(0) is so much above U/ω_0. With "
+        f"{fed.voltage:.0f} V in place of {both.voltage:.0f} V, as overmodulation gives, it meets that, too, and at "
+        f"{other.mains_voltage:g} V {fed.no_load(other.mains_voltage / MAINS) * RPM:.0f} of "
+        f"{other.no_load_speed * RPM:.0f} rpm; the shift is {fed.shift * RPM:+.0f} rpm all the same.",
         f"To tell temperature from ω·p·L, record the run-up twice, cold and with the winding at {0.5 * (HOT + COLD):g} "
         f"°C: R changes and ω·p·L does not, so the corners lie {apart:.0f} rpm apart if ω·p·L acts and "
         f"{(course.shift - course.half_way) * RPM:.0f} rpm if R alone does. Another mains voltage tells it, too.",
@@ -209,12 +224,12 @@ def of_circuits(rig: Rig, axis: AxisParameters, found: Split) -> TaskResult:
 
 def _circuits_table(told: list[CircuitTold], other: PeakCurve) -> Table:
     voltages = other.mains_voltage / MAINS
-    rows = [
-        (one.name, f"{one.shift * RPM:+.0f}", f"{one.corner(voltages=voltages) * RPM:.0f}", f"{one.into_shaft:.0%}")
-        for one in told
-    ]
+    rows = []
+    for one in told:
+        speeds = (f"{speed * RPM:.0f}" for speed in (one.corner(voltages=voltages), one.no_load()))
+        rows.append((one.name, f"{one.shift * RPM:+.0f}", *speeds, f"{one.into_shaft:.0%}"))
     at_other = f"corner at {other.mains_voltage:g} V / rpm>"
-    head = ("circuit", "shift, hot to cold / rpm>", at_other, "EMF's power at shaft>")
+    head = ("circuit", "shift, hot to cold / rpm>", at_other, "no-load speed / rpm>", "EMF's power at shaft>")
     return table(f"Circuits that meet the peak curve at {MAINS:g} V", head, rows)
 
 

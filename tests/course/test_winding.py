@@ -165,6 +165,17 @@ def test_11_circuits_by_their_power_and_by_both_mains_voltages():
             corner = fsolve(lambda w, share=share, s=solved: off(s, w, mains[0], share=share), corners[0])[0]
             assert shift == pytest.approx(corner - corners[0], rel=1e-6)
     assert circuits(rig, rig.motor.peak_curves[1])[2].shift * RPM == pytest.approx(1229.0, abs=0.5)
+    # without current the back-EMF takes all: kT(0), by the course's parabola through 7/9 and 3.5/5.7 N*m/A
+    at_none = 7.0 / 9.0 + (7.0 / 9.0 - peak) * 1.8**2 / (5.7**2 - 1.8**2)
+    assert both.no_load() == pytest.approx(mains[0] / at_none, rel=1e-9)
+    assert (both.no_load() * RPM - 5000.0) / 5000.0 == pytest.approx(-0.044, abs=5e-4)
+    fed = next(found)
+    assert fed.no_load() * RPM == pytest.approx(5000.0, rel=1e-9)
+    assert fed.no_load(400.0 / 230.0) * RPM == pytest.approx(8700.0, rel=1e-3)
+    for ratio, corner in ((1.0, corners[0]), (400.0 / 230.0, corners[1])):
+        triangle = np.hypot(fed.drop + peak * corner, fed.across * corner)
+        assert triangle == pytest.approx(ratio * at_none * 5000.0 / RPM, rel=1e-9)
+    assert fed.shift * RPM == pytest.approx(230.0, abs=1.0)
 
 
 @pytest.fixture(scope="module")
