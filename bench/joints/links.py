@@ -31,7 +31,7 @@ from bench.jobs.each import each
 from bench.jobs.process import Failure
 from bench.joints.identified import LIMITS, JointLogs
 from bench.parameter import Parameter
-from bench.plant.robot import AddedBody, Robot, joint_rig, log_of
+from bench.plant.robot import AddedBody, Robot, joint_rig, logs_of
 from bench.trace.filter import Column
 from bench.trace.read import read_recording
 
@@ -111,13 +111,10 @@ def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
         try:
             robot = Robot.of(asked.mjcf, asked.joint, asked.added)
             rig = joint_rig(asked.rig, robot)
-            recording = read_recording(log)
-            rows = Rows.of(log_of(recording, log, rig, robot, asked.stated), rig)
+            trace, *changed = logs_of(read_recording(log), log, rig, robot, asked.stated, changes)
+            rows = Rows.of(trace, rig)
             columns = [lay_out(rows, plain(rows)).columns[:, : len(BASE)], rows.table(_frictions)]
-            for change in changes:
-                changed = Robot.of(asked.mjcf, asked.joint, (*asked.added, change))
-                trace = log_of(recording, log, rig, changed, asked.stated)
-                columns.append(rows.effort - Rows.of(trace, rig, conditioning=rows.conditioning).effort)
+            columns += [rows.effort - Rows.of(one, rig, conditioning=rows.conditioning).effort for one in changed]
         except BenchError:  # told where the joint is identified
             continue
         table = np.column_stack([*columns, rows.effort])
@@ -201,7 +198,9 @@ def seek_payload(work: Sequence[JointLogs], body: str, progress: Callable[[float
 
     Raises:
         UndeterminedError: the logs do not tell a mass above zero.
+        InputError: the MJCF has no such body.
     """
+    Robot.of(work[0].mjcf, work[0].joint, (AddedBody(body),))
     products = of_joints(work, [AddedBody(body, 1.0, (x, y, z)) for x, y, z in PLACES.tolist()], progress)
     if not products:
         raise UndeterminedError(f"the payload of '{body}'", "no joint is told by the logs", "a log of all joints")

@@ -211,6 +211,49 @@ class Robot:
             momentum[part] = self._row(matrix, w) - self.inertia * w[:, dof]
         return torque, momentum
 
+    def asked(self, added: Sequence[AddedBody], position: Array, velocity: Array) -> list[tuple[Array, Array]]:
+        """What each of some additions asks of the joint beside that, r and p as `rest` has them.
+
+        Of a point of mass m that a joint moves by a column J of its Jacobian, with speed v,
+
+            p = m*J*v,  r = -m*dJ/dt*v - m*J*g
+
+        and so of an inertia, whose J is the joint's axis along its own.
+        """
+        if not added:
+            return []
+        found = [(np.empty(len(position)), np.empty(len(position))) for _ in added]
+        own, model = self.joints.index(self.model.joint(self.joint).id), self.model
+        standing = list(self._paths(added, model.qpos0[None, model.jnt_qposadr[list(self.joints)]]))
+        for first in range(0, len(position), TOGETHER):
+            part = slice(first, first + TOGETHER)
+            q, w = position[part], velocity[part]
+            paths = zip(*(self._paths(added, q + side * ASIDE * w) for side in (0.0, 1.0, -1.0)), strict=True)
+            for one, (here, ahead, behind), still, (r, p) in zip(added, paths, standing, found, strict=True):
+                weight, moved = one.inertia if one.joint else one.mass, np.einsum("knd,nk->nd", here, w)
+                turning = np.sum((ahead[own] - behind[own]) * moved, axis=1) / (2.0 * ASIDE)
+                r[part] = -weight * (turning + (0.0 if one.joint else here[own] @ model.opt.gravity))
+                p[part] = weight * (np.sum(here[own] * moved, axis=1) - np.sum(still[own] ** 2) * w[:, own])
+        return found
+
+    def _paths(self, added: Sequence[AddedBody], position: Array) -> Iterator[Array]:
+        """How each of some additions moves by each of `joints`, at their positions (n, joints): (joints, n, 3 or 1)."""
+        model, (q, w) = self.model, self._posed(position, np.zeros_like(position))
+        places, turns, anchors, axes = self._evaluated(q, w, "xpos", "xmat", "xanchor", "xaxis")
+        for one in added:
+            body = int(model.joint(one.joint).bodyid[0]) if one.joint else model.body(one.body).id
+            place = places[:, body] + turns[:, body].reshape(-1, 3, 3) @ np.array(one.centre)
+            found = []
+            for k in self.joints:
+                axis, hinge = axes[:, k], model.jnt_type[k] == int(mujoco.mjtJoint.mjJNT_HINGE)
+                if one.joint:
+                    along = axes[:, model.joint(one.joint).id]
+                    path = np.sum(axis * along, axis=1, keepdims=True) * hinge
+                else:
+                    path = np.cross(axis, place - anchors[:, k]) if hinge else axis
+                found.append(path * _carried(model, int(model.jnt_bodyid[k]))[body])
+            yield np.array(found)
+
     def follows(self, name: str, motion: Mapping[str, tuple[Array, Array]]) -> tuple[Array, Array] | None:
         """Position and speed (n,) of a joint that an equality of the MJCF has follow another; None if none does."""
         model, here = self.model, self.model.joint(name).id
@@ -335,11 +378,18 @@ def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) ->
         InputError: the log cannot be read, a joint is neither in it nor stated, stands beyond what the MJCF allows by
             the unit assumed, or its effort is in A or V, which the MJCF's links are not.
     """
-    return log_of(read_recording(path), path, rig, robot, stated)
+    return logs_of(read_recording(path), path, rig, robot, stated)[0]
 
 
-def log_of(recording: Recording, path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Trace:
-    """The same of what a file holds."""
+def logs_of(
+    recording: Recording,
+    path: Path,
+    rig: Rig,
+    robot: Robot,
+    stated: Mapping[str, float],
+    changes: Sequence[AddedBody] = (),
+) -> list[Trace]:
+    """The same of what a file holds, and then of the robot with each of some changes."""
     recording = named(recording, list(filter(None, (robot.model.joint(k).name for k in range(robot.model.njnt)))))
     own, names = rig.of_joint(robot.joint), [robot.model.joint(k).name for k in robot.joints]
     if any(_holds(recording, name) for name in robot.units) and not (
@@ -373,12 +423,14 @@ def log_of(recording: Recording, path: Path, rig: Rig, robot: Robot, stated: Map
         raise InputError(f"{path}: joint '{robot.joint}'", found, allowed)
     position, velocity = (np.column_stack([motion[name][k] for name in names]) for k in (0, 1))
     torque, momentum = robot.rest(position, velocity)
-    known = with_known(trace, torque / ratio, momentum / ratio, own.effort_unit)
+    more = robot.asked(changes, position, velocity)
+    every = [(torque, momentum), *((torque + asked, momentum + moved) for asked, moved in more)]
     standing = [
         name for name in robot.units if name in stated and name not in rig.joints and not _holds(recording, name)
     ]
     note = f"{', '.join(standing)}: stated to stand; what they ask for where they move passes for {robot.joint}'s"
-    return replace(known, notes=(*robot.notes, *known.notes, *([note] if standing else [])))
+    known = [with_known(trace, asked / ratio, moved / ratio, own.effort_unit) for asked, moved in every]
+    return [replace(one, notes=(*robot.notes, *one.notes, *([note] if standing else []))) for one in known]
 
 
 #: What a joint that slides has where messages tell all joints as if they turned.

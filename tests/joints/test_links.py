@@ -98,4 +98,6 @@ def test_a_link_has_no_less_than_nothing(tmp_path):
 def test_a_body_that_is_not_there_is_named(tmp_path):
     (tmp_path / "arm.xml").write_text(MJCF)
     with pytest.raises(InputError, match="found no body 'foream', did you mean 'forearm'"):
+        seek_payload(of_arm(tmp_path, log()), "foream", lambda share: None)
+    with pytest.raises(InputError, match="found no body 'foream', did you mean 'forearm'"):
         Robot.of(tmp_path / "arm.xml", "elbow", (AddedBody("foream", 1.0),))

@@ -8,7 +8,7 @@ import pytest
 
 import bench
 from bench.errors import InputError
-from bench.plant.robot import Robot, read_log, rig_within
+from bench.plant.robot import AddedBody, Robot, read_log, rig_within
 from bench.rig.rig import Rig
 from bench.trace.trace import less_known
 from tests.export.two_links import C2, HIDDEN, I2, M2, MJCF, elbow_torque, log, motion, shoulder_torque, write_log
@@ -64,6 +64,28 @@ def test_it_is_that_of_mujocos_inverse_dynamics(tmp_path, arm):
     data.qpos, data.qvel, data.qacc = q, w, a
     mujoco.mj_inverse(model, data)
     assert found == pytest.approx(data.qfrc_inverse[1], rel=1e-6)
+
+
+BENT = """<mujoco><option gravity="1 -2 -9"/><worldbody><body euler="10 20 0">
+  <joint name="rail" type="slide" axis="1 2 0" armature="0.1"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+  <body pos="0.1 0.2 0.3" euler="0 30 40"><joint name="turn" axis="0 1 3" pos="0.05 0 0"/>
+    <inertial pos="0 0 0.1" mass="2" diaginertia="0.1 0.1 0.1"/>
+    <body name="hand" pos="0 0.1 0.4" euler="50 0 0"><joint name="wrist" axis="2 0 1" pos="0 0.02 0"/>
+      <inertial pos="0.1 0 0" mass="1" diaginertia="0.1 0.1 0.1"/></body></body></body></worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize("joint", ["rail", "turn", "wrist"])
+@pytest.mark.parametrize("added", [AddedBody("hand", 0.7, (0.2, -0.1, 0.3)), AddedBody(joint="wrist", inertia=0.04)])
+def test_what_is_added_asks_what_the_robot_with_it_asks_more(tmp_path, joint, added):
+    """By MuJoCo's inverse dynamics of a model that has it, at poses drawn at random."""
+    (tmp_path / "bent.xml").write_text(BENT)
+    without, having = (Robot.of(tmp_path / "bent.xml", joint, more) for more in ((), (added,)))
+    rng = np.random.default_rng(2)
+    q, w = rng.uniform(-2.0, 2.0, (20, 3)), rng.uniform(-3.0, 3.0, (20, 3))
+    ((r, p),) = without.asked([added], q, w)
+    for found, before, after in zip((r, p), without.rest(q, w), having.rest(q, w), strict=True):
+        np.testing.assert_allclose(found, after - before, atol=2e-6)
+    assert max(np.abs(r).max(), np.abs(p).max()) > 1e-3 or (joint, added.joint) == ("rail", "wrist")
 
 
 def identified(path, arm, rig=ELBOW, **stated):
