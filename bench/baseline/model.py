@@ -24,6 +24,7 @@ from bench.plant.drive import Cascade, References
 from bench.plant.model_file import SCHEMA, load_model, read_table
 from bench.plant.plant import Plant
 from bench.plant.run import run
+from bench.trace.motion import integrated
 
 #: Margins: of an angle - rad -, and of the torque of the response as a share of its RMS.
 ANGLE, RESPONSE = 0.05, 0.01
@@ -80,8 +81,7 @@ def _references(acceleration: float) -> References:
     omega = 2.0 * np.pi * np.array(FREQUENCIES)
     speeds = np.array(SHARES) * acceleration / omega
     velocity = np.minimum(time / FADE, 1.0) * (speeds @ np.sin(omega[:, None] * time))
-    position = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1])) * TICK])
-    return References(time, position, velocity, np.gradient(velocity, TICK))
+    return References(time, integrated(velocity, TICK), velocity, np.gradient(velocity, TICK))
 
 
 def compare_models(baseline: State, now: State, allowed: Allowed) -> Checked:

@@ -35,7 +35,7 @@ from bench.diagnosis.model import (
 )
 from bench.diagnosis.name import NamedEffect, Suspects, named
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.recordings import Recordings, clipped
+from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, same_axis
 from bench.effects.acting import DriveLimit
 from bench.effects.effect import Occasional
@@ -46,6 +46,7 @@ from bench.fit.fit import Fit
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
+from bench.gate.signals import clipped
 from bench.parameter import Parameter
 from bench.plant.model_file import StoredModel
 from bench.plant.tracking import follow_references

@@ -15,9 +15,10 @@ from bench.arrays import rms
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS, AxisKind
 from bench.diagnosis.add import Added
 from bench.diagnosis.name import NamedEffect, Suspects
-from bench.diagnosis.recordings import Recordings, clipped
+from bench.diagnosis.recordings import Recordings
 from bench.fit.fit import Fit
 from bench.fit.rows import Rows
+from bench.gate.signals import clipped
 from bench.names import words
 from bench.parameter import Parameter
 from bench.rig.rig import Rig

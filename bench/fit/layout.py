@@ -28,8 +28,9 @@ from bench.effects.effect import Columns, CopiesTorque, Coupling, Distortion, Ef
 from bench.effects.signals import Signals
 from bench.fit.hypothesis import Hypothesis, loads_of, with_friction, with_load
 from bench.fit.normal_equations import Name
-from bench.fit.rows import SIGN_REACH, Rows, known_of
+from bench.fit.rows import Rows, known_of
 from bench.trace.filter import Column
+from bench.trace.motion import SIGN_REACH
 
 #: Names of columns that belong to no effect: of the axis and the shift of torque against speed, and what else a
 #: recording has - sines and cosines of the mains, what the last digit of the effort cuts off, what varies slowly around

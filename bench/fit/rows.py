@@ -17,15 +17,13 @@ from bench.effects.signals import Scope, Signals
 from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
 from bench.trace.filter import Column, GaussianFilter
-from bench.trace.motion import Conditioning, condition, known_column, known_sign, raw_speed
+from bench.trace.motion import SIGN_REACH, Conditioning, condition, integrated, known_column, known_sign, raw_speed
 from bench.trace.trace import Trace
 
 #: Widest filter - s: shapes of friction live in the milliseconds around a reversal.
 WIDEST = 2e-3
 #: A row needs one sign over this many filter widths to each side, so that a lag of some widths moves no reversal in.
 SIGN_WIDTHS = 6.0
-#: Widths over which a filtered sign is within 1e-3 of one: 1 - erf(3.1/sqrt(2)) = 2e-3.
-SIGN_REACH = 3.1
 #: Share of the motion in the weaker direction below which friction and a constant torque are one number.
 ONE_WAY = 0.02
 
@@ -332,12 +330,11 @@ def _signals(
     period, source = trace.sample_period, trace[conditioning.source][part]
     speed = raw_speed(source, conditioning.source, period)
     velocity = speed if conditioning.source == "position" or "velocity" not in trace else trace["velocity"][part]
-    travelled = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2.0) * period])
     sign = known_sign(speed, conditioning.sign_threshold)
     return Signals(
         time=trace.time[part] - (trace.start_of(part) if trace.joined else begins),
         began=trace.start_of(part) - begins if trace.joined else 0.0,
-        position=trace["position"][part] if "position" in trace else travelled,
+        position=trace["position"][part] if "position" in trace else integrated(velocity, period),
         velocity=velocity,
         sign=sign,
         effort=effort[part],

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.rig.rig import Rig
-from bench.trace.motion import raw_speed
+from bench.trace.motion import integrated, raw_speed
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace, less_known
 
@@ -169,8 +169,7 @@ class Sums:
             part: the stretch.
         """
         period = trace.sample_period
-        travelled = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2.0)]) * period
-        position = trace["position"][part] if "position" in trace else travelled
+        position = trace["position"][part] if "position" in trace else integrated(speed, period)
         known = (speed, np.sign(speed), position - position.mean(), np.sin(position), np.cos(position), effort[part])
         signals = np.stack(known)
         sums = np.zeros_like(signals)

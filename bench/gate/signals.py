@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import rms
 from bench.gate.check import EFFORTS, Check, Seen, absent, resolution_of
+from bench.rig.rig import Rig
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
@@ -114,29 +116,51 @@ def clips(seen: Seen) -> Check:
 
 def _stands(seen: Seen, name: str, side: float) -> Check | None:
     """What is wrong with a signal at the upper end of its range, the lower one at a side of -1, or zero at one of 0."""
-    trace, rig = seen.trace, seen.rig
-    values, speed_or_zero = side * trace[name], name == "velocity" and side == 0.0  # an axis may rest
-    top = float(values.max())
-    peak = rig.motor.peak_current if rig is not None and name == "current" else None
-    if speed_or_zero or (side and (top <= 0.0 or (peak is not None and abs(top / peak - 1.0) < AT_LIMIT))):
+    trace = seen.trace
+    standing = None if name == "velocity" and not side else _standing(trace, seen.rig, name, side)  # an axis may rest
+    if standing is None:
         return None
-    standing = values == top if side else trace[name] == 0.0
-    starts, lengths = _runs(standing)
-    long = lengths >= ROW
-    share = float(lengths[long].sum()) / len(trace)
-    if share <= CLIPPED:
-        return None
-    lost = name != "velocity" and _more_demanded(seen, name, standing, side)
+    lost = name != "velocity" and _more_demanded(seen, name, standing.samples, side)
     if not side and not lost:
         return None  # a motor that coasts has no current
-    begin, end = starts[long][0], starts[long][-1] + lengths[long][-1] - 1
-    found = (
-        f"{share:.1%} of {name} stand at exactly {side * top + 0.0:.4g} {trace.units[name]}, "
-        f"between {trace.time[begin] - trace.time[0]:.4g} and {trace.time[end] - trace.time[0]:.4g} s"
-    )
+    begin, end = (trace.time[k] - trace.time[0] for k in (standing.first, standing.last))
+    found = f"{standing.where}, between {begin:.4g} and {end:.4g} s"
     advice = "the end of its range? What lies beyond is lost: record with a wider range, or move more gently"
     advice = advice if side else "the signal dropped out? The motion takes effort meanwhile: cut the recording there"
     return Check(CLIPS, "fail" if lost else "warn", found, ALLOWED_CLIPS, advice, unanswerable=True)
+
+
+class _Standing(NamedTuple):
+    """Samples at which a signal stands (n,), the first and the last in long rows of them, and how many in words."""
+
+    samples: NDArray[np.bool_]
+    first: int
+    last: int
+    where: str
+
+
+def _standing(trace: Trace, rig: Rig | None, name: str, side: float) -> _Standing | None:
+    """Where a signal stands at an end of its range, as of `_stands`; None where hardly, or at the drive's own limit."""
+    values = side * trace[name]
+    top = float(values.max())
+    peak = rig.motor.peak_current if rig is not None and name == "current" else None
+    if side and (top <= 0.0 or (peak is not None and abs(top / peak - 1.0) < AT_LIMIT)):
+        return None
+    samples = values == top if side else trace[name] == 0.0
+    starts, lengths = _runs(samples)
+    starts, lengths = starts[lengths >= ROW], lengths[lengths >= ROW]
+    share = float(lengths.sum()) / len(trace)
+    if share <= CLIPPED:
+        return None
+    where = f"{share:.1%} of {name} stand at exactly {side * top + 0.0:.4g} {trace.units[name]}"
+    return _Standing(samples, int(starts[0]), int(starts[-1] + lengths[-1] - 1), where)
+
+
+def clipped(trace: Trace, rig: Rig) -> list[str]:
+    """A warning of each end of its range at which a signal of the effort stands."""
+    names = [name for name in ("current", "torque", "force") if name in trace]
+    ends = (_standing(trace, rig, name, side) for name in names for side in (1.0, -1.0))
+    return [f"{end.where}: the end of its range? What lies beyond is lost" for end in ends if end is not None]
 
 
 def _more_demanded(seen: Seen, name: str, standing: NDArray[np.bool_], side: float) -> bool:

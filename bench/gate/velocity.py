@@ -16,6 +16,7 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.gate.check import Check, Seen, absent, resolution_of
 from bench.gate.timing import rate
+from bench.trace.motion import integrated
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
@@ -101,8 +102,8 @@ def _spans(trace: Trace, part: slice) -> tuple[Array, ...]:
     """Displacement by position and by speed, and change of speed, over each span - rad, rad, rad/s (m, m, m/s)."""
     period = trace.sample_period
     position, velocity = trace["position"][part], trace["velocity"][part]
-    travelled = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2.0)]) * period
-    return tuple(values[SPAN:] - values[:-SPAN] for values in (position, travelled, velocity))
+    columns = position, integrated(velocity, period), velocity
+    return tuple(values[SPAN:] - values[:-SPAN] for values in columns)
 
 
 def _step(trace: Trace) -> float:
