@@ -25,6 +25,7 @@ from bench.course.plausible import (
     fault,
     glitches,
     holes,
+    inertia_of,
 )
 from bench.course.run import LabRun, made_run
 from bench.rig.rig import Rig
@@ -34,6 +35,11 @@ DEG = math.pi / 180.0
 TOLD = 3
 #: Between this and its inverse a factor on the current is no unit, and below √2.
 SCALE = 1.38
+#: Share of samples that two recordings of one motion never have in common.
+SAME = 0.9
+#: What is tried, until it explains: mistakes in a recording at most, whether files are exchanged, and whether more than
+#: the least that a recording asks for are tried, as the others may ask for them.
+TRIED = ((1, False, False), (1, True, False), (2, False, False), (2, True, False), (2, False, True))
 #: Rounds in which a delay is searched, as a long one is not linear.
 ROUNDS = 6
 TURN = 'turn one of them by a rig.toml beside it with [trace.columns] current = "-name of its column [unit]"'
@@ -143,7 +149,7 @@ MISTAKES = (
 def refusals(runs: Mapping[str, LabRun], rig: Rig) -> dict[str, str]:
     """Recordings that cannot be of the rig's axis, each with what contradicts it and, where it is known, why."""
     own = {name: words for name, run in runs.items() if (words := fault(name, run, rig))}
-    contradicted = own or between(runs)
+    contradicted = own or between({name: inertia_of(run) for name, run in runs.items()})
     if not contradicted:
         return {}
     twins = next((pair for pair in combinations(runs, 2) if _alike(*(runs[name] for name in pair))), ())
@@ -164,7 +170,8 @@ def refusals(runs: Mapping[str, LabRun], rig: Rig) -> dict[str, str]:
 
 
 def _alike(one: LabRun, other: LabRun) -> bool:
-    return np.array_equal(one.current, other.current)
+    """Whether most samples are the same: one file that was changed in places is no other recording."""
+    return one.current.size == other.current.size and float(np.mean(one.current == other.current)) > SAME
 
 
 def _told(undone: Sequence[KnownMistake]) -> str:
@@ -174,14 +181,14 @@ def _told(undone: Sequence[KnownMistake]) -> str:
 def _causes(runs: Mapping[str, LabRun], choices: Sequence[Sequence[str]], rig: Rig) -> list[Undone]:
     """The smallest sets of mistakes without which nothing contradicts the first choice of recordings that has any."""
     mistakes = (*MISTAKES, *_scale(runs, rig))
-    possible = cache(lambda name, other, most: [*_options(name, runs[other], rig, most, mistakes)])
-    for (most, mixed), names in product(((1, False), (1, True), (2, False), (2, True)), choices):
+    possible = cache(lambda name, other, most, more: [*_options(name, runs[other], rig, most, more, mistakes)])
+    for (most, mixed, more), names in product(TRIED, choices):
         found: list[tuple[int, Undone]] = []
         for order in permutations(names) if mixed else [names]:
             exchanged = _exchanged(names, order)
-            options = [possible(name, other, most) for name, other in zip(names, order, strict=True)]
+            options = [possible(name, other, most, more) for name, other in zip(names, order, strict=True)]
             for chosen in product(*options):
-                if between({name: run for name, (_, run) in zip(names, chosen, strict=True)}):
+                if between({name: inertia for name, (_, inertia) in zip(names, chosen, strict=True)}):
                     continue
                 undone = {
                     other: (*exchanged.get(other, ()), *made)
@@ -196,10 +203,10 @@ def _causes(runs: Mapping[str, LabRun], choices: Sequence[Sequence[str]], rig: R
 
 
 def _scale(runs: Mapping[str, LabRun], rig: Rig) -> Iterator[KnownMistake]:
-    """A scale of the current of its own, which the run-up's largest current tells."""
+    """A scale of the current of its own, which the run-up's largest current tells, whatever power of 1000 it is in."""
     peak = rig.motor.peak_current
-    if FASTEST in runs and peak is not None:
-        factor = float(runs[FASTEST].current.max()) / peak
+    if FASTEST in runs and peak is not None and (largest := float(runs[FASTEST].current.max())) > 0.0:
+        factor = largest / peak / 1e3 ** round(math.log10(largest / peak) / 3.0)
         if 1.0 / SCALE < factor < SCALE and not FULL_CURRENT < factor < LARGEST_CURRENT:
             words = f"the current is {factor:.3g} times what the drive's limit says: correct its scale"
             yield KnownMistake("amplitude", words, _scaled(current=1.0 / factor))
@@ -215,9 +222,12 @@ def _exchanged(names: Sequence[str], order: Sequence[str]) -> Undone:
 
 
 def _options(
-    name: str, run: LabRun, rig: Rig, most: int, mistakes: Sequence[KnownMistake]
-) -> Iterator[tuple[tuple[KnownMistake, ...], LabRun]]:
-    """Mistakes, at most so many, without which a recording is sound by itself, and it without them."""
+    name: str, run: LabRun, rig: Rig, most: int, more: bool, mistakes: Sequence[KnownMistake]
+) -> Iterator[tuple[tuple[KnownMistake, ...], float | None]]:
+    """Mistakes, at most so many, without which a recording is sound by itself, and its J without them - kg*m**2.
+
+    No more than it asks for, or `more`.
+    """
     sound = False
     for count in range(most + 1):
         for chosen in combinations(mistakes, count):
@@ -231,7 +241,7 @@ def _options(
                     undone = mistake.undo(undone, rig) if undone is not None else None
                 if undone is not None and not fault(name, undone, rig):
                     sound = True
-                    yield made, undone
+                    yield made, inertia_of(undone)
                     break
-        if sound and count:  # more mistakes than needed explain anything
+        if sound and count and not more:
             return

@@ -76,6 +76,12 @@ def balance(run: LabRun) -> TorqueBalance | None:
     return TorqueBalance(inertia, viscous, coulomb, -moved / inertia / run.sample_period, left, size)
 
 
+def inertia_of(run: LabRun) -> float | None:
+    """J of that balance - kg*m**2."""
+    found = balance(run)
+    return None if found is None else found.inertia
+
+
 def glitches(values: Array, smooth: bool) -> NDArray[np.int64]:
     """Samples of (n,) that stand alone; those of a smooth signal are held against a cubic through their neighbours."""
     x = np.pad(values, 2, mode="edge")
@@ -158,9 +164,9 @@ def _of_run_up(run: LabRun, rig: Rig) -> str:
     return ""
 
 
-def between(runs: Mapping[str, LabRun]) -> dict[str, str]:
-    """Of recordings that are sound by themselves, those whose J contradicts the others', with what contradicts it."""
-    found = {name: one.inertia for name, run in runs.items() if (one := balance(run)) is not None}
+def between(inertias: Mapping[str, float | None]) -> dict[str, str]:
+    """Of recordings that are sound by themselves, those whose J - kg*m**2 - contradicts the others', with what does."""
+    found = {name: inertia for name, inertia in inertias.items() if inertia is not None}
     if len(found) < 2:
         return {}
     middle, limit = float(np.median([*found.values()])), BETWEEN if len(found) > 2 else BETWEEN / 2.0

@@ -131,7 +131,7 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
     numbers |= {"RMS torque": (left.rms_torque, "N·m"), "RMS current": (left.rms_current, "A")}
     every = enumerate([*_motion(speed, torque, left, ranges[0]), *curves])
     coloured = tuple(one.model_copy(update={"colour": doc.COLOURS[k % len(doc.COLOURS)]}) for k, one in every)
-    axes = doc.Panel(x_label="speed |n| / rpm", y_label="torque M in the direction of motion / (N·m)", series=coloured)
+    axes = doc.Panel(x_label="speed |n| / rpm", y_label="torque M along the motion / (N·m)", series=coloured)
     title, alternative = f"Operating range: {what}", "Torque over speed, and the limits."
     return InRange(tuple(findings), numbers, doc.Chart(title=title, alternative=alternative, panels=(axes,)))
 

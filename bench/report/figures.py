@@ -43,6 +43,8 @@ WIDTH, TITLE = 11.0, 0.35
 ACROSS, ROW = 4, 2.4
 #: Height of a panel over time, of one of a stack, of a row of intervals and of one of a table - inch.
 TIME_PANEL, STACKED, SPAN, LINE = 1.5, 1.6, 0.3, 0.2
+#: Letters across a legend over its axes, and those that the sample of a line takes.
+LETTERS, OF_SAMPLE = 130, 8
 #: Entries in a row of a legend, and dots that are few enough to be larger.
 LEGEND, FEW = 4, 200
 #: How a series is drawn.
@@ -111,7 +113,8 @@ def height(part: doc.Drawable) -> float:
         case doc.HeatMap():
             return 2.6 + 0.34 * len(part.rows)
         case doc.Chart() if part.stacked:
-            legends = sum(-(-sum(bool(one.name) for one in panel.series) // LEGEND) for panel in part.panels)
+            named = [[one.name for one in panel.series if one.name] for panel in part.panels]
+            legends = sum(-(-len(names) // across(names)) for names in named)
             return max(3.0, 0.8 + STACKED * len(part.panels)) + LINE * legends
         case doc.Chart():
             return 0.4 + ROW * (-(-len(part.panels) // ACROSS) if len(part.panels) > 1 else 1.6)
@@ -322,9 +325,15 @@ def title_figure(figure: Figure | SubFigure, title: str, **style: Any) -> None: 
     figure.suptitle(plain(title), **{"x": 0.01, "ha": "left", "weight": "bold", "parse_math": False, **style})
 
 
-def legend_above(axes: Axes, across: int = LEGEND) -> None:
-    """A legend over the axes, where it covers no data; its names are text."""
-    legend = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1, ncols=across)
+def across(names: Sequence[str], most: int = LEGEND) -> int:
+    """How many of these names, at most so many, have room beside each other in a legend."""
+    return max(1, min(most, LETTERS // (max(map(len, names), default=0) + OF_SAMPLE)))
+
+
+def legend_above(axes: Axes, most: int = LEGEND) -> None:
+    """A legend over the axes, where it covers no data, with as many names across as fit; its names are text."""
+    columns = across(axes.get_legend_handles_labels()[1], most)
+    legend = axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1, ncols=columns)
     _as_text(legend.get_texts())
 
 
