@@ -363,7 +363,7 @@ def refined_model(
         model = numbers.model(stored, values)
     except InputError:
         return None
-    (velocity,) = gaps.velocities([model], [held_out.recorded])
+    (velocity,) = gaps.velocities([model], held_out.recorded)
     return model, values, held_out.recorded.gap(velocity)
 
 
@@ -425,7 +425,7 @@ def stepped(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: Vel
         models = [stored, *(numbers.model(stored, row) for row in moved)]
     except InputError:
         return None
-    simulated = gaps.velocities(models, [recorded] * len(models))
+    simulated = gaps.velocities(models, recorded)
     differences = [recorded.difference(velocity) for velocity in simulated if velocity is not None]
     if len(differences) < len(models):
         return None

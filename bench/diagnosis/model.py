@@ -46,7 +46,7 @@ Placed = Wave | Contact
 SPEEDS, SLOWEST = 400, 1e-3
 #: Names of fitted and of judging motion.
 RECORDING, HOLDOUT = "recording", "holdout"
-#: Velocities that are kept for every addition: half the memory, and never summed.
+#: Velocities that are shown for every addition: half the memory, and never summed.
 Residual = NDArray[np.float32]
 
 
@@ -238,23 +238,8 @@ class Recorded:
         return SoftTracking(model, self.trace, self.effort, stored.misalignment, inertia, self.known)
 
 
-@dataclass(frozen=True)
-class Held:
-    """A model held to a recording; nothing of it without a model, or where it diverged.
-
-    Attributes:
-        gap: velocity gap at the judged samples - rad/s (m/s).
-        residual: measured less simulated velocity at all of them - rad/s (m/s) - (n,).
-        drift: RMS of the simulated position from the measured one - rad (m).
-    """
-
-    gap: float = math.nan
-    residual: Residual | None = None
-    drift: float = math.nan
-
-
 class VelocityGaps:
-    """Velocity gaps of models along recordings, each simulated once.
+    """Velocity gaps of models along recordings, each simulated once, over whatever part of a recording they are taken.
 
     Args:
         bandwidth: of the tracking cascade - rad/s.
@@ -263,47 +248,38 @@ class VelocityGaps:
 
     def __init__(self, bandwidth: float, inertia: float | None) -> None:
         self.bandwidth, self.inertia = bandwidth, inertia
-        self._known: dict[tuple[object, ...], Held] = {}
+        self._known: dict[tuple[StoredModel | None, int, bool], Tracked | None] = {}
 
     def simulate(self, pairs: Iterable[tuple[Stage, Recorded]]) -> None:
         """Simulate models along recordings in parallel, unless done before."""
-        asked = {_key(stage, recorded): (stage.model, recorded) for stage, recorded in pairs}
-        new = {key: pair for key, pair in asked.items() if key not in self._known}
-        run = {key: (model, recorded) for key, (model, recorded) in new.items() if model is not None}
-        tracked = self._tracked([model for model, _ in run.values()], [recorded for _, recorded in run.values()])
-        self._known |= dict.fromkeys(new, Held())
-        for (key, (_, recorded)), one in zip(run.items(), tracked, strict=True):
-            if one is not None:
-                gap, left = recorded.gap(one.velocity), recorded.residual(one.velocity)
-                self._known[key] = Held(gap, left, recorded.drift(one.position))
+        self._tracked((stage.model, recorded) for stage, recorded in pairs)
 
     def of(self, stage: Stage, recorded: Recorded) -> float:
         """RMS of measured less simulated velocity - rad/s (m/s); nan without a model, or where it diverged."""
-        return self._held(stage, recorded).gap
+        return recorded.gap(*self.velocities([stage.model], recorded))
 
-    def residual(self, stage: Stage, recorded: Recorded) -> Residual | None:
+    def residual(self, model: StoredModel | None, recorded: Recorded) -> Residual | None:
         """Measured less simulated velocity along a recording; None without a model, or where it diverged."""
-        return self._held(stage, recorded).residual
+        (simulated,) = self.velocities([model], recorded)
+        return None if simulated is None else recorded.residual(simulated)
 
     def in_phase(self, stage: Stage, recorded: Recorded) -> bool:
         """Whether what a model has over position acts where the axis has it, as far as there is a simulation."""
         placed = ((term.effect, term.shape) for term in stage.fitted.terms)
         numbers = [effect.wave_number(shape) for effect, shape in placed if isinstance(effect, Placed)]
-        return not numbers or not max(numbers) * self._held(stage, recorded).drift > OUT_OF_PHASE
+        (tracked,) = self._tracked([(stage.model, recorded)]) if numbers else (None,)
+        return tracked is None or not max(numbers) * recorded.drift(tracked.position) > OUT_OF_PHASE
 
-    def velocities(self, models: Iterable[StoredModel], recordings: Iterable[Recorded]) -> list[Array | None]:
-        """Velocities of models along recordings, one each, (n,) - rad/s (m/s); None where one diverged."""
-        return [None if each is None else each.velocity for each in self._tracked(models, recordings)]
+    def velocities(self, models: Iterable[StoredModel | None], recorded: Recorded) -> list[Array | None]:
+        """Of models along a recording, (n,) each - rad/s (m/s); None without one, or where it diverged."""
+        return [None if one is None else one.velocity for one in self._tracked((model, recorded) for model in models)]
 
-    def _tracked(self, models: Iterable[StoredModel], recordings: Iterable[Recorded]) -> list[Tracked | None]:
-        held = [r.holding(model, self.inertia) for model, r in zip(models, recordings, strict=True)]
-        return track_all(held, self.bandwidth)
-
-    def _held(self, stage: Stage, recorded: Recorded) -> Held:
-        self.simulate([(stage, recorded)])
-        return self._known[_key(stage, recorded)]
-
-
-def _key(stage: Stage, recorded: Recorded) -> tuple[object, ...]:
-    terms = tuple(term.key for term in stage.fitted.terms)
-    return (stage.rows, terms, stage.outside, stage.model is None, recorded.name)
+    def _tracked(self, pairs: Iterable[tuple[StoredModel | None, Recorded]]) -> list[Tracked | None]:
+        asked = [(model, one, (model, id(one.trace), one.events)) for model, one in pairs]
+        new = {
+            key: one.holding(model, self.inertia)
+            for model, one, key in asked
+            if model is not None and key not in self._known
+        }
+        self._known |= zip(new, track_all(list(new.values()), self.bandwidth), strict=True)
+        return [self._known.get(key) for _, _, key in asked]

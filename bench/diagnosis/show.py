@@ -243,10 +243,10 @@ def courses(recordings: Recordings, added: Added) -> tuple[Course, ...]:
     found = []
     for rows, recorded in zip(laid_out, added.recorded, strict=True):
         trace = recorded.trace
-        left = [added.gaps.residual(stage, recorded) for stage in added.stages]
+        models = [stage.model for stage in added.stages]
         if added.refined.gap is not None and added.refined.model is not None:
-            (simulated,) = added.gaps.velocities([added.refined.model], [recorded])
-            left[-1] = None if simulated is None else recorded.residual(simulated)
+            models[-1] = added.refined.model
+        left = [added.gaps.residual(model, recorded) for model in models]
         along = recorded.name, trace.origin, trace.time, measured_velocity(trace), tuple(left), rows.samples()
         found.append(Course(*along, rows.effort, tuple(balance.left(rows) for balance in balances)))
     return tuple(found)
