@@ -149,7 +149,7 @@ def _of_corner(rig: Rig, motor: Circuit, corner: float) -> dict[str, float]:
     sheet = peak_curve(rig.motor, MAINS, rig.source)
     share = (sheet.no_load_speed - corner) / (sheet.no_load_speed - sheet.corner_speed)
     other = next((curve for curve in rig.motor.peak_curves if curve is not sheet), None)
-    both = circuits(rig, other)[-1].resistance_share(corner) if other is not None else math.nan
+    both = circuits(rig, other)[3].resistance_share(corner) if other is not None else math.nan
     kelvin = motor.temperature_coefficient
     return {
         "corner": corner * RPM,
