@@ -14,6 +14,7 @@ from bench.rig.rig import load_rig
 from bench.validation.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
 from bench.validation.independent.effects import KINDS
 from tests.kept import kept
+from tests.outside import OUTSIDE
 
 AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
@@ -29,7 +30,7 @@ HIDDEN = ((), *((name,) for name in NAMED), ("vibration",))
 def recordings():
     """Two recordings by what was hidden; all integrated together."""
     rng, seconds = np.random.default_rng(3), 6.0
-    effects = [tuple(KINDS[name].draw(AXIS, 0.6, rng, seconds) for name in names) for names in HIDDEN]
+    effects = [tuple((KINDS | OUTSIDE)[name].draw(AXIS, 0.6, rng, seconds) for name in names) for names in HIDDEN]
     motions = [random_motion(AXIS, np.random.default_rng(k), seconds) for k in range(2)]
 
     def recorded():
