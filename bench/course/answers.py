@@ -136,11 +136,7 @@ MISTAKES = (
         "A factor of 2π is missing: rad/s = 2π·(turns per second), n/rpm = 60/(2π)·ω.",
         (Way(velocity=0.5 / math.pi), Way(rpm=2.0 * math.pi), Way(velocity=2.0 * math.pi)),
     ),
-    Mistake(
-        "rpm for rad/s",
-        "The speed went in in rpm: rad/s = 2π/60·n.",
-        (Way(velocity=RPM),),
-    ),
+    Mistake("rpm for rad/s", "The speed went in in rpm: rad/s = 2π/60·n.", (Way(velocity=RPM),)),
     Mistake(
         "wrong sign",
         "Current and speed are counted in opposite directions: an inertia is positive. Turn one of them.",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -224,8 +224,8 @@ def write_questions(folder: Path, out: Path) -> tuple[list[Path], list[BenchErro
             missing.append(InputError(student, f"has no questions ({reason})", "give recordings of all tasks"))
             continue
         name = re.sub(r"[^\w.-]", "-", student.resolve().name)
-        sections.append(_section(student.name, [(one.name, one.text, one.answer) for one in asked], name))
-        alone = _section(student.name, [(one.name, one.text, "") for one in asked], name)
+        sections.append(_section(student.name, asked, name))
+        alone = _section(student.name, [replace(one, answer="") for one in asked], name)
         pages[f"questions/{name}.html"] = _page(f"{student.name}: three questions", (alone,))
     if sections:
         near = Neighbours(files=tuple(Neighbour(name=name, about=name[10:-5]) for name in pages))
@@ -238,11 +238,13 @@ def write_questions(folder: Path, out: Path) -> tuple[list[Path], list[BenchErro
     return [out / name for name in pages], missing
 
 
-def _section(student: str, asked: list[tuple[str, str, str]], key: str) -> Section:
-    blocks = [Paragraph(text=f"{name[0].upper()}{name[1:]}. {text}") for name, text, _ in asked]
-    answers = [Paragraph(text=f"Answer: {answer}") for _, _, answer in asked if answer]
-    both = [part for pair in zip(blocks, answers, strict=True) for part in pair] if answers else blocks
-    return Section(key=f"of-{key}", heading=student, blocks=tuple(both))
+def _section(student: str, asked: list[AskedQuestion], key: str) -> Section:
+    """Questions, each with its answer where it has one."""
+    blocks = []
+    for one in asked:
+        blocks.append(Paragraph(text=f"{one.name[0].upper()}{one.name[1:]}. {one.text}"))
+        blocks += [Paragraph(text=f"Answer: {one.answer}")] if one.answer else []
+    return Section(key=f"of-{key}", heading=student, blocks=tuple(blocks))
 
 
 def _page(verdict: str, sections: tuple[Section, ...]) -> str:

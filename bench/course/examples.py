@@ -24,11 +24,7 @@ from bench.rig.rig import Load, Rig
 from bench.trace.trace import Trace
 
 #: Quantities of the equation of motion as the bench names them, and the course.
-NAMES = {
-    "moment_of_inertia": "J",
-    "viscous_friction_coefficient": "K_fric_w",
-    "coulomb_friction_torque": "K_fric_0",
-}
+NAMES = {"moment_of_inertia": "J", "viscous_friction_coefficient": "K_fric_w", "coulomb_friction_torque": "K_fric_0"}
 #: Recordings of each motion that estimators are compared on.
 REPETITIONS = 20
 #: Ways to estimate from a recording with friction.

@@ -307,26 +307,15 @@ def grades_csv(graded: GradedClass) -> str:
     """A row an answer."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(
-        ["student", "task", "quantity", "given", "unit", "expected", "in", "verdict", "mistake", "likelier"]
-    )
+    head = ["student", "task", "quantity", "given", "unit", "expected", "in", "verdict", "mistake", "likelier"]
+    writer.writerow(head)
     for one in graded.students:
         for answer in one.answers:
             asked, given = answer.question, answer.given
             value, unit = (given.value, given.unit or asked.unit) if given is not None else ("", "")
             likelier = answer.explained.likelier if answer.explained is not None else ""
-            expected = f"{answer.expected:.6g}", asked.unit
-            row = (
-                one.student,
-                asked.task,
-                asked.name,
-                value,
-                unit,
-                *expected,
-                answer.verdict,
-                answer.mistake,
-                likelier,
-            )
+            row = one.student, asked.task, asked.name, value, unit, f"{answer.expected:.6g}", asked.unit
+            row = *row, answer.verdict, answer.mistake, likelier
             writer.writerow([cell(str(content)) for content in row])
     return buffer.getvalue()
 
