@@ -53,6 +53,33 @@ def rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
+def known_rms(values: NDArray[np.floating]) -> float:
+    """Root mean square of the finite ones of the values, of any shape, in their unit; nan where none is."""
+    known = values[np.isfinite(values)].astype(np.float64)
+    return rms(known) if known.size else np.nan
+
+
+def correlation(one: Array, other: Array) -> float:
+    """Pearson's correlation coefficient of two signals (n,); 0 where one of them never changes."""
+    one, other = one - one.mean(), other - other.mean()
+    return float(one @ other) / max(float(np.sqrt((one @ one) * (other @ other))), 1e-300)
+
+
+def hann(length: int) -> Array:
+    """Hann's window (length,), periodic."""
+    return 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(length) / length)
+
+
+def spectra(values: Array, window: Array) -> NDArray[np.complex128]:
+    """Spectra of half-overlapping windows of a signal (n,), each less its mean - (windows, length // 2 + 1).
+
+    P. D. Welch, IEEE Transactions on Audio and Electroacoustics 15(2), 1967, 70-73; what averages them here is at hand
+    in `scipy.signal` too, which takes 0.3 to 0.6 s to import.
+    """
+    pieces = np.lib.stride_tricks.sliding_window_view(values, window.size)[:: window.size - window.size // 2]
+    return np.fft.rfft((pieces - pieces.mean(axis=1, keepdims=True)) * window, axis=1)
+
+
 def all_finite(values: Array) -> bool:
     """Whether no value is infinite or nan; costs no temporary array where none is."""
     with np.errstate(over="ignore", invalid="ignore"):

@@ -1,11 +1,11 @@
-"""TOML and JSON from files, with clear errors; and strictly valid JSON."""
+"""TOML and JSON from files, with clear errors; strictly valid JSON; and CSV."""
 
 from __future__ import annotations
 
 import json
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,21 +16,25 @@ from bench.files import read_text
 TOO_MANY_DIGITS = "holds an integer of thousands of digits"
 
 
-def read_toml(path: str | Path, kind: str) -> dict[str, Any]:
+def read_toml(path: str | Path, kind: str, schema: str | None = None) -> dict[str, Any]:
     """Tables of a TOML file; `kind` is what it should be, for messages, e.g. `a rig file`.
 
     Raises:
-        InputError: it cannot be read, is no TOML, is nested too deep or holds a number of too many digits.
+        InputError: it cannot be read, is no TOML, is nested too deep, holds a number of too many digits, or is of
+            another schema than the one that it must have.
     """
     text = read_text(path, kind)
     try:
-        return tomllib.loads(text)
+        table = tomllib.loads(text)
     except RecursionError as error:
         raise InputError(path, "its tables are nested too deep", f"allowed: {kind} (TOML)") from error
     except tomllib.TOMLDecodeError as error:
         raise InputError(path, f"not TOML ({error})", f"allowed: {kind} in UTF-8 TOML") from error
     except ValueError as error:
         raise InputError(path, TOO_MANY_DIGITS, f"allowed: {kind} (TOML)") from error
+    if schema is not None and table.get("schema") != schema:
+        raise InputError(f"{path}: schema", f"found {table.get('schema')!r}", f"allowed: '{schema}'")
+    return table
 
 
 def parse_json(text: str, where: object) -> Any:  # noqa: ANN401
@@ -62,6 +66,12 @@ def json_text(content: Mapping[str, Any], ascii_only: bool = True) -> str:
         place, value = _not_finite(content) or ("the result", math.nan)
         record = "the motion again; numbers this large or this small are not those of a servo axis"
         raise UndeterminedError(place, f"it came out as {value}", record) from error
+
+
+def csv_text(head: Sequence[str], rows: Iterable[Sequence[float]]) -> str:
+    """A table as CSV, nine digits a number; an empty cell for nan."""
+    lines = (",".join("" if math.isnan(value) else f"{value:.9g}" for value in row) for row in rows)
+    return "\n".join([",".join(head), *lines]) + "\n"
 
 
 def _not_finite(content: object, place: str = "") -> tuple[str, float] | None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.arrays import Array, rms
+from bench.arrays import Array, known_rms
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.model import holding_bandwidth, without_events
 from bench.errors import InputError, UndeterminedError
@@ -21,6 +21,7 @@ from bench.plant.model_file import StoredModel, load_model, read_table
 from bench.plant.tracking import SoftTracking, track
 from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
+from bench.structured import csv_text
 from bench.trace.motion import measured_position, measured_velocity
 from bench.trace.trace import Trace, less_known
 
@@ -58,10 +59,11 @@ class Replay:
     @property
     def summary(self) -> str:
         """Both gaps in one line; without the one that the model says nothing about."""
-        torque = f"torque gap {_rms(self.torque - self.torque_simulated):.4g} of {_rms(self.torque):.4g}"
-        velocity = f"velocity gap {_rms(self.velocity - self.velocity_simulated):.4g} of {_rms(self.velocity):.4g}"
-        gaps = f"{torque} {self.effort_unit}"
-        return f"{gaps}, {velocity} {self.speed_unit}" if np.isfinite(self.velocity_simulated).any() else gaps
+        torque, left = known_rms(self.torque), known_rms(self.torque - self.torque_simulated)
+        velocity, apart = known_rms(self.velocity), known_rms(self.velocity - self.velocity_simulated)
+        of_torque = f"torque gap {left:.4g} of {torque:.4g} {self.effort_unit}"
+        of_velocity = f"velocity gap {apart:.4g} of {velocity:.4g} {self.speed_unit}"
+        return f"{of_torque}, {of_velocity}" if np.isfinite(self.velocity_simulated).any() else of_torque
 
     @property
     def measured(self) -> dict[str, Array]:
@@ -81,9 +83,8 @@ class Replay:
         """The contract's CSV, empty cells where the model says nothing."""
         speed, effort = self.speed_unit, self.effort_unit
         head = f"time [s],velocity [{speed}],velocity_simulated [{speed}],torque [{effort}],torque_simulated [{effort}]"
-        table = np.column_stack([self.time, self.velocity, self.velocity_simulated, self.torque, self.torque_simulated])
-        rows = [",".join("" if value != value else f"{value:.9g}" for value in row) for row in table.tolist()]
-        return "\n".join([head, *rows]) + "\n"
+        both = self.velocity, self.velocity_simulated, self.torque, self.torque_simulated
+        return csv_text(head.split(","), np.column_stack([self.time, *both]).tolist())
 
 
 def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -> Replay:
@@ -124,7 +125,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     warnings = []
     if str(table.get("name", rig.name)) != rig.name:
         warnings.append(f"the model is of '{table['name']}', the rig file of '{rig.name}'")
-    left = _rms(torque - simulated) / max(_rms(torque), 1e-300)
+    left = known_rms(torque - simulated) / max(known_rms(torque), 1e-300)
     if left > LEFT:
         warnings.append(f"the model leaves {left:.0%} of the torque unexplained: another axis, or other units?")
     moved = measured[0], position, measured[1], velocity
@@ -156,11 +157,6 @@ def _require_kind(path: str | Path, table: Mapping[str, Any], rig: Rig) -> None:
     kind = table.get("kind", rig.kind)
     if kind != rig.kind:
         raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
-
-
-def _rms(values: Array) -> float:
-    known = values[np.isfinite(values)]
-    return rms(known) if known.size else 0.0
 
 
 def load_balance(path: str | Path) -> Balance:

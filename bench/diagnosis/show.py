@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array, rms
+from bench.arrays import Array, known_rms, rms
 from bench.comparison.spread import Between
 from bench.diagnosis.add import Added, Rejected
 from bench.diagnosis.name import NamedEffect, Suspects
@@ -258,15 +258,10 @@ def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
         Shrunk(
             stage.effect,
             tuple(rms(course.torque_left[k]) for course in shown),
-            tuple(_rms_known(course.velocity_left[k]) for course in shown),
+            tuple(math.nan if (left := course.velocity_left[k]) is None else known_rms(left) for course in shown),
         )
         for k, stage in enumerate(added.stages)
     ]
-
-
-def _rms_known(left: NDArray[np.float32] | None) -> float:
-    """RMS over the samples that a model covers; nan without a model."""
-    return math.nan if left is None else rms(left[np.isfinite(left)].astype(np.float64))
 
 
 def torque_gap(steps: list[Shrunk], whole: Fit, unit: str) -> Gap:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import Array, hann, spectra
 from bench.axis_kind import INERTIA, AxisKind
 from bench.fit.fit import Fit
 
@@ -167,19 +167,8 @@ def _frequency(fitted: Fit) -> Where:
 
 
 def _welch(values: Array, rate: float, length: int) -> tuple[Array, Array]:
-    """Frequencies - Hz - and power density there of values (m,) - their unit squared over Hz.
-
-    Mean of the periodograms of windows that overlap by half, each less its mean, under Hann's window (P. D. Welch, IEEE
-    Transactions on Audio and Electroacoustics 15(2), 1967, 70-73); `scipy.signal` takes 0.6 s to import.
-
-    Args:
-        values: evenly sampled.
-        rate: of the samples - Hz.
-        length: of a window, in samples.
-    """
-    windows = np.lib.stride_tricks.sliding_window_view(values, length)[:: length - length // 2]
-    hann = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(length) / length)
-    power = np.abs(np.fft.rfft((windows - windows.mean(axis=1, keepdims=True)) * hann, axis=1)) ** 2
-    density = power.mean(axis=0) / (rate * np.sum(hann**2))
+    """Frequencies - Hz - and power density there of values (m,) at a rate - their unit squared over Hz."""
+    window = hann(length)
+    density = np.mean(np.abs(spectra(values, window)) ** 2, axis=0) / (rate * np.sum(window**2))
     density[1 : (length + 1) // 2] *= 2.0
     return np.fft.rfftfreq(length, 1.0 / rate).astype(np.float64), density

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bench.arrays import NORMAL95
+from bench.arrays import NORMAL95, rms
 from bench.effects.acting import FilteredSignal
 from bench.effects.effect import Detectable, Detected, MotionLag, smoothed
 from bench.effects.signals import Scope
@@ -64,10 +64,7 @@ class VelocityFilterLag(MotionLag, Detectable, FilteredSignal):
         lag = float(rate @ difference) / max(power, 1e-300)
         rest = difference - lag * rate
         rest_floor = float(np.hypot(floor, lag * noise["velocity"] * smooth.noise_gain(1)))
-        before, after = (
-            float(np.sqrt(np.mean(off**2))) / max(least, 1e-300)
-            for off, least in ((difference, floor), (rest, rest_floor))
-        )
+        before, after = (rms(off) / max(least, 1e-300) for off, least in ((difference, floor), (rest, rest_floor)))
         explained = 1.0 - float(rest @ rest) / max(float(difference @ difference), 1e-300)
         if before < DISAGREE or explained < EXPLAINED or lag < LEAST_SHARE * trace.sample_period:
             return None

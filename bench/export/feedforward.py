@@ -28,11 +28,12 @@ from bench.arrays import Array, rms
 from bench.effects.acting import AXIS, BRISTLES
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel
-from bench.plant.drive import Cascade, References, csv_text
+from bench.plant.drive import Cascade, References
 from bench.plant.plant import Plant
 from bench.plant.run import run
 from bench.plant.stepped_effects import Joints, SteppedEffects
 from bench.rig.rig import Rig
+from bench.structured import csv_text
 from bench.trace.channel import split_label
 from bench.trace.signals import scale_in, unit_on
 
@@ -241,7 +242,7 @@ class DriveUnits:
         if constant is not None:
             columns.append(constant.current(table.torque) / self.current.factor)
             head.append(f"current [{self.current.text}]")
-        return csv_text(head, np.column_stack(columns)[np.argsort(coordinate, kind="stable")])
+        return csv_text(head, np.column_stack(columns)[np.argsort(coordinate, kind="stable")].tolist())
 
     def inertia(self, feedforward: Feedforward) -> Iterator[tuple[str, float, str]]:
         """The inertia's feed-forward: name, value and unit."""

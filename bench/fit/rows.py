@@ -11,7 +11,7 @@ from typing import Any, TypedDict, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import Array, rms
 from bench.axis_kind import AxisKind
 from bench.effects.signals import Scope, Signals
 from bench.errors import UndeterminedError
@@ -389,5 +389,5 @@ def _moved(stretches: Sequence[Stretch], conditioning: Conditioning) -> _Moved:
         "duration": max(ends[begun] - starts[begun] for begun in starts),
         "travel": max(float(s.position.max()) for s in signals) - min(float(s.position.min()) for s in signals),
         "top_speed": max(float(np.abs(s.velocity).max()) for s in signals),
-        "rms_speed": float(np.sqrt(np.mean(speed**2))),
+        "rms_speed": rms(speed),
     }

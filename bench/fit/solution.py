@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from bench.arrays import Array, symmetric_inverse
+from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
 from bench.fit.determined import INDEPENDENT_SHARE
 from bench.fit.hypothesis import Hypothesis
@@ -214,8 +214,8 @@ class Solution:
     @cached_property
     def misfit(self) -> Array:
         """Half widths at 95 % from the residual above noise (p,); 0 if there is none."""
-        reaches, rms = np.zeros(self.theta.size), float(np.sqrt(np.mean(self.residual**2)))
-        if rms <= NOISE_ALONE * self.floor.white:  # a floor in colour is no lower
+        reaches = np.zeros(self.theta.size)
+        if rms(self.residual) <= NOISE_ALONE * self.floor.white:  # a floor in colour is no lower
             return reaches
         columns = self.laid.columns
         if OFFSET in self.names:

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bench.arrays import Array, rms
+from bench.arrays import Array, correlation, rms
 from bench.gate.check import Balanced, Check, Seen, absent
 from bench.trace.trace import Trace
 
@@ -74,7 +74,7 @@ def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str,
     demanding = asked > DEMANDED * rms(demand)
     gains = np.array([demand[block] @ effort[block] / max(demand[block] @ demand[block], 1e-300) for block in blocks])
     scale = np.abs(gains) / np.median(np.abs(gains[demanding])) + 1e-300
-    alike = np.array([abs(_correlation(demand[block], effort[block])) for block in blocks]) > ALIKE
+    alike = np.array([abs(correlation(demand[block], effort[block])) for block in blocks]) > ALIKE
     quiet = np.array([rms(effort[block]) for block in blocks]) < QUIET * asked
     faults = (
         (demanding & quiet, 0.0, f"{name} is nearly zero while the motion takes effort", "the signal dropped out"),
@@ -104,11 +104,6 @@ def _signs(along: Array) -> Array:
     for _ in range(signs.size):
         signs = np.where(along.T @ (along @ signs) < 0.0, -1.0, 1.0)
     return signs if float(signs @ np.linalg.norm(along, axis=0)) > 0.0 else -signs
-
-
-def _correlation(one: Array, other: Array) -> float:
-    one, other = one - one.mean(), other - other.mean()
-    return float(one @ other) / max(float(np.sqrt((one @ one) * (other @ other))), 1e-300)
 
 
 def _delayed(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, str, float]]:

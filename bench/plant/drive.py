@@ -24,6 +24,7 @@ from bench.plant.axis_model import AxisParameters
 from bench.plant.closed_loop import ClosedLoop, Controller, Tick
 from bench.plant.stepped_effects import on_axes, per_axis, stacked
 from bench.rig.rig import Rig
+from bench.structured import csv_text
 
 Values = float | Array
 #: Sensor that has to be in a model that runs natively.
@@ -278,12 +279,7 @@ class References:
         (length, per_length), (speed, per_speed) = position, velocity
         moved = self.position / per_length, self.velocity / per_speed, self.acceleration / per_speed
         head = "time [s]", f"position [{length}]", f"velocity [{speed}]", f"acceleration [{speed}/s]"
-        return csv_text(head, np.stack([signal[rows] for signal in (self.time, *moved)], axis=-1))
-
-
-def csv_text(head: Sequence[str], rows: Array) -> str:
-    """A table (n, m) as CSV, nine digits a number."""
-    return "\n".join([",".join(head), *(",".join(f"{value:.9g}" for value in row) for row in rows.tolist())]) + "\n"
+        return csv_text(head, np.stack([signal[rows] for signal in (self.time, *moved)], axis=-1).tolist())
 
 
 def side_by_side(references: list[References]) -> References:

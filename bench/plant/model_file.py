@@ -143,18 +143,12 @@ def load_model(path: str | Path) -> StoredModel:
 
     InputError: no such file, no TOML, another schema, an unknown or missing key, or a value that is none.
     """
-    table = read_table(path)
-    if table.get("schema") != SCHEMA:
-        raise InputError(f"{path}: schema", f"found {table.get('schema')!r}", f"allowed: '{SCHEMA}'")
-    return _model(table, str(path))
+    return _model(read_table(path, SCHEMA), str(path))
 
 
 def load_joints(path: str | Path) -> dict[str, StoredModel]:
     """Models of a robot's joints, by name, from the `effects.toml` of `bench robot`; InputError as `load_model`."""
-    table = read_toml(path, "an effects.toml that bench robot wrote")
-    if table.get("schema") != OF_JOINTS:
-        raise InputError(f"{path}: schema", f"found {table.get('schema')!r}", f"allowed: '{OF_JOINTS}'")
-    joints = table.get("joints")
+    joints = read_toml(path, "an effects.toml that bench robot wrote", OF_JOINTS).get("joints")
     if not isinstance(joints, dict) or not all(isinstance(one, dict) for one in joints.values()):
         raise InputError(f"{path}: joints", f"found {joints!r}", "allowed: a table for each joint")
     return {name: _model(one, f"{path}: joints.{name}") for name, one in joints.items()}
@@ -205,9 +199,9 @@ def _model(table: Mapping[str, Any], path: str) -> StoredModel:
     return StoredModel(str(table.get("name", "axis")), model, misalignment, Mounting(**mounting))
 
 
-def read_table(path: str | Path) -> dict[str, Any]:
-    """The tables of a `model.toml`; InputError where it cannot be read or is no TOML."""
-    return read_toml(path, "a model.toml that the bench wrote")
+def read_table(path: str | Path, schema: str | None = None) -> dict[str, Any]:
+    """The tables of a `model.toml`; InputError where it cannot be read, is no TOML or of another schema."""
+    return read_toml(path, "a model.toml that the bench wrote", schema)
 
 
 def _values(table: object, units: Mapping[str, str], where: str) -> dict[str, float]:

@@ -16,7 +16,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from bench.arrays import Array, rms
+from bench.arrays import Array, correlation, rms
 from bench.errors import InputError
 from bench.structured import json_text
 from bench.trace.channel import Channel, Recording
@@ -437,7 +437,7 @@ def _derivatives(columns: Mapping[int, Channel]) -> dict[int, tuple[str, str]]:
         rate = _rate_of(channel.values[:ENOUGH])
         for other, second in long.items() if rate.size else ():
             alike = other != place and second.values.size == channel.values.size and second.axis == channel.axis
-            if alike and abs(_correlation(rate, smooth[other])) > DERIVATIVE:
+            if alike and abs(correlation(rate, smooth[other])) > DERIVATIVE:
                 found[place] = ("position", f"its derivative is '{second.name}'")
                 found[other] = ("velocity", f"is the derivative of '{channel.name}'")
     return found
@@ -454,11 +454,6 @@ def _rate_of(values: Array) -> Array:
 
 def _smoothed(values: Array) -> Array:
     return np.convolve(values, np.ones(9) / 9.0, mode="same")
-
-
-def _correlation(one: Array, other: Array) -> float:
-    spread = float(np.std(one) * np.std(other))
-    return float(np.mean((one - one.mean()) * (other - other.mean()))) / spread if spread > 0.0 else 0.0
 
 
 def vendor_column(name: str) -> tuple[str, str | None, str] | None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array, rms
+from bench.arrays import Array, hann, rms, spectra
 from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, Column, GaussianFilter
@@ -238,19 +238,12 @@ def _coherence(pairs: Sequence[tuple[Array, Array]], sample_period: float, order
     usual = int(sizes[np.searchsorted(np.cumsum(sizes), 0.5 * sizes.sum())])
     length = int(np.clip(2 ** int(np.log2(min((sizes.sum() + order) / 8, usual))), 16, 1024))
     long = [(np.diff(source, order), effort[order:]) for source, effort in pairs if effort.size - order >= length]
-    one, other = (np.concatenate([_spectra(pair[k], length) for pair in long]) for k in (0, 1))
+    one, other = (np.concatenate([spectra(pair[k], hann(length)) for pair in long]) for k in (0, 1))
     shared = np.abs(np.sum(one.conj() * other, axis=0)) ** 2
     power = np.sum(np.abs(one) ** 2, axis=0) * np.sum(np.abs(other) ** 2, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):  # a signal that never changes has no power to share
         coherence = np.nan_to_num(shared / power)
     return np.arange(1, length // 2) / (length * sample_period), coherence[1:-1]
-
-
-def _spectra(values: NDArray[np.float64], length: int) -> NDArray[np.complex128]:
-    """Spectra of half-overlapping Hann windows of a signal (n,), each less its mean - (windows, length//2 + 1)."""
-    windows = np.lib.stride_tricks.sliding_window_view(values, length)[:: length - length // 2]
-    taper = np.hanning(length + 1)[:-1]
-    return np.fft.rfft((windows - windows.mean(axis=1, keepdims=True)) * taper)
 
 
 @dataclass(frozen=True)
