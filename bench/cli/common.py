@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 import typer
 
 import bench
+from bench.arrays import Array
 from bench.bounds import bounded
 from bench.errors import InputError
 from bench.files import keeping, require_writable, write_text
@@ -250,11 +251,19 @@ def warn(warnings: Iterable[str]) -> None:
 
 @dataclass(frozen=True)
 class Subject:
-    """What a recording is of: an axis or a robot's joint, and how its recordings are read whole."""
+    """What a recording is of: an axis or a robot's joint, and how its recordings are read whole.
+
+    `poses` tells when a log of a robot has its joints where, by name.
+    """
 
     rig: bench.Rig
     read: Callable[[Path], bench.Trace]
-    robot: bool
+    poses: Callable[[Path], tuple[Array, dict[str, Array]]] | None = None
+
+    @property
+    def robot(self) -> bool:
+        """Whether it is a robot's joint."""
+        return self.poses is not None
 
     @property
     def whole(self) -> Callable[[Path], bench.Trace] | None:
@@ -288,8 +297,9 @@ def subject(
         if rig is not None and draft is not None:
             raise InputError("--draft", "found with --rig", "allowed: without, for the rig that is drafted then")
         known = _drafted(trace, axis, draft) if rig is None else bench.load_rig(rig).on_axis(axis)
-        return Subject(known, lambda path: bench.read(path, known.trace), robot=False)
-    from bench.plant.robot import Robot, joint_rig, read_log
+        return Subject(known, lambda path: bench.read(path, known.trace))
+    from bench.plant.robot import Robot, joint_rig, moved, read_log
+    from bench.trace.read import read_recording
 
     robot = Robot.of(mjcf, joint)
     within = joint_rig(None if rig is None else bench.load_rig(rig).on_axis(axis), robot)
@@ -302,7 +312,12 @@ def subject(
         warned.update(trace.notes)
         return trace
 
-    return Subject(within, read, robot=True)
+    def poses(path: Path) -> tuple[Array, dict[str, Array]]:
+        trace, position, _, _ = moved(read_recording(path), path, within, robot, stands)
+        names = (robot.model.joint(k).name for k in robot.joints)
+        return trace.time - trace.time[0], dict(zip(names, position.T, strict=True))
+
+    return Subject(within, read, poses)
 
 
 def one_joint(joints: Sequence[str] | None) -> str | None:

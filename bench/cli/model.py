@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from bench.diagnosis.replay import Replay
     from bench.plant.model_file import StoredModel
     from bench.view.let_free import FreeRun
+    from bench.view.scene import Scene
     from bench.view.side_by_side import SideBySide
 
 ModelArgument = Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")]
@@ -107,11 +108,10 @@ def view(
     shown = shown.between(start, stop)
     if video is not None:
         from bench.report.terminal import progress
-        from bench.view.scene import Scene
         from bench.view.video import write_video
 
         with progress(f"rendering {video.name}") as done:
-            write_video(video, shown, Scene.of(shown, of.rig.load), slowed, done)
+            write_video(video, shown, _scene(shown, of, trace, mjcf, common.one_joint(joint)), slowed, done)
     from bench.report.simulation import view as document_of
 
     common.write_page(
@@ -119,6 +119,16 @@ def view(
     )
     common.list_files([out, video])
     common.warn(warnings)
+
+
+def _scene(shown: SideBySide, of: Subject, trace: Path | None, mjcf: Path | None, joint: str | None) -> Scene:
+    """The axis alone, or the robot along its log."""
+    from bench.view.scene import Scene
+
+    if of.poses is None or trace is None or mjcf is None or joint is None:
+        return Scene.of(shown, of.rig.load)
+    ratio = of.rig.load.gear_ratio if of.rig.load is not None else 1.0
+    return Scene.of_robot(mjcf, joint, ratio, *of.poses(trace))
 
 
 def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, FreeRun | None, list[str]]:

@@ -390,6 +390,23 @@ def logs_of(
     changes: Sequence[AddedBody] = (),
 ) -> list[Trace]:
     """The same of what a file holds, and then of the robot with each of some changes."""
+    own = rig.of_joint(robot.joint)
+    trace, position, velocity, notes = moved(recording, path, rig, robot, stated)
+    torque, momentum = robot.rest(position, velocity)
+    more = robot.asked(changes, position, velocity)
+    every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
+    ratio = (own.load or Load()).gear_ratio
+    known = [with_known(trace, asked / ratio, moving / ratio, own.effort_unit) for asked, moving in every]
+    return [replace(one, notes=(*robot.notes, *one.notes, *notes)) for one in known]
+
+
+def moved(
+    recording: Recording, path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]
+) -> tuple[Trace, Array, Array, tuple[str, ...]]:
+    """A joint's own signals, how the robot's `joints` moved - rad (m), rad/s (m/s) - (n, joints), and what is assumed.
+
+    InputError as `read_log`.
+    """
     recording = named(recording, list(filter(None, (robot.model.joint(k).name for k in range(robot.model.njnt)))))
     own, names = rig.of_joint(robot.joint), [robot.model.joint(k).name for k in robot.joints]
     if any(_holds(recording, name) for name in robot.units) and not (
@@ -422,15 +439,11 @@ def logs_of(
         found = f"found an effort in {own.effort(trace)[1]}, beside links in kg"
         raise InputError(f"{path}: joint '{robot.joint}'", found, allowed)
     position, velocity = (np.column_stack([motion[name][k] for name in names]) for k in (0, 1))
-    torque, momentum = robot.rest(position, velocity)
-    more = robot.asked(changes, position, velocity)
-    every = [(torque, momentum), *((torque + asked, momentum + moved) for asked, moved in more)]
     standing = [
         name for name in robot.units if name in stated and name not in rig.joints and not _holds(recording, name)
     ]
     note = f"{', '.join(standing)}: stated to stand; what they ask for where they move passes for {robot.joint}'s"
-    known = [with_known(trace, asked / ratio, moved / ratio, own.effort_unit) for asked, moved in every]
-    return [replace(one, notes=(*robot.notes, *one.notes, *([note] if standing else []))) for one in known]
+    return trace, position, velocity, (note,) if standing else ()
 
 
 #: What a joint that slides has where messages tell all joints as if they turned.

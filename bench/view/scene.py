@@ -1,14 +1,18 @@
-"""What a video shows: the model of an axis, and a translucent copy of what moves in it."""
+"""What a video shows: the model of an axis or a whole robot, and a translucent copy of what moves in it."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import mujoco
 import numpy as np
 
+from bench.arrays import Array
 from bench.effects.acting import AXIS, MOTOR
 from bench.plant.axis_model import AxisParameters, build_spec
+from bench.plant.mjcf_file import read_spec
 from bench.rig.rig import Load
 from bench.view.side_by_side import SideBySide
 
@@ -20,6 +24,10 @@ COLOUR, MARKED, MARK = (0.45, 0.65, 0.95, 0.3), (0.1, 0.25, 0.85, 1.0), "mark"
 IN_FRONT, LARGER = 0.011, 1.06
 #: Way that a slide has on its rail - m.
 TRAVEL = 0.5
+#: Pixels that a robot's MJCF, which may ask for less, is rendered in at most; a camera that MuJoCo places by itself.
+LARGEST, FREE = (1600, 1200), -1
+#: Colours of what is not to be seen, and of the background where the MJCF has none.
+UNSEEN, SKY = (0.0, 0.0, 0.0, 0.0), (0.95, 0.96, 0.97)
 
 
 @dataclass(frozen=True)
@@ -31,6 +39,7 @@ class Scene:
         axis, ghost: where the positions of both stand in `qpos`.
         middle, scale: of a slide, which is drawn in the middle of its rail, and smaller than it is where that is short.
         camera: name of it.
+        times, others: when, and where the other coordinates of a robot stood then - s, rad (m) - (n,), (n, nq).
     """
 
     model: mujoco.MjModel
@@ -39,7 +48,9 @@ class Scene:
     ghost: int
     middle: float
     scale: float
-    camera: str = "front"
+    camera: str | int = "front"
+    times: Array | None = None
+    others: Array | None = None
 
     @classmethod
     def of(cls, shown: SideBySide, load: Load | None) -> Scene:
@@ -62,8 +73,44 @@ class Scene:
             middle, scale = 0.5 * (low + high), TRAVEL / max(TRAVEL, high - low)
         return cls(model, mujoco.MjData(model), axis, ghost, middle, scale)
 
-    def placed(self, position: float, ghost: float) -> mujoco.MjData:
-        """Everything where it is with model and ghost at positions - rad (m); one that is nan stays where it was."""
+    @classmethod
+    def of_robot(cls, source: Path, joint: str, ratio: float, times: Array, poses: Mapping[str, Array]) -> Scene:
+        """The robot of an MJCF with its meshes, and the measured one as its ghost.
+
+        Args:
+            source: the MJCF.
+            joint: that the motion is of, whose motor turns `ratio` times as far.
+            ratio: of its gear.
+            times: when the robot was somewhere - s - (n,).
+            poses: where its joints were then, by name - rad (m) - (n,).
+        """
+        (spec, _), (other, _) = read_spec(str(source)), read_spec(str(source))
+        carried = other.joint(joint).parent.find_all("geom")  # the rest stands where it does in both
+        for geom in other.geoms:
+            geom.material, geom.rgba = "", COLOUR if geom in carried else UNSEEN
+        spec.attach(other, prefix=GHOST, frame=spec.worldbody.add_frame())
+        spec.visual.global_.offwidth, spec.visual.global_.offheight = LARGEST
+        spec.visual.headlight.ambient = spec.visual.headlight.diffuse = [0.5] * 3
+        if not any(one.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX for one in spec.textures):
+            sky = spec.add_texture(name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, width=64, height=64)
+            sky.builtin, sky.rgb1, sky.rgb2 = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT, SKY, SKY
+        model = spec.compile()
+        others = np.tile(model.qpos0, (times.size, 1))
+        for name, values in poses.items():
+            for each in (name, GHOST + name):
+                others[:, model.joint(each).qposadr[0]] = values
+        axis, ghost = (int(model.joint(each).qposadr[0]) for each in (joint, GHOST + joint))
+        return cls(model, mujoco.MjData(model), axis, ghost, 0.0, 1.0 / ratio, FREE, times, others)
+
+    def placed(self, position: float, ghost: float, time: float = 0.0) -> mujoco.MjData:
+        """Everything where it is with model and ghost at positions - rad (m); one that is nan stays where it was.
+
+        Other joints of a robot are where they were at a time - s.
+        """
+        if self.times is not None and self.others is not None:
+            kept = self.data.qpos[[self.axis, self.ghost]]
+            self.data.qpos[:] = [np.interp(time, self.times, each) for each in self.others.T]
+            self.data.qpos[[self.axis, self.ghost]] = kept
         for at, value in ((self.axis, position), (self.ghost, ghost)):
             if np.isfinite(value):
                 self.data.qpos[at] = self.scale * (value - self.middle)

@@ -59,7 +59,7 @@ def write_video(path: Path, shown: SideBySide, scene: Scene, slowed: float, done
     with whole(path) as temporary, _renderer(scene.model) as renderer, av.open(str(temporary), "w", "mp4") as container:
         stream = container.add_stream("libx264", rate=RATE, options={"crf": QUALITY})
         stream.width, stream.height, stream.pix_fmt = WIDTH, HEIGHT, "yuv420p"
-        for count, places in enumerate(zip(position, ghost, strict=True)):
+        for count, places in enumerate(zip(position, ghost, instants, strict=True)):
             renderer.update_scene(scene.placed(*places), camera=scene.camera)
             container.mux(stream.encode(av.VideoFrame.from_ndarray(renderer.render(), format="rgb24")))
             done((count + 1) / instants.size)

@@ -5,6 +5,7 @@ import pytest
 
 from bench.axis_kind import LINEAR
 from bench.view.scene import TRAVEL, Scene
+from tests.export.two_links import L1, MJCF
 from tests.view.motions import shown
 
 
@@ -33,3 +34,24 @@ def test_a_slide_moves_along_its_rail_and_never_off_it():
     short = Scene.of(shown(LINEAR, duration=0.1), None)
     short.placed(0.1, 0.2)
     assert (place(short, "ghost slide") - place(short, "slide"))[0] == pytest.approx(0.1)
+
+
+def test_a_robot_moves_as_its_log_and_its_joint_as_model_and_ghost(tmp_path):
+    """Places of a forearm's end by the angles of both joints; the upper arm has no ghost, and its motor a gear of 2."""
+    link = '<geom name="upper" size="0.01"/><inertial pos="0 0 -0.16"'
+    text = MJCF.replace('<inertial pos="0 0 -0.16"', link)
+    text = text.replace(
+        '<inertial pos="0 0 -0.15"', '<geom name="tip" pos="0 0 -0.3" size="0.01"/><inertial pos="0 0 -0.15"'
+    )
+    (tmp_path / "arm.xml").write_text(text)
+    times = np.array([1.0, 2.0])
+    poses = {"shoulder": np.array([0.2, 0.6]), "elbow": np.array([9.0, 9.0])}
+    scene = Scene.of_robot(tmp_path / "arm.xml", "elbow", 2.0, times, poses)
+    scene.placed(-0.8, 1.4, 1.25)
+    for name, elbow in (("tip", -0.4), ("ghost tip", 0.7)):
+        along = np.array([0.3, 0.3 + elbow])  # shoulder between 0.2 and 0.6, about +y
+        expected = -np.array([L1, 0.3]) @ np.column_stack([np.sin(along), np.zeros(2), np.cos(along)])
+        np.testing.assert_allclose(place(scene, name), expected, atol=1e-9)
+    alpha = {name: scene.model.geom(name).rgba[3] for name in ("upper", "ghost upper", "ghost tip")}
+    assert alpha["upper"] == 1.0
+    assert alpha["ghost upper"] == 0.0 < alpha["ghost tip"] < 1.0
