@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from bench.axis_kind import COULOMB, INERTIA, ROTARY, VISCOUS, AxisKind
-from bench.baseline.observe import Observed, Under, differing, motion_ratio, observe, unlike
+from bench.baseline.observe import Observed, Refitted, differing, motion_ratio, observe, unlike
 from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, NamedHere, State, read_baseline
 from bench.comparison.difference import CHANGED, RESULTS, SAME, UNDECIDED, Comparison, Difference, Measured, holm
 from bench.effects.catalogue import catalogue
@@ -129,7 +129,7 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     state = now.state
     rig, moved = differing(baseline.rig, state.rig), unlike(baseline.conditions, state.conditions)
     ratio = motion_ratio(baseline.conditions, state.conditions) if moved else 1.0
-    motion = Otherwise(ratio**POWER, "the motion is not that of the baseline" if ratio > COMPARABLE else "")
+    motion = Leeway(ratio**POWER, "the motion is not that of the baseline" if ratio > COMPARABLE else "")
     effects = matched(baseline, state)
     under = None if effects.alike or now.fitted is None else now.under(effects.others(baseline))
     names = [*_of_names(effects, under, baseline, allowed, motion)]
@@ -153,8 +153,8 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
 
 
 @dataclass(frozen=True)
-class Otherwise:
-    """What another motion or sampling makes possible.
+class Leeway:
+    """By how much results may differ because the motion or sampling does.
 
     Attributes:
         factor: by which it may change what a model leaves and the torque of an effect, at most; 1 without one.
@@ -175,7 +175,7 @@ class Otherwise:
 
 
 def _of_quantities(
-    baseline: State, now: State, under: Under | None, both_sets: Under | None, allowed: Allowed, motion: Otherwise
+    baseline: State, now: State, under: Refitted | None, both_sets: Refitted | None, allowed: Allowed, motion: Leeway
 ) -> Iterator[Comparison]:
     """Comparisons of parameters and gaps.
 
@@ -290,7 +290,7 @@ def _of_both(
 
 
 def _of_names(
-    found: Matched, under: Under | None, baseline: State, allowed: Allowed, motion: Otherwise
+    found: Matched, under: Refitted | None, baseline: State, allowed: Allowed, motion: Leeway
 ) -> Iterator[Comparison]:
     """Comparisons of all names that differ."""
     torques = {} if under is None else under.torques
@@ -303,7 +303,7 @@ def _of_names(
 
 
 def _of_torque(
-    before: NamedHere, now: Measured | None, allowed: Allowed, motion: Otherwise, name: str, effect: str = ""
+    before: NamedHere, now: Measured | None, allowed: Allowed, motion: Leeway, name: str, effect: str = ""
 ) -> Comparison:
     """Comparison of the torque of an effect of the baseline, whatever its name is now."""
     was = before.torque
@@ -314,7 +314,7 @@ def _of_torque(
     return Comparison(name, was.unit, was.value, now.value, (difference,), margin, effect, motion.unlike).tested()
 
 
-def _of_appeared(after: NamedHere, baseline: State, allowed: Allowed, motion: Otherwise) -> Comparison:
+def _of_appeared(after: NamedHere, baseline: State, allowed: Allowed, motion: Leeway) -> Comparison:
     """Comparison of the torque of an effect that is new with what the baseline's recording would have shown."""
     torque = after.torque
     if torque is None or baseline.shows is None:

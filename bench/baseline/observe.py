@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bench.arrays import rms
-from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, NamedHere, RemainingGap, Shows, State
+from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, DetectionLimits, NamedHere, RemainingGap, State
 from bench.comparison.difference import Measured
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.name import NamedEffect
@@ -45,7 +45,7 @@ BESIDE = {"name", "simulation", "check", "drive", "source"}
 
 
 @dataclass(frozen=True)
-class Under:
+class Refitted:
     """Quantities of recordings fitted with the effects of another state.
 
     Attributes:
@@ -75,7 +75,7 @@ class Observed:
     base_units: Mapping[str, str] = field(default_factory=dict)
     unit: str = ""
 
-    def under(self, others: Others) -> Under:
+    def under(self, others: Others) -> Refitted:
         """The recording fitted with the effects of another state instead of its own.
 
         An effect that comes or goes changes J, K_w and K_0 with it: an unchanged axis agrees under both sets.
@@ -95,7 +95,7 @@ class Observed:
         base = uncertain(fitted).base(self.base_units)
         torques = {effect.label: _torque(fitted, index, self.unit) for index, (effect, _) in enumerate(held)}
         parameters = {name: Measured.of(one) for name, one in base.items()}
-        return Under(parameters | {TORQUE_GAP: _torque_gap(fitted, self.unit)}, torques, fitted.floor)
+        return Refitted(parameters | {TORQUE_GAP: _torque_gap(fitted, self.unit)}, torques, fitted.floor)
 
 
 def observe(
@@ -207,11 +207,11 @@ def _torque_gap(fitted: Fit, unit: str) -> Measured:
     return Measured(fitted.rms, unit, float(fitted.rms / np.sqrt(2.0 * independent)))
 
 
-def _shows(fitted: Fit) -> Shows:
+def _shows(fitted: Fit) -> DetectionLimits:
     """Torque that is significant in a recording, and that its residual may hide as noise, up to `Policy.remainder`."""
     significant = POLICY.by_chance(fitted, 1) / fitted.count
     hidden = max(fitted.chi, POLICY.remainder) ** 2 - 1.0
-    return Shows(float(np.sqrt(significant)), float(fitted.floor * np.sqrt(hidden)))
+    return DetectionLimits(float(np.sqrt(significant)), float(fitted.floor * np.sqrt(hidden)))
 
 
 def _term(effect: NamedHere, mine: NamedHere | None, own: Fit, state: State) -> Term:

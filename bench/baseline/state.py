@@ -121,7 +121,7 @@ class RemainingGap:
 
 
 @dataclass(frozen=True)
-class Shows:
+class DetectionLimits:
     """Smallest effects that a recording would have shown.
 
     Attributes:
@@ -176,7 +176,7 @@ class State:
     effects: tuple[NamedHere, ...] = ()
     verdict: str = ""
     gaps: Mapping[str, RemainingGap] = field(default_factory=dict)
-    shows: Shows | None = None
+    shows: DetectionLimits | None = None
     conditions: Mapping[str, Measured] = field(default_factory=dict)
     rig: Mapping[str, str] = field(default_factory=dict)
     provenance: Mapping[str, Any] = field(default_factory=dict)
@@ -316,7 +316,7 @@ class _Table:
             effects=tuple(effects),
             verdict=str(self.content.get("verdict", "")),
             gaps={name: RemainingGap(after, floor, unit) for name, ((after, unit), (floor, _)) in gaps.items()},
-            shows=Shows(shows.number("torque")[0], shows.number("left")[0]) if shows.content else None,
+            shows=DetectionLimits(shows.number("torque")[0], shows.number("left")[0]) if shows.content else None,
             conditions={key: Measured(*conditions.number(key)) for key in conditions.content},
             rig={str(key): str(value) for key, value in rig.content.items()},
             provenance=self.table("provenance").content,

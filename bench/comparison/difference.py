@@ -203,7 +203,7 @@ class Comparison:
 def holm(chances: Array, silent: int = 0) -> Array:
     """Chances (n,) of several tests so raised that each one below a rate alarms falsely at that rate for all together.
 
-    S. Holm, Scandinavian Journal of Statistics 6(2), 1979, 65-70; whatever hangs together.
+    S. Holm, Scandinavian Journal of Statistics 6(2), 1979, 65-70; however they depend on each other.
 
     Args:
         chances: of each test, were nothing there (n,).

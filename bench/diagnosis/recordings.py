@@ -187,7 +187,7 @@ def _require_decidable(trace: Trace, rig: Rig, rows: Rows) -> None:
     require_friction(equations, rig.axis_kind)
     base = fit(rows, plain(rows))
     _require_acceleration(base, rig.axis_kind)
-    _require_audible(base, rig.net_effort(trace)[1])
+    _require_above_noise(base, rig.net_effort(trace)[1])
 
 
 def _require_length(trace: Trace, rows: Rows) -> None:
@@ -216,7 +216,7 @@ def _require_acceleration(base: Fit, kind: AxisKind) -> None:
         )
 
 
-def _require_audible(base: Fit, unit: str) -> None:
+def _require_above_noise(base: Fit, unit: str) -> None:
     """Refuse a recording whose noise would hide an effect as large as friction, or as a tenth of the torque."""
     conditioning = base.rows.conditioning
     noise = conditioning.effort_noise * conditioning.filter.noise_gain(0)

@@ -15,7 +15,7 @@ from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.acting import Friction
 from bench.effects.effect import Columns, Contact, CopiesTorque, Coupling, Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
-from bench.fit.hypothesis import Hypothesis, Term, hang_together, in_line, with_friction, with_load
+from bench.fit.hypothesis import Hypothesis, Term, terms_interact, with_found_strengths, with_friction, with_load
 from bench.fit.layout import DIGIT, Layout, by_model, delays, lay_out, rounding, seen_by
 from bench.fit.noise import Floor, noise_power
 from bench.fit.normal_equations import bounded, solved
@@ -249,9 +249,9 @@ def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
     layout = layout if left is None else lay_out(rows, hypothesis, left)
     theta, held = _balanced(layout, None)
     for _ in range(ROUNDS):
-        found = in_line(hypothesis, theta, layout.owners)
+        found = with_found_strengths(hypothesis, theta, layout.owners)
         after = None if left is None else layout.effort - layout.columns @ theta
-        settled = (not hang_together(found) or _alike(found, hypothesis)) and _settled(left, after)
+        settled = (not terms_interact(found) or _alike(found, hypothesis)) and _settled(left, after)
         hypothesis, left = found, after
         if settled:
             break

@@ -114,13 +114,13 @@ class Hypothesis:
         return next((index for index, term in enumerate(self.terms) if isinstance(term.effect, Coupling)), None)
 
 
-def in_line(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
+def with_found_strengths(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
     """The hypothesis with what its terms see of each other's strengths, as fitted coefficients (p,) have them."""
     found = _with_loads(_with_levels(hypothesis, theta, owners), theta, owners)
     return _with_pulls(found, theta, owners)
 
 
-def hang_together(hypothesis: Hypothesis) -> bool:
+def terms_interact(hypothesis: Hypothesis) -> bool:
     """Whether the columns of a term depend on the strengths of another."""
     loaded = any(term.load is not None for term in hypothesis.terms)
     return loaded or _follows_load(hypothesis) or _multiply(hypothesis)

@@ -234,24 +234,24 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], movi
     """Covariance (p, p) of what the sensors' white noise makes of the columns.
 
     A smoothed signal and its derivative are uncorrelated, as G is even and omega*G odd; what follows the motion behind
-    a coupling is not uncorrelated with the motor's acceleration: its transfer says how far it hears the same noise.
+    a coupling is not uncorrelated with the motor's acceleration: its transfer says how much of that noise it has.
     """
     conditioning = rows.conditioning
     smooth, order = conditioning.filter, conditioning.order
     noise = np.zeros((owners.size, owners.size))
-    hearing = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
-    noise[BASE.index(MISALIGNMENT), BASE.index(MISALIGNMENT)] = conditioning.effort_noise**2 * hearing
+    gain = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
+    noise[BASE.index(MISALIGNMENT), BASE.index(MISALIGNMENT)] = conditioning.effort_noise**2 * gain
     omega = np.linspace(0.0, REACH / smooth.width, FREQUENCIES)
     accelerated = (1j * omega) ** (order + 1) * (1.0 + 1j * omega * moving)
     turned = (1j * omega) ** order * (1.0 + 1j * omega * moving)
-    heard = {BASE.index(INERTIA): accelerated, BASE.index(VISCOUS): turned}
+    transfers = {BASE.index(INERTIA): accelerated, BASE.index(VISCOUS): turned}
     for index, term in enumerate(hypothesis.terms):
         if isinstance(term.effect, Coupling):
             place = int(np.flatnonzero(owners == index)[0])
-            heard[place] = accelerated * term.effect.noise_of_motion(term.shape, omega)
-    spectra = np.stack(list(heard.values()))
+            transfers[place] = accelerated * term.effect.noise_of_motion(term.shape, omega)
+    spectra = np.stack(list(transfers.values()))
     weight = conditioning.source_power(omega) * smooth.sample_period / np.pi * np.exp(-((omega * smooth.width) ** 2))
-    places = list(heard)
+    places = list(transfers)
     step = omega[1] - omega[0]
     noise[np.ix_(places, places)] = step * ((spectra * weight) @ spectra.conj().T).real
     return noise

@@ -112,8 +112,8 @@ def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
         kinetic = inertia * s + viscous
         for index, term in enumerate(hypothesis.terms):
             if isinstance(term.effect, Coupling):
-                heard = term.effect.noise_of_motion(term.shape, omega)
-                kinetic = kinetic + theta[layout.owners == index][0] * s * heard
+                transfer = term.effect.noise_of_motion(term.shape, omega)
+                kinetic = kinetic + theta[layout.owners == index][0] * s * transfer
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
         late = (1.0 + shift * s) * (1.0 + effort_lag(hypothesis) * s)
         effort = conditioning.effort_noise**2 * np.abs(late) ** 2

@@ -24,7 +24,7 @@ from bench.fit.rows import Rows
 #: again as wide, .963/.933/.918 more than twice as wide (J, viscous, Coulomb; tests/fit/test_coverage.py).
 WIDENED = 1.5
 #: Columns of the plain axis, which take as many degrees of freedom. What effects add is not counted: where residuals
-#: hang together so long that their number matters, a remainder is left, and the interval says nothing of the effect's
+#: are correlated so long that their number matters, a remainder is left, and the interval says nothing of the effect's
 #: columns (a servo's pendulum with four effects and ten independent blocks: one degree, an interval of 12.7 errors).
 PLAIN = 4
 #: Parts of equally many rows by acceleration or speed, and by time.

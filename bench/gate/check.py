@@ -101,12 +101,12 @@ class Balanced:
         return float(self.theta[2])
 
     @cached_property
-    def audible(self) -> float:
+    def effort_over_noise(self) -> float:
         """Standard deviation of the windows' effort over that of its white noise."""
         return self._over_noise(self.effort, lambda part: part.effort)
 
     @cached_property
-    def moving(self) -> float:
+    def speed_over_noise(self) -> float:
         """The same of the windows' speed."""
         return self._over_noise(self.columns[:, 1], lambda part: np.diff(part.gone))
 

@@ -23,7 +23,7 @@ LEAST = 64
 #: sound recording is 0.48 (`python -m tests.gate`).
 REFUSED, WARNED = 0.3, 0.45
 #: Effort below this many times its noise is inconclusive.
-AUDIBLE = 3.0
+ABOVE_NOISE = 3.0
 #: Share that position must explain beyond motion for effort to follow position.
 MORE = 0.3
 
@@ -79,12 +79,12 @@ def judged(fitted: Balanced, name: str) -> Check:
     """What a balance of the effort of a name says."""
     by_motion, by_position = max(fitted.by_motion, 0.0), max(fitted.by_position, 0.0)
     explained = f"motion explains {by_motion:.0%} of {name}, with position {by_position:.0%}"
-    if by_position < WARNED and fitted.audible < AUDIBLE:
-        found = f"{explained}; {name} is {fitted.audible:.1f} times its noise"
+    if by_position < WARNED and fitted.effort_over_noise < ABOVE_NOISE:
+        found = f"{explained}; {name} is {fitted.effort_over_noise:.1f} times its noise"
         advice = "no torque signal, or accelerations too small for it: record harder ones"
         return Check(FOLLOWS, "warn", found, ALLOWED, advice)
-    if by_position < REFUSED and fitted.moving < AUDIBLE:
-        found = f"the speed hardly changes, by {fitted.moving:.1f} times its noise; {explained}"
+    if by_position < REFUSED and fitted.speed_over_noise < ABOVE_NOISE:
+        found = f"the speed hardly changes, by {fitted.speed_over_noise:.1f} times its noise; {explained}"
         advice = "a motion that accelerates, better in both directions"
         return Check(FOLLOWS, "fail", found, ALLOWED, advice, unanswerable=True)
     if by_position > WARNED and fitted.inertia < 0.0 and fitted.coulomb < 0.0 and fitted.power < 0.0:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from bench.baseline.observe import Observed, Under
-from bench.baseline.state import TORQUE_GAP, NamedHere, RemainingGap, Shows, State
+from bench.baseline.observe import Observed, Refitted
+from bench.baseline.state import TORQUE_GAP, DetectionLimits, NamedHere, RemainingGap, State
 from bench.comparison.difference import Measured
 from bench.effects.catalogue import catalogue
 
@@ -38,7 +38,7 @@ def state(changed: Mapping[str, float] | None = None, effects=(), verdict="nothi
         effects=tuple(effects),
         verdict=verdict,
         gaps={"torque": RemainingGap(values[TORQUE_GAP].value, floor, "N*m")},
-        shows=Shows(1e-3, 2.5e-3),
+        shows=DetectionLimits(1e-3, 2.5e-3),
         conditions={n: Measured(v * conditions.get(n, 1.0), unit, 0.0) for n, (v, unit) in CONDITIONS.items()},
         rig={"kind": "rotary", "motor.torque_constant": "0.8"},
         provenance={"version": "0.1.0"},
@@ -76,4 +76,4 @@ class GivenObserved(Observed):
             for name, one in self.state.quantities.items()
         }
         torques = {e.label: Measured(self.torques[e.name], "N*m", 1e-4) for e, _ in others if e.name in self.torques}
-        return Under(found, torques, self.state.gaps["torque"].noise_floor)
+        return Refitted(found, torques, self.state.gaps["torque"].noise_floor)

@@ -12,7 +12,7 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
 from bench.effects.shape import grid_of
 from bench.fit.fit import _own, _taken, fit
-from bench.fit.hypothesis import Hypothesis, Term, in_line
+from bench.fit.hypothesis import Hypothesis, Term, with_found_strengths
 from bench.fit.identify import identify
 from bench.fit.rows import Rows
 from bench.trace.trace import Trace
@@ -122,7 +122,7 @@ def test_others_see_strengths_of_dry_friction_as_share_of_coulombs():
         Term(catalogue()[name], shape) for name, shape in (("stribeck_friction", (5.0,)), ("cogging_torque", (6.0,)))
     ]
     theta, owners = np.array([1e-3, 2e-4, 0.05, 0.02, 0.3, 0.4]), [INERTIA, VISCOUS, COULOMB, 0, 1, 1]
-    found = in_line(Hypothesis(tuple(terms)), theta, np.array(owners, dtype=object))
+    found = with_found_strengths(Hypothesis(tuple(terms)), theta, np.array(owners, dtype=object))
     assert [term.level for term in found.terms] == [(pytest.approx(0.4),), ()]
     theta[2] = 0.0
-    assert [term.level for term in in_line(found, theta, np.array(owners, dtype=object)).terms] == [(), ()]
+    assert [term.level for term in with_found_strengths(found, theta, np.array(owners, dtype=object)).terms] == [(), ()]

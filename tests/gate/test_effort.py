@@ -54,7 +54,7 @@ def fitted(sound):
 
 
 @pytest.mark.parametrize(
-    ("by_motion", "by_position", "audible", "status", "advice"),
+    ("by_motion", "by_position", "over_noise", "status", "advice"),
     [
         (0.46, 0.46, 1.0, "pass", ""),
         (0.44, 0.44, 9.0, "warn", "bench diagnose"),
@@ -68,9 +68,9 @@ def fitted(sound):
         (0.10, 0.41, 9.0, "warn", "gravity"),
     ],
 )
-def test_shares_explained_are_judged_by_their_borders(fitted, by_motion, by_position, audible, status, advice):
+def test_shares_explained_are_judged_by_their_borders(fitted, by_motion, by_position, over_noise, status, advice):
     stated = replace(fitted, by_motion=by_motion, by_position=by_position)
-    stated.__dict__["audible"] = audible
+    stated.__dict__["effort_over_noise"] = over_noise
     found = effort.judged(stated, "current")
     assert found.status == status
     assert (advice in found.advice) if advice else not found.advice
