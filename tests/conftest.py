@@ -1,7 +1,9 @@
-"""How tests run side by side: a numeric thread a process, and in one process what shares a fixture."""
+"""How tests run side by side: a numeric thread a process, in one process what shares a fixture, one browser in each."""
 
 import os
+import shutil
 
+import pytest
 from hypothesis import HealthCheck, settings
 from xdist.scheduler import LoadScopeScheduling
 
@@ -10,6 +12,10 @@ TOGETHER = {
     "truths": tuple(f"tests/effects/test_{name}.py" for name in ("agreement", "follow", "model_file", "soft_tracking")),
     "lab": ("tests/course/",),
 }
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
+FLAGS += ["--disable-sync"]
 
 # before NumPy is loaded: the threads of several processes would fight over the cores
 for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -36,3 +42,36 @@ def pytest_xdist_auto_num_workers(config):
     """None beside this process where a measurement would suffer, or somebody reads along with `-s`."""
     alone = config.option.capture == "no" or config.option.benchmark_only
     return 0 if alone else None
+
+
+@pytest.fixture(scope="session")
+def browser():
+    if CHROMIUM is None:
+        pytest.skip("needs chromium (apt-get install chromium)")
+    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright (pip install -e '.[dev]')")
+    with playwright.sync_playwright() as driver:
+        chromium = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def opened(browser):
+    """Opens a file in a browser without a network; a complaint of the page, or anything it asks for, is a failure."""
+    contexts, complaints = [], []
+
+    def open_page(path, width=1280, **options):
+        context = browser.new_context(viewport={"width": width, "height": 900}, offline=True, **options)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("dialog", lambda dialog: (complaints.append(f"dialog {dialog.message}"), dialog.dismiss()))
+        page.on("requestfailed", lambda request: complaints.append(f"asked for {request.url[:80]}"))
+        page.goto(path.resolve().as_uri())
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert complaints == []

@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 import typer
 
 import bench
-from bench.arrays import Array
 from bench.bounds import bounded
 from bench.errors import InputError
 from bench.files import keeping, require_writable, write_text
@@ -27,6 +26,7 @@ from bench.names import plain
 from bench.plant.profile_names import NAMES
 
 if TYPE_CHECKING:
+    from bench.arrays import Array
     from bench.report.document import Document, Picture
 
 #: Parameters of commands that name what is written, files or folders; every other path is read.

@@ -8,9 +8,6 @@ import pytest
 from bench.course import course as course_module
 from bench.course import report as course_report
 from tests.command import bench
-from tests.report.conftest import browser, opened
-
-__all__ = ["browser", "opened"]
 
 
 @dataclass(frozen=True)

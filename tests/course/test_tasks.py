@@ -173,7 +173,7 @@ def test_10_peak_torque_and_corner(done):
     near(done["10"]["peak torque"], 0.005)
     near(done["10"]["measured corner"], 0.002)
     assert done["10"]["datasheet's corner"].value == pytest.approx(2100.0)
-    measured, sheet, _ = curves(done["10"])
+    measured, sheet, *_ = curves(done["10"])
     assert measured.y.min() >= 0.2
     assert measured.y[0] > 3.0
     assert np.stack([sheet.x, sheet.y], axis=1) == pytest.approx(np.array([[0.0, 3.5], [2100.0, 3.5], [5000.0, 0.0]]))

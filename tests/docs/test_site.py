@@ -8,9 +8,6 @@ import sys
 import pytest
 
 from tests.docs.pages import DOCS, ROOT
-from tests.report.conftest import browser, opened
-
-__all__ = ["browser", "opened"]
 
 READ = ("index", "reference/effects/backlash", "notebooks/hidden_effect", "theory", "python", "commands", "diagnose")
 
