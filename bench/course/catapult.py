@@ -187,18 +187,18 @@ def path(recordings: LabRecordings) -> TaskResult:
 
 def compare_solvers(y: Array, z: Array) -> tuple[str, Chart]:
     """How far the two solvers' paths are apart as y is measured from further away, which leaves the path as it is."""
-    matrices = {shift: columns(y + shift) for shift in SHIFTS}
-    # of one flight in fifty AᵀA of the furthest has a pivot of exactly 0, and no inverse
-    solved = {shift: one for shift, one in matrices.items() if np.linalg.det(one.T @ one) != 0.0}
-    condition = [float(np.linalg.cond(matrix)) for matrix in solved.values()]
+    shifted = [(shift, columns(y + shift)) for shift in SHIFTS]
+    # AᵀA of the furthest has a pivot of exactly 0, and no inverse, for one set of flights in fifty
+    shifts, matrices = zip(*((shift, one) for shift, one in shifted if np.linalg.det(one.T @ one) != 0.0), strict=True)
+    condition = [float(np.linalg.cond(matrix)) for matrix in matrices]
     apart = [
         float(np.max(np.abs(matrix @ by_normal_equations(matrix, z) - matrix @ by_orthogonal_solver(matrix, z))))
-        for matrix in solved.values()
+        for matrix in matrices
     ]
-    worst = next((k for k, value in enumerate(apart) if value > APART), len(apart) - 1)
+    worst = next((k for k, value in enumerate(apart) if value > APART), len(shifts) - 1)
     finding = (
         f"(AᵀA)⁻¹Aᵀb and QR agree within {apart[0]:.1g} m here (condition number {condition[0]:.0f}). They part when "
-        f"A is badly conditioned, for AᵀA has its square: with y measured from {SHIFTS[worst]:g} m away "
+        f"A is badly conditioned, for AᵀA has its square: with y measured from {shifts[worst]:g} m away "
         f"({condition[worst]:.1g}) the paths are {apart[worst]:.1g} m apart."
     )
     measured = curve(np.array(condition), np.maximum(apart, 1e-17), "measured", "large dots")

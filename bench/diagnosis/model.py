@@ -46,7 +46,7 @@ Placed = Wave | Contact
 SPEEDS, SLOWEST = 400, 1e-3
 #: Names of fitted and of judging motion.
 RECORDING, HOLDOUT = "recording", "holdout"
-#: Velocities that are shown for every addition: half the memory, and never summed.
+#: What the velocities of every addition leave, to be shown: half the memory, and never summed.
 Residual = NDArray[np.float32]
 
 

@@ -15,6 +15,9 @@ from bench.fit.fit import Fit, explained
 from bench.fit.shapes import free_shapes
 from bench.fit.solution import NOISE_ALONE
 
+#: Squares of impacts at wrong instants over their own: they err where they are and where they are not.
+ERRS_TWICE = 2.0
+
 
 def freedom(fitted: Fit) -> int:
     """Numbers that were fitted: strengths and continuous shapes."""
@@ -55,6 +58,8 @@ class Policy:
         odds: of a likelihood to that of what is nearly as good, beyond which that is no more weighed. At 24,000 to one
             an eccentric encoder took half the probability of a true inertia over position (blind set, single 94).
         exchanges: candidates at most whose shapes are searched in the place of a name.
+        undoubted: names up to which what was nearly as good as the first is not searched from: a wrong one needs others
+            beside it, as an inertia over position in the place of an eccentric encoder did (blind set, pair 36).
         replaces: of what is above noise, on the rows that are determined: what an effect takes that is tried in the
             place of others, with what is found beside it. By itself it takes what any name does: a backlash took .34
             beside cogging (blind set, pair 47).
@@ -79,6 +84,7 @@ class Policy:
     as_good: float = 0.9
     odds: float = 100.0
     exchanges: int = 2
+    undoubted: int = 2
     replaces: float = 0.5
     determined: float = 0.5
     holdout_gap: float = 3.0
@@ -157,14 +163,14 @@ class Policy:
     def replaces_by(self, before: Fit, after: Fit, share: float) -> bool:
         """Whether `after`, with an effect in the place of others, leaves less by a share where it is determined.
 
-        Where it is not, no more than impacts at the wrong instants would: those err twice, where they are and are not.
+        Where it is not, no more than impacts at the wrong instants would.
         """
         if not self.physical(after):
             return False
         left, open_left = (float(np.sum(before.residual[rows] ** 2)) for rows in (after.determined, ~after.determined))
         excess = max(left - after.count * before.floor**2, 0.0)
         clearly = left - after.squares > share * excess
-        no_more = float(np.sum(after.left[~after.determined] ** 2)) <= 2.0 * open_left
+        no_more = float(np.sum(after.left[~after.determined] ** 2)) <= ERRS_TWICE * open_left
         enough = float(after.determined.mean()) > self.determined
         return clearly and no_more and enough and not self.only_damps(before, after)
 

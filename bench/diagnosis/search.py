@@ -21,8 +21,6 @@ from bench.fit.shapes import shaped, together
 
 #: Said of a search that its limit ended.
 LIMIT = "limit of effects reached"
-#: Names up to which the first one is not doubted: what is wrong needs others beside it.
-SURE = 2
 #: Times at most that an effect in the place of others and what is beside it are searched in turn.
 TURNS = 3
 
@@ -109,7 +107,7 @@ def from_rivals(found: Searched, effects: Sequence[Effect], policy: Policy) -> S
     Names that came later bend their shapes to a wrong first one: an inertia over position took .988 of what an
     eccentric encoder left, which takes .989 itself, and needed a ripple of torque beside it (blind set, pair 36).
     """
-    if len(set(found.last.hypothesis.names)) <= SURE:
+    if len(set(found.last.hypothesis.names)) <= policy.undoubted:
         return found
     bare, first = found.steps[0].fitted, found.steps[1]
     least = policy.as_good * first.rivals[0].gain

@@ -117,9 +117,9 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
 
 
 def _short(fitted: Fitted) -> tuple[Array, Array]:
-    """What short events take beside a parabola, times its share of what is there (s,); when (s, 4).
+    """Squares that short events take beside a parabola, times their share there (s,) - (N*m)**2; when (s, 4) - s.
 
-    That is when its stretch begins, it begins and ends, and its stretch ends - s. What lies beside an event takes much,
+    That is when its stretch begins, it begins and ends, and its stretch ends. What lies beside an event takes much,
     too, but a small share of what is there; nothing where one that lasts takes more.
     """
     time, residual, width = fitted.time, fitted.residual, fitted.scope.width
@@ -149,7 +149,7 @@ def _short(fitted: Fitted) -> tuple[Array, Array]:
 def _gains(
     fitted: Fitted, weight: Array, edges: NDArray[np.intp], first: NDArray[np.intp], last: NDArray[np.intp]
 ) -> Array:
-    """Squares (w,) - (N*m)**2 (N**2) - that a torque takes from residual in windows between edges, of weighted rows."""
+    """Squares (w,) - (N*m)**2 (N**2) - that a torque takes from weighted rows, in windows from one edge to another."""
     residual, basis = fitted.residual * weight, fitted.span * weight[:, None]
     summed, counted = (np.concatenate([[0.0], np.cumsum(of)])[edges] for of in (residual, weight))
     spanned = np.concatenate([np.zeros((1, basis.shape[1])), np.cumsum(basis, axis=0)])[edges]
