@@ -258,7 +258,7 @@ def _curves_chart(rig: Rig, other: PeakCurve, *told: CircuitTold) -> Chart:
         for one in told:
             speed, current = speed_of_current(one, peak, constant, sheet.mains_voltage / MAINS)
             curves.append(curve(np.append(0.0, speed) * RPM, np.append(full, constant.torque(current)), one.name))
-        panels.append(panel("speed n / rpm", f"peak torque at {sheet.mains_voltage:g} V / (N·m)", *curves))
+        panels.append(panel("speed n / rpm", f"M_max at {sheet.mains_voltage:g} V / (N·m)", *curves))
     return chart("Task 11: peak curves of both mains voltages, hot", *panels)
 
 

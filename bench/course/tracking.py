@@ -81,6 +81,6 @@ def track(recordings: LabRecordings, axis: AxisParameters, identified: float, kn
     ]
     both = (
         panel("time / s", "tracking deviation / deg", *drawn),
-        panel("time / s", "the same, without J_load = 0 / deg", *drawn[1:], first=1),  # which hides the others
+        panel("time / s", "with J_load / deg", *drawn[1:], first=1),  # which hides the others
     )
     return TaskResult(findings, numbers, (chart("Tracking deviation of the fast run", *both),))

@@ -51,6 +51,10 @@ def tracking_table(title: str, before: Tracking, after: Tracking, kind: AxisKind
 
 #: Mains voltage that a motor is held to which states no curve - V - and revolutions per minute of 1 rad/s.
 MAINS, RPM = 230.0, 30.0 / math.pi
+COLD_FINDING = (
+    "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve is none to plan with. It "
+    "changes nothing where the magnets limit, nor for heat."
+)
 
 
 @dataclass(frozen=True)
@@ -106,34 +110,42 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
         InputError: the motor lacks its torques or curves.
     """
     mains = [curve.mains_voltage for curve in rig.motor.peak_curves] or [MAINS]
-    ranges = [OperatingRange.of(rig.motor, voltage, rig.source) for voltage in mains]
-    findings, curves, numbers = [], [], {}
-    for limit in ranges:
-        volts = f"{limit.curve.mains_voltage:g} V"
-        left = reserve(limit, speed, torque)
-        findings.append(f"At {volts}: {_peak_finding(left, speed, torque)} {_thermal_finding(left)}")
-        numbers[f"peak reserve, {volts}"] = left.peak, "N·m"
-        numbers[f"thermal reserve, {volts}"] = left.thermal, "A"
-        curves += _limit_curves(limit, volts)
+    ranges = {f"{voltage:g} V": OperatingRange.of(rig.motor, voltage, rig.source) for voltage in mains}
+    warm = {volts: reserve(limit, speed, torque) for volts, limit in ranges.items()}
+    of_peak: dict[float, list[str]] = {}  # where voltage does not limit, one reserve is that of all
+    for volts, of in warm.items():
+        of_peak.setdefault(of.peak, []).append(volts)
+    panels = []
+    for volts, limit in ranges.items():
+        curves = [*_motion(speed, torque, warm[volts], limit), *_limit_curves(limit)]
         with suppress(InputError):  # the motor does not tell its circuit
             cold = limit.cold(rig.motor, rig.source)
-            numbers[f"peak reserve, {volts}, cold"] = reserve(cold, speed, torque).peak, "N·m"
+            of_peak.setdefault(reserve(cold, speed, torque).peak, []).append(f"{volts} cold")
             at = np.linspace(0.0, cold.curve.no_load_speed, 300)
-            label = f"peak, {volts}, winding at 20 °C"
-            curves.append(doc.series(label, "dotted", "ink", at * RPM, cold.peak(at)))
-    left = reserve(ranges[0], speed, torque)
-    findings.append(_heat_finding(left, ranges[0]))
-    if any(name.endswith("cold") for name in numbers):
-        findings.append(
-            "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve stands apart and is "
-            "none to plan with. It changes nothing where the magnets limit, nor for heat."
+            curves.append(doc.series("peak, winding at 20 °C", "dotted", "ink", at * RPM, cold.peak(at)))
+        told = {one.name for panel in panels for one in panel.series}  # one legend serves all panels
+        coloured = (
+            one.model_copy(update={"colour": colour, "name": "" if one.name in told else one.name})
+            for one, colour in zip(curves, doc.COLOURS, strict=False)
         )
+        label = f"torque M at {volts} / (N·m)"
+        panels.append(doc.Panel(x_label="speed |n| / rpm", y_label=label, series=tuple(coloured)))
+    left = next(iter(warm.values()))
+    findings = (
+        *(
+            f"At {', '.join(names)}: {_peak_finding(warm[names[0]], speed, torque)}"
+            for names in of_peak.values()
+            if names[0] in warm
+        ),
+        *(f"At {volts}: {_thermal_finding(of)}" for volts, of in warm.items()),
+        _heat_finding(left, next(iter(ranges.values()))),
+        *((COLD_FINDING,) if any("cold" in name for names in of_peak.values() for name in names) else ()),
+    )
+    numbers = {f"peak reserve, {', '.join(names)}": (peak, "N·m") for peak, names in of_peak.items()}
+    numbers |= {f"thermal reserve, {volts}": (of.thermal, "A") for volts, of in warm.items()}
     numbers |= {"RMS torque": (left.rms_torque, "N·m"), "RMS current": (left.rms_current, "A")}
-    every = enumerate([*_motion(speed, torque, left, ranges[0]), *curves])
-    coloured = tuple(one.model_copy(update={"colour": doc.COLOURS[k % len(doc.COLOURS)]}) for k, one in every)
-    axes = doc.Panel(x_label="speed |n| / rpm", y_label="torque M along the motion / (N·m)", series=coloured)
-    title, alternative = f"Operating range: {what}", "Torque over speed, and the limits."
-    return InRange(tuple(findings), numbers, doc.Chart(title=title, alternative=alternative, panels=(axes,)))
+    title, alternative = f"Operating range: {what}", "Torque over speed, and the limits, at each mains voltage."
+    return InRange(findings, numbers, doc.Chart(title=title, alternative=alternative, panels=tuple(panels)))
 
 
 def _peak_finding(left: Reserve, speed: Array, torque: Array) -> str:
@@ -178,11 +190,11 @@ def _motion(speed: Array, torque: Array, left: Reserve, limit: OperatingRange) -
     ]
 
 
-def _limit_curves(limit: OperatingRange, volts: str) -> list[doc.Series]:
+def _limit_curves(limit: OperatingRange) -> list[doc.Series]:
     speed = np.linspace(0.0, limit.curve.no_load_speed, 300)
     braking = limit.available(speed, np.full_like(speed, -1.0))
     return [
-        doc.series(f"peak, {volts}", "line", "ink", speed * RPM, limit.peak(speed)),
-        doc.series(f"continuous, {volts}", "dashes", "ink", speed * RPM, limit.continuous(speed)),
-        doc.series(f"peak braking, {volts}", "dotted", "ink", speed * RPM, -braking),
+        doc.series("peak", "line", "ink", speed * RPM, limit.peak(speed)),
+        doc.series("continuous", "dashes", "ink", speed * RPM, limit.continuous(speed)),
+        doc.series("peak braking", "dotted", "ink", speed * RPM, -braking),
     ]

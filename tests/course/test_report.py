@@ -106,7 +106,7 @@ def test_limits_draws_and_states_the_reserve(bench, tmp_path):
     trace, rig = asset("data", "traces", "JLoadAndFriction.trace"), asset("data", "rigs", "lab.toml")
     status, out, _ = bench("limits", trace, "--rig", rig, "--out", "range.png")
     assert status == 0
-    assert "At 230 V: least reserve to the peak torque" in out
+    assert "At 230 V, 400 V, 230 V cold, 400 V cold: least reserve to the peak torque" in " ".join(out.split())
     assert "At 400 V" in out
     assert (tmp_path / "range.png").read_bytes()[:4] == b"\x89PNG"
     status, out, err = bench("limits", trace, "--rig", rig, "--out", "range.docx")
