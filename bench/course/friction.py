@@ -163,7 +163,7 @@ def _half_sample(run: LabRun, edge: int) -> tuple[Series, ...]:
     return (
         curve(time, slope, "dω/dt in step", "wide"),
         curve(time, values, f"α_filt set back by {DELAY} samples", "large dots"),
-        curve(time + 0.5 * run.sample_period, values, f"by {DELAY - 0.5:g}: half a sample late", "large dots"),
+        curve(time + 0.5 * run.sample_period, values, f"by {DELAY - 0.5:g}, half a sample later", "large dots"),
     )
 
 

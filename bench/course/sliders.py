@@ -37,6 +37,9 @@ def sliders(results: Sequence[TaskResult], recordings: LabRecordings) -> Program
     data: dict[str, Any] = {"charts": {key: _looks(result) for key, result in done.items()}}
     if {"8", "9"} & done.keys():
         data["friction"] = _friction(recordings.with_friction, recordings.rig)
+        if "8" in done:
+            in_step = done["8"].charts[1].panels[2].series[0]
+            data["friction"]["close"] = in_step.x, in_step.y
     if "10" in done:
         data["fastest"] = _fastest(recordings.fastest, recordings.rig, done["10"])
     if "11" in done:
@@ -114,6 +117,9 @@ def _fastest(run: LabRun, rig: Rig, task: TaskResult) -> dict[str, Any]:
         "torque": _packed(run.torque),
         "full": peak_torque.FULL_SHARE * (rig.motor.peak_torque or 0.0),
         "least": peak_torque.LEAST_TORQUE,
+        "speeds": peak_torque.SPEEDS,
+        "bin": peak_torque.HALF_BIN,
+        "tail": peak_torque.STILL_RISING,
         "sheet": [speed.tolist(), torque.tolist()],
         "corner": [corner.x[0] / RPM, corner.y[0]],
     }
@@ -130,7 +136,8 @@ def _winding(recordings: LabRecordings) -> dict[str, Any]:
         "curvature": constant.curvature,
         "peak": motor_value(rig, "peak_current"),
         "axis": [axis.inertia, axis.viscous_friction_coefficient, axis.coulomb_friction],
-        "corners": [[one.mains_voltage, one.corner_speed] for one in corners],
+        "corners": [[one.mains_voltage, one.corner_speed, one.no_load_speed] for one in corners],
+        "points": peak_torque.POINTS,
         "sheet": [values.tolist() for values in peak_torque.datasheet_curve(rig)],
         "fall": {name.lower(): getattr(peak_torque, name) for name in ("TOP", "FROM", "TO")}
         | {"tail": peak_torque.STILL_RISING},

@@ -66,7 +66,8 @@
   function task8(state) {
     const f = friction(state), all = range(0, f.count), at = (samples, values) => [samples.map(f.time), samples.map((k) => values[k])];
     const bare = [0, ...range(1, f.count).map((k) => (f.velocity[k] - f.velocity[k - 1]) / f.period)];
-    const { edge, reach, delay } = data.friction, near = range(Math.max(edge - reach, delay), Math.min(edge + reach, f.count - delay));
+    const { edge, reach, delay, close: [times, slope] } = data.friction, close = times.map((t) => f.alpha[Math.round(t / f.period)]);
+    const near = range(Math.max(edge - reach, delay), Math.min(edge + reach, f.count - delay));
     const dashes = friction({ ...state, late: delay });
     return {
       numbers: {
@@ -75,7 +76,8 @@
       },
       charts: [
         [f.velocity, f.alpha, f.M].map((values, k) => [at(k === 1 ? f.sync : all, values), at(f.fast, values)]),
-        [[at(all, bare), at(f.sync, f.alpha)], [at(near, bare), at(near, f.alpha), at(near.map((k) => k + delay), dashes.alpha)]],
+        [[at(all, bare), at(f.sync, f.alpha)], [at(near, bare), at(near, f.alpha), at(near.map((k) => k + delay), dashes.alpha)],
+          [[times, slope], [times, close], [times.map((t) => t + f.period / 2), close]]],
       ],
     };
   }
@@ -94,10 +96,11 @@
 
   // Task 10: the run-up beside the datasheet's curve and the circuit at a temperature.
   function task10({ T, kT }) {
-    const { velocity, full, least, sheet, corner } = data.fastest, M = data.fastest.torque.map((value) => kT * value);
+    const { velocity, full, least, sheet, corner, speeds, bin, tail } = data.fastest, M = data.fastest.torque.map((value) => kT * value);
     const start = first(M, (value) => value > full), kept = start < 0 ? [] : range(start, M.length).filter((k) => M[k] >= least);
     const speed = kept.map((k) => velocity[k]), torque = kept.map((k) => M[k]);
-    const numbers = { "peak torque": kept.length ? largest(torque) : NaN };
+    const numbers = { "peak torque": kept.length ? largest(torque) : NaN }, top = largest(speed), up = speed.indexOf(top);
+    const row = speeds.map((n) => median(torque.filter((_, k) => k <= up && speed[k] < tail * top && Math.abs(speed[k] - n / RPM) <= bin)));
     const charts = [[[speed.map((w) => w * RPM), torque], [sheet[0].map((w) => w * RPM), sheet[1]], [[corner[0] * RPM], [corner[1] * kT]]]];
     if (data.winding) {
       const { circuit, peak } = data.winding, R = resistance(circuit, T), currents = range(0, 200).map((k) => peak * (1 - k / 199));
@@ -105,7 +108,7 @@
       numbers["corner of the cold circuit"] = reached[0] * RPM;
       charts[0].push([[0, ...reached.map((w) => w * RPM)], [peak, ...currents].map((current) => kT * drive(current))]);
     }
-    return { numbers, charts: [charts] };
+    return { numbers, row, charts: [charts] };
   }
 
   // Task 11: the winding, stepped as bench/course/winding.py lets MuJoCo step it.
@@ -190,6 +193,19 @@
     return [own, Math.sqrt((circuit.voltage ** 2 - (drop + ke * one) ** 2) / one ** 2) / peak];
   }
 
+  // Peak torque over speed at each mains voltage, hot: the datasheet's, by the course's circuit, and by the one that balances.
+  function mains(own, across, kT) {
+    const { circuit, corners, peak, constant, curvature, points } = data.winding, currents = range(0, points).map((k) => peak * (1 - k / (points - 1)));
+    return corners.map(([volts, corner, idle]) => {
+      const along = (R, beside, ke) => [[0, ...currents.map((i) => {
+        const a = ke(i) ** 2 + (beside * i) ** 2, b = 2 * ke(i) * R * i, c = (R * i) ** 2 - ((volts / corners[0][0]) * circuit.voltage) ** 2;
+        return (RPM * (-b + Math.sqrt(b ** 2 - 4 * a * c))) / (2 * a);
+      })], [peak, ...currents].map((i) => kT * drive(i))];
+      const balances = along(own.resistance, across, (i) => kT * (constant + curvature * i ** 2));
+      return [[[0, corner * RPM, idle * RPM], [drive(peak), drive(peak), 0]], along(circuit.resistance, 0, () => circuit.ke), balances];
+    });
+  }
+
   function task11(state) {
     const { T, L, kT } = state, { circuit, hot, cold, taus, shares, sheet, every, axis: found, corners } = data.winding;
     const axis = data.charts["9"] ? friction(state).theta.map((value, k) => (k ? Math.max(value, 0) : value)) : found;
@@ -214,7 +230,7 @@
       Object.assign(speeds, { [of("hot")]: corner(at120), [of(`at ${(hot + cold) / 2} °C`)]: corner(between), [of("cold")]: corner(at20) });
       speeds[of("shift by temperature")] = corner(at20) - corner(at120);
       Object.assign(lost, { "power left over at most, course's circuit": before.lost, "power left over at most, power balances": after.lost });
-      charts.push([before.curves, after.curves]);
+      charts.push([before.curves, after.curves], mains(own, across, kT));
     }
     return { numbers: { ...Object.fromEntries(Object.entries(speeds).map(([name, w]) => [name, w * RPM])), ...lost }, charts };
   }
@@ -275,8 +291,14 @@
       row.cells[1].after(cell);
       return [row.cells[0].textContent, cell];
     }));
-    const first = tasks[key](state), kept = panels.map((figure) => figure.map((svg) => [...svg.childNodes]));
-    return { key, looks, panels, cells, first, kept, legend: [...section.querySelectorAll(".legend li")].map((entry) => [entry.lastChild, entry.textContent]),
+    const first = tasks[key](state), last = first.row && section.querySelector("table").rows, added = last?.item(last.length - 1).cloneNode(true);
+    if (added) {
+      added.className = "live";
+      added.cells[0].textContent = "the same with the sliders";
+      last.item(last.length - 1).after(added);
+    }
+    const kept = panels.map((figure) => figure.map((svg) => [...svg.childNodes]));
+    return { key, looks, panels, cells, added, first, kept, legend: [...section.querySelectorAll(".legend li")].map((entry) => [entry.lastChild, entry.textContent]),
       form: controls(key, section.querySelector("figure.chart")) };
   });
 
@@ -314,12 +336,13 @@
   }
   function show() {
     const still = data.sliders.every((slider) => state[slider.key] === slider.start);
-    for (const { key, looks, panels, cells, first, kept, legend, form } of shown) {
+    for (const { key, looks, panels, cells, added, first, kept, legend, form } of shown) {
       const now = still ? first : tasks[key](state);
       form.tell();
       form.reset.disabled = still;
-      for (const [place, name] of legend) place.textContent = name.replace(/\b20 °C/, `${state.T} °C`);
+      for (const [place, name] of legend) place.textContent = name.replace(/\b20 °C/, `${state.T} °C`).replace(/by ([\d.]+)(?= samples|,)/, (_, n) => `by ${n - state.late}`);
       for (const [name, value] of Object.entries(now.numbers)) if (cells.has(name)) cells.get(name).textContent = printed(value);
+      now.row?.forEach((value, k) => { added.cells[k + 1].textContent = Number.isFinite(value) ? Number(value.toPrecision(3)) : "-"; });
       now.charts.forEach((curves, k) => curves.forEach((panel, j) => {
         const svg = panels[k]?.[j];
         if (svg && still) svg.replaceChildren(...kept[k][j]);

@@ -5,11 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
+from bench.course import peak_torque
 from bench.course.answers import Worked
 from bench.course.axis import KG_CM2, RPM, lab_rig, torque_constant
-from bench.course.friction import DELAY, WIDTH, EquationOfMotion, filtered_acceleration, lateness
-from bench.course.power import PowerOfRun, balanced_winding, circuits
+from bench.course.friction import CLOSE, DELAY, WIDTH, EquationOfMotion, filtered_acceleration, lateness, steepest
+from bench.course.power import PowerOfRun, balanced_winding, circuits, speed_of_current
 from bench.course.recordings import LabRecordings
 from bench.course.report import Cover, lab_document
 from bench.course.sliders import REDRAWN, sliders
@@ -171,6 +173,81 @@ def points_of(svg):
     return [float(number) for number in re.split("[, ]", re.search('points="([^"]+)"', svg)[1])]
 
 
+TICK = re.compile(r'class="tick" x="([^"]+)" y="([^"]+)" text-anchor="(\w+)">([^<]+)<')
+LINES = re.compile(r'(?: points="([^"]+)"| d="([^"]+)")')
+
+
+def drawn(svg):
+    """Series of a drawing that sliders made - (n, 2) each - in the units of its axes."""
+    ticks = [
+        (anchor, float(x) if anchor == "middle" else float(y) - 4.0, value) for x, y, anchor, value in TICK.findall(svg)
+    ]
+    scales = []
+    for anchor in ("middle", "end"):
+        places, values = zip(
+            *((at, float(value.replace("−", "-"))) for one, at, value in ticks if one == anchor), strict=True
+        )
+        scales.append(np.polyfit(places, values, 1))
+    series = [re.findall(r"-?[\d.]+,-?[\d.]+", line or path) for line, path in LINES.findall(svg)]
+    places = [np.array([[float(number) for number in point.split(",")] for point in points]) for points in series]
+    return [np.column_stack([np.polyval(scale, at[:, k]) for k, scale in enumerate(scales)]) for at in places]
+
+
+def test_half_a_sample_is_seen_wherever_the_slider_puts_it(page):
+    moved(page, late=1)
+    in_step, mean, later = drawn(page.evaluate(DRAWN, "8")[5])
+    run = LabRecordings.in_folder(None).with_friction
+    alpha, _, _ = at(run, 0.5, 20.0, 1.0)
+    near = slice(steepest(run) - CLOSE, steepest(run) + CLOSE)
+    assert mean[:, 1] == pytest.approx(alpha[near], abs=5.0)
+    assert mean[:, 0] == pytest.approx(run.time[near], abs=2e-5)
+    assert later - mean == pytest.approx(np.tile([0.5e-3, 0.0], (2 * CLOSE, 1)), abs=2e-5)
+    assert in_step[:, 1] == pytest.approx(np.gradient(run.velocity, run.sample_period)[near], abs=60.0)
+    assert "set back by 1.5 samples" in page.locator("#task-8").inner_text()
+
+
+def balances(constant):
+    """The circuit whose power balances and that meets both peak curves, with another torque constant."""
+    rig = lab_rig()
+    ke, (low, high) = float(constant(np.asarray(5.7))), rig.motor.peak_curves
+    told = circuits(rig, high)[3]
+    # by root finding, where the report solves a quadratic: R*I so that w*p*L*I is the same at both corners
+    volts = told.voltage * np.array([1.0, high.mains_voltage / low.mains_voltage])
+    corners = np.array([low.corner_speed, high.corner_speed])
+
+    def squared(drop):
+        return (volts**2 - (drop + ke * corners) ** 2) / corners**2
+
+    drop = brentq(lambda drop: np.diff(squared(drop))[0], 0.0, told.voltage)
+    return replace(told, ke=ke, drop=drop, across=float(np.sqrt(squared(drop)[0])))
+
+
+def test_peak_curves_of_both_mains_voltages_with_another_torque_constant(page):
+    moved(page, kT=-10)
+    rig, shown = lab_rig(), page.evaluate(DRAWN, "11")[4:]
+    constant = torque_constant(rig)
+    weaker = replace(constant, constant=0.9 * constant.constant, curvature=0.9 * constant.curvature)
+    for svg, sheet in zip(shown, rig.motor.peak_curves, strict=True):
+        datasheet, course, balanced = drawn(svg)
+        assert datasheet[:, 1] == pytest.approx([3.5, 3.5, 0.0], abs=0.02)
+        assert datasheet[1:, 0] == pytest.approx(np.array([sheet.corner_speed, sheet.no_load_speed]) * RPM, abs=15.0)
+        for told, curve in ((circuits(rig, rig.motor.peak_curves[1])[0], course), (balances(weaker), balanced)):
+            speed, current = speed_of_current(told, 5.7, weaker, sheet.mains_voltage / 230.0)
+            assert curve[1:, 0] == pytest.approx(speed * RPM, abs=15.0)
+            assert curve[1:, 1] == pytest.approx(weaker.torque(current), abs=0.02)
+
+
+def test_the_table_at_the_drawings_speeds_has_a_line_for_the_sliders(page):
+    line = "() => [...[...document.querySelector('#task-10 table').rows].at(-1).cells].map((cell) => cell.innerText)"
+    assert page.evaluate(line)[1:] == ["3.49", "3.5", "3.5", "3.5", "3.49", "2.14", "-"]
+    moved(page, kT=5)
+    recordings = LabRecordings.in_folder(None)
+    stronger = replace(recordings.fastest, torque=1.05 * recordings.fastest.torque)
+    kept = peak_torque.run_up(stronger, recordings.rig)
+    measured = peak_torque.measured_at_speeds(kept.velocity, kept.torque)
+    assert page.evaluate(line)[1:] == [f"{value:.3g}" for value in measured[:-1]] + ["-"]
+
+
 def test_diagrams_follow_and_come_back(page):
     before = {key: page.evaluate(DRAWN, key) for key in REDRAWN}
     moved(page, least=1)
@@ -179,8 +256,7 @@ def test_diagrams_follow_and_come_back(page):
     moved(page, T=4, L=-2, kT=2, late=1, least=10)
     after = {key: page.evaluate(DRAWN, key) for key in REDRAWN}
     unmoved = {key: [k for k, svg in enumerate(before[key]) if svg == after[key][k]] for key in REDRAWN}
-    # task 8 tells half a sample by numbers that are named; the last of task 11 are peak curves of the hot motor
-    assert unmoved == {"8": [5], "9": [], "10": [], "11": [4, 5]}
+    assert unmoved == {"8": [], "9": [], "10": [], "11": []}
     assert "40 °C, with inductance" in page.locator("#task-11").inner_text()
     assert not any("NaN" in svg for drawn in after.values() for svg in drawn)
     back(page)
