@@ -285,8 +285,8 @@ class Repaired:
     trace: Trace
 
 
-#: What each check is: a question to a recording.
-Look = Callable[[Seen], Check | Repaired]
+#: What each check is: a question to a recording; None where it is not asked of such a one.
+Look = Callable[[Seen], Check | Repaired | None]
 
 
 def resolution_of(values: Array) -> float:

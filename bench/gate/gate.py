@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from bench.axis_kind import INERTIA
 from bench.errors import BenchError, InputError, UndeterminedError
-from bench.gate import effort, plausible, repairs, signals, throughout, timing, velocity
+from bench.gate import effort, neighbours, plausible, repairs, signals, throughout, timing, velocity
 from bench.gate.check import STATUSES, Check, Look, Repaired, Seen
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace, require_plausible
@@ -27,6 +27,7 @@ CHECKS: tuple[Look, ...] = (
     effort.follows_motion,
     effort.constants,
     plausible.agrees,
+    neighbours.stand,
 )
 #: Checks that do not apply at one steady speed: signals may stay the same, and effort follows no motion.
 UNSTEADY: tuple[Look, ...] = (signals.moves, repairs.none_lost, timing.rate, signals.resolution)
@@ -34,6 +35,7 @@ UNSTEADY += (effort.has_sign, throughout.holds, effort.follows_motion)
 STEADY = tuple(look for look in CHECKS if look not in UNSTEADY)
 #: Checks of a later part of a recording: what can go wrong there, without what holds for all of it.
 WHOLE = (timing.rate, signals.resolution, effort.has_sign, effort.follows_motion, effort.constants, plausible.agrees)
+WHOLE += (neighbours.stand,)
 PARTS = tuple(look for look in CHECKS if look not in WHOLE)
 
 
@@ -70,6 +72,8 @@ def gate(trace: Trace, rig: Rig | None = None, looks: Sequence[Look] = CHECKS) -
     seen, checks = Seen(trace, rig), list[Check]()
     for look in looks:
         found = look(seen)
+        if found is None:
+            continue
         if isinstance(found, Repaired):
             seen = Seen(found.trace, rig)
         checks.append(found.check if isinstance(found, Repaired) else found)

@@ -22,7 +22,7 @@ import numpy as np
 from mujoco.batch import Batch
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import Array, rms
 from bench.errors import InputError
 from bench.names import nearest
 from bench.plant.axis_model import NO_MASS
@@ -34,7 +34,7 @@ from bench.trace.choose import GivenOptions, axes_of
 from bench.trace.inspect import time_unit
 from bench.trace.joints import named
 from bench.trace.read import read_recording
-from bench.trace.signals import signal_of
+from bench.trace.signals import STANDING, STANDING_ASK, signal_of
 from bench.trace.time_base import interpolate
 from bench.trace.trace import Trace, assemble, with_known
 
@@ -42,6 +42,8 @@ from bench.trace.trace import Trace, assemble, with_known
 TOGETHER = 4096
 #: Time over which the change of the mass matrix along the motion is taken, to both sides - s.
 ASIDE = 1e-4
+#: A joint that moves so far - rad (m) - and asks less than what is left was not what pushed.
+FAR = 1.0
 #: Joints of one coordinate.
 SIMPLE = (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE)
 #: What inverse dynamics leaves out: what is no property of the links.
@@ -391,19 +393,35 @@ def logs_of(
 ) -> list[Trace]:
     """The same of what a file holds, and then of the robot with each of some changes."""
     own = rig.of_joint(robot.joint)
-    trace, position, velocity, notes = moved(recording, path, rig, robot, stated)
+    trace, position, velocity, stand = moved(recording, path, rig, robot, stated)
     torque, momentum = robot.rest(position, velocity)
     more = robot.asked(changes, position, velocity)
     every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
     ratio = (own.load or Load()).gear_ratio
     known = [with_known(trace, asked / ratio, moving / ratio, own.effort_unit) for asked, moving in every]
-    return [replace(one, notes=(*robot.notes, *one.notes, *notes)) for one in known]
+    standing = _standing(position, velocity, torque, robot, stand, ratio)
+    return [replace(one, notes=(*robot.notes, *one.notes), metadata={**one.metadata, **standing}) for one in known]
+
+
+def _standing(
+    position: Array, velocity: Array, torque: Array, robot: Robot, stand: Sequence[str], ratio: float
+) -> dict[str, str]:
+    """Where other joints were stated to stand, in words, and what one that moved would ask of the motor - N*m (N)."""
+    if not stand:
+        return {}
+    names, asked = [robot.model.joint(k).name for k in robot.joints], 0.0
+    for name in stand:
+        aside = position.copy()
+        aside[:, names.index(name)] += FAR
+        asked = max(asked, rms(robot.rest(aside, velocity)[0] - torque) / ratio)
+    places = (f"{name} at {position[0, names.index(name)]:.4g} {robot.unit(name)}" for name in stand)
+    return {STANDING: ", ".join(places), STANDING_ASK: repr(asked)}
 
 
 def moved(
     recording: Recording, path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]
 ) -> tuple[Trace, Array, Array, tuple[str, ...]]:
-    """A joint's own signals, how the robot's `joints` moved - rad (m), rad/s (m/s) - (n, joints), and what is assumed.
+    """A joint's own signals, how the robot's `joints` moved - rad (m), rad/s (m/s) - (n, joints), and which are stated.
 
     InputError as `read_log`.
     """
@@ -442,8 +460,7 @@ def moved(
     standing = [
         name for name in robot.units if name in stated and name not in rig.joints and not _holds(recording, name)
     ]
-    note = f"{', '.join(standing)}: stated to stand; what they ask for where they move passes for {robot.joint}'s"
-    return trace, position, velocity, (note,) if standing else ()
+    return trace, position, velocity, tuple(standing)
 
 
 #: What a joint that slides has where messages tell all joints as if they turned.

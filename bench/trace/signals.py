@@ -29,6 +29,9 @@ SI_UNITS: dict[str, tuple[str, str]] = {
 
 #: What is known to act on an axis, which no file holds (`bench.trace.trace.with_known`).
 KNOWN_TORQUE, KNOWN_MOMENTUM = "known_torque", "known_momentum"
+#: Keys of a trace's metadata: where other joints of a robot were stated to stand, in words, and the torque that the
+#: one of them that is felt most would put on the axis where it moves - N*m (N).
+STANDING, STANDING_ASK = "standing", "standing_ask"
 
 #: Torque may also come as a share of the rated torque (EPOS reports %); a rig's `rated_torque` makes it N*m.
 RELATIVE_TORQUE = "dimensionless"
