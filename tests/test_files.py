@@ -341,6 +341,14 @@ def test_standard_output_that_takes_nothing_is_told(tmp_path):
         assert_one_line(done, "standard output", words)
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no device that is full")
+@pytest.mark.parametrize("redirected", ["2> /dev/full", "2>&-"])
+def test_where_nobody_can_be_told_the_status_stands(tmp_path, redirected):
+    """It was 70, a fault of the bench: the line that says what is wrong could not be written."""
+    line = f"{sys.executable} -m bench rigs none {redirected}"
+    assert subprocess.run(["sh", "-c", line], cwd=tmp_path, check=False).returncode == 2
+
+
 ENDED = """
 import sys
 from bench.__main__ import main

@@ -41,6 +41,8 @@ from bench.structured import read_toml
 GAPS = TORQUE_GAP, VELOCITY_GAP = "torque_gap", "velocity_gap"
 #: What a file tells of each gap.
 OF_GAP = "after", "noise_floor"
+#: Conditions that turn a torque into the change of a parameter that it makes.
+MOTION = "rms_speed", "rms_acceleration", "rms_effort"
 #: Share by which the harmonics of two waves may differ and still be one: the pitch of a linear axis is fitted.
 SAME_WAVE = 0.01
 #: Number of instants at which the torque of a model's run is kept.
@@ -52,6 +54,8 @@ HEAD = "# What `bench check` holds the axis against. `bench check --update` writ
 NO_SPREAD = "not told by fewer than two recordings"
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?: (.+))?")
 _ALLOWED = "allowed: as bench check --update wrote it"
+#: Magnitudes of what is told of an axis, unless it is zero: their fourth powers, which comparisons take, are numbers.
+LEAST, MOST = 1e-60, 1e60
 
 
 @dataclass(frozen=True)
@@ -287,9 +291,16 @@ class _Table:
     def number(self, key: str) -> tuple[float, str]:
         """A number with its unit."""
         match = _NUMBER.fullmatch(text := self.one(key, str))
-        if match is None or not math.isfinite(float(match[1])):
+        if match is None:
             raise self.error(key, f"found {text!r}", "allowed: a number and its unit")
-        return float(match[1]), match[2] or "dimensionless"
+        return self.plain(key, float(match[1])), match[2] or "dimensionless"
+
+    def plain(self, key: str, value: object) -> float:
+        """A number that a key holds, alone or in a list."""
+        number = isinstance(value, float | int) and not isinstance(value, bool)
+        if not number or not (value == 0.0 or LEAST <= abs(value) <= MOST):
+            raise self.error(key, f"found {value!r}", "allowed: a number as one of an axis can be")
+        return float(value)
 
     def table(self, key: str) -> _Table:
         """A table of this one, empty where there is none."""
@@ -305,14 +316,21 @@ class _Table:
 
     def state(self) -> State:
         """The whole file."""
-        entries = self.content.get("effects", [])
-        effects = [_Table(self.source, f"effects[{k}]", entry).effect() for k, entry in enumerate(entries)]
+        entries = enumerate(self.one("effects", list))
+        effects = [_Table(self.source, f"effects[{k}]", entry).effect() for k, entry in entries]
         shows, conditions, rig = self.table("shows"), self.table("conditions"), self.table("rig")
+        quantities = {name: one.measured() for name, one in self.tables("quantities").items()}
         gaps = {name: [one.number(key) for key in OF_GAP] for name, one in self.tables("gap").items()}
+        for name in (name.removesuffix("_gap") for name in GAPS if name in quantities):
+            if name not in gaps or gaps[name][1][0] <= 0.0:
+                raise self.error(f"gap.{name}", "missing, or without a noise floor")
+        if (source := self.one("source", str)) == "recordings":
+            for name in MOTION:
+                conditions.number(name)
         return State(
-            source=self.one("source", str),
+            source=source,
             names=self.one("names", bool),
-            quantities={name: one.measured() for name, one in self.tables("quantities").items()},
+            quantities=quantities,
             effects=tuple(effects),
             verdict=str(self.content.get("verdict", "")),
             gaps={name: RemainingGap(after, floor, unit) for name, ((after, unit), (floor, _)) in gaps.items()},
@@ -330,36 +348,36 @@ class _Table:
             return Measured(value, unit)
         error, _ = self.number("std_error")
         degrees, count = self.content.get("degrees", math.inf), self.one("recordings", int)
+        degrees = math.inf if degrees == math.inf else self.plain("degrees", degrees)
         spread = None if self.content.get("spread", NO_SPREAD) == NO_SPREAD else self.number("spread")[0]
-        if not (isinstance(degrees, float | int) and degrees > 0.0 and count > 0 and error >= 0.0):
+        if not (degrees > 0.0 and self.plain("recordings", count) > 0 and error >= 0.0 and (spread or 0.0) >= 0.0):
             raise self.error("", "found an error or a count below zero")
-        return Measured(value, unit, error, float(degrees), count, spread)
+        return Measured(value, unit, error, degrees, count, spread)
 
     def response(self) -> Response:
         """The run of a model."""
-        torque, laid_out = self.one("torque", list), [self.one(key, float) for key in ("inertia", "acceleration")]
-        if len(torque) != INSTANTS or not all(isinstance(one, float) and math.isfinite(one) for one in torque):
-            raise self.error("torque", f"found {torque!r}", f"allowed: {INSTANTS} numbers")
-        if not all(0.0 < one < math.inf for one in laid_out):
-            raise self.error("", f"found {laid_out!r}", "allowed: numbers above zero")
-        return Response(laid_out[0], laid_out[1], tuple(torque))
+        inertia, acceleration = (self.plain(key, self.one(key, float)) for key in ("inertia", "acceleration"))
+        torque = tuple(self.plain("torque", one) for one in self.one("torque", list))
+        if len(torque) != INSTANTS:
+            raise self.error("torque", f"found {len(torque)} numbers", f"allowed: {INSTANTS}")
+        if not min(inertia, acceleration) > 0.0:
+            raise self.error("", f"found {inertia:g} and {acceleration:g}", "allowed: numbers above zero")
+        return Response(inertia, acceleration, torque)
 
     def effect(self) -> NamedHere:
         """An effect."""
         if not isinstance(self.content, dict):
             raise self.error("", f"found {self.content!r}")
         effect = named(self.one("name", str), f"{self.source}: {self.place}.name")
-        shape = self.content.get("shape")
-        if shape is not None and not (isinstance(shape, list) and len(shape) == len(effect.shapes)):
+        shape = self.one("shape", list) if "shape" in self.content else None
+        if shape is not None and len(shape) != len(effect.shapes):
             raise self.error("shape", f"found {shape!r}", f"allowed: {len(effect.shapes)} numbers")
-        if shape is not None and not all(isinstance(one, float | int) and math.isfinite(one) for one in shape):
-            raise self.error("shape", f"found {shape!r}", "allowed: finite numbers")
         return NamedHere(
             effect=effect,
             quantities={key: one.measured() for key, one in self.tables("quantities").items()},
-            shape=None if shape is None else tuple(map(float, shape)),
+            shape=None if shape is None else tuple(self.plain("shape", one) for one in shape),
             on_load=bool(self.content.get("on_load", False)),
             torque=self.table("torque").measured() if "torque" in self.content else None,
-            ambiguous_with=tuple(map(str, self.content.get("ambiguous_with", []))),
-            gain=float(self.content.get("gain", math.nan)),
+            ambiguous_with=tuple(map(str, self.one("ambiguous_with", list))),
+            gain=self.plain("gain", self.content["gain"]) if "gain" in self.content else math.nan,
         )

@@ -10,7 +10,7 @@ import inspect
 import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -228,12 +228,13 @@ def printed(part: object) -> None:
 
 def say(text: str, err: bool = False) -> None:
     """A line on standard output, or standard error; on a terminal as many as it takes, and no word is cut."""
-    text = plain(text)
-    if (sys.stderr if err else sys.stdout).isatty():
+    text, stream = plain(text), sys.stderr if err else sys.stdout
+    if stream is not None and stream.isatty():
         from bench.report.terminal import wrapped
 
         text = "\n".join(wrapped(text, shutil.get_terminal_size().columns))
-    typer.echo(text, err=err)
+    with suppress(*[OSError] if err else []):  # where standard error is full or closed, the status has to do
+        typer.echo(text, err=err)
 
 
 def list_files(files: Iterable[Path | None]) -> None:

@@ -30,7 +30,7 @@ def test_nothing_is_found_without_coverage(tmp_path, runs):
 
 
 def test_nothing_is_found_by_structure(tmp_path):
-    grammars = ("rig", "model", "mjcf", "manifest", "store")
+    grammars = ("rig", "model", "mjcf", "manifest", "store", "baseline")
     done = ran(tmp_path, "-m", "tests.studies.fuzz.grammar", *grammars, "--runs", "25", "--seconds", "20")
     assert done.returncode == 0, done.stderr[-3000:]
     assert [line.split(":")[0] for line in done.stdout.splitlines()] == list(grammars)
