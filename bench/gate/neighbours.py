@@ -8,7 +8,6 @@ What else pushes over time looks the same; which of the two it was, the log of o
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import BSpline
 
 from bench.arrays import Array, rms
 from bench.gate.check import Check, Seen
@@ -81,6 +80,8 @@ def _left(table: Array, torque: Array) -> Array:
 
 def _splines(time: Array) -> list[Array]:
     """Cubic splines that together are any smooth course over times - s - (n,) each."""
+    from scipy.interpolate import BSpline  # 0.1 s, which only a joint beside others has to pay
+
     first, last = float(time[0]), float(time[-1])
     inner = np.linspace(first, last, min(round((last - first) / EVERY), MOST - 3) + 1)
     knots = np.concatenate([[first] * 3, inner, [last] * 3])
