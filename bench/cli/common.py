@@ -316,7 +316,7 @@ def subject(
     def poses(path: Path) -> tuple[Array, dict[str, Array]]:
         trace, position, _, _ = moved(read_recording(path), path, within, robot, stands)
         names = (robot.model.joint(k).name for k in robot.joints)
-        return trace.time - trace.time[0], dict(zip(names, position.T, strict=True))
+        return trace.time, dict(zip(names, position.T, strict=True))
 
     return Subject(within, read, poses)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,11 +19,11 @@ from bench.plant.profile_names import DEFAULT, NAMES
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from bench.arrays import Array
     from bench.cli.common import Subject
     from bench.diagnosis.replay import Replay
     from bench.plant.model_file import StoredModel
     from bench.view.let_free import FreeRun
-    from bench.view.scene import Scene
     from bench.view.side_by_side import SideBySide
 
 ModelArgument = Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")]
@@ -106,41 +107,46 @@ def view(
     of = common.subject(rig, axis_name, mjcf, joint, at, trace)
     shown, free, warnings = _shown(model, trace, of, profile)
     shown = shown.between(start, stop)
+    robot = _robot(of, trace, mjcf, common.one_joint(joint))
     if video is not None:
         from bench.report.terminal import progress
+        from bench.view.scene import Scene
         from bench.view.video import write_video
 
+        scene = Scene.of(shown, of.rig.load) if robot is None else Scene.of_robot(*robot)
         with progress(f"rendering {video.name}") as done:
-            write_video(video, shown, _scene(shown, of, trace, mjcf, common.one_joint(joint)), slowed, done)
+            write_video(video, shown, scene, slowed, done)
     from bench.report.simulation import view as document_of
+    from bench.view.drawn import DrawnRobot
 
-    common.write_page(
-        out, document_of(shown, model, readable(profile if trace is None else trace.name), warnings, free)
-    )
+    drawn = None if robot is None else DrawnRobot.of(*robot)
+    along = readable(profile if trace is None else trace.name)
+    common.write_page(out, document_of(shown, model, along, warnings, free, drawn))
     common.list_files([out, video])
     common.warn(warnings)
 
 
-def _scene(shown: SideBySide, of: Subject, trace: Path | None, mjcf: Path | None, joint: str | None) -> Scene:
-    """The axis alone, or the robot along its log."""
-    from bench.view.scene import Scene
-
+def _robot(
+    of: Subject, trace: Path | None, mjcf: Path | None, joint: str | None
+) -> tuple[Path, str, float, Array, dict[str, Array]] | None:
+    """Of a robot along its log: MJCF, joint, gear, and where its joints were at times - s, rad (m); None of an axis."""
     if of.poses is None or trace is None or mjcf is None or joint is None:
-        return Scene.of(shown, of.rig.load)
+        return None
     ratio = of.rig.load.gear_ratio if of.rig.load is not None else 1.0
-    return Scene.of_robot(mjcf, joint, ratio, *of.poses(trace))
+    return mjcf, joint, ratio, *of.poses(trace)
 
 
 def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, FreeRun | None, list[str]]:
     """Model and ghost, how far off the model runs by itself, and what the user should know before believing them."""
-    from bench.view.let_free import let_free
+    from bench.view.let_free import let_free, otherwise
     from bench.view.side_by_side import along_profile, along_recording
 
     if trace is None:
         return along_profile(model, of.rig, profile), None, []
     recording = of.read(trace)
     replayed = bench.replay(model, recording, of.rig)
-    shown, free, warnings = along_recording(model, replayed), None, list(replayed.warnings)
+    others = otherwise(model, recording, of.rig)
+    shown, free, warnings = replace(along_recording(model, replayed), others=others), None, list(replayed.warnings)
     try:
         free = let_free(model, recording, of.rig)
     except SimulationError as error:

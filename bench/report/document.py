@@ -295,8 +295,63 @@ class TimeGraph(Drawing):
     panels: tuple[TimePanel, ...]
 
 
+class Triangles(Part):
+    """Triangles of one colour: vertices as 32-bit floats - m -, of each face three as 16-bit numbers, in base 64."""
+
+    colour: tuple[float, ...]
+    vertices: str
+    faces: str
+
+
+class Pivot(Part):
+    """A joint of a body: its axis and a point of it in the body's frame - m -, and its zero - rad (m).
+
+    `of`: whose position it has: 0 of the motion, then of a robot's poses; None of none, it stands.
+    """
+
+    of: int | None
+    axis: tuple[float, ...]
+    anchor: tuple[float, ...]
+    slides: bool
+    zero: float
+
+
+class Body(Part):
+    """A body of a robot: the number of that which carries it, its frame there - m, quaternion -, joints and shapes."""
+
+    parent: int
+    place: tuple[float, ...]
+    turn: tuple[float, ...]
+    joints: tuple[Pivot, ...]
+    shapes: tuple[Triangles, ...]
+
+
+class RobotDrawing(Part):
+    """What moves beside the joint that a motion is of, whose motor turns `ratio` times as far.
+
+    Attributes:
+        bodies: the first stands, the others come after the one that carries them.
+        ratio: of the joint's gear.
+        start, step: of the instants of the poses - s.
+        poses: of the other joints - rad (m) -: 32-bit floats in base 64.
+    """
+
+    bodies: tuple[Body, ...]
+    ratio: float
+    start: float
+    step: float = Field(gt=0.0)
+    poses: tuple[str, ...]
+
+
+class ModelRun(Part):
+    """How a model was run, and its position less that of the ghost: 32-bit floats in base 64, nan where unknown."""
+
+    name: str
+    apart: str
+
+
 class Moving(Drawing):
-    """An axis in motion, with the one it is compared with as a ghost: a disk, or a slide on its rail.
+    """An axis in motion, with the one it is compared with as a ghost: a disk, a slide on its rail, or a robot.
 
     Attributes:
         turns: whether the axis does.
@@ -305,7 +360,9 @@ class Moving(Drawing):
         start, step, count: of the instants - s.
         low, high: between which it is drawn, where it does not turn.
         slowed: how many times slower than the motion it plays at first.
-        position, apart: of the ghost, and of the model less the ghost: 32-bit floats in base 64, nan where unknown.
+        position: of the ghost: 32-bit floats in base 64, nan where unknown.
+        runs: of the model, to choose from.
+        robot: that the axis is a joint of.
     """
 
     kind: Literal["motion"] = "motion"
@@ -319,7 +376,8 @@ class Moving(Drawing):
     high: float
     slowed: Slowed = 1
     position: str
-    apart: str
+    runs: tuple[ModelRun, ...] = Field(min_length=1)
+    robot: RobotDrawing | None = None
 
 
 class File(Part):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA, AxisKind
@@ -23,15 +24,16 @@ from bench.report.numbers import effort_word, number, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import model_section, one_panel, origin, values_table, warnings_sections
 from bench.trace.noise import white_noise
-from bench.view.let_free import FreeRun
+from bench.view.drawn import DrawnBody, DrawnRobot
+from bench.view.let_free import HORIZONS, FreeRun
 from bench.view.side_by_side import SideBySide
 
 #: Instants that a page holds of a motion, 8 bytes each and a third more as text: 0.4 MB.
 MOST = 40_000
 #: Part of what a page may hold of graphs over time that is left beside them.
 PART = 0.8
-#: Times since a model was let free at which it is told how far off it is - s -, and points that are drawn of the curve.
-HORIZONS, DRAWN = (0.5, 1.0, 2.0, 5.0), 300
+#: Points that are drawn of the curve of how far off it is.
+DRAWN = 300
 #: How much slower a page plays; what turns plays at first so that it goes round at most once a second.
 SLOWED: tuple[doc.Slowed, ...] = get_args(doc.Slowed)
 
@@ -155,11 +157,16 @@ def _left(measured: Array, simulated: Array) -> tuple[float, float]:
 
 
 def view(
-    shown: SideBySide, model: Path, along: str, warnings: Sequence[str] = (), free: FreeRun | None = None
+    shown: SideBySide,
+    model: Path,
+    along: str,
+    warnings: Sequence[str] = (),
+    free: FreeRun | None = None,
+    robot: DrawnRobot | None = None,
 ) -> doc.Document:
     """The document of a model's file in motion beside its ghost, along a recording or profile of a name.
 
-    `free` is how far off it runs by itself.
+    `free` is how far off it runs by itself; a robot is drawn in place of the axis.
 
     Raises:
         InputError: the model cannot be read.
@@ -182,7 +189,7 @@ def view(
     alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
     graph = time_graph("Over time.", alternative, shown.time, signals, part=PART)
     sections = [
-        doc.section("moving", "Moving", motion_of(shown)),
+        doc.section("moving", "Moving", motion_of(shown, robot)),
         doc.section("motion", "Over time", graph),
     ]
     if free is not None:
@@ -229,16 +236,18 @@ def _let_free(free: FreeRun, kind: AxisKind) -> tuple[doc.Chart, doc.Chart]:
     )
 
 
-def motion_of(shown: SideBySide) -> doc.Moving:
+def motion_of(shown: SideBySide, robot: DrawnRobot | None = None) -> doc.Moving:
     """The motion at instants of equal distance, each as of the sample next to it; nan in holes."""
     time = shown.time
     period = float(np.median(np.diff(time)))
-    count = min(round(float(time[-1] - time[0]) / period) + 1, MOST)
+    runs = {"held softly": shown.position, **shown.others}
+    count = min(round(float(time[-1] - time[0]) / period) + 1, 2 * MOST // (1 + len(runs)))
     instants, step = np.linspace(time[0], time[-1], count, retstep=True)
     after = np.clip(np.searchsorted(time, instants), 1, time.size - 1)
     nearest = after - (instants - time[after - 1] < time[after] - instants)
     known = np.abs(time[nearest] - instants) <= 0.75 * max(float(step), period)
-    ghost, apart = (np.where(known, values[nearest], np.nan) for values in (shown.ghost, shown.apart))
+    ghost = np.where(known, shown.ghost[nearest], np.nan)
+    apart = {how: np.where(known, (values - shown.ghost)[nearest], np.nan) for how, values in runs.items()}
     both = np.concatenate([shown.ghost, shown.position])
     low, high = float(np.nanmin(both)), float(np.nanmax(both))
     low, high = (low, high) if high > low else (low - 0.5, low + 0.5)
@@ -246,9 +255,10 @@ def motion_of(shown: SideBySide) -> doc.Moving:
     if shown.kind.turns:
         turns = float(np.nanmax(np.abs(shown.ghost_velocity))) / (2.0 * np.pi)
         slowed = SLOWED[min(int(np.searchsorted(SLOWED, turns)), len(SLOWED) - 1)]
+    otherwise = " How it is run otherwise is chosen below." if shown.others else ""
     return doc.Moving(
-        title="The axis.",
-        alternative=f"{shown.simulated_is} The ghost is the motion {shown.ghost_is}.",
+        title="The axis." if robot is None else f"The robot, and {readable(robot.joint)} of it as measured.",
+        alternative=f"{shown.simulated_is}{otherwise} The ghost is the motion {shown.ghost_is}.",
         turns=shown.kind.turns,
         unit=unit_text(shown.kind.length_unit),
         ghost=shown.ghost_is,
@@ -259,9 +269,46 @@ def motion_of(shown: SideBySide) -> doc.Moving:
         high=high,
         slowed=slowed,
         position=_packed(ghost),
-        apart=_packed(apart),
+        runs=tuple(doc.ModelRun(name=how, apart=_packed(values)) for how, values in apart.items()),
+        robot=None if robot is None else _drawn(robot),
     )
 
 
-def _packed(values: Array) -> str:
-    return base64.b64encode(values.astype("<f4").tobytes()).decode("ascii")
+def _drawn(robot: DrawnRobot) -> doc.RobotDrawing:
+    """A robot for a page, its joints numbered as their poses are."""
+    names = [robot.joint, *robot.poses]
+    return doc.RobotDrawing(
+        bodies=tuple(_body(one, names) for one in robot.bodies),
+        ratio=robot.ratio,
+        start=float(robot.times[0]),
+        step=float(robot.times[1] - robot.times[0]),
+        poses=tuple(_packed(values) for values in robot.poses.values()),
+    )
+
+
+def _body(body: DrawnBody, names: Sequence[str]) -> doc.Body:
+    joints = (
+        doc.Pivot(
+            of=names.index(one.name) if one.name in names else None,
+            axis=rounded(one.axis),
+            anchor=rounded(one.anchor),
+            slides=one.slides,
+            zero=one.zero,
+        )
+        for one in body.joints
+    )
+    shapes = (
+        doc.Triangles(colour=rounded(one.colour), vertices=_packed(one.vertices), faces=_packed(one.faces, "<u2"))
+        for one in body.shapes
+    )
+    place, turn = rounded(body.place), rounded(body.turn)
+    return doc.Body(parent=body.parent, place=place, turn=turn, joints=tuple(joints), shapes=tuple(shapes))
+
+
+def rounded(values: Iterable[float]) -> tuple[float, ...]:
+    """As a page has them: to a hundredth of a millimetre."""
+    return tuple(round(float(value), 6) for value in values)
+
+
+def _packed(values: NDArray[np.generic], kind: str = "<f4") -> str:
+    return base64.b64encode(values.astype(kind).tobytes()).decode("ascii")

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from bench.arrays import Array, rms
 from bench.diagnosis.diagnosis import Diagnosis
+from bench.diagnosis.model import holding_bandwidth
 from bench.diagnosis.replay import driven, parts_of
-from bench.plant.tracking import run_free
+from bench.errors import SimulationError
+from bench.plant.tracking import SoftTracking, Tracked, run_free, track
 from bench.rig.rig import Rig
 from bench.trace.motion import measured_position, measured_velocity, stretches_of
 from bench.trace.trace import Trace
 
 #: Longest that it is let free - s -, and how many windows begin within the length of one.
 LONGEST, BEGIN = 5.0, 4
+#: After so long it is told how far off it is, and begins anew where that is shown - s.
+HORIZONS = (0.5, 1.0, 2.0, 5.0)
 
 
 @dataclass(frozen=True)
@@ -45,18 +51,64 @@ def let_free(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> FreeRun |
         InputError: as `bench.replay`.
         SimulationError: the model diverged.
     """
-    _, _, balance, stored = parts_of(model, rig)
-    if stored is None:
+    held = _held(model, trace, rig)
+    if held is None:
         return None
     stretches = stretches_of(trace)
     length = min(round(LONGEST / trace.sample_period) + 1, max(part.stop - part.start for part in stretches) // 2)
     every = max(length // BEGIN, 1)
     windows = [slice(k, k + length) for part in stretches for k in range(part.start, part.stop - length + 1, every)]
-    runs = run_free(driven(stored, balance, trace, rig.own_effort(trace)[0]), windows)
-    position, velocity = measured_position(trace), measured_velocity(trace)
-    begun = [0.0 if "position" in trace else position[part.start] for part in windows]  # else an integral from zero
-    off = [one.position + at - position[part] for one, at, part in zip(runs, begun, windows, strict=True)]
+    position, velocity, runs = measured_position(trace), measured_velocity(trace), _free(held, windows)
+    off = [one.position - position[part] for one, part in zip(runs, windows, strict=True)]
     late = [one.velocity - velocity[part] for one, part in zip(runs, windows, strict=True)]
     time = trace.sample_period * np.arange(length, dtype=np.float64)
     position_off, velocity_off = (np.array([rms(column) for column in np.transpose(each)]) for each in (off, late))
     return FreeRun(time, position_off, velocity_off, len(windows))
+
+
+def otherwise(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> dict[str, Array]:
+    """Positions of a model along a recording, by how it is run - rad (m) - (n,); none where it holds no motion.
+
+    Held softly without its effects, and let free anew every so often. What diverged is left out.
+
+    Raises:
+        InputError: as `bench.replay`.
+    """
+    held = _held(model, trace, rig)
+    if held is None:
+        return {}
+    found: dict[str, Array] = {}
+    bare = replace(held, model=held.model.with_effects([]))
+    if held.model.effects:
+        top = float(np.nanmax(np.abs(measured_velocity(trace))))
+        with suppress(SimulationError):
+            found["held, without what was found"] = track(bare, holding_bandwidth(bare.model, top)).position
+    for horizon in HORIZONS:
+        length, position = round(horizon / trace.sample_period), np.full(len(trace), np.nan)
+        windows = [
+            slice(start, min(start + length, part.stop))
+            for part in stretches_of(trace)
+            for start in range(part.start, part.stop - 1, length)
+        ]
+        if length < 2 or not any(part.stop - part.start == length for part in windows):
+            continue
+        with suppress(SimulationError):
+            for part, one in zip(windows, _free(held, windows), strict=True):
+                position[part] = one.position
+            found[f"let free every {horizon:g} s"] = position
+    return found
+
+
+def _held(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> SoftTracking | None:
+    """A model and what drives it along a recording; None where it holds no motion."""
+    _, _, balance, stored = parts_of(model, rig)
+    return None if stored is None else driven(stored, balance, trace, rig.own_effort(trace)[0])
+
+
+def _free(held: SoftTracking, windows: Sequence[slice]) -> list[Tracked]:
+    """Its motion in windows, in the recording's position."""
+    runs, position = run_free(held, windows), measured_position(held.trace)
+    if "position" in held.trace:
+        return runs
+    begun = (position[part.start] for part in windows)  # a run counts from zero, as an integral does
+    return [replace(one, position=one.position + at) for one, at in zip(runs, begun, strict=True)]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,7 @@ class SideBySide:
         time: s.
         ghost, position: of ghost and model - rad (m).
         ghost_velocity, velocity: of both - rad/s (m/s).
+        others: positions of the model where it was run otherwise, by how - rad (m).
     """
 
     kind: AxisKind
@@ -41,6 +43,7 @@ class SideBySide:
     position: Array
     ghost_velocity: Array
     velocity: Array
+    others: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def apart(self) -> Array:
@@ -59,7 +62,8 @@ class SideBySide:
             found = f"found {first if start is None else start:g} s to {last if stop is None else stop:g} s"
             raise InputError("--from, --to", found, f"allowed: a part of {first:g} s to {last:g} s")
         signals = ("time", "ghost", "position", "ghost_velocity", "velocity")
-        return replace(self, **{name: getattr(self, name)[kept] for name in signals})
+        others = {how: position[kept] for how, position in self.others.items()}
+        return replace(self, others=others, **{name: getattr(self, name)[kept] for name in signals})
 
 
 def along_recording(model: str | Path, replayed: Replay) -> SideBySide:

@@ -25,7 +25,7 @@ def test_a_motion_holds_every_sample_and_its_difference_apart():
     motion = motion_of(shown())
     assert (motion.count, motion.step) == (2001, pytest.approx(1e-3))
     np.testing.assert_allclose(floats(motion.position), SPEED * instants(motion), rtol=1e-6)
-    np.testing.assert_allclose(floats(motion.apart), AHEAD, rtol=1e-5)
+    np.testing.assert_allclose(floats(motion.runs[0].apart), AHEAD, rtol=1e-5)
 
 
 def test_a_hole_stays_one():

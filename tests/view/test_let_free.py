@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from bench.diagnosis.model import holding_bandwidth
+from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import StoredModel, model_toml
-from bench.view.let_free import let_free
+from bench.plant.tracking import SoftTracking, track
+from bench.trace.motion import measured_position
+from bench.view.let_free import let_free, otherwise
 from tests.diagnosis.test_commands import moving, only
 from tests.fit.motions import RIG
 
@@ -64,6 +68,32 @@ def test_it_is_let_free_for_five_seconds_at_most(model):
     assert found.windows == 6
 
 
+def test_it_begins_anew_every_so_often_where_the_sensors_have_the_axis(model):
+    trace = one_way(4.0)
+    found = otherwise(model, trace, RIG)
+    assert list(found) == ["let free every 0.5 s", "let free every 1 s", "let free every 2 s"]  # 5 s are not there
+    for horizon, position in zip((0.5, 1.0, 2.0), found.values(), strict=True):
+        length = round(horizon / trace.sample_period)
+        np.testing.assert_allclose(position[::length], measured_position(trace)[::length], atol=1e-9)
+        start = (len(trace) // length - 2) * length
+        _, way = integrated(trace, start, length)
+        gone = position[start : start + length] - position[start]
+        np.testing.assert_allclose(gone, way, atol=2e-3 * np.ptp(way))
+
+
+def test_without_what_was_found_it_is_held_where_it_is(tmp_path, model):
+    """As the same axis that never had the effect."""
+    trace, effect = one_way(4.0), Present.of("torque_offset", {"torque": 0.02})
+    text = model_toml(StoredModel("axis", AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB), (effect,))))
+    (tmp_path / "model.toml").write_text(f"{text}\n{BALANCE}", encoding="utf-8")
+    found = otherwise(tmp_path / "model.toml", trace, RIG)["held, without what was found"]
+    bare = AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB))
+    plain = track(SoftTracking(bare, trace, K_T * trace["current"]), holding_bandwidth(bare, 66.0))
+    np.testing.assert_allclose(found, plain.position, atol=1e-6)
+
+
 def test_a_model_without_motion_is_not_let_free(tmp_path):
     (tmp_path / "model.toml").write_text(BALANCE, encoding="utf-8")
-    assert let_free(tmp_path / "model.toml", only(one_way(4.0), "velocity", "current"), RIG) is None
+    blind = only(one_way(4.0), "velocity", "current")
+    assert let_free(tmp_path / "model.toml", blind, RIG) is None
+    assert otherwise(tmp_path / "model.toml", blind, RIG) == {}

@@ -1,0 +1,203 @@
+"""A robot as a page draws it: bodies with triangles in few bytes, and the joints by which each moves its own.
+
+A mesh is simplified by vertices that fall into one cell of a grid (J. Rossignac, P. Borrel, "Multi-resolution 3D
+approximations for rendering complex scenes", 1993), as coarse as the triangles that are left to it ask.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array
+from bench.plant.mjcf_file import compiled
+
+#: Triangles of a whole robot, 12 bytes each with its vertices: some 50 kB of a page.
+BUDGET = 3000
+#: Triangles that every shape may have.
+LEAST = 24
+#: Corners of a round shape about its axis, and of its profile.
+AROUND, ALONG = 12, 5
+#: Cells along a mesh at first, and by how much fewer they become.
+CELLS, FEWER = 96, 0.85
+#: Groups of geoms that MuJoCo shows by itself.
+SHOWN = 3
+#: Instants at most at which joints are told that only pass by.
+INSTANTS = 1000
+#: Triangles by three of its vertices each (t, 3).
+Faces = NDArray[np.int64]
+#: A box by its corners in binary order.
+BOX = np.array(
+    [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+     [1, 5, 7], [1, 7, 3]]
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Triangles of one colour: vertices in the body's frame - m (v, 3) - and faces (t, 3); red, green, blue, 0 to 1."""
+
+    vertices: Array
+    faces: Faces
+    colour: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class DrawnJoint:
+    """A joint of a body: its name, its axis and a point of that in the body's frame - m -, and its zero - rad (m)."""
+
+    name: str
+    axis: Array
+    anchor: Array
+    slides: bool
+    zero: float
+
+
+@dataclass(frozen=True)
+class DrawnBody:
+    """A body: that which carries it by its number, its frame in that one's - m, quaternion -, joints and shapes."""
+
+    parent: int
+    place: Array
+    turn: Array
+    joints: tuple[DrawnJoint, ...]
+    shapes: tuple[Surface, ...]
+
+
+@dataclass(frozen=True)
+class DrawnRobot:
+    """A robot along a log.
+
+    Attributes:
+        bodies: each after the one that carries it; the first stands.
+        joint: that the motion is of, whose motor turns `ratio` times as far.
+        ratio: of its gear.
+        times: when the other joints were somewhere, evenly - s (n,).
+        poses: where they were then, by name - rad (m) - (n,).
+    """
+
+    bodies: tuple[DrawnBody, ...]
+    joint: str
+    ratio: float
+    times: Array
+    poses: Mapping[str, Array]
+
+    @classmethod
+    def of(cls, source: Path, joint: str, ratio: float, times: Array, poses: Mapping[str, Array]) -> DrawnRobot:
+        """From an MJCF, a joint of it, its gear, and where the robot's joints were at times - s, rad (m) (n,)."""
+        model, _ = compiled(str(source))
+        even = np.linspace(times[0], times[-1], min(times.size, INSTANTS))
+        found = {name: np.interp(even, times, values) for name, values in poses.items() if name != joint}
+        return cls(_bodies(model), joint, ratio, even, found)
+
+
+def _bodies(model: mujoco.MjModel) -> tuple[DrawnBody, ...]:
+    shown = [g for g in range(model.ngeom) if model.geom_group[g] < SHOWN and _colour(model, g)[3] > 0.0]
+    solid = {g: found for g in shown if (found := _solid(model, g)) is not None}
+    budget = _shared({g: len(faces) for g, (_, faces) in solid.items()})
+    shapes: list[list[Surface]] = [[] for _ in range(model.nbody)]
+    for g, (vertices, faces) in solid.items():
+        turn = np.empty(9)
+        mujoco.mju_quat2Mat(turn, model.geom_quat[g])
+        vertices, faces = simplified(vertices, faces, budget[g])
+        red, green, blue, _ = (float(part) for part in _colour(model, g))
+        placed = vertices @ turn.reshape(3, 3).T + model.geom_pos[g]
+        shapes[int(model.geom_bodyid[g])].append(Surface(placed, faces, (red, green, blue)))
+    return tuple(
+        DrawnBody(
+            int(model.body_parentid[b]),
+            model.body_pos[b].copy(),
+            model.body_quat[b].copy(),
+            tuple(_joints(model, b)),
+            tuple(shapes[b]),
+        )
+        for b in range(model.nbody)
+    )
+
+
+def _joints(model: mujoco.MjModel, body: int) -> list[DrawnJoint]:
+    first = int(model.body_jntadr[body])
+    found = []
+    for k in range(first, first + int(model.body_jntnum[body])):
+        slides = model.jnt_type[k] == int(mujoco.mjtJoint.mjJNT_SLIDE)
+        if slides or model.jnt_type[k] == int(mujoco.mjtJoint.mjJNT_HINGE):
+            zero = float(model.qpos0[model.jnt_qposadr[k]])
+            axis, anchor = model.jnt_axis[k].copy(), model.jnt_pos[k].copy()
+            found.append(DrawnJoint(model.joint(k).name, axis, anchor, slides, zero))
+    return found
+
+
+def _colour(model: mujoco.MjModel, geom: int) -> Array:
+    material = int(model.geom_matid[geom])
+    return model.mat_rgba[material] if material >= 0 else model.geom_rgba[geom]
+
+
+def _shared(triangles: Mapping[int, int]) -> dict[int, int]:
+    """How many of the budget each shape has: the small ones all of theirs, the others as much as each other."""
+    left, found = BUDGET, {}
+    for count, (g, many) in enumerate(sorted(triangles.items(), key=lambda item: item[1])):
+        found[g] = min(many, max(LEAST, left // (len(triangles) - count)))
+        left -= found[g]
+    return found
+
+
+def _solid(model: mujoco.MjModel, geom: int) -> tuple[Array, Faces] | None:
+    """Vertices and triangles of a geom in its own frame; None of what has no end, and of fields of heights."""
+    kind, size = int(model.geom_type[geom]), model.geom_size[geom]
+    kinds = mujoco.mjtGeom
+    if kind == int(kinds.mjGEOM_MESH):
+        mesh = int(model.geom_dataid[geom])
+        first, face = int(model.mesh_vertadr[mesh]), int(model.mesh_faceadr[mesh])
+        vertices = model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])]
+        return vertices.astype(float), model.mesh_face[face : face + int(model.mesh_facenum[mesh])].astype(np.int64)
+    if kind == int(kinds.mjGEOM_BOX):
+        corners = np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1], indexing="ij"), axis=-1).reshape(-1, 3)
+        return corners * size, BOX
+    arc = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 2 * ALONG)
+    ball = np.column_stack([np.cos(arc), np.sin(arc)])
+    match kind:
+        case int(kinds.mjGEOM_SPHERE):
+            return _revolved(size[0] * ball)
+        case int(kinds.mjGEOM_ELLIPSOID):
+            vertices, faces = _revolved(ball)
+            return vertices * size, faces
+        case int(kinds.mjGEOM_CAPSULE):
+            return _revolved(size[0] * ball + np.outer(np.sign(ball[:, 1]), [0.0, size[1]]))
+        case int(kinds.mjGEOM_CYLINDER):
+            return _revolved(np.array([[0.0, -size[1]], [size[0], -size[1]], [size[0], size[1]], [0.0, size[1]]]))
+    return None
+
+
+def _revolved(profile: Array) -> tuple[Array, Faces]:
+    """Of radius and height along a profile (p, 2), from below, turned about z."""
+    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    radius, height = profile.T
+    x, y = (np.outer(part, radius) for part in (np.cos(angle), np.sin(angle)))
+    vertices = np.stack([x, y, np.broadcast_to(height, x.shape)], axis=-1).reshape(-1, 3)
+    at = np.arange(AROUND)[:, None] * len(profile) + np.arange(len(profile) - 1)
+    beside = np.roll(at, -1, axis=0)
+    faces = np.stack([at, beside, beside + 1, at, beside + 1, at + 1], axis=-1).reshape(-1, 3)
+    return vertices, faces
+
+
+def simplified(vertices: Array, faces: Faces, most: int) -> tuple[Array, Faces]:
+    """A surface of at most so many triangles, by cells as small as that allows."""
+    low, reach = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
+    cells = float(CELLS)
+    while True:
+        keys = np.floor((vertices - low) / max(reach, 1e-300) * cells).astype(np.int64)
+        _, cell, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+        kept = cell.reshape(-1)[faces]
+        kept = kept[(kept[:, 0] != kept[:, 1]) & (kept[:, 1] != kept[:, 2]) & (kept[:, 2] != kept[:, 0])]
+        _, first = np.unique(np.sort(kept, axis=1), axis=0, return_index=True)
+        if first.size <= most or cells < 2.0:
+            break
+        cells *= FEWER
+    middle = np.zeros((count.size, 3))
+    np.add.at(middle, cell.reshape(-1), vertices)
+    return middle / count[:, None], kept[np.sort(first)]
