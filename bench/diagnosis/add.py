@@ -34,7 +34,7 @@ from bench.diagnosis.model import (
     present_of,
 )
 from bench.diagnosis.name import NamedEffect, Suspects, named
-from bench.diagnosis.policy import Policy
+from bench.diagnosis.policy import ERRS_TWICE, Policy
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, same_axis
 from bench.effects.acting import DriveLimit
@@ -257,10 +257,10 @@ def rejection(
         return by_torque
     gaps.simulate((less.whole, judge) for _, less in asked)
     for index, less in asked:
-        if not gaps.in_phase(judged.whole, judge) and (judged.a(Placed, index) or not gaps.in_phase(less.whole, judge)):
-            continue
+        in_phase = gaps.in_phase(judged.whole, judge)
+        in_phase = in_phase or (not judged.a(Placed, index) and gaps.in_phase(less.whole, judge))
         before, after = (gaps.of(each.whole, judge) for each in (less, judged))
-        allowed = float(np.hypot(before, floor))
+        allowed = float(np.hypot(before, floor) * (1.0 if in_phase else np.sqrt(ERRS_TWICE)))
         worse = min(before, after) < judge.varies and after > allowed
         if worse and not _comes_closer(recordings, suspects, judged.whole, held_out, gaps, allowed):
             unit = judged.rig.axis_kind.speed_unit

@@ -15,7 +15,7 @@ from bench.fit.fit import Fit, explained
 from bench.fit.shapes import free_shapes
 from bench.fit.solution import NOISE_ALONE
 
-#: Squares of impacts at wrong instants over their own: they err where they are and where they are not.
+#: Squares of impacts at wrong instants, or waves out of phase, over their own: they err where they are and are not.
 ERRS_TWICE = 2.0
 
 

@@ -15,7 +15,7 @@ from bench.diagnosis.policy import Policy, worth
 from bench.effects.effect import Effect, Replacing
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
-from bench.fit.hypothesis import Hypothesis, Term, on_other_side, outer_loads
+from bench.fit.hypothesis import Term, on_other_side, outer_loads
 from bench.fit.rows import Rows
 from bench.fit.shapes import shaped, together
 
@@ -245,10 +245,10 @@ def replacement(found: Searched, effect: Replacing, effects: Sequence[Effect], p
     (backfitting: A. Buja, T. Hastie, R. Tibshirani, Annals of Statistics 17, 1989, 453-510).
     """
     last, earlier = found.last, found.steps[:-1] or found.steps
-    replaced = None
+    replaced, shape = None, None
     beside = [term for term in last.terms if term.effect.name not in effect.replaces]
     for _ in range(TURNS):
-        placed = in_place(last.hypothesis.with_terms(beside), last.rows, effect, effects, policy)
+        placed = in_place(fit(last.rows, last.hypothesis.with_terms(beside)), effect, shape, effects, policy)
         if placed is None or not policy.replaces_by(last, placed, effect.needed):
             break
         replaced = selected(Step(backward_elimination(placed, policy)), earlier, effects, policy)
@@ -256,18 +256,20 @@ def replacement(found: Searched, effect: Replacing, effects: Sequence[Effect], p
         if Counter(term.effect for term in others) == Counter(term.effect for term in beside):
             break
         beside = others
+        shape = next((term.shape for term in replaced.last.terms if term.effect is effect), None)
     return replaced if replaced is not None and policy.replaces_by(last, replaced.last, policy.replaces) else None
 
 
 def in_place(
-    beside: Hypothesis, rows: Rows, effect: Replacing, effects: Sequence[Effect], policy: Policy
+    current: Fit, effect: Replacing, shape: tuple[float, ...] | None, effects: Sequence[Effect], policy: Policy
 ) -> Fit | None:
-    """A hypothesis with an effect whose shape is searched beside it; None where none promises to explain."""
-    current = fit(rows, beside)
-    promises = partial(policy.promises, current)
-    shape = effect.in_place_of(current, promises) if beside.admits(effect) else None
+    """A fit with an effect whose shape is searched beside it, from one or anywhere; None where none may explain."""
+    beside = current.hypothesis
+    if not beside.admits(effect):
+        return None
+    shape = shape or effect.in_place_of(current, partial(policy.promises, current))
     if shape is None:
         return None
-    first = fit(rows, beside.plus(Term(effect, shape)))
-    after = shaped(rows, first.hypothesis, len(beside.terms))  # from where levels and loads have settled
+    first = fit(current.rows, beside.plus(Term(effect, shape)))
+    after = shaped(current.rows, first.hypothesis, len(beside.terms))  # from where levels and loads have settled
     return physical_form(after, effects, policy)

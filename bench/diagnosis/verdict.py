@@ -15,6 +15,7 @@ from bench.arrays import rms
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS, AxisKind
 from bench.diagnosis.add import Added
 from bench.diagnosis.name import NamedEffect, Suspects
+from bench.diagnosis.policy import ERRS_TWICE
 from bench.diagnosis.recordings import Recordings
 from bench.fit.fit import Fit
 from bench.fit.rows import Rows
@@ -103,9 +104,10 @@ def moves_worse(shown: Shown) -> str:
         return ""
     gap, added = shown.velocity, shown.added
     for recorded, pair in zip(added.recorded, (gap.identify, gap.holdout), strict=False):
-        if pair is None or pair[1] <= math.hypot(pair[0], gap.noise_floor):
+        if pair is None:
             continue
-        if added.gaps.in_phase(added.extension.whole, recorded):
+        allowed = math.hypot(pair[0], gap.noise_floor)
+        if pair[1] > allowed * (1.0 if added.gaps.in_phase(added.extension.whole, recorded) else math.sqrt(ERRS_TWICE)):
             name, before, after = recorded.name, *pair
             return f"simulated motion of the {name} is worse with it: {before:.3g} -> {after:.3g} {gap.unit}"
     return ""
@@ -217,6 +219,6 @@ def out_of_phase(added: Added) -> list[str]:
     lost = [each.name for each in added.recorded if not added.gaps.in_phase(added.extension.whole, each)]
     return [
         f"the simulated position leaves the {name}'s by more than waves or impacts allow: they are judged by their "
-        "torque at the measured position, and the velocity gap says nothing of them"
+        "torque at the measured position, and by the velocity gap where its squares double"
         for name in lost
     ]

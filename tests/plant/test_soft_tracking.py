@@ -142,3 +142,17 @@ def test_a_model_that_diverges_is_none_and_leaves_the_others():
         assert other is None
         with pytest.raises(SimulationError, match="diverged"):
             track(tracked[1], BANDWIDTH)
+
+
+def test_a_contact_that_outruns_half_a_millisecond_carries_its_load_along():
+    """A torque gives motor and load J*w = M*t once the gap has closed, however hard the contact damps.
+
+    In steps of 0.5 ms its damping, 5500/s, would overshoot further with each.
+    """
+    contact = {"gap": 0.019, "contact_stiffness": 674.0, "contact_damping": 1.02}
+    parameters = AxisParameters(7.56e-4, motor_inertia=4.19e-4)
+    held = AxisModel(parameters, (Present.of("backlash", contact),))
+    torque = np.full(TIME.size, 0.01)
+    velocity = track(SoftTracking(held, at_rest(), torque), 1e-9).velocity
+    settled = TIME > 1.0
+    np.testing.assert_allclose(velocity[settled], 0.01 * TIME[settled] / 7.56e-4, rtol=1e-3)
