@@ -94,9 +94,12 @@ def test_a_model_that_moves_worse_explains_nothing(identify, holdout, said):
     assert bool(said) == bool(against)
 
 
-def test_a_model_whose_waves_lost_their_phase_is_not_judged_by_its_speed():
-    worse = shown(SPRING, velocity=Gap("rad/s", 0.027, (0.50, 3.39), None), in_phase=False)
-    assert (moves_worse(worse), out_of_phase(worse.added) != []) == ("", True)
+@pytest.mark.parametrize(("after", "said"), [(0.70, ""), (0.72, "recording is worse"), (3.39, "recording is worse")])
+def test_a_model_whose_waves_lost_their_phase_is_judged_by_a_speed_whose_squares_double(after, said):
+    """At wrong instants they err twice, where they are and where they are not: sqrt(2*(0.5**2 + 0.027**2)) = 0.708."""
+    worse = shown(SPRING, velocity=Gap("rad/s", 0.027, (0.50, after), None), in_phase=False)
+    assert said in moves_worse(worse)
+    assert (bool(moves_worse(worse)), out_of_phase(worse.added) != []) == (bool(said), True)
 
 
 @pytest.mark.parametrize(
