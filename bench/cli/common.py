@@ -299,8 +299,7 @@ def subject(
             raise InputError("--draft", "found with --rig", "allowed: without, for the rig that is drafted then")
         known = _drafted(trace, axis, draft) if rig is None else bench.load_rig(rig).on_axis(axis)
         return Subject(known, lambda path: bench.read(path, known.trace))
-    from bench.plant.robot import Robot, joint_rig, moved, read_log
-    from bench.trace.read import read_recording
+    from bench.plant.robot import Robot, joint_rig, poses_along, read_log
 
     robot = Robot.of(mjcf, joint)
     within = joint_rig(None if rig is None else bench.load_rig(rig).on_axis(axis), robot)
@@ -313,12 +312,7 @@ def subject(
         warned.update(trace.notes)
         return trace
 
-    def poses(path: Path) -> tuple[Array, dict[str, Array]]:
-        trace, position, _, _ = moved(read_recording(path), path, within, robot, stands)
-        names = (robot.model.joint(k).name for k in robot.joints)
-        return trace.time, dict(zip(names, position.T, strict=True))
-
-    return Subject(within, read, poses)
+    return Subject(within, read, lambda path: poses_along(path, within, robot, stands))
 
 
 def one_joint(joints: Sequence[str] | None) -> str | None:

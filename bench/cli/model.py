@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from bench.arrays import Array
     from bench.cli.common import Subject
+    from bench.diagnosis.let_free import FreeRun
     from bench.diagnosis.replay import Replay
     from bench.plant.model_file import StoredModel
-    from bench.view.let_free import FreeRun
     from bench.view.side_by_side import SideBySide
 
 ModelArgument = Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")]
@@ -138,14 +138,15 @@ def _robot(
 
 def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, FreeRun | None, list[str]]:
     """Model and ghost, how far off the model runs by itself, and what the user should know before believing them."""
-    from bench.view.let_free import let_free, otherwise
+    from bench.diagnosis.let_free import BARE, bare, let_free, otherwise
     from bench.view.side_by_side import along_profile, along_recording
 
     if trace is None:
         return along_profile(model, of.rig, profile), None, []
     recording = of.read(trace)
     replayed = bench.replay(model, recording, of.rig)
-    others = otherwise(model, recording, of.rig)
+    others, without = otherwise(model, recording, of.rig), bare(model, recording, of.rig)
+    others = others if without is None else {BARE: without, **others}
     shown, free, warnings = replace(along_recording(model, replayed), others=others), None, list(replayed.warnings)
     try:
         free = let_free(model, recording, of.rig)

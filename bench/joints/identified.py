@@ -17,10 +17,11 @@ from bench.fit.rows import Rows
 from bench.gate.check import Check
 from bench.gate.gate import passed, warnings_of
 from bench.jobs.process import Limits
+from bench.joints.motion import JointMotion, joint_motion
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
-from bench.plant.robot import AddedBody, Robot, joint_rig, read_log
+from bench.plant.robot import AddedBody, Robot, joint_rig, poses_along, read_log
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -66,6 +67,7 @@ class IdentifiedJoint:
         record: the motion that would tell it; empty where nothing is refused.
         left_out: why a log was not used, by its file.
         failed: what is wrong with the input, if that is why nothing is told.
+        motion: of a diagnosis with a model that moves.
     """
 
     name: str
@@ -76,6 +78,7 @@ class IdentifiedJoint:
     record: str = ""
     left_out: Mapping[str, str] = field(default_factory=dict)
     failed: str = ""
+    motion: JointMotion | None = None
 
     @property
     def parameters(self) -> dict[str, Parameter]:
@@ -143,7 +146,10 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
         return _without_effects(asked.joint, traces, rig, refusal, left_out)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, rig, failed=str(error), left_out=left_out)
-    return IdentifiedJoint(asked.joint, rig, found, refused={**found.refused, **_behind(rig)}, left_out=left_out)
+    refused = {**found.refused, **_behind(rig)}
+    log = next(log for log in asked.logs if log.name == Path(traces[0].origin).name)
+    motion = joint_motion(found, traces[0], rig, poses_along(log, rig, robot, asked.stated), robot)
+    return IdentifiedJoint(asked.joint, rig, found, refused=refused, left_out=left_out, motion=motion)
 
 
 def _behind(rig: Rig) -> dict[str, str]:

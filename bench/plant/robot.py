@@ -463,6 +463,13 @@ def moved(
     return trace, position, velocity, tuple(standing)
 
 
+def poses_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> tuple[Array, dict[str, Array]]:
+    """Times of a log - s (n,) -, and where a robot's joints were, by name - rad (m) (n,); raises as `read_log`."""
+    trace, position, _, _ = moved(read_recording(path), path, rig, robot, stated)
+    names = (robot.model.joint(k).name for k in robot.joints)
+    return trace.time, dict(zip(names, position.T, strict=True))
+
+
 #: What a joint that slides has where messages tell all joints as if they turned.
 _SLIDES = {"rad": "m", "rad/s": "m/s", "N*m": "N"}
 

@@ -344,10 +344,14 @@ class RobotDrawing(Part):
 
 
 class ModelRun(Part):
-    """How a model was run, and its position less that of the ghost: 32-bit floats in base 64, nan where unknown."""
+    """How a model was run, and its position less that of the ghost: 32-bit floats in base 64, nan where unknown.
+
+    `others`: the same of a robot's other joints at the instants of its poses, where they have models, too.
+    """
 
     name: str
     apart: str
+    others: tuple[str, ...] = ()
 
 
 class Moving(Drawing):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import get_args
 
@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA, AxisKind
 from bench.diagnosis.add import NULL
+from bench.diagnosis.let_free import BARE, HELD, HORIZONS, FreeRun
 from bench.diagnosis.replay import LEFT, Replay
 from bench.effects.present import Present
+from bench.joints.motion import JointMotion
 from bench.names import readable, words
 from bench.plant.axis_model import parameter_quantities
 from bench.plant.simulate import Simulated, Truth
@@ -25,7 +27,6 @@ from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import model_section, one_panel, origin, values_table, warnings_sections
 from bench.trace.noise import white_noise
 from bench.view.drawn import DrawnBody, DrawnRobot
-from bench.view.let_free import HORIZONS, FreeRun
 from bench.view.side_by_side import SideBySide
 
 #: Instants that a page holds of a motion, 8 bytes each and a third more as text: 0.4 MB.
@@ -240,7 +241,7 @@ def motion_of(shown: SideBySide, robot: DrawnRobot | None = None) -> doc.Moving:
     """The motion at instants of equal distance, each as of the sample next to it; nan in holes."""
     time = shown.time
     period = float(np.median(np.diff(time)))
-    runs = {"held softly": shown.position, **shown.others}
+    runs = {HELD: shown.position, **shown.others}
     count = min(round(float(time[-1] - time[0]) / period) + 1, 2 * MOST // (1 + len(runs)))
     instants, step = np.linspace(time[0], time[-1], count, retstep=True)
     after = np.clip(np.searchsorted(time, instants), 1, time.size - 1)
@@ -271,6 +272,48 @@ def motion_of(shown: SideBySide, robot: DrawnRobot | None = None) -> doc.Moving:
         position=_packed(ghost),
         runs=tuple(doc.ModelRun(name=how, apart=_packed(values)) for how, values in apart.items()),
         robot=None if robot is None else _drawn(robot),
+    )
+
+
+def robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) -> doc.Moving:
+    """A robot along a log by its joints' motions, the first of which is told in numbers; those of other logs stand as
+    measured in this one.
+    """
+    here = {name: one for name, one in motions.items() if one.origin == along}
+    first, motion = next(iter(here.items()))
+    robot = DrawnRobot.of(mjcf, first, 1.0, motion.time, motion.measured)
+    told = dict.fromkeys(how for one in here.values() for how in one.runs)
+    runs = sorted(told, key=lambda how: [HELD, BARE, how].index(how))
+
+    def apart(name: str, how: str) -> Array:
+        """Of a joint that the log tells; as held softly where its model has nothing to leave out."""
+        one = here.get(name)
+        return np.zeros_like(motion.time) if one is None else one.runs.get(how, one.runs[HELD]) - one.measured[name]
+
+    measured = motion.measured[first]
+    low, high = float(measured.min()), float(measured.max())
+    return doc.Moving(
+        title=f"The robot along {readable(Path(along).name)}; the numbers are of {readable(first)}.",
+        alternative="Each joint's recorded torque drives its model beside the others as measured. How it is run is"
+        " chosen below. The ghost is the robot as measured.",
+        turns=motion.unit == "rad",
+        unit=motion.unit,
+        ghost="measured",
+        start=float(motion.time[0]),
+        step=float(motion.time[1] - motion.time[0]),
+        count=motion.time.size,
+        low=low,
+        high=max(high, low + 1e-9),
+        position=_packed(measured),
+        runs=tuple(
+            doc.ModelRun(
+                name=how,
+                apart=_packed(apart(first, how)),
+                others=tuple(_packed(apart(name, how)) for name in robot.poses),
+            )
+            for how in runs
+        ),
+        robot=_drawn(robot),
     )
 
 

@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 import bench
+from bench.arrays import rms
 from bench.errors import InputError
 from bench.joints.identified import JointLogs, identified
 from bench.plant.model_file import load_joints
 from tests.diagnosis.command import started
-from tests.export.two_links import HIDDEN, MJCF, log, ran, write_log
+from tests.export.two_links import HIDDEN, MJCF, log, motion, ran, write_log
+from tests.report.test_view_page import floats
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "robot.md").read_text(encoding="utf-8")
 COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
@@ -52,6 +54,29 @@ def test_the_models_come_back_by_joint(arm):
     joints = load_joints(arm / "robot_id" / "effects.toml")
     assert list(joints) == ["shoulder", "elbow"]
     assert [present.name for present in joints["elbow"].model.effects] == ["cogging_torque"]
+
+
+def test_the_page_shows_the_arm_moving_with_its_models(arm):
+    """The ghost is the log; models held stay near it, nearer with what was found, and let free leave it by and by."""
+    page = json.loads((arm / "robot_id" / "report.json").read_text())
+    moving, free = next(section for section in page["sections"] if section["key"] == "moving")["blocks"]
+    time, shoulder, elbow = motion()
+    at = moving["start"] + moving["step"] * np.arange(moving["count"])
+    np.testing.assert_allclose(floats(moving["position"]), np.interp(at, time, shoulder[0]), atol=1e-3)
+    (told,) = moving["robot"]["poses"]
+    np.testing.assert_allclose(floats(told), np.interp(at, time, elbow[0]), atol=1e-3)
+    runs = {run["name"]: floats(run["others"][0]) for run in moving["runs"]}
+    assert list(runs) == ["held softly", "held, without what was found", "let free every 0.5 s", "let free every 5 s"]
+    held, bare, often, seldom = (rms(one) for one in runs.values())
+    assert held < 0.2 * bare
+    assert held < 2e-3
+    assert often < seldom < 0.05
+    curves = {one["name"]: one for one in free["panels"][0]["series"]}
+    assert list(curves) == ["shoulder", "elbow"]
+    assert curves["elbow"]["x"][-1] == pytest.approx(5.0, abs=0.01)
+    assert curves["elbow"]["y"][0] < 1e-6 < 1e-4 < curves["elbow"]["y"][-1]
+    windows = at < 10.0  # two of them, whole
+    assert rms(np.array(curves["elbow"]["y"])) == pytest.approx(rms(runs["let free every 5 s"][windows]), rel=0.1)
 
 
 def test_the_page_has_a_row_for_each_joint(arm):

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from bench.diagnosis.let_free import bare, let_free, otherwise
 from bench.diagnosis.model import holding_bandwidth
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import StoredModel, model_toml
 from bench.plant.tracking import SoftTracking, track
 from bench.trace.motion import measured_position
-from bench.view.let_free import let_free, otherwise
 from tests.diagnosis.test_commands import moving, only
 from tests.fit.motions import RIG
 
@@ -86,9 +86,9 @@ def test_without_what_was_found_it_is_held_where_it_is(tmp_path, model):
     trace, effect = one_way(4.0), Present.of("torque_offset", {"torque": 0.02})
     text = model_toml(StoredModel("axis", AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB), (effect,))))
     (tmp_path / "model.toml").write_text(f"{text}\n{BALANCE}", encoding="utf-8")
-    found = otherwise(tmp_path / "model.toml", trace, RIG)["held, without what was found"]
-    bare = AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB))
-    plain = track(SoftTracking(bare, trace, K_T * trace["current"]), holding_bandwidth(bare, 66.0))
+    found = bare(tmp_path / "model.toml", trace, RIG)
+    without = AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB))
+    plain = track(SoftTracking(without, trace, K_T * trace["current"]), holding_bandwidth(without, 66.0))
     np.testing.assert_allclose(found, plain.position, atol=1e-6)
 
 

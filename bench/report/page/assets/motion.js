@@ -16,7 +16,7 @@
   };
 
   class Robot { // drawn from behind to the front, in parallel
-    constructor(figure, data) {
+    constructor(figure, data, whole) {
       this.data = data;
       this.canvas = figure.querySelector("canvas");
       this.azimuth = figure.querySelector("[name=azimuth]");
@@ -27,7 +27,7 @@
       }
       this.moved = new Set();
       data.bodies.forEach((body, k) => {
-        if (body.joints.some((joint) => joint.of === 0) || (k > 0 && this.moved.has(body.parent))) this.moved.add(k);
+        if (body.joints.some((joint) => (whole ? joint.of !== null : joint.of === 0)) || (k > 0 && this.moved.has(body.parent))) this.moved.add(k);
       });
     }
 
@@ -51,7 +51,7 @@
       return [0, 4, 8].map((r) => m[r] * at[v] + m[r + 1] * at[v + 1] + m[r + 2] * at[v + 2] + m[r + 3]);
     }
 
-    places(time, own) {
+    places(time, own, others = [], times = 1) {
       const { bodies, ratio, start, step } = this.data, at = Math.max(0, (time - start) / step), found = [];
       const pose = (values) => {
         const k = Math.min(Math.floor(at), values.length - 2), share = Math.min(1, at - k);
@@ -60,7 +60,8 @@
       bodies.forEach((body, b) => {
         let here = b === 0 ? STANDS : within(found[body.parent], turned(body.turn, body.place));
         for (const { of, axis, anchor, slides, zero } of body.joints) {
-          const by = of === null ? 0 : (of === 0 ? own / ratio : pose(this.poses[of - 1])) - zero;
+          const apart = of > 0 && others.length ? pose(others[of - 1]) : 0; // where it is not known, as measured
+          const by = of === null ? 0 : (of === 0 ? own / ratio : pose(this.poses[of - 1]) + times * (apart || 0)) - zero;
           here = within(here, slides ? turned([1, 0, 0, 0], axis.map((x) => x * by)) : about(axis, anchor, by));
         }
         found.push(here);
@@ -68,7 +69,7 @@
       return found;
     }
 
-    draw(time, simulated, measured) {
+    draw(time, simulated, measured, others, times) {
       const size = this.canvas.clientWidth, dense = window.devicePixelRatio || 1, pen = this.canvas.getContext("2d");
       [this.canvas.width, this.canvas.height] = [size * dense, size * 0.75 * dense];
       const angle = (Number(this.azimuth.value) * Math.PI) / 180, tilt = 0.35;
@@ -93,7 +94,7 @@
           }
         }
       });
-      if (!Number.isNaN(simulated)) add(this.places(time, simulated), null, false);
+      if (!Number.isNaN(simulated)) add(this.places(time, simulated, others, times), null, false);
       if (!Number.isNaN(measured)) add(this.places(time, measured), style.color, true);
       pen.translate(this.canvas.width / 2, this.canvas.height / 2);
       for (const [, p, q, r, colour] of faces.sort((one, other) => one[0] - other[0])) {
@@ -113,8 +114,9 @@
       this.data = JSON.parse(figure.querySelector("script[type='application/json']").textContent);
       this.position = floats(this.data.position);
       this.runs = this.data.runs.map((run) => floats(run.apart));
+      this.others = this.data.runs.map((run) => run.others.map(floats));
       this.run = figure.querySelector("[name=run]");
-      this.robot = this.data.robot === null ? null : new Robot(figure, this.data.robot);
+      this.robot = this.data.robot === null ? null : new Robot(figure, this.data.robot, this.others[0].length > 0);
       if (this.robot) this.robot.frame(this.data, this.position);
       this.last = this.data.count - 1;
       this.at = 0; // in instants
@@ -192,9 +194,10 @@
 
     draw() {
       const { start, step, unit, turns, ghost } = this.data, time = start + step * this.at;
-      const at = this.read(this.position), apart = this.read(this.runs[this.run ? Number(this.run.value) : 0]);
+      const run = this.run ? Number(this.run.value) : 0;
+      const at = this.read(this.position), apart = this.read(this.runs[run]);
       const times = Number([...this.times].find((one) => one.checked).value);
-      if (this.robot) this.robot.draw(time, at + times * apart, at);
+      if (this.robot) this.robot.draw(time, at + times * apart, at, this.others[run], times);
       else {
         this.put(this.ghost, at);
         this.put(this.simulated, at + times * apart);

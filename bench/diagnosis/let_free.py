@@ -23,6 +23,8 @@ from bench.trace.trace import Trace
 LONGEST, BEGIN = 5.0, 4
 #: After so long it is told how far off it is, and begins anew where that is shown - s.
 HORIZONS = (0.5, 1.0, 2.0, 5.0)
+#: How a model is run that a weak cascade keeps near its recording, with and without its effects.
+HELD, BARE = "held softly", "held, without what was found"
 
 
 @dataclass(frozen=True)
@@ -66,37 +68,53 @@ def let_free(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> FreeRun |
     return FreeRun(time, position_off, velocity_off, len(windows))
 
 
-def otherwise(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> dict[str, Array]:
-    """Positions of a model along a recording, by how it is run - rad (m) - (n,); none where it holds no motion.
+def otherwise(
+    model: Diagnosis | str | Path, trace: Trace, rig: Rig, horizons: Sequence[float] = HORIZONS
+) -> dict[str, Array]:
+    """Positions of a model that is let free anew every so often, by how often - rad (m) - (n,).
 
-    Held softly without its effects, and let free anew every so often. What diverged is left out.
+    None of them where the model holds no motion, the recording is shorter, or the model diverged.
 
     Raises:
         InputError: as `bench.replay`.
     """
-    held = _held(model, trace, rig)
+    held, found = _held(model, trace, rig), dict[str, Array]()
     if held is None:
-        return {}
-    found: dict[str, Array] = {}
-    bare = replace(held, model=held.model.with_effects([]))
-    if held.model.effects:
-        top = float(np.nanmax(np.abs(measured_velocity(trace))))
-        with suppress(SimulationError):
-            found["held, without what was found"] = track(bare, holding_bandwidth(bare.model, top)).position
-    for horizon in HORIZONS:
-        length, position = round(horizon / trace.sample_period), np.full(len(trace), np.nan)
-        windows = [
-            slice(start, min(start + length, part.stop))
-            for part in stretches_of(trace)
-            for start in range(part.start, part.stop - 1, length)
-        ]
-        if length < 2 or not any(part.stop - part.start == length for part in windows):
+        return found
+    for horizon in horizons:
+        windows, position = windows_of(trace, horizon), np.full(len(trace), np.nan)
+        if not any(part.stop - part.start == round(horizon / trace.sample_period) for part in windows):
             continue
         with suppress(SimulationError):
             for part, one in zip(windows, _free(held, windows), strict=True):
                 position[part] = one.position
             found[f"let free every {horizon:g} s"] = position
     return found
+
+
+def windows_of(trace: Trace, horizon: float) -> list[slice]:
+    """Windows of so long - s -, one after the other, the last one of each stretch without holes as long as that is."""
+    length = max(round(horizon / trace.sample_period), 2)
+    return [
+        slice(start, min(start + length, part.stop))
+        for part in stretches_of(trace)
+        for start in range(part.start, part.stop - 1, length)
+    ]
+
+
+def bare(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> Array | None:
+    """Position of a model without its effects, held softly - rad (m) - (n,); None where it has none, or diverged.
+
+    Raises:
+        InputError: as `bench.replay`.
+    """
+    held = _held(model, trace, rig)
+    if held is None or not held.model.effects:
+        return None
+    without, top = held.model.with_effects([]), float(np.nanmax(np.abs(measured_velocity(trace))))
+    with suppress(SimulationError):
+        return track(replace(held, model=without), holding_bandwidth(without, top)).position
+    return None
 
 
 def _held(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> SoftTracking | None:
