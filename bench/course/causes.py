@@ -39,7 +39,7 @@ SCALE = 1.38
 SAME = 0.9
 #: What is tried, until it explains: mistakes in a recording at most, whether files are exchanged, and whether more than
 #: the least that a recording asks for are tried, as the others may ask for them.
-TRIED = ((1, False, False), (1, True, False), (2, False, False), (2, True, False), (2, False, True))
+TRIED = ((1, False, False), (1, True, False), (2, False, False), (2, True, False), (2, False, True), (3, False, False))
 #: Rounds in which a delay is searched, as a long one is not linear.
 ROUNDS = 6
 TURN = 'turn one of them by a rig.toml beside it with [trace.columns] current = "-name of its column [unit]"'
@@ -171,7 +171,10 @@ def refusals(runs: Mapping[str, LabRun], rig: Rig) -> dict[str, str]:
 
 def _alike(one: LabRun, other: LabRun) -> bool:
     """Whether most samples are the same: one file that was changed in places is no other recording."""
-    return one.current.size == other.current.size and float(np.mean(one.current == other.current)) > SAME
+    if one.time.size != other.time.size:
+        return False
+    same = (one.velocity == other.velocity) | (one.current == other.current)  # one of them may be in another unit
+    return float(np.mean(same)) > SAME
 
 
 def _told(undone: Sequence[KnownMistake]) -> str:

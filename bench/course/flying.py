@@ -6,6 +6,7 @@ What does not is told with the mistake without which it would: axes exchanged, a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from bench.arrays import Array, rms
 #: A point is off by so many times the usual distance from its path, a flight's path by so many from the others'. Of
 #: 200,000 tens of simulated flights, each with its scatter of the launch, the furthest were 6.9 and 15.3 times.
 POINT, PATH = 7.0, 16.0
+#: However much paths scatter, those of one throw are not further from their middle than this share of their height.
+APART = 0.5
 #: A flight has at least so many points more than its parabola has coefficients.
 SPARE = 3
 MISTAKES: dict[str, Callable[[Array], Array]] = {
@@ -31,6 +34,9 @@ def contradiction(flights: Sequence[Array]) -> str:
     """What no flights of one throw - (n, 2) y, z in m - can show, and why; empty where all can be."""
     if any(len(flight) < 3 + SPARE for flight in flights):
         return ""
+    for (j, one), (k, other) in combinations(enumerate(flights, 1), 2):
+        if np.array_equal(one, other):
+            return f"flights {j} and {k} are one and the same"
     wrong = list(_wrong(flights))
     if not wrong:
         return ""
@@ -59,7 +65,7 @@ def _wrong(flights: Sequence[Array]) -> Iterator[tuple[int, str]]:
             yield k, f"does not fall, its a is {path[0]:+.3g} 1/m"
         elif np.abs(off[k]).max() > POINT * usual:
             yield k, f"has a point {np.abs(off[k]).max():.2g} m off its path, {usual:.2g} m are usual"
-        elif apart[k] > PATH * alike:
+        elif apart[k] > min(PATH * alike, APART * np.ptp(flights[k][:, 1])):
             yield k, f"is {apart[k]:.2g} m off the path of the others, {alike:.2g} m are usual"
         elif usual > 0.1 * np.ptp(flights[k][:, 1]):
             yield k, f"has points {usual:.2g} m off its path, which itself spans {np.ptp(flights[k][:, 1]):.2g} m"

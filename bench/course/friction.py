@@ -127,8 +127,8 @@ def _remaining_chart(run: LabRun, kept: LabRun) -> Chart:
 
 
 def steepest(run: LabRun) -> int:
-    """Sample at the steepest change of alpha_filt."""
-    return int(np.argmax(np.abs(np.diff(filtered_acceleration(run)[0])))) + DELAY
+    """Sample at the steepest change of alpha_filt that has as many on either side as are drawn."""
+    return int(np.argmax(np.abs(np.diff(filtered_acceleration(run)[0]))[EDGE:-EDGE])) + EDGE + DELAY
 
 
 def _edge_chart(run: LabRun) -> Chart:
@@ -136,7 +136,7 @@ def _edge_chart(run: LabRun) -> Chart:
     mean, synchronous = filtered_acceleration(run)
     t_sync = run.time[synchronous]
     edge = steepest(run)
-    near = slice(max(edge - EDGE, DELAY), min(edge + EDGE, run.time.size - DELAY))
+    near = slice(edge - EDGE, edge + EDGE)
     within = slice(near.start - DELAY, near.stop - DELAY)
     late = t_sync + DELAY * run.sample_period
     whole = curve(run.time, run.acceleration, "α", "wide"), curve(t_sync, mean, "α_filt on t_sync")
@@ -157,7 +157,7 @@ def _half_sample(run: LabRun, edge: int) -> tuple[Series, ...]:
     """The mean set back by its own delay alone, by half a sample more, and the speed's derivative in step."""
     mean, synchronous = filtered_acceleration(run)
     smooth = GaussianFilter(LEAST_WIDTH * run.sample_period, run.sample_period)
-    near = slice(max(edge - CLOSE, smooth.margin), min(edge + CLOSE, run.time.size - smooth.margin))
+    near = slice(edge - CLOSE, edge + CLOSE)
     slope = smooth(run.velocity, 1)[0][near.start - smooth.margin : near.stop - smooth.margin]
     time, values = run.time[near], mean[near.start - synchronous.start : near.stop - synchronous.start]
     return (

@@ -36,8 +36,8 @@ FROM, TO = 0.9, 0.5
 STILL_RISING = 0.97
 #: The top is the median of samples above this share of the largest.
 TOP = 0.95
-#: Time constant that the search for it starts from - s.
-TYPICAL = 2e-3
+#: Time constant that the search for it starts from - s, and more than a winding's.
+TYPICAL, TOO_LATE = 2e-3, 10e-3
 #: Points of the model a sample: the current bends between two of them.
 FINER = 8
 #: The course drops samples of less torque - N*m - and starts at the first above 3.0 N*m, this share of the lab
@@ -87,7 +87,7 @@ def decline(velocity: Array, current: Array, sample_period: float) -> Decline:
         sample_period: s.
 
     Raises:
-        UndeterminedError: the current does not fall to half while the axis accelerates.
+        UndeterminedError: the current does not fall to half while the axis accelerates, or later than L/R has it.
     """
     top, high, slope, offset = _fall(velocity, current)
     below = np.flatnonzero((np.arange(current.size) > high[-1]) & (current < TO * top))
@@ -106,6 +106,9 @@ def decline(velocity: Array, current: Array, sample_period: float) -> Decline:
     start, middle = np.array([corner, no_load, TYPICAL]), 0.5 * (corner + no_load)
     bounds = [0.0, middle, 0.0], [middle, 10.0 * no_load, 1.0]
     found = least_squares(unexplained, start, bounds=bounds, x_scale=start, xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    if found.x[2] > TOO_LATE:
+        reason = f"the current falls {1e3 * found.x[2]:.0f} ms late, and L/R of a winding is a few: it was filtered"
+        raise UndeterminedError("corner speed", reason, "speed and current as the drive has them, without a filter")
     variance = found.fun @ found.fun / max(found.fun.size - 3, 1) * np.linalg.pinv(found.jac.T @ found.jac)[0, 0]
     return Decline(*found.x.tolist(), extrapolated=corner, half=NORMAL95 * math.sqrt(variance))
 

@@ -9,6 +9,7 @@ real axis.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -31,8 +32,12 @@ FASTEST_SPEED, LARGEST_CURRENT, FULL_CURRENT = 1.05, 1.03, 0.95
 OVER_THEORY = (0.85, 1.35)
 #: Samples that torque may come after acceleration; share of the torque that may be left; of it that friction has.
 LATE, LEFT, FRICTION = 0.4, 0.05, 0.015
-#: J of one recording against the others', and the share of a recording that holes may cut off where they cut no run-up.
-BETWEEN, CUT = 0.05, 0.2
+#: J of one recording against the others', that of two of one motion, whose currents are alike, so that kT cannot part
+#: them; and the share of a recording that holes may cut off where they cut no run-up.
+BETWEEN, OF_ONE_MOTION, CUT = 0.05, 0.01, 0.2
+#: Steps of a signal as a share of its largest: a current that is rounded to more moves J by more than its interval, and
+#: one of finer steps is not the same for so many samples unless it was cut off or held, or the drive is at its limit.
+COARSE, FINE, HELD, AT_LIMIT = 0.005, 1e-4, 8, 0.99
 #: An isolated sample is off by so many times the noise, and by more than twice the usual step between samples.
 GLITCH, STEP = 10.0, 2.0
 
@@ -114,6 +119,8 @@ def fault(name: str, run: LabRun, rig: Rig) -> str:
         return f"its highest speed is {speed * RPM:,.0f} rpm, and the motor has {top:,.0f} rpm at {MAINS:g} V at most"
     if peak is not None and current > LARGEST_CURRENT * peak:
         return f"its largest current is {current:.4g} A, and the drive gives {peak:.4g} A at most"
+    if odd := _no_readings(run, peak):
+        return odd
     for signal, unit, values in (("speed", "rad/s", run.velocity), ("current", "A", run.current)):
         alone = glitches(values, signal == "speed")
         if alone.size:
@@ -124,6 +131,23 @@ def fault(name: str, run: LabRun, rig: Rig) -> str:
     if found is None:
         return ""
     return _of_balance(name, found, rig) or (_of_run_up(run, rig) if name == FASTEST else "")
+
+
+def _no_readings(run: LabRun, peak: float | None) -> str:
+    """Why signals are not what a sensor reads; empty where they are."""
+    for signal, unit, values in (("speed", "rad/s", run.velocity), ("current", "A", run.current)):
+        largest = float(np.abs(values).max()) or 1.0
+        levels = np.unique(np.round(values / largest, 9))
+        step = float(np.diff(levels).min()) if levels.size > 1 else 0.0
+        if step > COARSE:
+            return f"its {signal} comes in steps of {step * largest:.2g} {unit}, {step:.1%} of the largest: too coarse"
+    changes = np.flatnonzero(np.diff(run.current, prepend=np.nan, append=np.nan))
+    for start, length in zip(changes, np.diff(changes), strict=False):
+        value = abs(run.current[start])
+        if step < FINE and length > HELD and 0.0 < value < AT_LIMIT * (peak or math.inf):
+            where = f"{length} samples after {run.time[start]:.4g} s"
+            return f"its current is {run.current[start]:.4g} A to the last digit for {where}: it was cut off, or held"
+    return ""
 
 
 def _of_balance(name: str, found: TorqueBalance, rig: Rig) -> str:
@@ -169,7 +193,9 @@ def between(inertias: Mapping[str, float | None]) -> dict[str, str]:
     found = {name: inertia for name, inertia in inertias.items() if inertia is not None}
     if len(found) < 2:
         return {}
-    middle, limit = float(np.median([*found.values()])), BETWEEN if len(found) > 2 else BETWEEN / 2.0
-    apart = {name: abs(value / middle - 1.0) > limit for name, value in found.items()}
+    middle, limits = float(np.median([*found.values()])), dict.fromkeys(found, OF_ONE_MOTION) | {FASTEST: BETWEEN}
+    if len(found) == 2:
+        limits = dict.fromkeys(found, max(limits[name] for name in found) / 2.0)
+    apart = {name: abs(value / middle - 1.0) > limits[name] for name, value in found.items()}
     told = ", ".join(f"{value * KG_CM2:.4g} by {name}" for name, value in found.items())
     return {name: f"J in kg*cm**2 is {told}: one axis has one J" for name, is_apart in apart.items() if is_apart}

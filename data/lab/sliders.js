@@ -67,7 +67,7 @@
     const f = friction(state), all = range(0, f.count), at = (samples, values) => [samples.map(f.time), samples.map((k) => values[k])];
     const bare = [0, ...range(1, f.count).map((k) => (f.velocity[k] - f.velocity[k - 1]) / f.period)];
     const { edge, reach, delay, close: [times, slope] } = data.friction, close = times.map((t) => f.alpha[Math.round(t / f.period)]);
-    const near = range(Math.max(edge - reach, delay), Math.min(edge + reach, f.count - delay));
+    const near = range(edge - reach, edge + reach);
     const dashes = friction({ ...state, late: delay });
     return {
       numbers: {

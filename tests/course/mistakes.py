@@ -139,6 +139,57 @@ def two_at_once(of, random):
     of.scale(NAMES, 1.0, 180.0 / np.pi, 1e3)
 
 
+def cut_off(of, random):
+    name = str(random.choice([BARE, FRICTION]))
+    rows = of.tables[name].copy()
+    limit = random.uniform(0.5, 0.98) * rows[:, 2].max()
+    rows[:, 2] = np.clip(rows[:, 2], -limit, limit)
+    of.tables[name] = rows
+
+
+def held(of, random):
+    rows, start = of.tables[FRICTION].copy(), int(random.integers(200, 300))
+    rows[start : start + int(random.integers(10, 60)), 2] = rows[start, 2]
+    of.tables[FRICTION] = rows
+
+
+def rounded(of, random):
+    for name in some(random):
+        step, rows = random.uniform(0.1, 0.5), of.tables[name]
+        of.tables[name] = np.column_stack([rows[:, :2], np.round(rows[:, 2] / step) * step])
+
+
+def filtered(of, random):
+    lag = np.exp(-np.arange(200) / random.uniform(10.0, 15.0))
+    rows = of.tables[FASTEST]
+    smooth = [np.convolve(column, lag / lag.sum())[: len(rows)] for column in rows[:, 1:].T]
+    of.tables[FASTEST] = np.column_stack([rows[:, 0], *smooth])
+
+
+def a_few_percent(of, random):
+    of.scale((str(random.choice([BARE, FRICTION])),), 1.0, 1.0, random.choice([0.96, 0.98, 1.02, 1.04]))
+
+
+def one_flight_twice(of, random):
+    one, other = random.choice(len(of.flights), 2, replace=False)
+    of.flights[one] = of.flights[other]
+
+
+def half_of_the_flights_mirrored(of, random):
+    for k in random.choice(len(of.flights), len(of.flights) // 2, replace=False):
+        of.flights[k] = of.flights[k] * [-1.0, 1.0]
+
+
+#: What no undoing mends, and words that tell it.
+BEYOND_MENDING = {
+    cut_off: "it was cut off, or held",
+    held: "it was cut off, or held",
+    rounded: "of the largest: too coarse",
+    filtered: "it was filtered",
+    a_few_percent: "one axis has one J",
+    one_flight_twice: "are one and the same",
+    half_of_the_flights_mirrored: "its y is counted the other way",
+}
 #: Each mistake, and words that name it.
 MISTAKES = {
     degrees_as_radians: "deg/s that is labelled rad/s",

@@ -83,6 +83,16 @@ def test_9_both_directions_are_needed_by_a_fiftieth_of_the_samples(backward, tol
             friction.identify_friction(run)
 
 
+def test_8_an_edge_where_a_recording_begins_is_none_that_is_drawn():
+    """The steepest change is that of the first samples, which have too few before them; the next is drawn."""
+    speed = 30.0 + np.cumsum(np.where(np.arange(300) < 150, 0.5, -0.5))
+    run = run_of(np.concatenate([[0.0] * 3, speed]), np.ones(303))
+    assert abs(friction.steepest(run) - 153) <= friction.WIDTH
+    _, edge, few = friction.samples_that_remain(recordings_of(with_friction=run)).charts[1].panels
+    assert [len(one.x) for one in edge.series] == [2 * friction.EDGE] * 3
+    assert [len(one.x) for one in few.series] == [2 * friction.CLOSE] * 3
+
+
 def test_9_what_is_exact_is_found_and_reconstructed_exactly():
     run = there_and_back(0.4)
     found = friction.identify_friction(run)
