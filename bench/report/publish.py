@@ -104,7 +104,8 @@ def read_document(path: Path) -> Document:
         detail = error.errors()[0]
         key = ".".join(str(part) for part in detail["loc"]) or "page"
         found = f"found {short(repr(detail['input']), 60)}"
-        raise InputError(f"{path}: {key}", found, f"allowed: {detail['msg'][0].lower()}{detail['msg'][1:]}") from error
+        allowed = short(" ".join(detail["msg"].split()))  # which quotes a kind that there is not, whatever stands there
+        raise InputError(f"{path}: {key}", found, f"allowed: {allowed[0].lower()}{allowed[1:]}") from error
 
 
 def markdown(part: object) -> str:

@@ -132,6 +132,17 @@ def test_damage_is_reported_in_one_line(bench, tmp_path, change, words):
         assert word in err
 
 
+def test_a_kind_of_part_that_there_is_not_is_quoted_in_a_line_of_bounded_length(tmp_path):
+    """Found by fuzzing: whatever stood there stood in the message, line breaks and all."""
+    write_document(tmp_path, page_full_of("x"))
+    content = json.loads((tmp_path / DATA).read_text(encoding="utf-8"))
+    content["sections"][0]["blocks"][0]["kind"] = "a\nb" * 2000
+    (tmp_path / DATA).write_text(json.dumps(content), encoding="utf-8")
+    with pytest.raises(InputError, match=r"report\.json: sections\.0\.blocks\.0: found .*; allowed: ") as error:
+        read_document(tmp_path / DATA)
+    assert "\n" not in str(error.value) and len(str(error.value)) < 600
+
+
 def test_a_folder_without_a_page_is_reported(bench, tmp_path):
     (tmp_path / "empty").mkdir()
     status, _, err = bench("report", "empty")
